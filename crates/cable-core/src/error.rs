@@ -149,7 +149,8 @@ pub struct Place {
     pub arc_length_m: f64,
     /// Where that is, m.
     pub at_m: Vec2,
-    /// The nearest support or obstacle by kind and name, and its distance, m; none where there is nothing.
+    /// The nearest support or obstacle by kind and name, and its distance, m; none where there is
+    /// nothing.
     pub near: Option<(String, f64)>,
 }
 
@@ -178,10 +179,12 @@ fn metres(length_m: f64) -> String {
     if size > 0.0 && size < 0.01 || size >= 1e6 { format!("{length_m:.2e} m") } else { format!("{length_m:.3} m") }
 }
 
-/// A force that no cable bears, N: left over it says that a search ran away, not how much is missing.
+/// A force that no cable bears, N: left over it says that a search ran away, not how much is
+/// missing.
 const MAX_CREDIBLE_FORCE_N: f64 = 1e9;
 
-/// A force that is left over, where a solver knows one: a figure that is not finite, or beyond all measure, says nothing to anybody.
+/// A force that is left over, where a solver knows one: a figure that is not finite, or beyond all
+/// measure, says nothing to anybody.
 fn left_over(residual_n: f64) -> String {
     if residual_n.abs() < MAX_CREDIBLE_FORCE_N {
         format!("{residual_n:.3e} N stay unbalanced")
@@ -195,7 +198,8 @@ fn seconds(time_s: f64) -> String {
     if time_s.is_finite() { format!("{time_s} s") } else { "no finite time".to_owned() }
 }
 
-/// Why a model has no answer. Every text says where, in metres and names, and what can be done; none holds a number that is not finite.
+/// Why a model has no answer. Every text says where, in metres and names, and what can be done;
+/// none holds a number that is not finite.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SolveError {
     /// The iteration did not converge.
@@ -349,8 +353,8 @@ pub enum SolveError {
 }
 
 impl SolveError {
-    /// Of two models' reasons for one cable the one that a user can act on: what is so whatever the model is told alone; where
-    /// neither says that, both are.
+    /// Of two models' reasons for one cable the one that a user can act on: what is so whatever the
+    /// model is told alone; where neither says that, both are.
     #[must_use]
     pub(crate) fn clearer(first: Self, second: Self) -> Self {
         let certain = |e: &Self| matches!(e, Self::NoRestingPlace { .. } | Self::Buried { .. });

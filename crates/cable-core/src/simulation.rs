@@ -25,10 +25,12 @@ use crate::warnings::{Bends, Observed, WarningMonitor};
 /// Step with inertia, s: the inner step of `fem`.
 pub const STEP_S: f64 = 1.0 / 240.0;
 
-/// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows time at 10 Hz.
+/// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows
+/// time at 10 Hz.
 pub const MAX_FRAME_S: f64 = 0.1;
 
-/// Longest step with inertia, s: a quarter of a million inner steps. Longer: a slip of the pen computes for hours without a word.
+/// Longest step with inertia, s: a quarter of a million inner steps. Longer: a slip of the pen
+/// computes for hours without a word.
 const MAX_STEP_S: f64 = 1e3;
 
 /// The same without inertia, s.
@@ -81,8 +83,9 @@ impl Simulation {
         Self::for_question(scene, model, settings, Question::Rest)
     }
 
-    /// As [`Self::with_settings`]; `Model::Auto` is resolved for the question that will be asked. One model serves
-    /// the whole scene: the highest rung any cable needs, and the next one up where a model lacks a feature.
+    /// As [`Self::with_settings`]; `Model::Auto` is resolved for the question that will be asked.
+    /// One model serves the whole scene: the highest rung any cable needs, and the next one up
+    /// where a model lacks a feature.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -107,8 +110,8 @@ impl Simulation {
         Ok(this)
     }
 
-    /// As [`Self::with_settings`], by a model of the program's own: `constructor` is called for each cable, and for each piece
-    /// that one breaks into.
+    /// As [`Self::with_settings`], by a model of the program's own: `constructor` is called for
+    /// each cable, and for each piece that one breaks into.
     ///
     /// # Errors
     /// As [`Self::new`], or what the constructor says.
@@ -270,10 +273,12 @@ impl Simulation {
         self.cables.first().map_or(0.0, BreakableCable::time_s)
     }
 
-    /// Finds where everything rests. The first answer is kept as the start that [`Self::reset`] returns to.
+    /// Finds where everything rests. The first answer is kept as the start that [`Self::reset`]
+    /// returns to.
     ///
     /// # Errors
-    /// A typed reason when there is no resting place, or none was found; the state is then as before.
+    /// A typed reason when there is no resting place, or none was found; the state is then as
+    /// before.
     pub fn settle(&mut self) -> Result<Solution, SolveError> {
         let before = self.cables.clone();
         let found = self.settle_until_sound();
@@ -319,8 +324,8 @@ impl Simulation {
 
     /// What the laws say of the present answers.
     fn check_sound(&self) -> Result<(), SolveError> {
-        // Masses and springs are a quick look and a second opinion, asked for by name: their coarse meshes are told, not refused. A
-        // cable that broke at rest is where it was when it broke.
+        // Masses and springs are a quick look and a second opinion, asked for by name: their coarse
+        // meshes are told, not refused. A cable that broke at rest is where it was when it broke.
         let told =
             self.requested.capabilities().findings_are_told || self.cables.iter().any(|c| !c.breaks().is_empty());
         match self.verification.worst().filter(|_| !told) {
@@ -329,7 +334,8 @@ impl Simulation {
         }
     }
 
-    /// Gives the scene to the next model, where the user left the choice; returns whether there was one.
+    /// Gives the scene to the next model, where the user left the choice; returns whether there was
+    /// one.
     fn switch_model(&mut self, why: &str) -> bool {
         if self.requested != Model::Auto {
             return false;
@@ -350,8 +356,9 @@ impl Simulation {
         true
     }
 
-    /// With friction a resting place is one of many: said of every cable that rubs where it rests, whichever model answered, with what
-    /// other histories would have left in it where `spans` knows.
+    /// With friction a resting place is one of many: said of every cable that rubs where it rests,
+    /// whichever model answered, with what other histories would have left in it where `spans`
+    /// knows.
     fn warn_not_unique(&mut self) {
         for (k, (cable, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
             let problem = cable.problem();
@@ -377,8 +384,9 @@ impl Simulation {
         }
     }
 
-    /// What other histories would have left in a cable, in words: in plan view, where a floor that rubs everywhere chose the rest and
-    /// `spans` has no answer; None where none was sought or found.
+    /// What other histories would have left in a cable, in words: in plan view, where a floor that
+    /// rubs everywhere chose the rest and `spans` has no answer; None where none was sought or
+    /// found.
     fn describe_histories(&self, k: usize) -> Option<String> {
         let cable = self
             .cables
@@ -444,8 +452,9 @@ impl Simulation {
         nodes.map(|n| n.tension_n).fold(0.0, larger)
     }
 
-    /// Advances by a display frame: at most [`MAX_FRAME_S`], so a stalled picture makes time run slower instead of
-    /// a step nobody sees. Returns the time advanced (s); its ratio to `dt_s` is the speed to show.
+    /// Advances by a display frame: at most [`MAX_FRAME_S`], so a stalled picture makes time run
+    /// slower instead of a step nobody sees. Returns the time advanced (s); its ratio to `dt_s` is
+    /// the speed to show.
     ///
     /// # Errors
     /// `TimeStep` for a frame that is zero, negative or not a number; otherwise as [`Self::step`].
@@ -458,8 +467,9 @@ impl Simulation {
         Ok(taken)
     }
 
-    /// The same scene by the same model at its start, on so many times as many elements in inner steps so many times as short; None where a
-    /// cable would have too few of them to say anything. It has not settled.
+    /// The same scene by the same model at its start, on so many times as many elements in inner
+    /// steps so many times as short; None where a cable would have too few of them to say anything.
+    /// It has not settled.
     ///
     /// # Errors
     /// As [`Self::new`]; what the settings then ask for is out of range.
@@ -489,8 +499,8 @@ impl Simulation {
         Ok(Some(next))
     }
 
-    /// The same run with an edited scene: cables keep their shape, speed and time; the start of [`Self::reset`] is that
-    /// of the new scene once it is settled.
+    /// The same run with an edited scene: cables keep their shape, speed and time; the start of
+    /// [`Self::reset`] is that of the new scene once it is settled.
     ///
     /// # Errors
     /// What is wrong with the new scene; the old simulation is untouched.
@@ -501,8 +511,8 @@ impl Simulation {
         Ok(next)
     }
 
-    /// Asks every cable the same. Where one of several fails, all are as before: never some of them a step ahead. (A
-    /// cable alone stays where it came, see [`Mechanics::advance`].)
+    /// Asks every cable the same. Where one of several fails, all are as before: never some of them
+    /// a step ahead. (A cable alone stays where it came, see [`Mechanics::advance`].)
     fn for_each_cable(
         &mut self,
         mut f: impl FnMut(&mut BreakableCable) -> Result<StepReport, SolveError>,
@@ -576,8 +586,9 @@ impl Simulation {
         }
     }
 
-    /// Holds a support by a hand at `hand_m` (m), by a spring while masses move: what it pulls with stands in the answer
-    /// ([`SupportReaction::hand`](crate::solution::SupportReaction::hand)). See [`Mechanics::pull_support`].
+    /// Holds a support by a hand at `hand_m` (m), by a spring while masses move: what it pulls with
+    /// stands in the answer ([`SupportReaction::hand`](crate::solution::SupportReaction::hand)).
+    /// See [`Mechanics::pull_support`].
     pub fn pull_support(&mut self, cable: usize, support: usize, hand_m: Vec2) {
         if let Some(c) = self.cables.get_mut(cable) {
             c.pull_support(support, hand_m);
@@ -637,9 +648,9 @@ impl Simulation {
         Ok(())
     }
 
-    /// Goes on from an answer of an earlier instant of the same scene: cables where and as fast as they were, all whole, the
-    /// robot where it was. What an answer does not hold is lost: friction takes hold anew, a robot that waits begins to wait
-    /// again.
+    /// Goes on from an answer of an earlier instant of the same scene: cables where and as fast as
+    /// they were, all whole, the robot where it was. What an answer does not hold is lost: friction
+    /// takes hold anew, a robot that waits begins to wait again.
     ///
     /// # Errors
     /// As [`Self::set_states`].

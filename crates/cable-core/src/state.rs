@@ -24,7 +24,8 @@ pub struct State {
 }
 
 impl State {
-    /// That of a whole cable as an answer has its nodes; one node where the tension jumps and the answer has two.
+    /// That of a whole cable as an answer has its nodes; one node where the tension jumps and the
+    /// answer has two.
     #[must_use]
     pub fn of_nodes(nodes: &[Node], time_s: f64) -> Self {
         let mut state = Self { time_s, ..Self::default() };
@@ -61,7 +62,8 @@ impl State {
         Some(SolveError::NonFinite { quantity: "position or velocity", arc_length_m, time_s: self.time_s })
     }
 
-    /// Arc length of the middle of what lies on a round of a radius (m); nearest to its centre if nothing does.
+    /// Arc length of the middle of what lies on a round of a radius (m); nearest to its centre if
+    /// nothing does.
     #[must_use]
     pub fn on_round(&self, center: Vec2, radius: f64) -> Option<f64> {
         let on = |p: &Vec2| radius > 0.0 && ((p - center).norm() - radius).abs() <= ROUND_TOLERANCE * radius;

@@ -131,7 +131,8 @@ fn parts_of_a_contact_fill_it_and_change_at_fronts() {
     assert!(fronts > 0, "no slip front anywhere");
 }
 
-/// The sign of a turn is that of the shape, whichever model says it: a cable over a post to the right turns clockwise.
+/// The sign of a turn is that of the shape, whichever model says it: a cable over a post to the
+/// right turns clockwise.
 #[test]
 fn turns_are_positive_anticlockwise_in_every_model() {
     let scene = catalog::draped_slipping();

@@ -35,32 +35,39 @@ use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, MomentumAccount, TensionPeak, TensionPeaks};
 use crate::state::State;
 
-/// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the place of the break is blurred; shorter:
-/// more steps for each break. It is the inner step of `fem`.
+/// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the
+/// place of the break is blurred; shorter: more steps for each break. It is the inner step of
+/// `fem`.
 const BREAK_SEARCH_STEP_S: f64 = 1.0 / 240.0;
 
-/// Looks in a step without inertia that ends beyond the breaking tension. The moment of the break is interpolated between
-/// two of them: with 16 the end of a cable pulled from slack to taut in one step is found to 1e-2 of the step.
+/// Looks in a step without inertia that ends beyond the breaking tension. The moment of the break
+/// is interpolated between two of them: with 16 the end of a cable pulled from slack to taut in one
+/// step is found to 1e-2 of the step.
 const QUASI_STATIC_SUBSTEPS: f64 = 16.0;
 
-/// Steps after a break in which a piece is not watched: the models start with a first-order step, and the free end is met
-/// by a wave of its own. Fewer: false breaks beside the first; more: true ones are late. In motion it is also not watched
-/// until that wave, at c = √(EA/ρ), has crossed it there and back (once is too short: a mesh blurs its front): where the break is not felt yet, a cable of exactly even strength that
-/// was pulled evenly would break everywhere at once, which no cable does.
+/// Steps after a break in which a piece is not watched: the models start with a first-order step,
+/// and the free end is met by a wave of its own. Fewer: false breaks beside the first; more: true
+/// ones are late. In motion it is also not watched until that wave, at c = √(EA/ρ), has crossed it
+/// there and back (once is too short: a mesh blurs its front): where the break is not felt yet, a
+/// cable of exactly even strength that was pulled evenly would break everywhere at once, which no
+/// cable does.
 const UNWATCHED_STEPS: u32 = 2;
 
-/// A rest of a step shorter than this part of it is left out: at a millionth of a step the forces of inertia are rounding.
+/// A rest of a step shorter than this part of it is left out: at a millionth of a step the forces
+/// of inertia are rounding.
 const MIN_STEP_REMAINDER: f64 = 0.1;
 
 /// Most pieces of one cable. More are no longer a cable that breaks but a step that fails.
 const MAX_PIECES: usize = 32;
 
-/// A pulley is off the cable when a new end is this near, in elements. Smaller: the end runs into the pulley, where there is
-/// no element left on one side; larger: it drops off visibly early. 2 leaves a moving node beside the pulley.
+/// A pulley is off the cable when a new end is this near, in elements. Smaller: the end runs into
+/// the pulley, where there is no element left on one side; larger: it drops off visibly early. 2
+/// leaves a moving node beside the pulley.
 const PULLEY_RELEASE_ELEMENTS: f64 = 2.0;
 
-/// Fastest motion of a support that is followed while masses move, m/s. Slower: motions are refused that every model follows; faster:
-/// `mass-spring` cuts velocities, and air, which no model has, would rule.
+/// Fastest motion of a support that is followed while masses move, m/s. Slower: motions are refused
+/// that every model follows; faster: `mass-spring` cuts velocities, and air, which no model has,
+/// would rule.
 const MAX_SUPPORT_SPEED: f64 = 300.0;
 
 /// A break.
@@ -215,15 +222,17 @@ impl BreakableCable {
         Ok(sum)
     }
 
-    /// A new step of the caller begins: the greatest tensions and the account of momentum are those of it from now on.
+    /// A new step of the caller begins: the greatest tensions and the account of momentum are those
+    /// of it from now on.
     pub(crate) fn forget_peaks(&mut self) {
         self.peaks = None;
         self.since_s = self.time_s();
         self.pieces.iter_mut().for_each(|p| p.account = None);
     }
 
-    /// Advances time by exactly `dt_s`, breaking on the way where it must. Without inertia it stops where something turns
-    /// back: one step from before a reversal to after it would be another history.
+    /// Advances time by exactly `dt_s`, breaking on the way where it must. Without inertia it stops
+    /// where something turns back: one step from before a reversal to after it would be another
+    /// history.
     pub fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
         if let (Inertia::Dynamic, Some(feature)) = (inertia, &self.too_fast) {
             return Err(SolveError::Unsupported { model: self.model(), feature: feature.clone() });
@@ -385,7 +394,8 @@ impl BreakableCable {
         }
     }
 
-    /// Gives the whole cable to the next model: see [`Mechanics::fall_back`](crate::model::Mechanics::fall_back).
+    /// Gives the whole cable to the next model: see
+    /// [`Mechanics::fall_back`](crate::model::Mechanics::fall_back).
     pub(crate) fn fall_back(&mut self, why: &str) -> bool {
         match self.pieces.as_mut_slice() {
             [whole] if self.breaks.is_empty() => whole.mechanics.fall_back(why),
@@ -393,7 +403,8 @@ impl BreakableCable {
         }
     }
 
-    /// What the cable does to the outline of the robot, all pieces together; None where no model knows of it.
+    /// What the cable does to the outline of the robot, all pieces together; None where no model
+    /// knows of it.
     pub(crate) fn robot_contact(&self) -> Option<RobotContact> {
         self.pieces
             .iter()
@@ -522,8 +533,8 @@ impl Piece {
         }
     }
 
-    /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which that happens is taken again in
-    /// parts, to have the cable where it breaks.
+    /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which
+    /// that happens is taken again in parts, to have the cable where it breaks.
     fn advance_dynamic(&mut self, dt_s: f64, breaking_n: f64, sum: &mut StepReport) -> Result<StepOutcome, SolveError> {
         let looks = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
         if looks > 1.0 && self.unwatched_steps == 0 {
@@ -620,7 +631,8 @@ impl Piece {
         Ok(StepOutcome::Intact)
     }
 
-    /// The arc lengths (its own, m) between which it may break: not at an end that is free since a break.
+    /// The arc lengths (its own, m) between which it may break: not at an end that is free since a
+    /// break.
     fn may_break_within(&self) -> [f64; 2] {
         let least = 0.5 * self.element();
         let new = |end: Option<&Option<usize>>| end == Some(&None);
@@ -629,7 +641,8 @@ impl Piece {
         [low, high]
     }
 
-    /// The greatest tensions of the last advance, with the nodes at its end where it did not break, in arc lengths of the whole cable.
+    /// The greatest tensions of the last advance, with the nodes at its end where it did not break,
+    /// in arc lengths of the whole cable.
     fn peaks(&self) -> Option<TensionPeaks> {
         let mut peaks = self.gauge.peaks()?;
         if self.gauge.reached().is_none() {

@@ -1,8 +1,9 @@
 //! A chain is a cable between two points with dead loads on it: its catenaries in a row are still
 //! one convex problem.
 //!
-//! Between loads the force is that of a catenary, at a load it jumps by it: F(s) = F_a − b s − Σ P_k [s > s_k].
-//! The complementary energy of the whole is a function of F_a alone, two unknowns however many loads there are.
+//! Between loads the force is that of a catenary, at a load it jumps by it: F(s) = F_a − b s − Σ
+//! P_k [s > s_k]. The complementary energy of the whole is a function of F_a alone, two unknowns
+//! however many loads there are.
 
 use super::kernel::{self, ChainPiece, DualEnergy, HorizontalForce};
 use super::{Catenary, Frame, Span, SpanError};
@@ -50,8 +51,8 @@ pub struct ChainForce {
 }
 
 impl<'a> Chain<'a> {
-    /// Catenaries between the loads, each with the load that follows it; none has length zero but by a load
-    /// that sits on another.
+    /// Catenaries between the loads, each with the load that follows it; none has length zero but
+    /// by a load that sits on another.
     fn pieces(&self) -> impl Iterator<Item = (f64, f64, Vec2)> + 'a {
         let (from, to) = (self.from, self.to);
         let inside = self.loads.iter().copied().filter(move |l| l.arc_length > from && l.arc_length < to);
@@ -77,8 +78,8 @@ impl<'a> Chain<'a> {
         self.pieces().fold(self.weight * (self.to - self.from), |sum, (_, _, p)| sum + p)
     }
 
-    /// The catenaries of this chain for a start force (N): material point of the start, position there (m),
-    /// and the span.
+    /// The catenaries of this chain for a start force (N): material point of the start, position
+    /// there (m), and the span.
     pub fn spans(&self, start_force: Vec2, start: Vec2) -> impl Iterator<Item = (f64, Vec2, Catenary)> + '_ {
         self.pieces().scan((start_force, start), move |(force, at), (a, b, load)| {
             let span = Span {
@@ -104,7 +105,8 @@ impl<'a> Chain<'a> {
         self.energy(frame, h, v).phi
     }
 
-    /// From its start to its end for a start force (N): the way, m, and its derivative by the force, m/N.
+    /// From its start to its end for a start force (N): the way, m, and its derivative by the
+    /// force, m/N.
     #[must_use]
     pub fn reach(&self, start_force: Vec2) -> (Vec2, Mat2) {
         let frame = Frame::new(self.weight, start_force);
@@ -133,8 +135,8 @@ impl<'a> Chain<'a> {
         sum
     }
 
-    /// The force at its start that brings its end to `chord` (m) from its start. `near` is a start for
-    /// Newton, N.
+    /// The force at its start that brings its end to `chord` (m) from its start. `near` is a start
+    /// for Newton, N.
     ///
     /// # Errors
     /// See [`SpanError`].

@@ -10,8 +10,8 @@ use crate::solution::WarningKind;
 /// When the cable is as long as its breaking strain says, s.
 const BREAKS_AT_S: f64 = 2.0;
 
-/// A cable of 10 m that is drawn evenly from 10 to 12 m in 4 s, and breaks at 11 m: T = EA (d/L − 1),
-/// d = 10 + 2 (10u³ − 15u⁴ + 6u⁵), which is half way at half time.
+/// A cable of 10 m that is drawn evenly from 10 to 12 m in 4 s, and breaks at 11 m: T = EA (d/L −
+/// 1), d = 10 + 2 (10u³ − 15u⁴ + 6u⁵), which is half way at half time.
 fn drawn() -> Scene {
     let mut scene = span([0.0, 0.0], [10.0, 0.0]);
     // Models without inertia need something that says where a slack cable is.

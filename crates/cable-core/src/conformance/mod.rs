@@ -163,7 +163,8 @@ const LAWS: &[Law] = &[
         tolerance: Tolerance::Equilibrium(10.0),
         error: rest::loaded_end,
     },
-    // With something to touch each of a hundred nodes may be out of balance by 1e-6 of all that acts.
+    // With something to touch each of a hundred nodes may be out of balance by 1e-6 of all that
+    // acts.
     Law {
         name: "a dead load at a free end is the tension there, with something to touch",
         ability: Ability::Equilibrium,

@@ -87,7 +87,8 @@ pub(super) fn momentum_from_nowhere(model: Model) -> Result<f64, Error> {
     Ok(if counted { worst } else { f64::NAN })
 }
 
-/// What an undamped cable has more of than at the start, relative to its weight falling by its length.
+/// What an undamped cable has more of than at the start, relative to its weight falling by its
+/// length.
 pub(super) fn energy_from_nowhere(model: Model) -> Result<f64, Error> {
     let scene = let_go(1..2);
     let scale = weight_n(&scene) * scene.cables[0].length_m;

@@ -21,8 +21,8 @@ pub(super) fn not_repeatable(model: Model) -> Result<f64, Error> {
     Ok(difference(&settle(&base(), model)?, &settle(&base(), model)?))
 }
 
-/// The elastic catenary (H. Irvine, Cable structures, MIT Press, 1981) that leaves the first support
-/// with the reaction the model reports, x(L) = H L/EA + H/w·[asinh((V+wL)/H) − asinh(V/H)],
+/// The elastic catenary (H. Irvine, Cable structures, MIT Press, 1981) that leaves the first
+/// support with the reaction the model reports, x(L) = H L/EA + H/w·[asinh((V+wL)/H) − asinh(V/H)],
 /// z(L) = L/EA·(V + wL/2) + [T_B − T_A]/w: how far its end misses the second support, relative to
 /// the length.
 pub(super) fn closure(model: Model) -> Result<f64, Error> {
@@ -83,8 +83,8 @@ pub(super) fn loaded_end_near_floor(model: Model) -> Result<f64, Error> {
 }
 
 /// A cable that hangs from its start, a dead load on its end: how far the tension just inside the
-/// end is from the load, the force on the end from its opposite, and the sum of both forces from the
-/// weight; relative to the load.
+/// end is from the load, the force on the end from its opposite, and the sum of both forces from
+/// the weight; relative to the load.
 fn hanging_load(model: Model, floor: Option<Obstacle>) -> Result<f64, Error> {
     let force = Vec2::new(20.0, -35.0);
     let mut scene = span([0.0, 5.0], [0.0, 0.0]);

@@ -1,18 +1,20 @@
 //! Self-contact pairs the nodes of a cable with its own segments.
 //!
-//! A line in the plane can only cross itself where a node passes a segment, so pairs of nodes and segments are all
-//! that is needed. As with obstacles, nodes where two segments meet enter by inclusion and exclusion (see `pairs`),
-//! so that the sum is once the barrier along a straight stretch and continuous round a bend.
+//! A line in the plane can only cross itself where a node passes a segment, so pairs of nodes and
+//! segments are all that is needed. As with obstacles, nodes where two segments meet enter by
+//! inclusion and exclusion (see `pairs`), so that the sum is once the barrier along a straight
+//! stretch and continuous round a bend.
 //!
-//! Gaps are distances of centre lines less one diameter. What lies nearer along the cable than the cable can be bent back
-//! is no contact: two legs of a bend of the diameter d touch after π d/2 of arc length.
+//! Gaps are distances of centre lines less one diameter. What lies nearer along the cable than the
+//! cable can be bent back is no contact: two legs of a bend of the diameter d touch after π d/2 of
+//! arc length.
 
 use super::distance::{from_segment, nearest_fraction};
 use super::sweep::advance;
 use crate::math::Vec2;
 
-/// Arc length (diameters) along the cable within which it cannot touch itself: a half-turn of the radius d/2 takes 1.57, and
-/// segments need some room beside that.
+/// Arc length (diameters) along the cable within which it cannot touch itself: a half-turn of the
+/// radius d/2 takes 1.57, and segments need some room beside that.
 const MIN_ARC_DIAMETERS: f64 = 2.4;
 
 /// Distances are trusted to this many units in the last place of the coordinates.
@@ -104,7 +106,8 @@ impl SelfContact {
         between >= MIN_ARC_DIAMETERS * self.diameter
     }
 
-    /// All pairs nearer than `reach` (m) at positions `x` with arc lengths `arc` (m), in a fixed order.
+    /// All pairs nearer than `reach` (m) at positions `x` with arc lengths `arc` (m), in a fixed
+    /// order.
     pub fn pairs(&self, x: &[Vec2], arc: &[f64], reach: f64, order: &mut SortedNodes, out: &mut Vec<SelfPair>) {
         out.clear();
         if !self.is_on() || x.len() < 3 {
@@ -132,7 +135,8 @@ impl SelfContact {
                         self.push(x, Pairing { node: p, segment: e, fraction, weight }, reach, out);
                     }
                 }
-                // A joint whose later segment alone is far enough along the cable has nobody else to answer for it.
+                // A joint whose later segment alone is far enough along the cable has nobody else
+                // to answer for it.
                 if e > 0 && !self.apart(arc, p, e - 1) {
                     let weight = self.joint_weight(x, arc, p, e);
                     if weight != 0.0 {
@@ -165,8 +169,8 @@ impl SelfContact {
         }
     }
 
-    /// The largest part (at most `limit`) of the move from `x` to `x` + `step` (m) that leaves `keep` of every gap, or `most` (m) where
-    /// that is less.
+    /// The largest part (at most `limit`) of the move from `x` to `x` + `step` (m) that leaves
+    /// `keep` of every gap, or `most` (m) where that is less.
     pub fn free_fraction(
         &self,
         x: &[Vec2],
@@ -190,7 +194,8 @@ impl SelfContact {
         for e in 0..x.len() - 1 {
             let [a, b] = [step(e), step(e + 1)];
             let (low, high) = (x[e].inf(&x[e + 1]), x[e].sup(&x[e + 1]));
-            // Nothing farther than this can come too near: both may move the widest step, and keep its part of the gap.
+            // Nothing farther than this can come too near: both may move the widest step, and keep
+            // its part of the gap.
             let near = self.diameter + 2.0 * widest * limit / (1.0 - keep) + noise;
             for p in order.between(x, low.x - near, high.x + near) {
                 if x[p].y < low.y - near || x[p].y > high.y + near || !self.apart(arc, p, e) {
@@ -206,7 +211,8 @@ impl SelfContact {
         free
     }
 
-    /// The smallest gap (m) and the node that has it, searched within `within` (m); None if nothing is so near.
+    /// The smallest gap (m) and the node that has it, searched within `within` (m); None if nothing
+    /// is so near.
     pub fn smallest_gap(&self, x: &[Vec2], arc: &[f64], within: f64) -> Option<(f64, usize)> {
         let mut pairs = Vec::new();
         self.pairs(x, arc, within, &mut SortedNodes::default(), &mut pairs);
@@ -232,7 +238,8 @@ mod tests {
     fn energy(shape: SelfContact, barrier: &Barrier, x: &[Vec2], s: &[f64]) -> f64 {
         let mut pairs = Vec::new();
         shape.pairs(x, s, barrier.reach, &mut SortedNodes::default(), &mut pairs);
-        // Seen from the last node: what the nodes it passes feel of it comes on top where it is over one of them.
+        // Seen from the last node: what the nodes it passes feel of it comes on top where it is
+        // over one of them.
         pairs.iter().filter(|p| p.node + 1 == x.len()).map(|p| p.weight * barrier.at(p.gap_m).value).sum()
     }
 

@@ -1,19 +1,22 @@
 //! The gauge reads the tension of a moving cable after every inner step of a model.
 //!
-//! A jerk passes between two looks at a cable: the inner steps see it. And an instant of it breaks nothing: fracture under a pulse takes
-//! its time, and happens when the mean over that time reaches the strength (the incubation time criterion: Yu. V. Petrov,
-//! N. F. Morozov, "On the modeling of fracture of brittle solids", Journal of Applied Mechanics 61(3), 1994),
+//! A jerk passes between two looks at a cable: the inner steps see it. And an instant of it breaks
+//! nothing: fracture under a pulse takes its time, and happens when the mean over that time reaches
+//! the strength (the incubation time criterion: Yu. V. Petrov, N. F. Morozov, "On the modeling of
+//! fracture of brittle solids", Journal of Applied Mechanics 61(3), 1994),
 //! ```text
 //! 1/τ ∫ T(s, t') dt' over t − τ … t  ≥  T_b
 //! ```
-//! at a material point s. Meshes change, so means are taken at points of the cable that stay: the nodes of the first mesh that was
-//! gauged. Between two inner steps tension is linear in time, between two nodes linear along the cable.
+//! at a material point s. Meshes change, so means are taken at points of the cable that stay: the
+//! nodes of the first mesh that was gauged. Between two inner steps tension is linear in time,
+//! between two nodes linear along the cable.
 
 use crate::math::larger;
 use crate::solution::{TensionPeak, TensionPeaks};
 
-/// Looks at the mean in the time it is taken over. Of a triangular jerk as long as that, the greatest mean is missed by 1/(4·4²) of its
-/// height at most, 1.6 %; with 8 looks by 0.4 %, and a step of `fem`, which is as long as that time, costs 3 % more.
+/// Looks at the mean in the time it is taken over. Of a triangular jerk as long as that, the
+/// greatest mean is missed by 1/(4·4²) of its height at most, 1.6 %; with 8 looks by 0.4 %, and a
+/// step of `fem`, which is as long as that time, costs 3 % more.
 const LOOKS_PER_MEAN: usize = 4;
 
 /// Two times (s) that differ by less are the same: sums of steps round.
@@ -154,8 +157,8 @@ impl TensionGauge {
         self.on && !((self.time_s - time_s * self.scale[1]).abs() <= SAME_TIME_S)
     }
 
-    /// Begins a history at a time (s): with the present tension as long as one likes where the cable was `at_rest`, else with none
-    /// before. Arc lengths of nodes in m, tensions in N.
+    /// Begins a history at a time (s): with the present tension as long as one likes where the
+    /// cable was `at_rest`, else with none before. Arc lengths of nodes in m, tensions in N.
     pub fn begin(&mut self, time_s: f64, at_rest: bool, arcs: &[f64], tension: impl Fn(usize) -> f64) {
         if !self.on {
             return;
@@ -184,8 +187,8 @@ impl TensionGauge {
         self.oldest = 0;
     }
 
-    /// Notes the tension (N) at nodes of arc lengths (m, in order) after an inner step to a time (s). It counts once it is kept: the
-    /// step may still be discarded.
+    /// Notes the tension (N) at nodes of arc lengths (m, in order) after an inner step to a time
+    /// (s). It counts once it is kept: the step may still be discarded.
     pub fn note(&mut self, time_s: f64, arcs: &[f64], tension: impl Fn(usize) -> f64) {
         if !self.on {
             return;
@@ -217,7 +220,8 @@ impl TensionGauge {
         self.on && arcs.len() == self.points.len() && arcs.iter().zip(&self.points).all(|(s, p)| s * by == *p)
     }
 
-    /// Room for the tensions (N) at a time (s) of a mesh that it [knows](Self::knows): as [`Self::note`].
+    /// Room for the tensions (N) at a time (s) of a mesh that it [knows](Self::knows): as
+    /// [`Self::note`].
     pub fn room(&mut self, time_s: f64) -> &mut [f64] {
         self.next_s = time_s * self.scale[1];
         &mut self.next
@@ -346,7 +350,8 @@ fn look_at(points: &[f64], limit: &Limit, [from_s, to_s]: [f64; 2], [was, is]: [
     Found { held: higher(held, points, is, most, to_s), reached: None }
 }
 
-/// The greatest of some figures, 0 of none. In lanes: one after the other each waits for the one before.
+/// The greatest of some figures, 0 of none. In lanes: one after the other each waits for the one
+/// before.
 fn most_of(figures: &[f64]) -> f64 {
     let mut lanes = [0.0; 4];
     let fours = figures.chunks_exact(4);

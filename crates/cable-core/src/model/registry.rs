@@ -1,5 +1,5 @@
-//! The registry has one entry for each model: its name, what it can do, and how it is built. Nothing outside this folder asks which
-//! model it has, only what that one can do.
+//! The registry has one entry for each model: its name, what it can do, and how it is built.
+//! Nothing outside this folder asks which model it has, only what that one can do.
 
 use std::sync::Arc;
 
@@ -30,10 +30,11 @@ pub struct Capabilities {
     pub explores_histories: bool,
     /// Its rests can take long: an editor may show a draft on a coarse mesh meanwhile.
     pub long_rests: bool,
-    /// Its steps can take longer than a display frame: an editor may show a copy on a coarse mesh instead.
+    /// Its steps can take longer than a display frame: an editor may show a copy on a coarse mesh
+    /// instead.
     pub long_steps: bool,
-    /// It is a second opinion on a coarse mesh: a solution that breaks a law is reported with its findings
-    /// and not refused.
+    /// It is a second opinion on a coarse mesh: a solution that breaks a law is reported with its
+    /// findings and not refused.
     pub findings_are_told: bool,
 }
 
@@ -62,8 +63,8 @@ pub struct ModelInfo {
     pub summary: &'static str,
     /// What it can do.
     pub capabilities: Capabilities,
-    /// Relative accuracy of its shape, which the mesh limits, and of its equilibrium, by which the iteration stops: what
-    /// [`crate::conformance`] asks of it.
+    /// Relative accuracy of its shape, which the mesh limits, and of its equilibrium, by which the
+    /// iteration stops: what [`crate::conformance`] asks of it.
     pub accuracy: [f64; 2],
     construct: fn(Arc<Problem>, Settings) -> Built,
 }
@@ -216,11 +217,12 @@ pub(super) fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), So
     Err(SolveError::Unsupported { model, feature })
 }
 
-/// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it chooses `spans`, `fem`
-/// stands behind it (`switching.rs`).
+/// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it
+/// chooses `spans`, `fem` stands behind it (`switching.rs`).
 ///
 /// # Errors
-/// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene needs.
+/// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene
+/// needs.
 pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
     settings.validate()?;
     at_natural_scale(problem, settings, &|problem, settings| construct(model, problem, settings))

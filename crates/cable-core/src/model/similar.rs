@@ -1,8 +1,8 @@
 //! A similar copy brings a cable to the scale that models are made for ([`Similarity`]); this
 //! wrapper scales the answers back.
 //!
-//! Barriers, slips and gaps are lengths that solvers need as numbers, and were found on cables of 1 to 100 m. Instead of making each
-//! of them a part of something, the whole scene is brought there.
+//! Barriers, slips and gaps are lengths that solvers need as numbers, and were found on cables of 1
+//! to 100 m. Instead of making each of them a part of something, the whole scene is brought there.
 
 use std::sync::Arc;
 
@@ -152,7 +152,8 @@ impl Similar {
     }
 }
 
-/// An answer with its lengths by `l`, its times by `t`, and its places by `place`. Forces and what has no unit stay.
+/// An answer with its lengths by `l`, its times by `t`, and its places by `place`. Forces and what
+/// has no unit stay.
 fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) -> CableSolution {
     let put = |x: &mut f64, y: &mut f64| {
         let at = place(Vec2::new(*x, *y));

@@ -7,7 +7,8 @@ use crate::scene::robot::Pose;
 use crate::scene::{Scene, View};
 
 impl Scene {
-    /// The outline of the robot that a cable of this friction meets; None where there is no robot, and in a plan view.
+    /// The outline of the robot that a cable of this friction meets; None where there is no robot,
+    /// and in a plan view.
     #[must_use]
     pub fn robot_outline(&self, cable_friction: f64) -> Option<Outline> {
         let (robot, pose) = (self.robot.as_ref()?, self.robot_pose()?);

@@ -1,8 +1,9 @@
 //! The friction of eyes and wheels limits the change of tension beside them: the capstan law.
 //!
-//! With m from −μ to μ, t the way, n out of the wheel and b the load per metre, dT = m T dθ − (b·t + m b·n) ds: from the
-//! tension before a pulley the greatest that friction can make of it follows with m = μ, the least with m = −μ (L. Euler, "Remarques sur
-//! l'effet du frottement dans l'équilibre", Mém. Acad. Berlin 1762, with the weight on the wheel).
+//! With m from −μ to μ, t the way, n out of the wheel and b the load per metre, dT = m T dθ −
+//! (b·t + m b·n) ds: from the tension before a pulley the greatest that friction can make of it
+//! follows with m = μ, the least with m = −μ (L. Euler, "Remarques sur l'effet du frottement dans
+//! l'équilibre", Mém. Acad. Berlin 1762, with the weight on the wheel).
 
 use super::laws::CheckedCable;
 use super::supports::Role;
@@ -31,7 +32,8 @@ impl CheckedCable<'_> {
         for led in self.led() {
             found.ask(Law::Friction);
             let [first, last] = led.nodes;
-            // A node with no material before it, or none beyond it, is an end of the cable: nothing leads to the pulley.
+            // A node with no material before it, or none beyond it, is an end of the cable: nothing
+            // leads to the pulley.
             if first == 0 || last + 1 >= nodes.len() {
                 continue;
             }
@@ -48,7 +50,8 @@ impl CheckedCable<'_> {
                 }
             };
             tell(Law::Friction, value, limit);
-            // Nodes just off the wheel count as on it: from there to the wheel the cable carries its weight.
+            // Nodes just off the wheel count as on it: from there to the wheel the cable carries
+            // its weight.
             let on = |k: &usize| led.wheel.is_none_or(|(c, r)| (nodes[*k].at() - c).norm() <= r + WHEEL_TOLERANCE * r);
             let touches = [(first..=last).find(on).unwrap_or(last), (first..=last).rev().find(on).unwrap_or(first)];
             for (told, force, beside) in [

@@ -30,13 +30,14 @@ use snag::SnagDetector;
 
 pub(crate) use bend::Bends;
 
-/// A warning stays for this long (s) after its last cause. Shorter: a cable that swings about its service tension makes the
-/// warning flicker, and `events.csv` long; longer: it stands when all is well again. With it no warning comes and goes more
-/// than once a second.
+/// A warning stays for this long (s) after its last cause. Shorter: a cable that swings about its
+/// service tension makes the warning flicker, and `events.csv` long; longer: it stands when all is
+/// well again. With it no warning comes and goes more than once a second.
 const HOLD_TIME_S: f64 = 1.0;
 
-/// A tension warning that stands is held by tensions above this part of its limit. Closer to 1: noise of the tension ends
-/// and begins it; further: the warning does not believe that the load was lightened. Axial noise of a drag is under 5 %.
+/// A tension warning that stands is held by tensions above this part of its limit. Closer to 1:
+/// noise of the tension ends and begins it; further: the warning does not believe that the load was
+/// lightened. Axial noise of a drag is under 5 %.
 const RELEASE_FRACTION: f64 = 0.95;
 
 /// One cable, what it is said to do now, and where it broke.
@@ -131,7 +132,8 @@ impl WarningMonitor {
         }
     }
 
-    /// A tension warning that stands stays while tension is just below its limit; after a break there is no such tension.
+    /// A tension warning that stands stays while tension is just below its limit; after a break
+    /// there is no such tension.
     fn hold_tension(&mut self, cable: usize, observed: &Observed<'_>, time_s: f64) {
         let broke = |s: &ActiveWarning| s.warning.kind == WarningKind::BreakingTension && !observed.breaks.is_empty();
         self.active.retain(|s| s.cable != cable || !broke(s));

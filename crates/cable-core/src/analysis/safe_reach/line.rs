@@ -1,7 +1,8 @@
 //! This analysis finds where a robot can go along its ground.
 //!
-//! It is put where its tracks stand, place after place; its outline is an obstacle for its cable. No drive, slope or traction
-//! limits it here: [`crate::robot::Vehicle`] answers whether the robot could pull so hard.
+//! It is put where its tracks stand, place after place; its outline is an obstacle for its cable.
+//! No drive, slope or traction limits it here: [`crate::robot::Vehicle`] answers whether the robot
+//! could pull so hard.
 
 use std::ops::ControlFlow;
 
@@ -18,21 +19,24 @@ use crate::scene::{Scene, SupportKind};
 use crate::simulation::Simulation;
 use crate::solution::Solution;
 
-/// Longest way between two answers, m. Longer: an edge that the cable slips over is passed unseen; shorter: more answers.
+/// Longest way between two answers, m. Longer: an edge that the cable slips over is passed unseen;
+/// shorter: more answers.
 const STEP_M: f64 = 0.05;
 
-/// What the cable may leave of a step, m: a robot that it holds back by a hair has not been stopped.
+/// What the cable may leave of a step, m: a robot that it holds back by a hair has not been
+/// stopped.
 const MAX_SHORTFALL_M: f64 = 1e-3;
 
-/// Where a heap of slack cable has no rest to be pushed to it is thrown over: such a step is taken with inertia, at this speed, m/s.
-/// Faster: its swing shows in the tension; slower: longer.
+/// Where a heap of slack cable has no rest to be pushed to it is thrown over: such a step is taken
+/// with inertia, at this speed, m/s. Faster: its swing shows in the tension; slower: longer.
 const PUSH_SPEED_M_PER_S: f64 = 0.3;
 
-/// Every how manieth way back is looked at, one after the other. Begun with less: longer until the first picture; with more: of no use.
+/// Every how manieth way back is looked at, one after the other. Begun with less: longer until the
+/// first picture; with more: of no use.
 const RETURN_STRIDES: [usize; 4] = [8, 4, 2, 1];
 
-/// Two places whose tensions lie closer than this part of the service tension agree: between them the larger counts. More: a snag
-/// between them is not seen; less: more ways back.
+/// Two places whose tensions lie closer than this part of the service tension agree: between them
+/// the larger counts. More: a snag between them is not seen; less: more ways back.
 const AGREEMENT_FRACTION: f64 = 0.02;
 
 /// A place of the map.
@@ -40,10 +44,12 @@ const AGREEMENT_FRACTION: f64 = 0.02;
 pub struct ReachPlace {
     /// Where the tracks' middle is, m.
     pub at_m: Point,
-    /// Largest tension with the robot there, N; infinite where the cable does not reach, not a number where no answer was found.
+    /// Largest tension with the robot there, N; infinite where the cable does not reach, not a
+    /// number where no answer was found.
     pub there_n: f64,
-    /// Largest tension on the way there and back, N; infinite where the cable does not reach, not a number where no answer was found
-    /// or none is known yet. Between neighbours that agree it is the larger of theirs.
+    /// Largest tension on the way there and back, N; infinite where the cable does not reach, not a
+    /// number where no answer was found or none is known yet. Between neighbours that agree it is
+    /// the larger of theirs.
     pub there_and_back_n: f64,
     /// The cable lies in the robot's way there or back and cannot get out of it.
     pub jammed: bool,
@@ -63,8 +69,8 @@ pub struct ReachMap {
 }
 
 impl ReachMap {
-    /// From where to where the robot can go without passing a tension (N), and with `back` also come back; None if not even at
-    /// its start.
+    /// From where to where the robot can go without passing a tension (N), and with `back` also
+    /// come back; None if not even at its start.
     #[must_use]
     pub fn safe_m(&self, tension_n: f64, back: bool) -> Option<[f64; 2]> {
         let fits = |p: &ReachPlace| (if back { p.there_and_back_n } else { p.there_n }) <= tension_n;
@@ -76,10 +82,13 @@ impl ReachMap {
     }
 }
 
-/// Looks at so many places between two, m, from where an answer of the scene has robot and cable now, if there is one; `progress` hears the map so far and the share done (0 to 1), and can end it.
+/// Looks at so many places between two, m, from where an answer of the scene has robot and cable
+/// now, if there is one; `progress` hears the map so far and the share done (0 to 1), and can end
+/// it.
 ///
 /// # Errors
-/// The scene is wrong or has no robot with a cable on ground in a side view, or its start has no answer.
+/// The scene is wrong or has no robot with a cable on ground in a side view, or its start has no
+/// answer.
 pub fn robot_reach(
     scene: &Scene,
     now: Option<&Solution>,
@@ -214,7 +223,8 @@ impl Traverse<'_> {
         ControlFlow::Continue(side)
     }
 
-    /// Goes back from every so manieth place that is not known yet; one between two that agree is not gone back from.
+    /// Goes back from every so manieth place that is not known yet; one between two that agree is
+    /// not gone back from.
     fn back(
         &self,
         side: &mut [VisitedPlace],
@@ -278,8 +288,8 @@ impl Traverse<'_> {
         Ok(most)
     }
 
-    /// A step with inertia, against the heap of cable before the robot. What swings on the way is not looked at: with what
-    /// speed a robot does this is not asked.
+    /// A step with inertia, against the heap of cable before the robot. What swings on the way is
+    /// not looked at: with what speed a robot does this is not asked.
     fn shove(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<(), Obstruction> {
         let parts = ((to - from).abs() / (PUSH_SPEED_M_PER_S * robot::STEP_S)).ceil();
         let mut left_m = None;

@@ -6,9 +6,10 @@
 //! | `line.rs` | a robot is led along its ground |
 //! | `area.rs` | an end is taken through the free plane; `area/exploration.rs` visits the places |
 //!
-//! Histories without inertia, with friction: a robot is led along its ground ([`mod@line`]), an end that a hand or a crane moves
-//! through the free plane ([`mod@area`]). From each place it goes back to where it started: a cable that was drawn round an edge on
-//! the way out may hold there on the way back. Nothing limits what moves it: the question is what the cable would have to bear.
+//! Histories without inertia, with friction: a robot is led along its ground ([`mod@line`]), an end
+//! that a hand or a crane moves through the free plane ([`mod@area`]). From each place it goes back
+//! to where it started: a cable that was drawn round an edge on the way out may hold there on the
+//! way back. Nothing limits what moves it: the question is what the cable would have to bear.
 
 pub mod area;
 pub mod line;
@@ -20,15 +21,15 @@ use crate::scene::{Cable, Scene, SupportKind};
 use crate::simulation::Simulation;
 use crate::solution::Solution;
 
-/// Time of a step, s: no inertia acts, so it only says how far a support trails what draws it. Less: by a part of the step, and a taut cable
-/// shows a tenth of a millimetre; more: nothing.
+/// Time of a step, s: no inertia acts, so it only says how far a support trails what draws it.
+/// Less: by a part of the step, and a taut cable shows a tenth of a millimetre; more: nothing.
 const STEP_S: f64 = 0.5;
 
 /// A cable that would have to bear this many times its breaking tension will not get any farther.
 const UNREACHABLE_FACTOR: f64 = 2.0;
 
-/// The scene as it is at the start, for good: nothing moves by itself, lets go or breaks. Supports and robot stand where an answer
-/// has them, if there is one.
+/// The scene as it is at the start, for good: nothing moves by itself, lets go or breaks. Supports
+/// and robot stand where an answer has them, if there is one.
 fn stilled(scene: &Scene, now: Option<&Solution>) -> Scene {
     let mut still = scene.clone();
     let environment = &mut still.environment;

@@ -1,4 +1,5 @@
-//! This module solves for the equilibrium: which pulleys slip, where the material lies, where wheels are touched.
+//! This module solves for the equilibrium: which pulleys slip, where the material lies, where
+//! wheels are touched.
 
 use super::layout::{Anchor, Layout, angle_near, angle_of, unsupported};
 use super::slide::{Arc, Mode, Slide, Stretches};
@@ -50,14 +51,15 @@ const RUN_OFF_LENGTH_FRACTION: f64 = 1e-6;
 const ENERGY_NOISE: f64 = 1e-9;
 /// A pulley slips when friction is exceeded by this much (in ln T). Smaller: chatter of round-off.
 const CONE_TOLERANCE: f64 = 1e-10;
-/// Rises of friction from none to what it is, failed ones included: as many halve the rise to 1e-6. One has done for
-/// every scene tried (400 random dead loads over a rubbing wheel, EA 3e4 to 1e9).
+/// Rises of friction from none to what it is, failed ones included: as many halve the rise to 1e-6.
+/// One has done for every scene tried (400 random dead loads over a rubbing wheel, EA 3e4 to 1e9).
 const MAX_RISES: usize = 20;
 /// Sets of modes changed together; after that one pulley at a time, which cannot cycle so easily.
 const JOINT_MODE_ROUNDS: usize = 12;
 
-/// Direction of the straight line that touches two anchors one after the other, rad. With t along it, n = perp t and
-/// the touch points c + f R n: (c₂ − c₁)·n = f₁R₁ − f₂R₂. None where they are in one place.
+/// Direction of the straight line that touches two anchors one after the other, rad. With t along
+/// it, n = perp t and the touch points c + f R n: (c₂ − c₁)·n = f₁R₁ − f₂R₂. None where they are in
+/// one place.
 fn tangent(from: &Anchor, to: &Anchor) -> Option<f64> {
     let d = to.at - from.at;
     let apart = d.norm();
@@ -151,7 +153,8 @@ fn contact(
     for round in 0..4 * JOINT_MODE_ROUNDS + 4 * layout.anchors.len() {
         let found = match newton(slide, sigma.clone(), near.as_ref(), &modes) {
             Ok(e) => e,
-            // Another branch of the slip law drew it away: come from the smooth pulley's rest, the first error if not.
+            // Another branch of the slip law drew it away: come from the smooth pulley's rest, the
+            // first error if not.
             Err(e) => from_smooth(slide, sigma, &modes).map_err(|_| e)?,
         };
         iterations += found.iterations;
@@ -165,7 +168,8 @@ fn contact(
             let next = match modes[k] {
                 Mode::Stick if slide.excess(k, b, f, a.friction).0 > CONE_TOLERANCE => Mode::Slip(a.friction),
                 Mode::Stick if slide.excess(k, b, f, -a.friction).0 < -CONE_TOLERANCE => Mode::Slip(-a.friction),
-                // Friction +μ holds material back from going on to the side after: σ must have fallen.
+                // Friction +μ holds material back from going on to the side after: σ must have
+                // fallen.
                 Mode::Slip(m) if m * (sigma[k] - held[k]) > 1e-12 * a.friction * slide.problem.length => {
                     sigma[k] = held[k];
                     Mode::Stick
@@ -183,8 +187,8 @@ fn contact(
     Err(not_converged(slide.problem, layout, 0, iterations, f64::NAN))
 }
 
-/// Balance with the modes given, by way of slipping pulleys without friction (an energy to go down in, so any start
-/// will do) and friction growing from there to what it is.
+/// Balance with the modes given, by way of slipping pulleys without friction (an energy to go down
+/// in, so any start will do) and friction growing from there to what it is.
 fn from_smooth(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equilibrium, SolveError> {
     let with = |part: f64| -> Vec<Mode> {
         modes.iter().map(|m| if let Mode::Slip(m) = m { Mode::Slip(part * m) } else { *m }).collect()
@@ -210,7 +214,8 @@ fn from_smooth(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equ
 /// One row of the three-diagonal system.
 type Row = [f64; 3];
 
-/// Residuals and slopes at every anchor (zero, one where nothing slides) and the worst relative residual.
+/// Residuals and slopes at every anchor (zero, one where nothing slides) and the worst relative
+/// residual.
 fn rows(slide: &Slide<'_>, s: &Stretches, modes: &[Mode], smooth: bool) -> Option<(Vec<f64>, Vec<Row>, f64, f64)> {
     let n = modes.len();
     let (mut r, mut j) = (vec![0.0; n], vec![[0.0, 1.0, 0.0]; n]);
@@ -233,8 +238,8 @@ fn rows(slide: &Slide<'_>, s: &Stretches, modes: &[Mode], smooth: bool) -> Optio
     Some((r, j, worst, newtons))
 }
 
-/// −J⁻¹ r for a three-diagonal J, by elimination; in `descend` the pivots are lifted until all are positive, so
-/// that the step goes down in energy.
+/// −J⁻¹ r for a three-diagonal J, by elimination; in `descend` the pivots are lifted until all are
+/// positive, so that the step goes down in energy.
 fn step(r: &[f64], j: &[Row], descend: bool) -> Option<Vec<f64>> {
     let n = r.len();
     let largest = j.iter().fold(0.0f64, |m, row| if row[1].abs() > m { row[1].abs() } else { m });
@@ -263,8 +268,9 @@ fn step(r: &[f64], j: &[Row], descend: bool) -> Option<Vec<f64>> {
     None
 }
 
-/// Whether the balance is stable: σ pushed one way is drawn back (all pivots of J positive). With more slack than any
-/// tension asks for a fold pulls the harder the longer it is: a balance too, but one that runs away.
+/// Whether the balance is stable: σ pushed one way is drawn back (all pivots of J positive). With
+/// more slack than any tension asks for a fold pulls the harder the longer it is: a balance too,
+/// but one that runs away.
 fn stable(j: &[Row]) -> bool {
     let mut pivot = 1.0;
     (0..j.len()).all(|k| {

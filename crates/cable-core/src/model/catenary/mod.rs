@@ -1,10 +1,10 @@
-//! Rung 0 as a model: exact elastic catenaries between supports, loads and pulleys. Statics and slow motion with
-//! friction that remembers; no obstacles within reach, no bending, no inertia.
+//! Rung 0 as a model: exact elastic catenaries between supports, loads and pulleys. Statics and
+//! slow motion with friction that remembers; no obstacles within reach, no bending, no inertia.
 //!
-//! What is unknown is only where the material sits at each pulley (`slide`); everything between is a convex
-//! problem of two forces ([`crate::catenary`]). With friction the resting place depends on how the cable was
-//! laid: [`Mechanics::settle`] takes it spread evenly along its way and lets it slip only where friction cannot
-//! hold it.
+//! What is unknown is only where the material sits at each pulley (`slide`); everything between is
+//! a convex problem of two forces ([`crate::catenary`]). With friction the resting place depends on
+//! how the cable was laid: [`Mechanics::settle`] takes it spread evenly along its way and lets it
+//! slip only where friction cannot hold it.
 
 mod equilibrium;
 pub(super) mod layout;
@@ -26,9 +26,9 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, Node, SupportReaction, Warning, WarningKind};
 use crate::state::State;
 
-/// Supports move by at most this part of the cable in one solve of a slow motion. Larger: slip that starts and
-/// reverses inside a step is missed. Smaller: more solves for the same answer. 1 % halved changed the drags of
-/// the reference scenes by less than 1e-6.
+/// Supports move by at most this part of the cable in one solve of a slow motion. Larger: slip that
+/// starts and reverses inside a step is missed. Smaller: more solves for the same answer. 1 %
+/// halved changed the drags of the reference scenes by less than 1e-6.
 const STEP: f64 = 0.01;
 /// Halvings of a slow step before it is given up.
 const MAX_HALVINGS: u32 = 10;
@@ -124,8 +124,9 @@ impl CatenaryModel {
         solve(&self.problem, layout, Start { held: &held, sigma: held.clone(), modes, arcs })
     }
 
-    /// Takes a balance as the state at a time; on an error nothing has changed. Nodes cost more than the balance, so
-    /// those of an instant nobody sees (`shown` false) are made only where they may meet an obstacle.
+    /// Takes a balance as the state at a time; on an error nothing has changed. Nodes cost more
+    /// than the balance, so those of an instant nobody sees (`shown` false) are made only where
+    /// they may meet an obstacle.
     fn accept(&mut self, layout: &Layout, e: Equilibrium, time_s: f64, shown: bool) -> Result<StepReport, SolveError> {
         if shown || !self.problem.world.is_empty() {
             let (nodes, reactions) = report(&self.problem, layout, &e);
@@ -147,8 +148,8 @@ impl CatenaryModel {
         Ok(StepReport { cost, warnings: Vec::new() })
     }
 
-    /// Obstacles are for other models, unless the cable hangs clear of them and comes there from the way it is
-    /// laid without meeting any.
+    /// Obstacles are for other models, unless the cable hangs clear of them and comes there from
+    /// the way it is laid without meeting any.
     fn refuse_contact(&self, layout: &Layout, nodes: &[Node]) -> Result<(), SolveError> {
         let world = &self.problem.world;
         if world.is_empty() {

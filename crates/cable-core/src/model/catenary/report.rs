@@ -1,4 +1,5 @@
-//! The report turns a solution into nodes, close enough for straight lines between them, and support reactions.
+//! The report turns a solution into nodes, close enough for straight lines between them, and
+//! support reactions.
 
 use super::equilibrium::{Equilibrium, called_upon};
 use super::layout::Layout;
@@ -11,15 +12,18 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{Node, SupportReaction};
 
-/// Between two nodes the cable leaves a straight line by no more than this part of its length. Larger: a
-/// picture shows corners, and sag read between nodes is off by as much. Smaller: thousands of nodes.
+/// Between two nodes the cable leaves a straight line by no more than this part of its length.
+/// Larger: a picture shows corners, and sag read between nodes is off by as much. Smaller:
+/// thousands of nodes.
 const FLATNESS: f64 = 1e-5;
 /// Between two nodes tension leaves a straight line by no more than this part of itself.
 const TENSION_FLATNESS: f64 = 5e-5;
-/// Tensions below this part of the greatest are not resolved further (a fold, where T → 0 in a point).
+/// Tensions below this part of the greatest are not resolved further (a fold, where T → 0 in a
+/// point).
 const TENSION_FLOOR: f64 = 0.02;
-/// Tensions either side of a point that differ by no more than this part are one: ten times the balance accepted at a
-/// pulley. Smaller: two nodes where the balance was found badly. Larger: a light load on a taut cable shows no jump.
+/// Tensions either side of a point that differ by no more than this part are one: ten times the
+/// balance accepted at a pulley. Smaller: two nodes where the balance was found badly. Larger: a
+/// light load on a taut cable shows no jump.
 const TENSION_JUMP_TOLERANCE: f64 = 1e-8;
 /// Nodes a catenary has at least: 2 to this power + 1.
 const LEAST_DEPTH: u32 = 2;
@@ -41,7 +45,8 @@ pub(in crate::model) struct Nodes<'a> {
     problem: &'a Problem,
     flat: f64,
     least_tension: f64,
-    /// Whether the nodes are turned end for start afterwards: of two nodes that are one the first is that beyond the point then.
+    /// Whether the nodes are turned end for start afterwards: of two nodes that are one the first
+    /// is that beyond the point then.
     pub turned: bool,
     pub out: Vec<Node>,
 }
@@ -70,7 +75,8 @@ impl<'a> Nodes<'a> {
             force_n: [p.force.x, p.force.y],
             ..Node::default()
         };
-        // A node twice at the same material point only where the tension jumps (a load, a rubbing pulley).
+        // A node twice at the same material point only where the tension jumps (a load, a rubbing
+        // pulley).
         if let Some(last) = self.out.last_mut()
             && node.arc_length_m - last.arc_length_m <= 1e-12 * self.problem.length
             && (node.tension_n - last.tension_n).abs() <= TENSION_JUMP_TOLERANCE * node.tension_n
@@ -89,7 +95,8 @@ impl<'a> Nodes<'a> {
         let point = |s: f64| {
             let force = c.force_at(s);
             let square = force.norm_squared();
-            // A fold is a point without tension: its direction turns at once, and no number says how sharply.
+            // A fold is a point without tension: its direction turns at once, and no number says
+            // how sharply.
             let curvature = if square > 0.0 { -cross(force, c.span().weight) / square } else { 0.0 };
             Point { s: s0 + s, at: at + c.position_at(s), force, curvature }
         };
@@ -231,8 +238,8 @@ fn reactions(p: &Problem, slide: &Slide<'_>, e: &Equilibrium, nodes: &[Node]) ->
         .collect()
 }
 
-/// Nodes before anything is solved: straight ways with the material spread evenly, dangling ends straight along
-/// their load.
+/// Nodes before anything is solved: straight ways with the material spread evenly, dangling ends
+/// straight along their load.
 pub(super) fn straight(p: &Problem, layout: &Layout, sigma: &[f64]) -> Vec<Node> {
     let hang = |force: Vec2| {
         let f = if force.norm() > 0.0 { force } else { layout.weight };

@@ -1,4 +1,5 @@
-//! `Dynamics` is a cable in contact: what its motion, its quasi-static steps and its equilibria share.
+//! `Dynamics` is a cable in contact: what its motion, its quasi-static steps and its equilibria
+//! share.
 
 use std::sync::Arc;
 
@@ -27,41 +28,47 @@ use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
 
-/// Longest inner time step, s. At 1/240 the tip of a falling chain of 10 m is within 5e-4 m of that of rigid links
-/// (`tests/dynamics`).
+/// Longest inner time step, s. At 1/240 the tip of a falling chain of 10 m is within 5e-4 m of that
+/// of rigid links (`tests/dynamics`).
 pub(super) const INNER_STEP: f64 = 1.0 / 240.0;
 
-/// Gap at which contact begins (d̂), m. Where the cable is taut a corner lifts it by this: 1e-3 adds 2 % to the tension of a
-/// soft cable of 12 m over two beams, 1e-4 nothing that shows.
+/// Gap at which contact begins (d̂), m. Where the cable is taut a corner lifts it by this: 1e-3
+/// adds 2 % to the tension of a soft cable of 12 m over two beams, 1e-4 nothing that shows.
 pub const REACH: f64 = 1e-4;
 
-/// Barrier stiffness in units of the weight of one element: 20 times smaller rebounds and costs 30 % more.
+/// Barrier stiffness in units of the weight of one element: 20 times smaller rebounds and costs 30
+/// % more.
 pub(super) const STIFFNESS: f64 = 20.0;
 
-/// Barrier stiffness in units of the greatest tension, where that is more. With a hundredth of it the gap of a node that
-/// a taut cable turns at is still a millionth of a metre; with the weight alone a cable of 1e6 N came as near as 1e-9 m, and no
-/// Newton step moved it.
+/// Barrier stiffness in units of the greatest tension, where that is more. With a hundredth of it
+/// the gap of a node that a taut cable turns at is still a millionth of a metre; with the weight
+/// alone a cable of 1e6 N came as near as 1e-9 m, and no Newton step moved it.
 const TAUT_STIFFNESS: f64 = 0.05;
 
-/// Times the barrier's stiffness for its tension that a step is tried again with: the tension may grow in it.
+/// Times the barrier's stiffness for its tension that a step is tried again with: the tension may
+/// grow in it.
 const RETRY_STIFFENING_LIMIT: f64 = 8.0;
 
-/// Change of the barrier's stiffness from one step to the next: up, so that it follows a snatch, and down.
+/// Change of the barrier's stiffness from one step to the next: up, so that it follows a snatch,
+/// and down.
 pub(super) const STIFFNESS_CHANGE: [f64; 2] = [2.0, 0.8];
 
-/// Halvings of a step without inertia before the cable is let down to its rest instead. Fewer: on the way down corners slip, and
-/// keep that (1 to 3 % of the tension in 4 of 200 scenes); more: cables that need it take longer.
+/// Halvings of a step without inertia before the cable is let down to its rest instead. Fewer: on
+/// the way down corners slip, and keep that (1 to 3 % of the tension in 4 of 200 scenes); more:
+/// cables that need it take longer.
 const QUIET_DEPTH: usize = 4;
 
-/// A step is halved this often before the robot has to wait for the cable. Less: it jerks; more: it costs.
+/// A step is halved this often before the robot has to wait for the cable. Less: it jerks; more: it
+/// costs.
 const HALVINGS_BEFORE_ROBOT_WAITS: usize = 3;
 
 /// A step is halved at most this often.
 const MAX_DEPTH: usize = 10;
 
-/// Part of a step that the first one of a motion takes, the next ones each as long as all before. It has no history: implicit
-/// Euler carries a cable let go ½ a h² too far, and BDF2 makes ¾ a h² of that. Larger: a free fall at 1/240 s is off by
-/// ¾ of this part's square times 1.7e-4 m; smaller: one step more for each halving.
+/// Part of a step that the first one of a motion takes, the next ones each as long as all before.
+/// It has no history: implicit Euler carries a cable let go ½ a h² too far, and BDF2 makes ¾ a h²
+/// of that. Larger: a free fall at 1/240 s is off by ¾ of this part's square times 1.7e-4 m;
+/// smaller: one step more for each halving.
 const FIRST_STEP_FRACTION: f64 = 0.125;
 
 /// The minimiser's memory; a copy of the model makes its own.
@@ -154,7 +161,8 @@ pub(super) struct StepAnswers {
     pub(super) reaction: Vec<Vec2>,
     /// Supports that were stopped short of their target.
     pub(super) held_back: Vec<usize>,
-    /// The answer of the last step of an advance, as it was balanced: the mesh is changed after it, for the next.
+    /// The answer of the last step of an advance, as it was balanced: the mesh is changed after it,
+    /// for the next.
     pub(super) stepped: Option<Box<CableSolution>>,
     /// Whether the answer is kept before the mesh is changed.
     pub(super) keeps: bool,
@@ -245,7 +253,8 @@ impl Dynamics {
             },
             rollback: Rollback::default(),
             meshing: Meshing {
-                // A sliding node scales the forces of all that lies beyond it; what touches itself has one scale.
+                // A sliding node scales the forces of all that lies beyond it; what touches itself
+                // has one scale.
                 slides: !problem.cable.self_contact,
                 never_slides: problem.world.is_empty()
                     && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley),
@@ -428,8 +437,8 @@ impl Dynamics {
         Ok(self.report(total, halved, h))
     }
 
-    /// The barrier's stiffness follows the greatest tension; `change` bounds by how much, up and down;
-    /// `ahead` is how many times that tension is reckoned with.
+    /// The barrier's stiffness follows the greatest tension; `change` bounds by how much, up and
+    /// down; `ahead` is how many times that tension is reckoned with.
     pub(super) fn adapt_stiffness(&mut self, [up, down]: [f64; 2], ahead: f64) {
         if self.meets_nothing() {
             return;
@@ -460,8 +469,8 @@ impl Dynamics {
         releases.fold(h, |least, r| if r - now < least { r - now } else { least })
     }
 
-    /// One step of `h`; on failure back to its start and two of half the size, again and again. Without inertia hands draw
-    /// supports evenly to where they are to be at `due` (s).
+    /// One step of `h`; on failure back to its start and two of half the size, again and again.
+    /// Without inertia hands draw supports evenly to where they are to be at `due` (s).
     fn halving(
         &mut self,
         h: f64,
@@ -514,7 +523,8 @@ impl Dynamics {
                         gauge.keep();
                     }
                     left -= piece;
-                    // Forces jump where a support lets go: with the history from before, BDF2 would feel them half a step late.
+                    // Forces jump where a support lets go: with the history from before, BDF2 would
+                    // feel them half a step late.
                     if self.problem.supports.iter().any(|s| s.holds_from(start) != s.holds_from(to)) {
                         self.motion.step_before = 0.0;
                     }
@@ -643,13 +653,15 @@ impl Dynamics {
     }
 }
 
-/// Whether the mass is spread over the bars. Where the cable can touch something it is lumped all the time: contacts take momentum
-/// of one node, nodes come and go with corners and pulleys, and a mass that changed as contact begins would change the energy.
+/// Whether the mass is spread over the bars. Where the cable can touch something it is lumped all
+/// the time: contacts take momentum of one node, nodes come and go with corners and pulleys, and a
+/// mass that changed as contact begins would change the energy.
 fn spreads_mass(problem: &Problem) -> bool {
     touches_nothing(problem) && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley)
 }
 
-/// Elements of a cable where neither the scene nor the settings say: finer where it can touch something.
+/// Elements of a cable where neither the scene nor the settings say: finer where it can touch
+/// something.
 fn segments(problem: &Problem, settings: Settings) -> usize {
     let element = if problem.world.is_empty() { 0.2 } else { 0.12 };
     let automatic = (problem.length / element).ceil().clamp(60.0, 200.0) as usize;

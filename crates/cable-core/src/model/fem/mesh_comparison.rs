@@ -1,15 +1,18 @@
 //! Two meshes are compared to estimate how wrong the figures of a cable in contact are.
 //!
-//! Where `spans` laid the cable its answer has no error of a mesh, and the bars only came to rest from it: the two differ by what mesh,
-//! barrier and grips do, and that is what is said of each figure. On the way without inertia `spans` goes on beside the bars: it costs a small
-//! part of what they do, and remembers friction as they do.
+//! Where `spans` laid the cable its answer has no error of a mesh, and the bars only came to rest
+//! from it: the two differ by what mesh, barrier and grips do, and that is what is said of each
+//! figure. On the way without inertia `spans` goes on beside the bars: it costs a small part of
+//! what they do, and remembers friction as they do.
 //!
-//! Where it has no answer (slack, stiff, in plan, in touch with itself) the same cable on bars twice and four times as long is asked. Straight bars between
-//! contacts are of the second order, where the cable touches down or meets a corner of the first: what is left of an error on the finest of three
-//! meshes is a third of what the finer two differ by, or all of it. All of it is said, and no less than half of what the coarser two differ by:
-//! one difference may pass through nothing where the error does not, as a node comes to lie at a corner. (L. F. Richardson and
-//! J. A. Gaunt, *The deferred approach to the limit*, Phil. Trans. R. Soc. A 226, 1927, without the extrapolation: its order is not
-//! known here.)
+//! Where it has no answer (slack, stiff, in plan, in touch with itself) the same cable on bars
+//! twice and four times as long is asked. Straight bars between contacts are of the second order,
+//! where the cable touches down or meets a corner of the first: what is left of an error on the
+//! finest of three meshes is a third of what the finer two differ by, or all of it. All of it is
+//! said, and no less than half of what the coarser two differ by: one difference may pass through
+//! nothing where the error does not, as a node comes to lie at a corner. (L. F. Richardson and J.
+//! A. Gaunt, *The deferred approach to the limit*, Phil. Trans. R. Soc. A 226, 1927, without the
+//! extrapolation: its order is not known here.)
 
 use std::sync::Arc;
 
@@ -24,9 +27,11 @@ use crate::solution::ErrorEstimates;
 
 /// Fewer bars than this have no half of use.
 const LEAST_BARS: usize = 8;
-/// Most bars to which the mesh is refined by itself. More: 1e-3 is met by more scenes, each twice as dear as with half as many.
+/// Most bars to which the mesh is refined by itself. More: 1e-3 is met by more scenes, each twice
+/// as dear as with half as many.
 const MOST_BARS: usize = 800;
-/// Part of what the coarser two of three meshes differ by that the error of the finest is at least: that of the first order.
+/// Part of what the coarser two of three meshes differ by that the error of the finest is at least:
+/// that of the first order.
 const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
 
 /// Who goes on beside the cable, and what is said.
@@ -48,8 +53,8 @@ pub enum Refinement {
 }
 
 impl TwoMeshes {
-    /// Looks at a cable that came to rest, beside the answer without a mesh where there is one; makes its mesh finer where that
-    /// is allowed and comes nearer.
+    /// Looks at a cable that came to rest, beside the answer without a mesh where there is one;
+    /// makes its mesh finer where that is allowed and comes nearer.
     pub fn compare(
         &mut self,
         problem: &Arc<Problem>,
@@ -145,7 +150,8 @@ fn go_on(spans: &mut SpansModel, dt_s: f64, dragged: &[Option<Vec2>]) -> Option<
     Some(spans.solution())
 }
 
-/// Errors of a cable by the same one on bars twice and four times as long, and the one on bars twice as long; None where that finds no rest.
+/// Errors of a cable by the same one on bars twice and four times as long, and the one on bars
+/// twice as long; None where that finds no rest.
 fn coarser(
     problem: &Arc<Problem>,
     settings: Settings,

@@ -1,4 +1,5 @@
-//! `fem` is the finite element model of a cable: contact, friction, bending, equilibrium and motion.
+//! `fem` is the finite element model of a cable: contact, friction, bending, equilibrium and
+//! motion.
 //!
 //! | room | what it holds |
 //! |---|---|
@@ -48,22 +49,22 @@ use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
 use elastica::Elastica;
 
-/// The solution of `spans` is accepted as the initial equilibrium if no support force changes by more
-/// than this part of the greatest tension. Smaller: coarse meshes reject it and relax into folds.
-/// Larger: bars that are too long for the ground, held by friction at both ends, keep a tension that
-/// nothing else requires (25 bars on a robot's ground: 220 %).
+/// The solution of `spans` is accepted as the initial equilibrium if no support force changes by
+/// more than this part of the greatest tension. Smaller: coarse meshes reject it and relax into
+/// folds. Larger: bars that are too long for the ground, held by friction at both ends, keep a
+/// tension that nothing else requires (25 bars on a robot's ground: 220 %).
 const SUPPORT_FORCE_CHANGE_LIMIT: f64 = 0.1;
 
 /// The same limit for a stiff cable, whose initial shape is that of a flexible one: its bending
 /// contributes to the support forces.
 const STIFF_SUPPORT_FORCE_CHANGE_LIMIT: f64 = 0.5;
 
-/// Number of segments from which on the search for the initial equilibrium begins at that of a coarser
-/// mesh. Fewer: meshes that need no help are solved twice; more: a relaxation of a thousand bars takes
-/// minutes.
+/// Number of segments from which on the search for the initial equilibrium begins at that of a
+/// coarser mesh. Fewer: meshes that need no help are solved twice; more: a relaxation of a thousand
+/// bars takes minutes.
 const TWO_MESH_START_SEGMENTS: usize = 500;
-/// Ratio of the bar lengths of the two meshes. Smaller: more meshes, each nearer to the next; larger: the
-/// coarse solution differs from that of the fine mesh.
+/// Ratio of the bar lengths of the two meshes. Smaller: more meshes, each nearer to the next;
+/// larger: the coarse solution differs from that of the fine mesh.
 const FIRST_MESH_COARSENING: usize = 8;
 
 /// The outcome of starting from the solution of `spans`.
@@ -80,8 +81,8 @@ enum Laid {
 const STIFF_ESTIMATE_FRACTION: f64 = 0.5;
 
 /// A stiff cable's equilibrium may differ from that of its mesh by this part of the cable's length.
-/// Smaller: the equilibrium of coarse meshes is not replaced; larger: another equilibrium is taken for
-/// the same.
+/// Smaller: the equilibrium of coarse meshes is not replaced; larger: another equilibrium is taken
+/// for the same.
 const STIFF_SHIFT_LIMIT: f64 = 0.05;
 
 /// Which part holds the present state.
@@ -109,7 +110,8 @@ pub struct FemModel {
     led: Option<RigidPose>,
     /// The rest of a stiff cable in contact, until something moves.
     bent: Option<CableSolution>,
-    /// What the mesh's rest of a stiff cable may be off by, in parts of the greatest tension, until something moves.
+    /// What the mesh's rest of a stiff cable may be off by, in parts of the greatest tension, until
+    /// something moves.
     unbent: Option<f64>,
 }
 
@@ -144,8 +146,9 @@ impl FemModel {
         self
     }
 
-    /// Lays the cable with the least sliding, if there is an answer to that. On its own way down slack comes to lie in folds, which
-    /// friction then holds. Returns what there is to say of it, and the answer without a mesh.
+    /// Lays the cable with the least sliding, if there is an answer to that. On its own way down
+    /// slack comes to lie in folds, which friction then holds. Returns what there is to say of it,
+    /// and the answer without a mesh.
     ///
     /// # Errors
     /// That it slides from where it is laid.
@@ -172,8 +175,9 @@ impl FemModel {
         Ok((Laid::Alone, flexible.then_some(lay)))
     }
 
-    /// The resting place where nothing can be touched. From the flexible cable up in EI a stiff one may come to where its shape snaps
-    /// over, clamps against which it sags turn it upwards: a chain of bars that is let go follows it there, as it does in contact.
+    /// The resting place where nothing can be touched. From the flexible cable up in EI a stiff one
+    /// may come to where its shape snaps over, clamps against which it sags turn it upwards: a
+    /// chain of bars that is let go follows it there, as it does in contact.
     fn rest_in_the_air(&mut self) -> Result<StepReport, SolveError> {
         self.ask(Part::Statics)?;
         self.bent = None;
@@ -243,7 +247,8 @@ impl FemModel {
         Ok(report)
     }
 
-    /// What the mesh leaves out of the bend of a stiff cable; says so where that is more than was asked for.
+    /// What the mesh leaves out of the bend of a stiff cable; says so where that is more than was
+    /// asked for.
     fn bend_warning(&mut self) -> Option<Warning> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
@@ -261,8 +266,8 @@ impl FemModel {
         Some(Warning::new(WarningKind::Accuracy, &self.problem.cable.name, s, [off, limit], message))
     }
 
-    /// Begins a first rest of a fine mesh at that of a coarse one (nested iteration): the way down takes as many steps as waves of slack
-    /// run along the bars, which a coarse mesh does cheaply.
+    /// Begins a first rest of a fine mesh at that of a coarse one (nested iteration): the way down
+    /// takes as many steps as waves of slack run along the bars, which a coarse mesh does cheaply.
     fn begin_coarse(&mut self) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
         if fine <= TWO_MESH_START_SEGMENTS {
@@ -284,7 +289,8 @@ impl FemModel {
         }
     }
 
-    /// The resting place of a stiff cable in contact as an elastica, from that of a flexible one; None where this finds none.
+    /// The resting place of a stiff cable in contact as an elastica, from that of a flexible one;
+    /// None where this finds none.
     fn bend(&mut self) -> Option<StepReport> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
@@ -339,23 +345,24 @@ impl FemModel {
         Some(Cost { iterations, residual_n, ..Cost::default() })
     }
 
-    /// The same without sliding nodes at corners and posts: every node stays with its material. For models that take
-    /// over its nodes.
+    /// The same without sliding nodes at corners and posts: every node stays with its material. For
+    /// models that take over its nodes.
     #[must_use]
     pub fn with_material_nodes(mut self) -> Self {
         self.dynamics.meshing.slides = false;
         self
     }
 
-    /// A copy to go back to. It leaves the obstacles, among which the outline of the robot is moved, to this one.
+    /// A copy to go back to. It leaves the obstacles, among which the outline of the robot is
+    /// moved, to this one.
     pub(super) fn kept(&self) -> Self {
         let mut copy = self.clone();
         copy.dynamics.problem = self.problem.clone();
         copy
     }
 
-    /// Looks at the cable in contact beside an answer without a mesh, or on another one, and makes its own finer where the scene
-    /// leaves that open.
+    /// Looks at the cable in contact beside an answer without a mesh, or on another one, and makes
+    /// its own finer where the scene leaves that open.
     fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         let refinement = if given { Refinement::Forbidden } else { Refinement::Allowed };

@@ -19,11 +19,13 @@ use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, 
 /// Nodes on a round: one at least every so many radians.
 const ARC_STEP: f64 = 0.13;
 
-/// Rounds in which it is found where a sagging cable leaves a round: each is nearer by the weight on the round over the tension.
+/// Rounds in which it is found where a sagging cable leaves a round: each is nearer by the weight
+/// on the round over the tension.
 const SAG_ROUNDS: usize = 4;
 
-/// Part of the diameter by which the way may be drawn longer than its material where a bar sags and leaves a round sooner or later than straight,
-/// which makes it rδ³/6 longer at an angle δ. More: of slack bars, whose sag is not known, more cable is drawn than there is; less: the force leads
+/// Part of the diameter by which the way may be drawn longer than its material where a bar sags and
+/// leaves a round sooner or later than straight, which makes it rδ³/6 longer at an angle δ. More:
+/// of slack bars, whose sag is not known, more cable is drawn than there is; less: the force leads
 /// away from the round that is drawn.
 const PATH_EXCESS_DIAMETERS: f64 = 0.005;
 
@@ -83,10 +85,11 @@ impl Dynamics {
         self.mesh.sliding.iter().any(Option::is_some)
     }
 
-    /// What the mesh leaves out of a stiff cable's bend at what it is led round, in parts of the greatest tension, and where that is most
-    /// (m of arc length). A sliding node carries no moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
-    /// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the normal force of a contact has any
-    /// direction in between: along the cable that is ½ψ of it.
+    /// What the mesh leaves out of a stiff cable's bend at what it is led round, in parts of the
+    /// greatest tension, and where that is most (m of arc length). A sliding node carries no
+    /// moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
+    /// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the
+    /// normal force of a contact has any direction in between: along the cable that is ½ψ of it.
     pub(in crate::model::fem) fn bending_error(&self) -> (f64, f64) {
         let (mesh, x) = (&self.mesh, &self.motion.x);
         let tension = bar_tensions(self, x);
@@ -122,7 +125,8 @@ impl Dynamics {
     }
 }
 
-/// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than zero.
+/// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than
+/// zero.
 fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
     (0..d.mesh.rest_length.len()).map(|e| bar_tension(d, x, e)).collect()
 }
@@ -139,7 +143,8 @@ fn bar_tension(d: &Dynamics, x: &[Vec2], e: usize) -> f64 {
     if t < 0.0 && flexible { 0.0 } else { t }
 }
 
-/// Arc length from a node to the middle of the straight part of the bar before it (`side` 0) or after it (1), m.
+/// Arc length from a node to the middle of the straight part of the bar before it (`side` 0) or
+/// after it (1), m.
 fn half(d: &Dynamics, node: usize, side: usize, x: &[Vec2]) -> f64 {
     let e = node + side - 1;
     let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
@@ -159,16 +164,18 @@ struct Lain {
     force: Vec2,
 }
 
-/// Tension force (N) at the start of the first bar and at the end of the last: what hangs there on a free end, else that of
-/// the middle plus what acts on the half between. On the ground what acts on the half is guessed from the next node.
-/// With it what the ground does to the halves that lie along an edge.
+/// Tension force (N) at the start of the first bar and at the end of the last: what hangs there on
+/// a free end, else that of the middle plus what acts on the half between. On the ground what acts
+/// on the half is guessed from the next node. With it what the ground does to the halves that lie
+/// along an edge.
 fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<Lain>; 2]) {
     let n = x.len();
     let mut lain = [None, None];
     let mut end = |node: usize, next: usize, e: usize, sign: f64| {
         let ground = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach);
         if let Some(hung) = free_end(d, node) {
-            // What presses on the ground there is the ground's, and what friction holds of it: at the tip itself no more than its cone.
+            // What presses on the ground there is the ground's, and what friction holds of it: at
+            // the tip itself no more than its cone.
             let taken = ground.map_or(Vec2::zeros(), |g| {
                 let pressed = hung.dot(&g.normal).min(0.0);
                 let along = perp(g.normal);
@@ -185,14 +192,16 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
         let Some(ground) = ground else { return middle + body * sign };
         let grounded = ground_force(d, next, x) * (half / d.mesh.share(next));
         let force = middle + (body + grounded) * sign;
-        // What lies on an edge up to its end presses on the edge alone; the barrier's width would tilt the last bar.
+        // What lies on an edge up to its end presses on the edge alone; the barrier's width would
+        // tilt the last bar.
         let beyond = d.problem.world.signed_gap(x[next], 3.0 * d.contacts.barrier.reach);
         let along = ground.feature % 2 == 0 && beyond.is_some_and(|g| g.feature == ground.feature);
         // No more than what presses: beyond that the support is pulled off the edge.
         let pressed = larger(grounded.dot(&ground.normal), 0.0);
         let tilt = force.dot(&ground.normal) * sign;
         let lift = if along { if tilt < pressed { tilt } else { pressed } } else { 0.0 };
-        // The next node presses more by what the tilt lifts here, and rubs more: with less normal force this half rubs less.
+        // The next node presses more by what the tilt lifts here, and rubs more: with less normal
+        // force this half rubs less.
         let kept = if pressed > 0.0 { (1.0 - lift / pressed).clamp(0.0, 1.0) } else { 1.0 };
         let rubbed = (grounded - ground.normal * pressed) * (1.0 - kept);
         let lift = ground.normal * (lift * sign);
@@ -214,7 +223,8 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
     ([end(0, 1, 0, 1.0), end(n - 1, n - 2, n - 2, -1.0)], lain)
 }
 
-/// What hangs on a free end, N; None for other nodes, and where a lump moves, whose inertia pulls as well.
+/// What hangs on a free end, N; None for other nodes, and where a lump moves, whose inertia pulls
+/// as well.
 fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
     let k = d.meshing.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
     if d.motion.hands[k].is_some() {
@@ -236,9 +246,10 @@ fn ground_force(d: &Dynamics, node: usize, x: &[Vec2]) -> Vec2 {
     sum
 }
 
-/// What is left of all forces on a cable that no support holds, N: weight, loads, and what obstacles and floor do to it. Between its
-/// bars nothing is left, whatever their tension: this has none of the rounding of their forces, and tells what slides from what
-/// rests where each node alone is let off with a little.
+/// What is left of all forces on a cable that no support holds, N: weight, loads, and what
+/// obstacles and floor do to it. Between its bars nothing is left, whatever their tension: this has
+/// none of the rounding of their forces, and tells what slides from what rests where each node
+/// alone is let off with a little.
 pub(in crate::model::fem) fn unbalanced(d: &Dynamics, x: &[Vec2], time_s: f64) -> Vec2 {
     let problem = &d.problem;
     let hung: Vec2 = (0..problem.supports.len()).map(|k| problem.hung_on(k, time_s)).sum();
@@ -332,19 +343,22 @@ fn nodes(d: &Dynamics, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]
     out
 }
 
-/// What a round does to the cable at a sliding node, N: all that the change of the internal force asks for, but for what the floor does.
+/// What a round does to the cable at a sliding node, N: all that the change of the internal force
+/// asks for, but for what the floor does.
 fn by_round(load: &Load) -> Vec2 {
     let [before, after] = load.force.map(|f| f.try_normalize(0.0).unwrap_or_default());
     let on = (before + after).try_normalize(0.0).unwrap_or_default();
     -load.jump - before * load.floor[0] - on * load.floor[1] - after * load.floor[2]
 }
 
-/// Growth of the logarithm of tension over a small round, in parts of what friction makes of its turn, from which on weight that hangs over it from the
-/// bars beside it is told from sag. Less: what a sagging bar rubs in the air beside a corner is said to rub there; more: short pieces rub beyond
-/// their cone.
+/// Growth of the logarithm of tension over a small round, in parts of what friction makes of its
+/// turn, from which on weight that hangs over it from the bars beside it is told from sag. Less:
+/// what a sagging bar rubs in the air beside a corner is said to rub there; more: short pieces rub
+/// beyond their cone.
 const HANGING_TENSION_GROWTH: f64 = 1.2;
 
-/// Part of what chords are shorter than their arc that goes to the ways beside it. More: they were longer than their material.
+/// Part of what chords are shorter than their arc that goes to the ways beside it. More: they were
+/// longer than their material.
 const CHORD_CORRECTION_FRACTION: f64 = 0.8;
 
 /// A point of the cable on a round.
@@ -358,15 +372,17 @@ struct OnRound {
     stretch: f64,
 }
 
-/// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the sliding node before, to where it
-/// leaves it, or halfway to the next. Its tension is that of its weight, and beyond that grows evenly in its logarithm, as friction makes it.
+/// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the
+/// sliding node before, to where it leaves it, or halfway to the next. Its tension is that of its
+/// weight, and beyond that grows evenly in its logarithm, as friction makes it.
 fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
     let mesh = &d.mesh;
     let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
     let stretch = [0, 1].map(|j| paths[j].length / (mesh.arc_length[k + j] - mesh.arc_length[k + j - 1]));
     let (mark, sense, radius) = (node.end.mark, node.end.sense, node.end.radius);
-    // What lies between the node and where the cable meets or leaves the round, so far (rad) from it, has its own weight.
+    // What lies between the node and where the cable meets or leaves the round, so far (rad) from
+    // it, has its own weight.
     let force_at =
         |arcs: [f64; 2]| [0, 1].map(|j| load.force[j] - d.task.body * (arcs[j] * radius / stretch[j] * [-1.0, 1.0][j]));
     let sag = |j: usize, from: Vec2, to: Vec2| {
@@ -378,7 +394,8 @@ fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2],
         let (sin, cos) = (sense * turned).sin_cos();
         Vec2::new(cos * mark.x - sin * mark.y, sin * mark.x + cos * mark.y)
     };
-    // It leaves where its force does: what sags turns further round than the straight bar that stands for it, and has less weight beyond.
+    // It leaves where its force does: what sags turns further round than the straight bar that
+    // stands for it, and has less weight beyond.
     let straight = [paths[0].arcs[1], paths[1].arcs[0]];
     // The nearer half of the bar at most: the rest hangs from the node beyond.
     let room = [0, 1].map(|j| larger(0.5 * (paths[j].length / radius - straight[j]), 0.0));
@@ -414,14 +431,14 @@ fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2],
     let unrubbed = |normal: Vec2| a - d.task.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
     let last = unrubbed(normal(after));
     let over = OverRound::between([a, b - (last - a)], floor);
-    // On a round that is small beside its bars, friction of the weight that hangs over it from them is beside it: on the round it is no more than
-    // its turn there allows.
+    // On a round that is small beside its bars, friction of the weight that hangs over it from them
+    // is beside it: on the round it is no more than its turn there allows.
     let grown = (b / last).ln();
     let small = same == [false; 2] && whole * radius < ONE_MARK_BAR_FRACTION * d.even();
     let most = node.friction * whole;
     let rate = if small && grown.abs() > HANGING_TENSION_GROWTH * most { most.copysign(grown) } else { grown };
-    // What is beside it stands where the weight hangs: before the round and after it by the angle there between
-    // the cable's force and the end of the arc.
+    // What is beside it stands where the weight hangs: before the round and after it by the angle
+    // there between the cable's force and the end of the arc.
     let tangents = [-before, after].map(|turned| perp(normal(turned)) * sense);
     let hangs = [angle_between(ends[0], tangents[0]), angle_between(tangents[1], ends[1])]
         .map(|angle| larger(sense * angle, 0.0));
@@ -440,16 +457,18 @@ fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2],
         } else {
             a + (b - a) * f
         };
-        // The floor's friction of half of what lies beside a point acts at it, as it does at a node of the cable.
+        // The floor's friction of half of what lies beside a point acts at it, as it does at a node
+        // of the cable.
         let beyond = if i < count { tension - 0.5 * floor / count } else { tension - f2 };
         let force = perp(normal) * (sense * beyond);
         let arc_length = mesh.arc_length[k] + turned * radius / stretch;
         OnRound { arc_length, at: node.end.center + normal * radius, tension, force, stretch }
     };
     let mut points: Vec<OnRound> = (0..=count as usize).map(|i| at(i as f64)).collect();
-    // Friction on the round strains what lies there otherwise than the straight part beyond, which has its own tension. And what sags on to the
-    // round, or comes from inside its gap, comes and goes by a longer way than the bar: by as much as chords are shorter than their arc the
-    // round has material to spare.
+    // Friction on the round strains what lies there otherwise than the straight part beyond, which
+    // has its own tension. And what sags on to the round, or comes from inside its gap, comes and
+    // goes by a longer way than the bar: by as much as chords are shorter than their arc the round
+    // has material to spare.
     let half = 0.5 * whole / count;
     let sides = if same.contains(&true) { 1.0 } else { 2.0 };
     let spare = CHORD_CORRECTION_FRACTION / sides * (whole - count * 2.0 * half.sin()) * radius;
@@ -470,7 +489,8 @@ fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2],
     points
 }
 
-/// Spreads the material of an arc as the tension along it strains it; how much of it there is on the whole stays.
+/// Spreads the material of an arc as the tension along it strains it; how much of it there is on
+/// the whole stays.
 fn strain_evenly(points: &mut [OnRound], axial_stiffness: f64) {
     let [Some(begins), Some(ends)] = [points.first(), points.last()].map(|p| p.map(|p| p.arc_length)) else { return };
     // Chords of one round are equally long: their material goes by their strain alone.
@@ -556,13 +576,14 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
             let hand = d.motion.hands[k];
             let reaction = match node {
                 _ if hand.is_some() => d.answers.reaction[node],
-                // A dead load is what hangs there: the cable pulls it the other way; a lump it may pull faster. Of one that lies
-                // the ground takes a part, which is the contact's.
+                // A dead load is what hangs there: the cable pulls it the other way; a lump it may
+                // pull faster. Of one that lies the ground takes a part, which is the contact's.
                 _ if !d.mesh.held[node] && lies => -problem.hung_on(k, d.time()),
                 0 if !d.mesh.held[node] => ends[0],
                 k if k == last && !d.mesh.held[node] => -ends[1],
                 _ if !d.mesh.held[node] => -problem.hung_on(k, d.time()),
-                // On the ground the end's own share of weight and friction is the ground's, not the support's.
+                // On the ground the end's own share of weight and friction is the ground's, not the
+                // support's.
                 0 if lies => ends[0],
                 k if k == last && lies => -ends[1],
                 _ => d.answers.reaction[node],
@@ -661,8 +682,9 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
         for j in first..k {
             let (Some(load), Some(node)) = (d.load(j), &d.mesh.sliding[j]) else { continue };
             let [before, after] = load.tension;
-            // The law of friction holds between the pulls along the bars: what hangs across them is the cable's own weight, and
-            // what the floor takes of what slides here is not the round's.
+            // The law of friction holds between the pulls along the bars: what hangs across them is
+            // the cable's own weight, and what the floor takes of what slides here is not the
+            // round's.
             let acts = node.balanced.unwrap_or(Balanced { pull: load.at_round(), turn: load.turn });
             let [a, b] = acts.pull;
             let floor = load.floor[1];
@@ -711,7 +733,8 @@ fn report(
     let before = if first.on_segment { first.node } else { first.node.saturating_sub(1) };
     let after = last.node.min(bars - 1);
     let (mut normal, mut normal_n, mut friction_n) = (Vec2::zeros(), 0.0, 0.0);
-    // What presses on a node that stays where it is, over a round or as an end that lies, is of that round, or of the end.
+    // What presses on a node that stays where it is, over a round or as an end that lies, is of
+    // that round, or of the end.
     let stays = |k: usize| d.mesh.sliding[k].is_some() || lain.iter().flatten().any(|l| l.node == k);
     let part = |t: &ContactPair| {
         let [a, b] = t.shares();

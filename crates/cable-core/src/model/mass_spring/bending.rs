@@ -1,4 +1,5 @@
-//! This module adds the bending forces of the chain (see [`crate::energy::bending`]). A pulley bends the cable without a moment of its own.
+//! This module adds the bending forces of the chain (see [`crate::energy::bending`]). A pulley
+//! bends the cable without a moment of its own.
 
 use crate::energy::Energy;
 use crate::energy::bending::{BendingEnergy, ClampBend};

@@ -9,17 +9,22 @@ use crate::model::mass_spring::{Clock, ContactMemory, MassSpringModel, Report, R
 use crate::problem::Problem;
 use crate::state::State;
 
-/// Elements where neither scene nor settings say: fewer is visibly angular, more makes sub-steps shorter and dearer.
+/// Elements where neither scene nor settings say: fewer is visibly angular, more makes sub-steps
+/// shorter and dearer.
 const DEFAULT_SEGMENTS: usize = 60;
-/// Nodes of another model are taken if they are nowhere nearer than this, of the even length: less makes sub-steps short.
+/// Nodes of another model are taken if they are nowhere nearer than this, of the even length: less
+/// makes sub-steps short.
 const LEAST_SPACING: f64 = 0.2;
-/// Least damping ratio of the fastest axial mode. Without any, springs that go slack and taut near the stability limit
-/// pump energy into violent motion (a cable dropped into its supports gained 11 kJ in 4 s); the first mode of N elements
-/// gets π/2N of it, and motion across the cable nothing. More damps what is seen.
+/// Least damping ratio of the fastest axial mode. Without any, springs that go slack and taut near
+/// the stability limit pump energy into violent motion (a cable dropped into its supports gained 11
+/// kJ in 4 s); the first mode of N elements gets π/2N of it, and motion across the cable nothing.
+/// More damps what is seen.
 const MIN_MODE_DAMPING: f64 = 0.1;
-/// Most of the cable that the way to the last support gets when it is longer: the rest hangs, the first balance decides.
+/// Most of the cable that the way to the last support gets when it is longer: the rest hangs, the
+/// first balance decides.
 const LONGEST_WAY: f64 = 0.95;
-/// Greatest damping ratio of the fastest mode: more shortens the stable step without changing what is seen.
+/// Greatest damping ratio of the fastest mode: more shortens the stable step without changing what
+/// is seen.
 const MAX_MODE_DAMPING: f64 = 1.0;
 
 part! {
@@ -57,7 +62,8 @@ part! {
 }
 
 impl MassSpringModel {
-    /// Puts a node at each support and load, the others evenly between them. `slid` is where each support sits, m.
+    /// Puts a node at each support and load, the others evenly between them. `slid` is where each
+    /// support sits, m.
     pub(super) fn mesh(problem: Arc<Problem>, settings: Settings, slid: &[f64]) -> Self {
         Self::mesh_on(problem, settings, slid, None)
     }
@@ -159,7 +165,8 @@ impl MassSpringModel {
         model
     }
 
-    /// The nodes of a shape, if they will do: resampled, its elements would cut the corners that they lie round.
+    /// The nodes of a shape, if they will do: resampled, its elements would cut the corners that
+    /// they lie round.
     pub(super) fn nodes_of(&self, shape: &State) -> Option<Vec<f64>> {
         let s = &shape.arc_length_m;
         let fits = |wanted: f64| s.iter().any(|v| (v - wanted).abs() <= 1e-9 * self.problem.length);
@@ -183,8 +190,9 @@ impl MassSpringModel {
     }
 }
 
-/// Where each support sits (m): as given, and what slides kept `least` (m), or its share of what room there is, from what it could
-/// run onto. Material lies on both sides of a pulley, however near to a support it stands.
+/// Where each support sits (m): as given, and what slides kept `least` (m), or its share of what
+/// room there is, from what it could run onto. Material lies on both sides of a pulley, however
+/// near to a support it stands.
 fn apart(p: &Problem, slid: &[f64], least: f64) -> Vec<f64> {
     let mut out: Vec<f64> =
         (0..p.supports.len()).map(|k| p.supports[k].arc_length.or(slid.get(k).copied()).unwrap_or(f64::NAN)).collect();
@@ -207,8 +215,9 @@ fn apart(p: &Problem, slid: &[f64], least: f64) -> Vec<f64> {
     out
 }
 
-/// Damping ζ of the first axial mode, ω₁ = π/L·√(EA/ρ): strain-rate force EA·τ·ε̇ with τ = 2ζ/ω₁. Mode k then has
-/// ζ_k = ζ·ω_k/ω₁, which for the fastest one is kept between [`MIN_MODE_DAMPING`] and [`MAX_MODE_DAMPING`].
+/// Damping ζ of the first axial mode, ω₁ = π/L·√(EA/ρ): strain-rate force EA·τ·ε̇ with τ = 2ζ/ω₁.
+/// Mode k then has ζ_k = ζ·ω_k/ω₁, which for the fastest one is kept between [`MIN_MODE_DAMPING`]
+/// and [`MAX_MODE_DAMPING`].
 fn damping_time(p: &Problem, rest: &[f64]) -> f64 {
     let c = (p.axial_stiffness / p.linear_density).sqrt();
     let first = std::f64::consts::PI / p.damped_length * c;
@@ -218,8 +227,8 @@ fn damping_time(p: &Problem, rest: &[f64]) -> f64 {
     bounded(own, 2.0 * MIN_MODE_DAMPING / fastest, 2.0 * MAX_MODE_DAMPING / fastest)
 }
 
-/// Where each support sits on the cable before anything is known, m: material even along the straight way between those
-/// whose place is given; a hanging end gets what the way leaves.
+/// Where each support sits on the cable before anything is known, m: material even along the
+/// straight way between those whose place is given; a hanging end gets what the way leaves.
 pub(super) fn lay_supports(p: &Problem) -> Vec<f64> {
     let count = p.supports.len();
     let mut way = vec![0.0; count];
@@ -254,8 +263,8 @@ pub(super) fn lay_supports(p: &Problem) -> Vec<f64> {
         .collect()
 }
 
-/// Along the route, material spread evenly; without one, straight from support to support. A free end goes on in the
-/// direction of gravity.
+/// Along the route, material spread evenly; without one, straight from support to support. A free
+/// end goes on in the direction of gravity.
 fn first_shape(p: &Problem, s: &[f64], node_of: &[usize]) -> Vec<Vec2> {
     if p.route.len() >= 2 {
         let mut along = vec![0.0];

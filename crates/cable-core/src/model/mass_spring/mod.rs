@@ -1,4 +1,5 @@
-//! `mass_spring` is the model of lumped masses and springs: a quick look, and the cheap way through violent free motion.
+//! `mass_spring` is the model of lumped masses and springs: a quick look, and the cheap way through
+//! violent free motion.
 //!
 //! | room | what it holds |
 //! |---|---|
@@ -10,17 +11,19 @@
 //! | `pulleys`, `bending` | material that slides through pulleys; bending forces |
 //! | `results`, `corner_error` | the answer, and what a mesh cannot know of tension beyond a corner |
 //!
-//! The leapfrog keeps velocities half a sub-step behind places. The discretisation error is of second order in the
-//! element; at equilibrium and without inertia it is estimated, in motion only for corners.
+//! The leapfrog keeps velocities half a sub-step behind places. The discretisation error is of
+//! second order in the element; at equilibrium and without inertia it is estimated, in motion only
+//! for corners.
 //!
-//! Sub-steps keep below the stability limit of a chain of springs, with ω_max = 2√(EA/(ρ l₀²)) and the damping ratio ζ
-//! of that mode: `dt < 2/ω_max · (√(1+ζ²) − ζ)` (D. Baraff, A. Witkin, Physically based modeling, SIGGRAPH course notes,
-//! 1997, derive the undamped part). Equilibria are found by Newton's method on the energy of springs, contacts and
-//! friction. They start from the shape of [`crate::model::fem`] where there is one: which of many equilibria a rough
-//! floor allows is then the same for both models; what holds there is this model's own balance of forces.
+//! Sub-steps keep below the stability limit of a chain of springs, with ω_max = 2√(EA/(ρ l₀²)) and
+//! the damping ratio ζ of that mode: `dt < 2/ω_max · (√(1+ζ²) − ζ)` (D. Baraff, A. Witkin,
+//! Physically based modeling, SIGGRAPH course notes, 1997, derive the undamped part). Equilibria
+//! are found by Newton's method on the energy of springs, contacts and friction. They start from
+//! the shape of [`crate::model::fem`] where there is one: which of many equilibria a rough floor
+//! allows is then the same for both models; what holds there is this model's own balance of forces.
 
-/// Declares a part of the model whose `clone_from` goes through its fields, into the memory that a copy
-/// already has: a step keeps the state before it without new memory.
+/// Declares a part of the model whose `clone_from` goes through its fields, into the memory that a
+/// copy already has: a step keeps the state before it without new memory.
 macro_rules! part {
     ($(#[$doc:meta])* $name:ident { $($(#[$about:meta])* $field:ident: $kind:ty,)+ }) => {
         $(#[$doc])*
@@ -195,7 +198,8 @@ impl MassSpringModel {
         self.laid = true;
     }
 
-    /// The problem with its pulleys gripping the cable where it was laid: for models that have none beside obstacles.
+    /// The problem with its pulleys gripping the cable where it was laid: for models that have none
+    /// beside obstacles.
     fn pinned(&self) -> Problem {
         let mut problem = (*self.problem).clone();
         for p in &self.wheels.pulleys {
@@ -211,7 +215,8 @@ impl MassSpringModel {
         problem
     }
 
-    /// A chain of the same cable along a shape, its supports where `slid` says; None if the shape has no place for it.
+    /// A chain of the same cable along a shape, its supports where `slid` says; None if the shape
+    /// has no place for it.
     fn shaped(&self, shape: &State, slid: &[f64]) -> Option<Self> {
         let own = self.nodes_of(shape);
         let mut next = Self::mesh_on(self.problem.clone(), self.settings, slid, own);

@@ -45,7 +45,8 @@ impl MassSpringModel {
         if length > 0.0 { d * (self.chain.tension[e] / length) } else { Vec2::zeros() }
     }
 
-    /// The nodes; a pulley is two, where the cable arrives and leaves, and a wheel some more in between.
+    /// The nodes; a pulley is two, where the cable arrives and leaves, and a wheel some more in
+    /// between.
     fn nodes(&self) -> Vec<Node> {
         let mut out = Vec::with_capacity(self.chain.x.len() + 2 * self.wheels.pulleys.len());
         for i in 0..self.chain.x.len() {
@@ -57,8 +58,9 @@ impl MassSpringModel {
         out
     }
 
-    /// Internal force where the bar `e` beside a pulley meets it, N: that of its middle and the load on the way, `side` −1 before the
-    /// pulley and 1 beyond it; the bar's end lies `arc` (m) on the wheel.
+    /// Internal force where the bar `e` beside a pulley meets it, N: that of its middle and the
+    /// load on the way, `side` −1 before the pulley and 1 beyond it; the bar's end lies `arc` (m)
+    /// on the wheel.
     fn beside_pulley(&self, e: usize, side: f64, arc: f64) -> Vec2 {
         let way = self.chain.span[e] - 0.5 * self.chain.share[e] - arc / self.problem.thermal_stretch;
         self.bar_force(e) + self.problem.body_force(self.clock.time_s) * (side * way)
@@ -164,8 +166,8 @@ impl MassSpringModel {
         out
     }
 
-    /// Tension at a node: inside, the mean of its elements' force vectors; at an end, the force there, half an
-    /// element's weight and inertia beyond the middle of the last element.
+    /// Tension at a node: inside, the mean of its elements' force vectors; at an end, the force
+    /// there, half an element's weight and inertia beyond the middle of the last element.
     fn node(&self, i: usize) -> Node {
         let tension_n = match (i.checked_sub(1), i < self.chain.rest.len()) {
             (Some(e), true) => ((self.element_force(e) + self.element_force(i)) * 0.5).norm(),
@@ -189,8 +191,9 @@ impl MassSpringModel {
         }
     }
 
-    /// Tension at a node as a gauge takes it in every sub-step, N: the mean of the elements beside it, of a pulley the greater of both
-    /// sides, of a held end what holds it, ground beside it left out.
+    /// Tension at a node as a gauge takes it in every sub-step, N: the mean of the elements beside
+    /// it, of a pulley the greater of both sides, of a held end what holds it, ground beside it
+    /// left out.
     pub(in crate::model::mass_spring) fn gauged(&self, i: usize) -> f64 {
         let e = match i.checked_sub(1) {
             Some(e) if i < self.chain.rest.len() => {
@@ -217,7 +220,8 @@ impl MassSpringModel {
         }
     }
 
-    /// Internal force just beyond a node, at the end of the cable just before it, N: that of the bar's middle and half of its load.
+    /// Internal force just beyond a node, at the end of the cable just before it, N: that of the
+    /// bar's middle and half of its load.
     fn internal_force(&self, i: usize) -> Vec2 {
         match (i, i < self.chain.rest.len()) {
             (0, _) => self.end_force(i),
@@ -257,7 +261,8 @@ impl MassSpringModel {
         }
     }
 
-    /// Tension at a held end: the whole force of a flexible cable, without the shear of a stiff one.
+    /// Tension at a held end: the whole force of a flexible cable, without the shear of a stiff
+    /// one.
     fn end_tension(&self, i: usize) -> f64 {
         let force = self.on_support(i);
         if !(self.problem.bending_stiffness > 0.0) {
@@ -267,7 +272,8 @@ impl MassSpringModel {
         force.dot(&along).abs()
     }
 
-    /// Tension just inside a free end: what hangs there; with a lump, whose inertia pulls as well, that of its element `e`.
+    /// Tension just inside a free end: what hangs there; with a lump, whose inertia pulls as well,
+    /// that of its element `e`.
     fn free_end_tension(&self, i: usize, e: usize) -> f64 {
         let support = self.chain.node_of.iter().position(|&n| n == i).filter(|&k| self.problem.supports[k].mass == 0.0);
         let tension = self.chain.tension.get(e).copied().unwrap_or(0.0);
@@ -280,7 +286,8 @@ impl MassSpringModel {
         }
     }
 
-    /// From a clamp at an end to the middle of its element `e`, which lies along `d`; 0 where nothing is clamped.
+    /// From a clamp at an end to the middle of its element `e`, which lies along `d`; 0 where
+    /// nothing is clamped.
     fn clamp_curvature(&self, i: usize, e: usize, d: Vec2) -> f64 {
         let clamp = self.clamp_at(i).filter(|_| self.problem.bending_stiffness > 0.0);
         clamp.map_or(0.0, |c| turn(c, d) / (0.5 * self.chain.span[e]))
@@ -291,8 +298,9 @@ impl MassSpringModel {
         self.chain.f[i] - self.drives.held_acceleration[i] * self.chain.mass[i]
     }
 
-    /// Force of the cable on the support that holds node `i`, N. Ground under the node carries its share of the weight
-    /// and rubs on it: without that a drag comes out half an element's friction short.
+    /// Force of the cable on the support that holds node `i`, N. Ground under the node carries its
+    /// share of the weight and rubs on it: without that a drag comes out half an element's friction
+    /// short.
     pub(in crate::model::mass_spring) fn on_support(&self, i: usize) -> Vec2 {
         let force = self.on_all_that_holds(i);
         if let Some(p) = self.pulley_of(i) {
@@ -354,7 +362,8 @@ impl MassSpringModel {
         }
     }
 
-    /// Contacts, and how uncertain each leaves tension. Neighbouring ones with the same obstacle are one.
+    /// Contacts, and how uncertain each leaves tension. Neighbouring ones with the same obstacle
+    /// are one.
     pub(in crate::model::mass_spring) fn wraps(&self) -> Vec<(ContactReport, f64)> {
         let h = if self.report.cost.inner_step_s > 0.0 { self.report.cost.inner_step_s } else { 1.0 };
         let mut out: Vec<(ContactReport, [usize; 2], f64)> = Vec::new();

@@ -105,7 +105,8 @@ fn dragging_along_a_floor_takes_mu_w_l() {
     assert!((mean / exact - 1.0).abs() < 0.01, "{mean} against {exact}");
 }
 
-/// Pulled slowly one way and back: μwL either way once everything slides, and the same place again gives it too.
+/// Pulled slowly one way and back: μwL either way once everything slides, and the same place again
+/// gives it too.
 #[test]
 fn slow_motion_takes_mu_w_l_and_turns_round() {
     let mut scene = drag();
@@ -223,7 +224,8 @@ fn a_smooth_pulley_makes_no_energy_and_loses_no_material() {
     }
 }
 
-/// Dropped slack into its supports, without damping of its own: springs go slack and taut, energy only falls.
+/// Dropped slack into its supports, without damping of its own: springs go slack and taut, energy
+/// only falls.
 #[test]
 fn a_cable_that_snaps_taut_gains_no_energy() {
     let mut scene = swinging(0.0, 2e4);
@@ -237,7 +239,8 @@ fn a_cable_that_snaps_taut_gains_no_energy() {
     }
 }
 
-/// A stiff cable on a wheel, its end swung to and fro: display frames of any length give the same end.
+/// A stiff cable on a wheel, its end swung to and fro: display frames of any length give the same
+/// end.
 #[test]
 fn a_preview_does_not_depend_on_the_frames() {
     let mut scene = swinging(0.0, 1e9);
@@ -345,8 +348,8 @@ fn a_cable_below_its_slip_threshold_stays_where_it_lies() {
     }
 }
 
-/// Between posts from above the leg at the reel never slides: what it was laid with stays, and differs from model to model. The
-/// answer says at least by how much.
+/// Between posts from above the leg at the reel never slides: what it was laid with stays, and
+/// differs from model to model. The answer says at least by how much.
 #[test]
 fn what_a_floor_holds_is_said() {
     let end = |model| {
@@ -363,6 +366,7 @@ fn what_a_floor_holds_is_said() {
     let off = (pull(&fem) - pull(&springs)).abs() / springs.max_tension().tension_n;
     let said = springs.cables[0].error_estimate.unwrap();
     println!("off by {off:.3}, said {said:.3}");
-    // A ground of fem that gave way by 1e-5 m was off by more than 0.05; what it says is of the floor and not of that.
+    // A ground of fem that gave way by 1e-5 m was off by more than 0.05; what it says is of the
+    // floor and not of that.
     assert!(said > 0.05 && said > off, "{off} {said}");
 }

@@ -26,7 +26,8 @@ pub(in crate::model::spans) struct BoundaryConditions {
     pub thermal: f64,
     /// Dead loads of the layout, N.
     pub forces: Vec<Vec2>,
-    /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one that has weight.
+    /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one
+    /// that has weight.
     pub hint: f64,
     /// Part of the friction that acts: 1, less only while a rest is sought.
     pub friction: f64,

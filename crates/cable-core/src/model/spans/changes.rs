@@ -1,8 +1,9 @@
 //! Changes are what a converged run may need: contacts released, joined, met, made.
 //!
-//! R a contact whose interval has turned round is let go; M two contacts of one chain are one; L one that pulls is parted (`lift`); P where a span runs into
-//! an obstacle the neighbouring contact is drawn out to it, or a new one begins at a point. After each the strand is
-//! solved again, until nothing fires.
+//! R a contact whose interval has turned round is let go; M two contacts of one chain are one; L
+//! one that pulls is parted (`lift`); P where a span runs into an obstacle the neighbouring contact
+//! is drawn out to it, or a new one begins at a point. After each the strand is solved again, until
+//! nothing fires.
 
 use crate::contact::swept_corners::{self, Corner};
 use crate::contact::{Gap, World};
@@ -25,22 +26,23 @@ use crate::model::spans::verify::tunnelling;
 
 /// Events in one solve at most. A cold start over 24 corners takes 60.
 const MAX_EVENTS: usize = 200;
-/// A contact is let go when its interval has turned round by this much (m or rad). Smaller: rounding releases what
-/// touches in a point. Larger: a contact that pulls is accepted.
+/// A contact is let go when its interval has turned round by this much (m or rad). Smaller:
+/// rounding releases what touches in a point. Larger: a contact that pulls is accepted.
 const RELEASE_OVERLAP: f64 = 1e-10;
-/// Depth inside an obstacle that is met, of the strand's length, and at most, m. Smaller: rounding at touch points; larger: it
-/// is seen.
+/// Depth inside an obstacle that is met, of the strand's length, and at most, m. Smaller: rounding
+/// at touch points; larger: it is seen.
 const DEPTH_FRACTION: f64 = 1e-9;
 const DEPTH_LIMIT_M: f64 = 1e-6;
 /// Times in one solve at most that something is done about loads where Newton stalls.
 const MOST_CAUGHT: usize = 4;
-/// What lies beside a load is let go where it is shorter than this part of the strand when Newton stalls. Smaller: Newton comes
-/// so near to its end only after many halvings. Larger: it is laid down again for nothing.
+/// What lies beside a load is let go where it is shorter than this part of the strand when Newton
+/// stalls. Smaller: Newton comes so near to its end only after many halvings. Larger: it is laid
+/// down again for nothing.
 const SHED_LENGTH_FRACTION: f64 = 1e-4;
 /// Edges that a contact grows over at once.
 const MOST_EDGES: usize = 8;
-/// Part of p by which an end of a contact may be off the end of an arc and be taken to be there: Newton's steps go beyond it by
-/// less.
+/// Part of p by which an end of a contact may be off the end of an arc and be taken to be there:
+/// Newton's steps go beyond it by less.
 const ARC_END_FRACTION: f64 = 1e-8;
 /// A support this near to a boundary lies on it, m.
 pub(in crate::model::spans) const SUPPORT_CONTACT_DISTANCE_M: f64 = 1e-9;
@@ -93,7 +95,8 @@ pub(in crate::model::spans) fn solve(
             }
             || meet(strand, course, world, came.is_some())?;
         if !changed {
-            // What else holds the cable may press it on to its wheel again: it is off when nothing else changes.
+            // What else holds the cable may press it on to its wheel again: it is off when nothing
+            // else changes.
             return lifted(strand, course).map_or(Ok(sum), |support| Err(Failure::OffWheel { support }));
         }
     }
@@ -122,8 +125,8 @@ fn lifted(strand: &CableRun, course: &Course) -> Option<usize> {
     wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -RELEASE_OVERLAP)?.wheel
 }
 
-/// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned round past it would count;
-/// whether there was any.
+/// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned
+/// round past it would count; whether there was any.
 fn shed(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> {
     let least = SHED_LENGTH_FRACTION * (strand.to - strand.from);
     let small = |c: &Contact| !c.is_load() && c.ends.s[1] - c.ends.s[0] < least;
@@ -285,7 +288,8 @@ fn passed(
     }
     let Some((_, k, s, at, force)) = best else { return Ok(false) };
     let tangent = force / force.norm();
-    // It must come to lie on the other side of the cable: on its left now, it shall be on its right.
+    // It must come to lie on the other side of the cable: on its left now, it shall be on its
+    // right.
     let normal = perp(tangent) * cross(tangent, corner.at - at).signum();
     let gap = Gap {
         gap_m: -(corner.at - at).norm(),
@@ -398,8 +402,9 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
     Ok(())
 }
 
-/// From p, where a contact ends on a side, on to the corner behind each edge that the way to the far end of the span there
-/// leads into: along an edge nothing turns, and Newton's method does not find across it.
+/// From p, where a contact ends on a side, on to the corner behind each edge that the way to the
+/// far end of the span there leads into: along an edge nothing turns, and Newton's method does not
+/// find across it.
 fn beyond_edges(curve: &Curve, home: ChainRange, mut p: f64, side: usize, far: Option<Vec2>) -> f64 {
     let (step, forward) = if side == 0 { (-1, -1.0) } else { (1, 1.0) };
     let Some(far) = far else { return p };
@@ -450,8 +455,8 @@ fn lead_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bo
     true
 }
 
-/// Takes an end of contact j that lies at the start of an arc, seen along the contact, back over the edge before it where its span
-/// leaves that edge; whether it did.
+/// Takes an end of contact j that lies at the start of an arc, seen along the contact, back over
+/// the edge before it where its span leaves that edge; whether it did.
 fn lift_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bool {
     let Some(far) = strand.ends_of(course, j + side)[side] else { return false };
     let c = &mut strand.contacts[j];
@@ -476,9 +481,10 @@ fn lift_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bo
     moved != 0.0
 }
 
-/// G: contacts that came to the end of an arc, with their span turned on into the edge behind it, go on to the corner at the
-/// edge's far end, those that came to its start, with their span lifted off the edge before it, back to the near one; whether there
-/// was one. A stiff taut cable turns by w/T a metre along an edge: next to nothing.
+/// G: contacts that came to the end of an arc, with their span turned on into the edge behind it,
+/// go on to the corner at the edge's far end, those that came to its start, with their span lifted
+/// off the edge before it, back to the near one; whether there was one. A stiff taut cable turns by
+/// w/T a metre along an edge: next to nothing.
 fn grow(strand: &mut CableRun, course: &Course) -> bool {
     let mut any = false;
     for j in 0..strand.contacts.len() {

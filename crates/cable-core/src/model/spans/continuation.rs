@@ -1,5 +1,5 @@
-//! The continuation finds the initial equilibrium and follows it through time, and halves load steps
-//! that fail.
+//! The continuation finds the initial equilibrium and follows it through time, and halves load
+//! steps that fail.
 
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};
@@ -29,7 +29,8 @@ use crate::solution::Node;
 const MAX_HALVINGS: u32 = 12;
 /// Part of a step over which a cable that runs away is followed at least.
 const RUNAWAY_STEP_FRACTION: f64 = 1e-3;
-/// Drag with which it is followed at first, of the load per metre. Less: steps fail where it runs fast. More: more of them.
+/// Drag with which it is followed at first, of the load per metre. Less: steps fail where it runs
+/// fast. More: more of them.
 const DRAG: f64 = 10.0;
 /// It has come to rest when it needs no more than this part of that drag.
 const LEAST_DRAG: f64 = 1e-3;
@@ -38,39 +39,46 @@ const FORCE_TOLERANCE: f64 = 1e-9;
 /// Steps it is followed for at most, and times in a row the drag is raised.
 const MOST_DRAGGED: usize = 200;
 const MOST_RAISED: usize = 5;
-/// Friction, of the force there, that may be missing in the step in which a load comes down, and the shortest step taken for its
-/// sake. More: forces are off by as much while such a step lasts. Less: more steps.
+/// Friction, of the force there, that may be missing in the step in which a load comes down, and
+/// the shortest step taken for its sake. More: forces are off by as much while such a step lasts.
+/// Less: more steps.
 const MISSING_FRICTION_FRACTION: f64 = 3e-4;
 const LANDING_STEP_FRACTION: f64 = 1.0 / 64.0;
 /// Spans that are tried as pockets in one step. More: dearer failures, each halving tries again.
 const MOST_POCKETS: usize = 3;
-/// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches only what it is led
-/// round. Less: it lies on more than the string of the route. More: nothing gained.
+/// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches
+/// only what it is led round. Less: it lies on more than the string of the route. More: nothing
+/// gained.
 const FIRST_TENSION_WEIGHTS: f64 = 4.0;
-/// The same where that finds none: corners that the string of the route bends round and the cable does not give away more
-/// than it was shrunk by.
+/// The same where that finds none: corners that the string of the route bends round and the cable
+/// does not give away more than it was shrunk by.
 const SECOND_TENSION_WEIGHTS: f64 = 400.0;
-/// Part of the load that acts at first. More: a long span sags into what is below it before it can be met step by step.
-/// Less: nothing gained.
+/// Part of the load that acts at first. More: a long span sags into what is below it before it can
+/// be met step by step. Less: nothing gained.
 const FIRST_LOAD_FRACTION: f64 = 1e-3;
-/// First step of the way from taut to what it is, and how large (at most twice this) steps become that succeed.
+/// First step of the way from taut to what it is, and how large (at most twice this) steps become
+/// that succeed.
 const FIRST_STEP: f64 = 0.05;
 const LARGEST_STEP: f64 = 0.2;
 
-/// Parts of the cone of friction that a cable taken over may use: along the very edge of the cone sliding from an end would
-/// stop anywhere, and Newton stalls. The first changes nothing that shows, the second holds a little first.
+/// Parts of the cone of friction that a cable taken over may use: along the very edge of the cone
+/// sliding from an end would stop anywhere, and Newton stalls. The first changes nothing that
+/// shows, the second holds a little first.
 const ADOPTED_CONE_FRACTIONS: [f64; 3] = [1.0 - 1e-5, 1.0 - 1e-3, 0.99];
 
-/// Friction over what there is that is first tried where a cable slides, then twice that, and so on to the last, as parts of what
-/// there is. First smaller: more of them are tried. Last larger: dearer where no friction holds it.
+/// Friction over what there is that is first tried where a cable slides, then twice that, and so on
+/// to the last, as parts of what there is. First smaller: more of them are tried. Last larger:
+/// dearer where no friction holds it.
 const FIRST_PART: f64 = 0.04;
 const MOST_PART: f64 = 1e4;
 /// Part of the friction that is missing to which it is found: three digits are shown.
 const MISSING_FRICTION_TOLERANCE: f64 = 2e-4;
-/// Less than this part that is missing is none: rounding. Larger: a cable that slides by so little has no answer and no cause.
+/// Less than this part that is missing is none: rounding. Larger: a cable that slides by so little
+/// has no answer and no cause.
 const LEAST_PART: f64 = 1e-7;
-/// Part of the tensions by which a contact may be off sliding where less friction does not hold. Smaller: what is missing would
-/// have to be found to more digits. Larger: a failure to find an answer is taken for sliding.
+/// Part of the tensions by which a contact may be off sliding where less friction does not hold.
+/// Smaller: what is missing would have to be found to more digits. Larger: a failure to find an
+/// answer is taken for sliding.
 const MOBILISED: f64 = 2e-2;
 
 /// All strands of a cable at an instant.
@@ -84,7 +92,8 @@ pub(in crate::model::spans) struct CableEquilibrium {
 /// Why no rest was found, and how far the cable was let out.
 pub(in crate::model::spans) type Unfound = (Failure, Option<Box<CableEquilibrium>>);
 
-/// How a route is seen: what stands for a post, and the tension (of the weight) to which the cable is shrunk at first.
+/// How a route is seen: what stands for a post, and the tension (of the weight) to which the cable
+/// is shrunk at first.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
     ring: Ring,
@@ -183,7 +192,8 @@ impl CableEquilibrium {
         Some(Self { strands, course, instant: instant.clone() })
     }
 
-    /// How a cable can be laid as it is: posts seen nearer, too, where it lies on something and nothing else holds it.
+    /// How a cable can be laid as it is: posts seen nearer, too, where it lies on something and
+    /// nothing else holds it.
     fn seen(layout: &Layout) -> Vec<Seen> {
         let loose = layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none));
         let rings = if loose { &RINGS[..] } else { &RINGS[..1] };
@@ -191,8 +201,9 @@ impl CableEquilibrium {
         laid.chain(loose.then_some(Seen { cooled: Some(FIRST_TENSION_WEIGHTS), ..Seen::default() })).collect()
     }
 
-    /// The same cable where all friction acts against it as it is drawn one way (1: towards its end, −1: towards its start): what it
-    /// comes to where a history ends so. None where there is no such balance.
+    /// The same cable where all friction acts against it as it is drawn one way (1: towards its
+    /// end, −1: towards its start): what it comes to where a history ends so. None where there is
+    /// no such balance.
     pub fn drawn(&self, layout: &Layout, way: f64, work: &mut Work) -> Option<Self> {
         let mut network = self.clone();
         network.course.mobilised = way;
@@ -201,11 +212,12 @@ impl CableEquilibrium {
         Some(network)
     }
 
-    /// The part of its friction with which a cable that nothing holds but friction would rest as it is laid, where with all of
-    /// it it slides: just above the least one. None where it rests, or where it is not known to slide.
+    /// The part of its friction with which a cable that nothing holds but friction would rest as it
+    /// is laid, where with all of it it slides: just above the least one. None where it rests, or
+    /// where it is not known to slide.
     ///
-    /// With less than that part every contact of the strand slides the same way: that, found just above it, is what proves that it
-    /// is friction that is missing, not an answer.
+    /// With less than that part every contact of the strand slides the same way: that, found just
+    /// above it, is what proves that it is friction that is missing, not an answer.
     pub fn friction_needed(layout: &Layout, instant: &BoundaryConditions, work: &mut Work) -> Option<f64> {
         let course = layout.course(layout.curves(), instant);
         let mut rests = |part: f64, seen: Seen| {
@@ -482,8 +494,9 @@ impl CableEquilibrium {
         }
         equilibrium::sound(&self.strands[k], &self.course)?;
         clearance::clear(&self.strands[k], &self.course, world)?;
-        // The shape before the step is drawn with the load and the lengths of before: with those of after it spans of a cable that is let
-        // out or loaded in this step would end beside their contacts.
+        // The shape before the step is drawn with the load and the lengths of before: with those of
+        // after it spans of a cable that is let out or loaded in this step would end beside their
+        // contacts.
         let was = &work.instants[0];
         let other =
             was.load != self.instant.load || was.thermal != self.instant.thermal || was.forces != self.instant.forces;
@@ -505,8 +518,8 @@ impl CableEquilibrium {
         Ok(taken)
     }
 
-    /// A strand that lies loose goes on lying so while its supports stay where they are: as they move they draw its folds over
-    /// the ground, and what that takes is not known here.
+    /// A strand that lies loose goes on lying so while its supports stay where they are: as they
+    /// move they draw its folds over the ground, and what that takes is not known here.
     fn lie(&mut self, layout: &Layout, k: usize) -> Result<StepStats, Failure> {
         let found = slack::lay(layout, k, &self.course, &self.instant);
         let strand = &mut self.strands[k];
@@ -528,10 +541,12 @@ impl CableEquilibrium {
         self.strands.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.friction(&self.course)).sum()
     }
 
-    /// To an instant that no balance near by leads to: the cable slides under a drag that is taken away as it comes to rest.
+    /// To an instant that no balance near by leads to: the cable slides under a drag that is taken
+    /// away as it comes to rest.
     ///
-    /// Each step is one of implicit Euler of η ds/dt = T₂ − T₁, which falls in energy; η is lowered as far as it goes
-    /// (pseudo-transient continuation: C. T. Kelley and D. E. Keyes, SIAM J. Numer. Anal. 35, 1998).
+    /// Each step is one of implicit Euler of η ds/dt = T₂ − T₁, which falls in energy; η is lowered
+    /// as far as it goes (pseudo-transient continuation: C. T. Kelley and D. E. Keyes, SIAM J.
+    /// Numer. Anal. 35, 1998).
     fn follow(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) -> Result<StepStats, Failure> {
         let (before, old) = (self.strands.clone(), self.instant.clone());
         let size = to.load.norm();
@@ -574,7 +589,8 @@ impl CableEquilibrium {
         self.strands.iter().all(|s| newton::stable(s, &self.course, work))
     }
 
-    /// Why a step was not taken: it would have to push however much it is held back, or nothing better than the trouble of the step.
+    /// Why a step was not taken: it would have to push however much it is held back, or nothing
+    /// better than the trouble of the step.
     fn reason(&self, step: Failure, held_back: Failure) -> Failure {
         let found_nothing = matches!(step, Failure::Stalled { .. } | Failure::Restless { .. });
         let pushes = matches!(held_back, Failure::Compressed { .. });
@@ -585,7 +601,8 @@ impl CableEquilibrium {
         }
     }
 
-    /// A cable that lies loose along its route with a free end, as it is drawn: under hardly any tension instead, so that it can be followed.
+    /// A cable that lies loose along its route with a free end, as it is drawn: under hardly any
+    /// tension instead, so that it can be followed.
     fn take_up(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) {
         let held = |k: usize| layout.strands[k].supports.iter().all(Option::is_some);
         let lies = |k: usize| self.strands[k].loose.as_ref().is_some_and(Loose::spreads);
@@ -629,13 +646,15 @@ impl CableEquilibrium {
     ) -> Result<StepStats, Stopped> {
         let (mut done, mut step, mut taken) = (0.0, first, StepStats::default());
         let mut halvings: u32 = 0;
-        // Not on the way to a first rest; and the step that was taken but had something come down in it.
+        // Not on the way to a first rest; and the step that was taken but had something come down
+        // in it.
         let (mut moves, mut whole) = (first >= 1.0, None);
         while done < 1.0 {
             let next = if done + 1.000_001 * step >= 1.0 { 1.0 } else { done + step };
             at.between(from, to, next);
             let trouble = match self.step(layout, at, work) {
-                // What comes down has no friction in the step in which it does: that shall be a short one.
+                // What comes down has no friction in the step in which it does: that shall be a
+                // short one.
                 Ok(t) if moves && t.fresh > MISSING_FRICTION_FRACTION && step > LANDING_STEP_FRACTION => {
                     self.undo(layout, work);
                     whole = whole.or(Some(step));

@@ -1,7 +1,9 @@
-//! `spans` is the quasi-static model of exact elements: a taut flexible cable with contact and friction, without a mesh.
+//! `spans` is the quasi-static model of exact elements: a taut flexible cable with contact and
+//! friction, without a mesh.
 //!
-//! Free spans are elastic catenaries, contacts are intervals of an obstacle's boundary through which the material
-//! slides, and friction remembers in closed form. Each room has its derivation at its head.
+//! Free spans are elastic catenaries, contacts are intervals of an obstacle's boundary through
+//! which the material slides, and friction remembers in closed form. Each room has its derivation
+//! at its head.
 //!
 //! | room | what it holds |
 //! |---|---|
@@ -17,8 +19,8 @@
 //! | `verify` | checks of an answer that do not use the solver |
 //! | `results`, `failure` | the answer; why there is none |
 //!
-//! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that let go. A cable that
-//! loses its tension is said to have lost it, with the place.
+//! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that
+//! let go. A cable that loses its tension is said to have lost it, with the place.
 
 mod boundary;
 mod boundary_conditions;
@@ -53,8 +55,9 @@ use crate::scene::FrictionMobilised;
 use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
 
-/// Supports move by at most this part of the cable in one solve. Larger: sliding that starts and reverses inside a step
-/// is missed, and what is laid down in a step is laid with the tension it began with. Smaller: more solves.
+/// Supports move by at most this part of the cable in one solve. Larger: sliding that starts and
+/// reverses inside a step is missed, and what is laid down in a step is laid with the tension it
+/// began with. Smaller: more solves.
 const STEP: f64 = 0.01;
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
@@ -134,7 +137,8 @@ impl SpansModel {
         from.places.iter().zip(&to.places).map(|(a, b)| (b - a).norm()).fold(0.0, |m, d| if d > m { d } else { m })
     }
 
-    /// A trouble as an error: a loss of tension where the last state found, `stopped` or the present one, shows one.
+    /// A trouble as an error: a loss of tension where the last state found, `stopped` or the
+    /// present one, shows one.
     fn said(&self, stopped: Option<&CableEquilibrium>, trouble: Failure) -> SolveError {
         if let Some(network) = stopped.or(self.network.as_ref())
             && let Some((loss, arc_length_m, at_m)) =
@@ -151,12 +155,14 @@ impl SpansModel {
         said(&self.problem, if self.layout.turned { self.turned().trouble(trouble) } else { trouble })
     }
 
-    /// What leads from how the layout counts the cable to how the scene does, where that is otherwise.
+    /// What leads from how the layout counts the cable to how the scene does, where that is
+    /// otherwise.
     fn turned(&self) -> Turned<'_> {
         Turned { problem: &self.problem }
     }
 
-    /// A rest of the cable laid along its way, counted from its upper end; where none is found so, from the other; else as it comes down.
+    /// A rest of the cable laid along its way, counted from its upper end; where none is found so,
+    /// from the other; else as it comes down.
     fn lay(&mut self, instant: &mut BoundaryConditions, work: &mut Work) -> Result<StepStats, Unfound> {
         let (network, taken) = match CableEquilibrium::rest(&self.layout, instant, work) {
             Ok(found) => found,
@@ -194,9 +200,11 @@ impl SpansModel {
         }
     }
 
-    /// What other histories would have left in the cable, in words: as it was laid, and drawn towards either end.
+    /// What other histories would have left in the cable, in words: as it was laid, and drawn
+    /// towards either end.
     ///
-    /// An equilibrium that was found without friction is not sought so again: the search would come to the place from which the cable is drawn here.
+    /// An equilibrium that was found without friction is not sought so again: the search would come
+    /// to the place from which the cable is drawn here.
     fn histories(&self, start: SearchStart, work: &mut Work) -> String {
         let Some(network) = &self.network else { return String::new() };
         let turned = self.layout.turned;
@@ -251,7 +259,8 @@ impl SpansModel {
     }
 }
 
-/// That a cable slides away, and by how much more friction, as a part of what there is, it would be held.
+/// That a cable slides away, and by how much more friction, as a part of what there is, it would be
+/// held.
 fn slides_away(part: f64) -> SolveError {
     let more = 100.0 * (part - 1.0);
     // Three digits, the last one up: so much more does hold it.

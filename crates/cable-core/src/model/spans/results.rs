@@ -19,7 +19,8 @@ use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, N
 /// Nodes on each stretch of an edge.
 const EDGE_NODES: usize = 8;
 
-/// Longest stretch of an arc over which forces are summed with one rule of 5 Gauss points, rad: exact to 1e-11.
+/// Longest stretch of an arc over which forces are summed with one rule of 5 Gauss points, rad:
+/// exact to 1e-11.
 const PANEL: f64 = 1.0;
 /// Longest one for which 3 points are as good, rad.
 const THREE_POINT_ARC: f64 = 0.1;
@@ -179,7 +180,8 @@ fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretche
     push(&track.place(c.ends.p[1]), (c.ends.t[1], c.ends.s[1]));
 }
 
-/// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes, what lies beside it along the ground.
+/// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes,
+/// what lies beside it along the ground.
 fn load_nodes(nodes: &mut Nodes<'_>, strand: &CableRun, course: &Course, j: usize, track: &Track<'_>) {
     let c = &strand.contacts[j];
     let place = track.place(c.ends.p[0]);
@@ -193,7 +195,8 @@ fn load_nodes(nodes: &mut Nodes<'_>, strand: &CableRun, course: &Course, j: usiz
     }
 }
 
-/// Normal force summed over a contact, its direction, the pull of the load along it, and how far it turns.
+/// Normal force summed over a contact, its direction, the pull of the load along it, and how far it
+/// turns.
 fn pressed(track: &Track<'_>, stretches: &[Stretch]) -> (f64, Vec2, f64, f64) {
     let (mut normal, mut push, mut along, mut turned) = (0.0, Vec2::zeros(), 0.0, 0.0);
     for stretch in stretches {
@@ -245,7 +248,8 @@ fn contact(track: &Track<'_>, name: &str, c: &Contact, stretches: &[Stretch]) ->
     report
 }
 
-/// Forces of the obstacle on the cable between the nodes of a contact: N n on an edge or arc, less the friction called upon, m N t.
+/// Forces of the obstacle on the cable between the nodes of a contact: N n on an edge or arc, less
+/// the friction called upon, m N t.
 fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
     let mut out = Vec::with_capacity(EDGE_NODES * stretches.len());
     for stretch in stretches {
@@ -266,7 +270,8 @@ fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
     out
 }
 
-/// The force of an obstacle on what lies on it, N: it holds the load there and what the tensions at both ends leave over.
+/// The force of an obstacle on what lies on it, N: it holds the load there and what the tensions at
+/// both ends leave over.
 fn held_by(track: &Track<'_>, c: &Contact) -> Vec2 {
     let [before, after] = [0, 1].map(|side| track.place(c.ends.p[side]).tangent * c.ends.t[side]);
     before - after - track.law.load * (c.ends.s[1] - c.ends.s[0])
@@ -302,7 +307,8 @@ pub(in crate::model::spans) fn tensions(network: &CableEquilibrium) -> [f64; 3] 
     [start, last, greatest]
 }
 
-/// What is left of all forces on the cable as they are reported, and their size, N: supports and contacts hold weight and loads.
+/// What is left of all forces on the cable as they are reported, and their size, N: supports and
+/// contacts hold weight and loads.
 pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquilibrium) -> (Vec2, f64) {
     let (p, course) = (&layout.problem, &network.course);
     let mut sum = course.law.load * p.length;
@@ -366,7 +372,8 @@ fn load(strand: &CableRun, course: &Course, j: usize, track: &Track<'_>, name: &
     }
 }
 
-/// The contacts of the heap in the pocket after contact j: one with each edge that carries a part of it.
+/// The contacts of the heap in the pocket after contact j: one with each edge that carries a part
+/// of it.
 fn heap(strand: &CableRun, course: &Course, j: usize, name: &str) -> Vec<ContactReport> {
     let ([before, after], at) = match (&strand.contacts[j], strand.contacts.get(j + 1)) {
         (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], course.track(c).place(c.ends.p[1]).at),
@@ -393,7 +400,8 @@ fn heap(strand: &CableRun, course: &Course, j: usize, name: &str) -> Vec<Contact
     borne.filter(|b| b.press > 0.0).map(edge).collect()
 }
 
-/// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where all is alike.
+/// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where
+/// all is alike.
 fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> {
     /// What is called upon of friction counts as all of it from this share on: rounding.
     const LIMIT: f64 = 1.0 - 1e-9;
@@ -476,7 +484,8 @@ fn wheel(r: &mut SupportReaction, network: &CableEquilibrium, strand: &CableRun,
     (r.tension_before_n, r.tension_after_n) = (Some(before.norm()), Some(after.norm()));
 }
 
-/// The force of the cable on the wheel that is contact j, and the forces in the cable before and after it, N.
+/// The force of the cable on the wheel that is contact j, and the forces in the cable before and
+/// after it, N.
 fn wheel_force(course: &Course, strand: &CableRun, j: usize) -> (Vec2, [Vec2; 2]) {
     let [before, after] = [0, 1].map(|side| strand.force_at_contact(course, j, side).unwrap_or_default());
     let [from, to] = strand.contacts[j].ends.s;

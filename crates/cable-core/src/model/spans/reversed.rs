@@ -1,8 +1,8 @@
 //! A cable can be solved from its other end.
 //!
-//! Where friction allows several equilibria, the one that is found must not depend on the end from which
-//! a scene counts its cable. The cable is therefore solved and followed from its *upper* end, and the
-//! solution is reversed afterwards.
+//! Where friction allows several equilibria, the one that is found must not depend on the end from
+//! which a scene counts its cable. The cable is therefore solved and followed from its *upper* end,
+//! and the solution is reversed afterwards.
 
 use crate::math::Vec2;
 use crate::model::spans::failure::Failure;
@@ -11,12 +11,13 @@ use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
 use crate::solution::{ContactPart, ContactReport, ContactSample, Node, SupportReaction};
 
-/// Heights that differ by less than this part of the cable are one. Smaller: rounding, which is another one in a scene that is moved or
-/// mirrored, says from where it is counted. Larger: a cable whose ends differ by so little is counted from either.
+/// Heights that differ by less than this part of the cable are one. Smaller: rounding, which is
+/// another one in a scene that is moved or mirrored, says from where it is counted. Larger: a cable
+/// whose ends differ by so little is counted from either.
 const HEIGHT_TOLERANCE: f64 = 1e-9;
 
-/// Whether a cable is counted from its end when its rest is sought: that is its upper one; of two that are level the one beside which
-/// the cable is led higher.
+/// Whether a cable is counted from its end when its rest is sought: that is its upper one; of two
+/// that are level the one beside which the cable is led higher.
 pub(in crate::model::spans) fn is_led_up(p: &Problem) -> bool {
     let places: Vec<Vec2> = if p.route.len() > 1 {
         p.route.clone()
@@ -64,7 +65,8 @@ pub(in crate::model::spans) struct Turned<'a> {
 }
 
 impl Turned<'_> {
-    /// An arc length counted from the other end, m: those of supports and loads come out as they were given.
+    /// An arc length counted from the other end, m: those of supports and loads come out as they
+    /// were given.
     pub fn s(&self, s: f64) -> f64 {
         let p = self.problem;
         let marks = p.supports.iter().filter_map(|s| s.arc_length).chain(p.loads.iter().map(|l| l.arc_length));

@@ -1,9 +1,10 @@
 //! A run is one stretch of cable between two grips: free spans and contacts in a row.
 //!
-//! Unknown are for each span the force G that the cable would carry at the strand's start if its law went on there,
-//! F(s) = G − b(s − s_a) − Σ P_k [s_k < s], and for each contact its interval (p₁, p₂) of the boundary and the material
-//! (s₁, s₂) at both ends. Material sliding through points fixed in space: after S. Sueda, G. L. Jones, D. I. W. Levin and
-//! D. K. Pai, "Large-scale dynamic simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011) 39.
+//! Unknown are for each span the force G that the cable would carry at the strand's start if its
+//! law went on there, F(s) = G − b(s − s_a) − Σ P_k [s_k < s], and for each contact its interval
+//! (p₁, p₂) of the boundary and the material (s₁, s₂) at both ends. Material sliding through points
+//! fixed in space: after S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic
+//! simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011) 39.
 
 use crate::catenary::{Chain, PointForce};
 use crate::math::Vec2;
@@ -19,10 +20,11 @@ pub(in crate::model::spans) struct Course {
     /// Boundaries: both senses of each body, then both of each wheel.
     pub curves: Vec<Curve>,
     pub law: Law,
-    /// What sliding is resisted with besides friction while a cable that runs away is followed, N per m of slip; else 0.
+    /// What sliding is resisted with besides friction while a cable that runs away is followed, N
+    /// per m of slip; else 0.
     pub drag: f64,
-    /// Which way friction is fully mobilised at every contact: 1 against a cable drawn towards its end, −1 towards its start; 0 where
-    /// friction does what the contact's past asks for.
+    /// Which way friction is fully mobilised at every contact: 1 against a cable drawn towards its
+    /// end, −1 towards its start; 0 where friction does what the contact's past asks for.
     pub mobilised: f64,
     /// Dead loads inside the cable, in order, N.
     pub loads: Vec<PointForce>,

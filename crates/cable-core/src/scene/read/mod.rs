@@ -1,5 +1,5 @@
-//! A scene file is read in three steps: parse, deserialize, validate. Every error carries its path and
-//! its position in the text.
+//! A scene file is read in three steps: parse, deserialize, validate. Every error carries its path
+//! and its position in the text.
 //!
 //! | room | content |
 //! |---|---|

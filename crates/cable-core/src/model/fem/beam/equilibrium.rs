@@ -1,20 +1,23 @@
-//! This module finds the equilibrium of a cable with bending stiffness in the angles of its tangent.
+//! This module finds the equilibrium of a cable with bending stiffness in the angles of its
+//! tangent.
 //!
-//! The tangent t(θ) is followed by quadratic finite elements: an angle at each node and one at the middle of each bar
-//! (numbered 2e, 2e + 1, 2e + 2 in bar e). The force F(s) follows from the force F₀ at the start of its span as in a flexible
-//! cable. Stretch is eliminated (τ = F·t/EA, dx = (1 + τ)t ds), so neither a stiff nor an inextensible cable is hard, and
-//! a clamp is an angle prescribed exactly:
+//! The tangent t(θ) is followed by quadratic finite elements: an angle at each node and one at the
+//! middle of each bar (numbered 2e, 2e + 1, 2e + 2 in bar e). The force F(s) follows from the force
+//! F₀ at the start of its span as in a flexible cable. Stretch is eliminated (τ = F·t/EA, dx = (1 +
+//! τ)t ds), so neither a stiff nor an inextensible cable is hard, and a clamp is an angle
+//! prescribed exactly:
 //! ```text
 //! L(θ, F₀) = ∫ EI θ'²/2 − (F·t + (F·t)²/2EA) ds + Σ F₀·d        stationary: equilibrium and closed spans
 //! ∂L/∂θₐ   = ∫ EI θ' φₐ' − (F·n)(1 + τ) φₐ ds
 //! −∂L/∂F₀  = ∫ (1 + τ) t ds − d
 //! M(node)  = ± ∂Lₑ/∂θ(node) of the bar beside it                 the moment that balances this bar
 //! ```
-//! Forces, node positions, node angles and the moments so recovered are of fourth order (G. Strang and G. Fix, *An Analysis
-//! of the Finite Element Method*, Prentice-Hall 1973: twice the degree), at three Gauss points a bar. Newton on the whole:
-//! θ banded, two force rows a span by their Schur complement S = BH⁻¹Bᵀ + C. The equilibrium is stable when H and S have
-//! the same number of negative directions (Haynsworth's inertia formula). The start is the flexible cable; where Newton
-//! fails from there, the bending stiffness is raised in steps.
+//! Forces, node positions, node angles and the moments so recovered are of fourth order (G. Strang
+//! and G. Fix, *An Analysis of the Finite Element Method*, Prentice-Hall 1973: twice the degree),
+//! at three Gauss points a bar. Newton on the whole: θ banded, two force rows a span by their Schur
+//! complement S = BH⁻¹Bᵀ + C. The equilibrium is stable when H and S have the same number of
+//! negative directions (Haynsworth's inertia formula). The start is the flexible cable; where
+//! Newton fails from there, the bending stiffness is raised in steps.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -27,7 +30,8 @@ use crate::model::fem::free::stations::{Layout, SpanEnds, Stop};
 
 /// Newton steps at one bending stiffness. Measured: 4 to 12.
 const MAX_STEPS: usize = 40;
-/// Longest turn of a node in one step, rad. Larger steps jump to other windings, smaller ones cost steps.
+/// Longest turn of a node in one step, rad. Larger steps jump to other windings, smaller ones cost
+/// steps.
 const LONGEST_TURN: f64 = 0.5;
 /// Angles and forces are found when a step changes them by less than this.
 const STEP_TOLERANCE: f64 = 1e-11;
@@ -99,8 +103,8 @@ pub(in crate::model::fem) struct Sample {
 }
 
 impl Beam {
-    /// The bars and angles of a solved flexible cable: `network.layout` says how many bars each stretch has. `body` is its
-    /// weight and wind, N/m.
+    /// The bars and angles of a solved flexible cable: `network.layout` says how many bars each
+    /// stretch has. `body` is its weight and wind, N/m.
     #[must_use]
     pub fn new(network: &Network, bending: f64, body: Vec2) -> Self {
         let layout = network.layout.clone();
@@ -120,7 +124,8 @@ impl Beam {
         for k in 0..beam.layout.stops.len().saturating_sub(1) {
             let (stop, next) = (&beam.layout.stops[k], &beam.layout.stops[k + 1]);
             let (start, length) = (stop.arc_length, next.arc_length - stop.arc_length);
-            // λ = √(EI/T); where T goes to zero its own weight takes over, λ³ = EI/w; never longer than the stretch.
+            // λ = √(EI/T); where T goes to zero its own weight takes over, λ³ = EI/w; never longer
+            // than the stretch.
             let least = (bending / (length * length)).max((bending * weight * weight).cbrt());
             let layer = |force: Vec2| (bending / force.norm().max(least)).sqrt();
             let layers = [layer(network.forces[k][1]), layer(network.forces[k + 1][0])];
@@ -170,8 +175,8 @@ impl Beam {
         self.clamps.last().map_or(0.0, |z| z.1) - self.clamps.first().map_or(0.0, |a| a.1)
     }
 
-    /// Lies along a route (its points, m) where that winds otherwise between the clamps than the flexible cable does: a
-    /// stiff cable keeps its loops.
+    /// Lies along a route (its points, m) where that winds otherwise between the clamps than the
+    /// flexible cable does: a stiff cable keeps its loops.
     #[must_use]
     pub fn wound_as(mut self, route: &[Vec2]) -> Self {
         let flexible = (self.angles.clone(), self.clamps.clone(), self.winding());
@@ -306,7 +311,8 @@ impl Beam {
         if outcome == Outcome::Stable {
             return outcome;
         }
-        // Up from a softer cable: `part` of the bending stiffness was met last, `factor` is the next rise.
+        // Up from a softer cable: `part` of the bending stiffness was met last, `factor` is the
+        // next rise.
         (self.angles, self.forces) = start;
         let (mut part, mut factor): (f64, f64) = (1e-8, 10.0);
         let mut saved = (self.angles.clone(), self.forces.clone());
@@ -462,7 +468,8 @@ mod tests {
 
     #[test]
     fn shapes_and_their_bending_are_those_of_the_same_parabolas() {
-        // 3l ∫φₐ'φ_b' by differences of the shapes at the Gauss points, exact for products of slopes.
+        // 3l ∫φₐ'φ_b' by differences of the shapes at the Gauss points, exact for products of
+        // slopes.
         let slope = |x: f64| {
             let (a, b) = (shapes(x - 0.5), shapes(x + 0.5));
             [0, 1, 2].map(|i| b[i] - a[i])

@@ -1,14 +1,15 @@
 //! The nodes of a stiff cable lie close together in the boundary layers at its stations.
 //!
-//! Beside a clamp, a load or a support the curvature of a taut stiff cable falls as e^{−s/λ}, λ = √(EI/T). The bars follow
-//! a density that gives a third of them to each end of a stretch,
+//! Beside a clamp, a load or a support the curvature of a taut stiff cable falls as e^{−s/λ}, λ =
+//! √(EI/T). The bars follow a density that gives a third of them to each end of a stretch,
 //! ```text
 //! ρ(s) = 1/3L + ⅓ e^{−s/cλ₀}/(cλ₀ (1 − e^{−L/cλ₀})) + the same from the other end,     ∫ρ ds = 1
 //! ```
 //! node i of n where ∫ρ ds = i/n. Where λ is not small against L this is nearly even.
 
-/// Reach of the density in layers. Smaller: the bars grow faster than the layer fades; larger: too few lie in it. Tuned on
-/// clamped spans of 50 to 400 bars with layers of 3e-4 to 0.1 of their length.
+/// Reach of the density in layers. Smaller: the bars grow faster than the layer fades; larger: too
+/// few lie in it. Tuned on clamped spans of 50 to 400 bars with layers of 3e-4 to 0.1 of their
+/// length.
 const DENSITY_REACH_LAYERS: f64 = 4.0;
 
 /// Part of the bars that each end of a stretch gets for its layer.
@@ -22,7 +23,8 @@ fn layer_part(s: f64, reach: f64, length: f64) -> f64 {
     (-s / reach).exp_m1() / (-length / reach).exp_m1()
 }
 
-/// The places (m, from 0 to `length`) of `count` bars between two ends with layers of the given thickness, m.
+/// The places (m, from 0 to `length`) of `count` bars between two ends with layers of the given
+/// thickness, m.
 #[must_use]
 pub fn places(layers: [f64; 2], length: f64, count: usize) -> Vec<f64> {
     let reach = layers.map(|l| DENSITY_REACH_LAYERS * l);

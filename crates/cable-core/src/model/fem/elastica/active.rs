@@ -10,23 +10,27 @@ use crate::problem::Problem;
 /// Changes of the set of contacts before it is given up. 1 to 4 are usual.
 const MAX_CHANGES: usize = 60;
 
-/// Part of the cable's radius by which a cable may lie in an obstacle: what elements are off between their ends.
+/// Part of the cable's radius by which a cable may lie in an obstacle: what elements are off
+/// between their ends.
 const OVERLAP_TOLERANCE: f64 = 1e-3;
 
 /// Elements of a new stretch of contact.
 const ELEMENTS: usize = 8;
 
-/// Length of a new stretch of contact in parts of its radius, or of the shorter free piece beside it. Newton's method finds the right one;
-/// far more than that turns over on the way.
+/// Length of a new stretch of contact in parts of its radius, or of the shorter free piece beside
+/// it. Newton's method finds the right one; far more than that turns over on the way.
 const NEW: f64 = 0.05;
 
-/// Length, in parts of the radius (of the cable for a line), below which a stretch of contact is a point.
+/// Length, in parts of the radius (of the cable for a line), below which a stretch of contact is a
+/// point.
 const POINT: f64 = 1e-4;
 
-/// Part by which a cable may be more bent than the round it touches, or pull at it in parts of the scene's forces.
+/// Part by which a cable may be more bent than the round it touches, or pull at it in parts of the
+/// scene's forces.
 const CONTACT_CURVATURE_TOLERANCE: f64 = 1e-7;
 
-/// The same for the bend of what was found to be no stretch: at the very limit it is either, and would go to and fro.
+/// The same for the bend of what was found to be no stretch: at the very limit it is either, and
+/// would go to and fro.
 const POINT_SLACK: f64 = 1e-3;
 
 /// A piece cut at a node, both parts free.
@@ -82,8 +86,9 @@ impl Elastica {
         false
     }
 
-    /// Back to a guess, with less of what lies on lines between free pieces: a stretch becomes a point, a point is left out, as a cable that
-    /// bends round what is before and behind it is lifted off. Where that is wrong it will be met again. Returns whether there was any.
+    /// Back to a guess, with less of what lies on lines between free pieces: a stretch becomes a
+    /// point, a point is left out, as a cable that bends round what is before and behind it is
+    /// lifted off. Where that is wrong it will be met again. Returns whether there was any.
     fn lift(&mut self, from: &Self) -> bool {
         let line = |k: usize| from.contacts.get(k).is_some_and(|c| c.radius.is_none());
         let inner = |k: usize| k > 0 && k + 1 < from.pieces.len();
@@ -167,7 +172,8 @@ impl Elastica {
         -(force(b) - force(a)).dot(&normal)
     }
 
-    /// Changes one contact that is not as it has to be; returns whether there was any, None where this can do nothing about it.
+    /// Changes one contact that is not as it has to be; returns whether there was any, None where
+    /// this can do nothing about it.
     fn exchange(&mut self, problem: &Problem, points: &[usize]) -> Option<bool> {
         let size = self.scale + self.bending / (self.length * self.length);
         for j in 0..self.joints.len() {

@@ -1,7 +1,8 @@
 //! This module reads an answer out of a chain at rest.
 //!
-//! Forces of contacts and weight act on the chain's nodes. In the answer a contact acts where it is: a bar that lies on a corner is cut
-//! there, its force before and after differ by what the corner does, and its moment balances as before.
+//! Forces of contacts and weight act on the chain's nodes. In the answer a contact acts where it
+//! is: a bar that lies on a corner is cut there, its force before and after differ by what the
+//! corner does, and its moment balances as before.
 
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::elastica::relax::{Chain, ContactPair};

@@ -1,15 +1,18 @@
-//! A chain of bars that is let go finds the equilibrium of a stiff cable: the elastica begins there when the contacts are
-//! not those of a flexible cable.
+//! A chain of bars that is let go finds the equilibrium of a stiff cable: the elastica begins there
+//! when the contacts are not those of a flexible cable.
 //!
-//! Bars of rest length l̂ between nodes x, the angle ψ between two of them, weight and loads b, obstacles at gaps g:
+//! Bars of rest length l̂ between nodes x, the angle ψ between two of them, weight and loads b,
+//! obstacles at gaps g:
 //! ```text
 //! E(x) = Σ EA (|d| − l̂)²/2l̂ + Σ EI ψ²/2l̄ − Σ b·x        least, with every g ≥ 0
 //! ```
-//! Newton's method with a resistance to motion that fades as it comes to rest (pseudo-transient continuation: C. Kelley, D. Keyes, *SIAM Journal
-//! on Numerical Analysis* 35(2), 1998). Tensions are unknowns of their own: a step turns bars by the tension of the last one, not by what
-//! turning has just stretched them, so that EA limits no step. Contacts are those whose gap would close in the step, an active set of a
-//! quadratic programme; each mobilises the friction that it is given. Material that the first lay has no room for is paid out on the way.
-//! At the end the second derivative of E on the active set is positive definite: what was found is stable.
+//! Newton's method with a resistance to motion that fades as it comes to rest (pseudo-transient
+//! continuation: C. Kelley, D. Keyes, *SIAM Journal on Numerical Analysis* 35(2), 1998). Tensions
+//! are unknowns of their own: a step turns bars by the tension of the last one, not by what turning
+//! has just stretched them, so that EA limits no step. Contacts are those whose gap would close in
+//! the step, an active set of a quadratic programme; each mobilises the friction that it is given.
+//! Material that the first lay has no room for is paid out on the way. At the end the second
+//! derivative of E on the active set is positive definite: what was found is stable.
 
 use crate::contact::Gap;
 use crate::contact::pairs::Pair;
@@ -25,7 +28,8 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Node};
 
-/// Bars in the bend beside a contact, √(EI/T) with T a third of the weight, or in the cable's length, whichever asks for more up to the most.
+/// Bars in the bend beside a contact, √(EI/T) with T a third of the weight, or in the cable's
+/// length, whichever asks for more up to the most.
 const BARS_IN_BEND: f64 = 3.0;
 /// See `BARS_IN_BEND`.
 const LEAST_BARS: f64 = 150.0;
@@ -50,7 +54,8 @@ const LONGEST_TURN: f64 = 0.4;
 /// Part by which a bar's rest length grows in a step until all material is paid out.
 const PAY_OUT_RATE: f64 = 0.03;
 
-/// Part of the cable's radius that a push of the whole weight presses in. Smaller: numbers lose digits; larger: contacts are found late.
+/// Part of the cable's radius that a push of the whole weight presses in. Smaller: numbers lose
+/// digits; larger: contacts are found late.
 const PENALTY_DEPTH_FRACTION: f64 = 1e-3;
 
 /// Part of the cable's radius by which nothing moves any more.
@@ -65,7 +70,8 @@ const REDUCED_RESISTANCE_FACTOR: f64 = 1e-2;
 /// Times that a chain is moved which has come to rest where it could give way.
 const MAX_NUDGES: usize = 2;
 
-/// Part of the cable's radius by which it is moved. Less: rounding moves it as far; more: it is put into obstacles.
+/// Part of the cable's radius by which it is moved. Less: rounding moves it as far; more: it is put
+/// into obstacles.
 const PERTURBATION_FRACTION: f64 = 1e-2;
 
 /// Part of the cable's radius by which the first lay is pushed out of obstacles.
@@ -74,11 +80,12 @@ const FIRST_CLEARANCE_FRACTION: f64 = 1e-3;
 /// Part of the cable's radius by which it may be in an obstacle on its way.
 const OVERLAP_LIMIT: f64 = 0.5;
 
-/// Part by which a bar may be shorter than its material in the first lay of a flexible cable. A stiff one has no pockets: more is laid anew.
+/// Part by which a bar may be shorter than its material in the first lay of a flexible cable. A
+/// stiff one has no pockets: more is laid anew.
 const POCKET: f64 = 0.5;
 
-/// Bars by which an answer may be elsewhere than the chain that was let go from it. Less: what a coarse chain is off by; more: answers that give way
-/// a little are taken for stable.
+/// Bars by which an answer may be elsewhere than the chain that was let go from it. Less: what a
+/// coarse chain is off by; more: answers that give way a little are taken for stable.
 const STABILITY_DISTANCE_BARS: f64 = 2.0;
 
 /// Half-bandwidth: a node sees two neighbours on each side.
@@ -149,7 +156,8 @@ fn has_pockets(problem: &Problem, answer: &CableSolution) -> bool {
     })
 }
 
-/// A chain at rest from the answer for a flexible cable, or from where it is first laid; None where it finds none.
+/// A chain at rest from the answer for a flexible cable, or from where it is first laid; None where
+/// it finds none.
 pub(super) fn relaxed<'a>(
     problem: &'a Problem,
     time_s: f64,
@@ -211,7 +219,8 @@ impl<'a> Chain<'a> {
         Some((fine, rests))
     }
 
-    /// The chain along a curve: the way of a flexible cable or its first lay. None where the scene has what this knows nothing of.
+    /// The chain along a curve: the way of a flexible cable or its first lay. None where the scene
+    /// has what this knows nothing of.
     pub fn new(
         problem: &'a Problem,
         time_s: f64,
@@ -400,8 +409,9 @@ impl<'a> Chain<'a> {
             self.steps += 1;
             let paid = self.pay_out();
             self.find_touches();
-            // Near rest the second derivative counts as it is, far from it only what never gives way. Where the first is not definite it gives way
-            // too as long as that leads to rest, and is resisted where it does not.
+            // Near rest the second derivative counts as it is, far from it only what never gives
+            // way. Where the first is not definite it gives way too as long as that leads to rest,
+            // and is resisted where it does not.
             let (mut found, mut exact) = (None, small);
             for _ in 0..MOST_RESISTED {
                 found = self.step(&mut matrix, &mut factor, shift, exact);
@@ -559,7 +569,8 @@ impl<'a> Chain<'a> {
                 let moved = t.shares().iter().fold(0.0, |m, (k, a)| m + a * out[*k].dot(&t.gap.normal));
                 let gap = t.gap.gap_m + moved;
                 changed |= t.active != (gap < 0.0);
-                // Two that are let go and taken back by turns would go on for ever: later on none is let go.
+                // Two that are let go and taken back by turns would go on for ever: later on none
+                // is let go.
                 t.active = gap < 0.0 || (t.active && set >= RELEASE_ROUNDS);
                 // What is new pushes from the next solution on.
                 t.push = if gap < 0.0 { -stiff * gap } else { 0.0 };
@@ -576,8 +587,9 @@ impl<'a> Chain<'a> {
         (self.x[t.node + 1] - self.x[t.node]).normalize()
     }
 
-    /// The matrix with friction that follows its normal force in the same step: with the force of the step before, each change of the one changes the
-    /// other by more where an end is pressed against a corner, and none is found.
+    /// The matrix with friction that follows its normal force in the same step: with the force of
+    /// the step before, each change of the one changes the other by more where an end is pressed
+    /// against a corner, and none is found.
     fn rubbing(&self, matrix: &BandMatrix) -> Band {
         let size = matrix.rows();
         let mut band = Band::new(size, HALF_BAND);
@@ -605,8 +617,8 @@ impl<'a> Chain<'a> {
         self.problem.world.geometry().body_of(gap.feature).map_or(self.problem.radius, |b| b.offset)
     }
 
-    /// −p ∂²g of a contact that pushes with p: of a node against a round −p/D, of a bar that turns by φ about a point at distance D and slides
-    /// along itself by m, −p g = p (Dφ²/2 + φm).
+    /// −p ∂²g of a contact that pushes with p: of a node against a round −p/D, of a bar that turns
+    /// by φ about a point at distance D and slides along itself by m, −p g = p (Dφ²/2 + φm).
     fn add_round(&self, matrix: &mut BandMatrix, t: &ContactPair, at_node: &mut Mat2) {
         let round = !t.gap.feature.is_multiple_of(2);
         let far = t.gap.gap_m + self.offset(&t.gap);

@@ -1,4 +1,5 @@
-//! The first guess of a stiff cable comes from the answer for a flexible one, by continuation in its stiffness.
+//! The first guess of a stiff cable comes from the answer for a flexible one, by continuation in
+//! its stiffness.
 
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};
@@ -13,16 +14,18 @@ use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 use crate::solution::{CableSolution, ContactState, Node};
 
-/// Elements of a free piece to begin with, and of one that lies. Fewer: Newton starts outside of where it converges; more: costs.
+/// Elements of a free piece to begin with, and of one that lies. Fewer: Newton starts outside of
+/// where it converges; more: costs.
 const FREE_ELEMENTS: usize = 32;
 /// See `FREE_ELEMENTS`.
 const LYING_ELEMENTS: usize = 8;
 
-/// Layer λ that the way up in EI begins with, in parts of the shortest free piece. Larger: its first guess, a flexible cable with
-/// layers, is too rough; smaller: more steps.
+/// Layer λ that the way up in EI begins with, in parts of the shortest free piece. Larger: its
+/// first guess, a flexible cable with layers, is too rough; smaller: more steps.
 const FIRST_LAYER: f64 = 0.05;
 
-/// Part of an element over which the slope of a state is compared with itself. Smaller: rounding; larger: its square is seen.
+/// Part of an element over which the slope of a state is compared with itself. Smaller: rounding;
+/// larger: its square is seen.
 const DIFFERENCE: f64 = 1e-2;
 
 /// Factor of the first rise of EI; it grows where that is easy and shrinks where it is not.
@@ -65,7 +68,8 @@ pub(super) fn contact_at(problem: &Problem, gap: &Gap, x: Vec2, t: Vec2) -> Opti
     Some(Contact { at: center, radius: Some(radius), ..line })
 }
 
-/// How much of its friction an obstacle mobilises at `s` (m) in an answer, and whether that is all there is.
+/// How much of its friction an obstacle mobilises at `s` (m) in an answer, and whether that is all
+/// there is.
 pub(super) fn mobilised(problem: &Problem, answer: &CableSolution, obstacle: usize, s: f64) -> (f64, bool) {
     let name = problem.world.obstacle_name(obstacle);
     let far = |c: &&crate::solution::ContactReport| {
@@ -133,8 +137,8 @@ impl<'a> Curve<'a> {
 }
 
 impl Elastica {
-    /// A first guess: the cable of an answer for a flexible one, at rest at a time (s); None where the scene or the answer has what
-    /// this knows nothing of.
+    /// A first guess: the cable of an answer for a flexible one, at rest at a time (s); None where
+    /// the scene or the answer has what this knows nothing of.
     pub fn from_flexible(
         problem: &Problem,
         time_s: f64,
@@ -144,8 +148,8 @@ impl Elastica {
         Self::guess(problem, time_s, dragged, answer, None, None)
     }
 
-    /// The same from the answer of a mesh for the cable as stiff as it is; `bar`: the length of its bars, m, over which it knows where
-    /// contacts are.
+    /// The same from the answer of a mesh for the cable as stiff as it is; `bar`: the length of its
+    /// bars, m, over which it knows where contacts are.
     pub fn from_mesh(
         problem: &Problem,
         time_s: f64,
@@ -438,7 +442,8 @@ impl Elastica {
         None
     }
 
-    /// How much of its friction a contact mobilises: what it did when the cable was laid as a flexible one. All of it where it slipped.
+    /// How much of its friction a contact mobilises: what it did when the cable was laid as a
+    /// flexible one. All of it where it slipped.
     fn mobilise(&self, problem: &Problem, answer: &CableSolution, contact: &mut Contact, s: f64) {
         match contact.owner {
             Owner::Obstacle(obstacle) => {
@@ -448,7 +453,8 @@ impl Elastica {
                 let (Some(support), Some(r)) = (problem.supports.get(k), answer.supports.get(k)) else { return };
                 let (Some(a), Some(b)) = (r.tension_before_n, r.tension_after_n) else { return };
                 if support.friction > 0.0 && a > 0.0 && b > 0.0 {
-                    // Rubbing wheels hold or slip as a whole: to which the greater part of e^{μφ} is nearer is not told.
+                    // Rubbing wheels hold or slip as a whole: to which the greater part of e^{μφ}
+                    // is nearer is not told.
                     let turn =
                         (Vec2::new(r.reaction_x_n, r.reaction_y_n).norm() / (a + b)).clamp(0.0, 1.0).asin() * 2.0;
                     let part = if turn > 0.0 { (a / b).ln() / turn } else { 0.0 };
@@ -483,7 +489,8 @@ impl Elastica {
         (self.bending / pull.max(least)).sqrt()
     }
 
-    /// Makes the pieces and joints, and lays their nodes along the curve of the flexible cable with layers at their ends.
+    /// Makes the pieces and joints, and lays their nodes along the curve of the flexible cable with
+    /// layers at their ends.
     fn lay(&mut self, curve: &Curve<'_>, events: &mut Vec<Event>) -> Option<()> {
         let length = self.length;
         // Contacts too short for the stiffness are points.
@@ -504,7 +511,8 @@ impl Elastica {
                 }
             }
         }
-        // Between two rounds the layers lift a cable off a line by λ/2 times their turn, its weight sags by wl²/8T.
+        // Between two rounds the layers lift a cable off a line by λ/2 times their turn, its weight
+        // sags by wl²/8T.
         let lifted = |i: usize| {
             let Joint::Begin(k) = events[i].joint else { return false };
             let beside = |j: Option<usize>| {
@@ -579,7 +587,8 @@ impl Elastica {
         Piece { lies, nodes: grid.iter().map(node).collect(), grid }
     }
 
-    /// Adds the layers at the ends of free pieces, θ ∓ Δ e^{−s/λ}, and counts the angles of clamps on from their neighbours.
+    /// Adds the layers at the ends of free pieces, θ ∓ Δ e^{−s/λ}, and counts the angles of clamps
+    /// on from their neighbours.
     fn bend_layers(&mut self) -> Option<()> {
         use crate::model::fem::beam::equilibrium::nearest_turn;
         let count = self.pieces.len();
@@ -651,7 +660,8 @@ impl Elastica {
             let saved = self.clone();
             let next = self.bending * factor;
             self.bending = if next > 0.999 * whole { whole } else { next };
-            // Bending moments of lies grow with the stiffness, those of layers with its root: the first is exact.
+            // Bending moments of lies grow with the stiffness, those of layers with its root: the
+            // first is exact.
             self.regrid();
             if self.settle(problem) {
                 factor = (factor * 1.5).min(10.0);
@@ -668,8 +678,8 @@ impl Elastica {
         false
     }
 
-    /// Every node at a place of a piece, on Hermite's quintic between its nodes: as exact there as the nodes are (the cubic is off by 3e-7 m
-    /// where a cable is bent to 1 m within 10 elements).
+    /// Every node at a place of a piece, on Hermite's quintic between its nodes: as exact there as
+    /// the nodes are (the cubic is off by 3e-7 m where a cable is bent to 1 m within 10 elements).
     pub(super) fn read(&self, piece: &Piece, x: f64) -> [f64; STATES] {
         let e = piece.grid.partition_point(|g| *g <= x).clamp(1, piece.grid.len() - 1) - 1;
         let (a, b) = (&piece.nodes[e], &piece.nodes[e + 1]);
@@ -689,7 +699,8 @@ impl Elastica {
         })
     }
 
-    /// How the slope `f` of a state changes along a piece, by central differences over a part of an element of length `h`.
+    /// How the slope `f` of a state changes along a piece, by central differences over a part of an
+    /// element of length `h`.
     fn second_slope(&self, lies: Option<usize>, u: &[f64; STATES], f: &[f64; STATES], h: f64) -> [f64; STATES] {
         let step = DIFFERENCE * h;
         let [back, on] = [-step, step].map(|by| self.slope(lies, &std::array::from_fn(|i| u[i] + by * f[i])));

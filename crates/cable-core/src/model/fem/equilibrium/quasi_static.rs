@@ -14,9 +14,9 @@ use crate::model::fem::time::bdf2::ROUNDS_EACH;
 use crate::model::{Model, StepReport};
 use crate::state::State;
 
-/// Work budget of one search for an equilibrium: iterations times nodes. Smaller: scenes that converge
-/// slowly are refused; larger: a search that fails reports it after minutes. The value is 20 000
-/// iterations of 200 nodes, and takes some 10 s.
+/// Work budget of one search for an equilibrium: iterations times nodes. Smaller: scenes that
+/// converge slowly are refused; larger: a search that fails reports it after minutes. The value is
+/// 20 000 iterations of 200 nodes, and takes some 10 s.
 pub(in crate::model::fem) const REST_WORK: usize = 4_000_000;
 
 /// Newton iterations of a step without inertia.
@@ -25,11 +25,13 @@ const REST_ITERATIONS: usize = 150;
 /// Rounds of refreshing the normal forces that friction uses, in a step without inertia.
 const LAG_ROUNDS: usize = 25;
 
-/// Rounds after which normal forces are taken halfway to the new ones only: where a contact that rubs more lifts its neighbour, which then
-/// rubs less, they go round and round. Fewer: what converges by itself takes longer; more: fewer rounds are left to halve what is off.
+/// Rounds after which normal forces are taken halfway to the new ones only: where a contact that
+/// rubs more lifts its neighbour, which then rubs less, they go round and round. Fewer: what
+/// converges by itself takes longer; more: fewer rounds are left to halve what is off.
 const PLAIN_ROUNDS: usize = 8;
 
-/// Least part of the way that friction is taken towards its new normal forces, and by what that part changes from round to round.
+/// Least part of the way that friction is taken towards its new normal forces, and by what that
+/// part changes from round to round.
 const LEAST_PART: f64 = 0.03;
 const RESISTANCE_GROWTH: f64 = 1.1;
 const RESISTANCE_SHRINKAGE: f64 = 0.6;
@@ -40,29 +42,34 @@ const RELAX_LAG_ROUNDS: usize = 8;
 /// Steps of relaxation before it is given up.
 const MAX_RELAX: usize = 600;
 
-/// Whole load, in weights of the cable, from which dead loads set the first resistance. Less: a way down with a little load is
-/// slower than it need be; more: loads of that many weights throw the cable about.
+/// Whole load, in weights of the cable, from which dead loads set the first resistance. Less: a way
+/// down with a little load is slower than it need be; more: loads of that many weights throw the
+/// cable about.
 const DEAD_LOAD_RATIO: f64 = 2.0;
 
-/// Unbalanced force, in tolerances, that is accepted at rest where contact forces are known no better: 1e-3 of the whole load. More:
-/// a node a rounding away from a corner makes any force a rest (6e10 N were taken for one); less: cables that a support
-/// squeezes find none.
+/// Unbalanced force, in tolerances, that is accepted at rest where contact forces are known no
+/// better: 1e-3 of the whole load. More: a node a rounding away from a corner makes any force a
+/// rest (6e10 N were taken for one); less: cables that a support squeezes find none.
 const RESIDUAL_LIMIT_TOLERANCES: f64 = 1e3;
 
-/// Part of all loads on a cable that may be held by nothing. Larger: what slides slowly is said to rest. Smaller: what rests is
-/// refused for what its nodes are let off with. Of slopes, posts, beams and drapes at random those that held left up to 4e-5,
-/// those with 0.3 % too little friction 3e-4 and more.
+/// Part of all loads on a cable that may be held by nothing. Larger: what slides slowly is said to
+/// rest. Smaller: what rests is refused for what its nodes are let off with. Of slopes, posts,
+/// beams and drapes at random those that held left up to 4e-5, those with 0.3 % too little friction
+/// 3e-4 and more.
 const UNHELD_LOAD_FRACTION: f64 = 1e-4;
-/// Unbalanced force of a polished rest, in tolerances, and the iterations that each part of the way to it may take. Less force left: nothing
-/// but rounding is gained; more: what is left at a hundred nodes of a lay that all but slides is seen in the balance of the whole. The first
-/// has what the search left by coming to its last iteration; fewer for it: what slides as a whole on smooth ground is left as it slides.
+/// Unbalanced force of a polished rest, in tolerances, and the iterations that each part of the way
+/// to it may take. Less force left: nothing but rounding is gained; more: what is left at a hundred
+/// nodes of a lay that all but slides is seen in the balance of the whole. The first has what the
+/// search left by coming to its last iteration; fewer for it: what slides as a whole on smooth
+/// ground is left as it slides.
 const POLISH_STAGES: [(f64, usize); 3] = [(1.0, 600), (0.1, 30), (1e-2, 30)];
 
 /// Times a resting place is sought again because corners were met or left on the way to it.
 const CORNER_ROUNDS: usize = 8;
 
-/// Turn (rad) the wrong way round a corner from which a step without inertia is taken again without that corner. Larger: other
-/// corners slip by what it pulls (at 0.02 and 50 N by 2 %), and keep that. Smaller: more steps are taken twice.
+/// Turn (rad) the wrong way round a corner from which a step without inertia is taken again without
+/// that corner. Larger: other corners slip by what it pulls (at 0.02 and 50 N by 2 %), and keep
+/// that. Smaller: more steps are taken twice.
 const LEAST_PULL: f64 = 1e-4;
 
 /// What was found with refreshed normal forces, grips and factors.
@@ -90,7 +97,8 @@ impl Dynamics {
     /// The same of a cable whose friction counts.
     ///
     /// # Errors
-    /// `CornerPulls` where a corner would have to pull, before anything is accepted: what slides meanwhile would keep what that did.
+    /// `CornerPulls` where a corner would have to pull, before anything is accepted: what slides
+    /// meanwhile would keep what that did.
     pub(in crate::model::fem) fn quiet_step(
         &mut self,
         to: f64,
@@ -110,7 +118,8 @@ impl Dynamics {
             let mut pose = self.still_pose();
             let mut done = self.lag_wholly(&mut pose);
             if done.is_err_and(|f| f.cause != FailureCause::WorkSpent) && self.contacts.slip < SLIDE {
-                // Where grips change all along the cable, as on a first lay, ground that gives way is easier to come to rest on.
+                // Where grips change all along the cable, as on a first lay, ground that gives way
+                // is easier to come to rest on.
                 self.contacts.set_slip(SLIDE);
                 pose = self.still_pose();
                 done = self.lag_wholly(&mut pose);
@@ -139,8 +148,8 @@ impl Dynamics {
         Ok(total)
     }
 
-    /// Reduces the residual of an equilibrium, which adds up along the cable, to the level of round-off.
-    /// It starts from the present shape, and changes nothing where it does not converge.
+    /// Reduces the residual of an equilibrium, which adds up along the cable, to the level of
+    /// round-off. It starts from the present shape, and changes nothing where it does not converge.
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
         let kept = (self.rollback.saved.clone(), self.rollback.can_restore);
         let (exact, to) = (self.task.tolerance, self.motion.time);
@@ -164,8 +173,9 @@ impl Dynamics {
         all
     }
 
-    /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the second order in their
-    /// length, without which a run would begin with a jerk. Where they find no rest they stay as they were laid.
+    /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the
+    /// second order in their length, without which a run would begin with a jerk. Where they find
+    /// no rest they stay as they were laid.
     pub(in crate::model::fem) fn come_to_rest(&mut self, dragged: &[Option<Vec2>]) {
         if !self.rested {
             return;
@@ -180,7 +190,8 @@ impl Dynamics {
         }
     }
 
-    /// Minimises again and again with refreshed normal forces, grips and factors until nothing changes.
+    /// Minimises again and again with refreshed normal forces, grips and factors until nothing
+    /// changes.
     fn lag(&mut self, pose: &mut Pose, rounds: usize) -> Result<Converged, Failure> {
         self.lag_until(pose, rounds).map(|found| found.done)
     }
@@ -236,7 +247,8 @@ impl Dynamics {
         Err(Failure { node, residual: found.done.residual, cause: FailureCause::StickSlipUndecided })
     }
 
-    /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over changed.
+    /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over
+    /// changed.
     fn accept_rest(&mut self, pose: &Pose, to: f64) -> bool {
         self.accept_pose(pose, to);
         self.remesh(true).seats
@@ -260,16 +272,17 @@ impl Dynamics {
         self.meshing.bar_weight / 0.1
     }
 
-    /// The resistance that a way down begins with, N/m: what acts on an element over a tenth of a metre, dead loads with it
-    /// where they are what counts. With the weight alone a cable of 5 g/m under 100 N, laid through a post, was thrown about
-    /// and found no rest.
+    /// The resistance that a way down begins with, N/m: what acts on an element over a tenth of a
+    /// metre, dead loads with it where they are what counts. With the weight alone a cable of 5 g/m
+    /// under 100 N, laid through a post, was thrown about and found no rest.
     fn first_resistance(&self) -> f64 {
         let whole = load_scale(&self.problem).1 / self.meshing.even_bars as f64;
         if whole > DEAD_LOAD_RATIO * self.meshing.bar_weight { whole / 0.1 } else { self.soft_shift() }
     }
 
-    /// Follows the way down with ever weaker viscous resistance, then finds the resting place itself. On the way what rounding
-    /// hides may be any force: a cable laid in touch begins there. Where that ends in no rest, it may not.
+    /// Follows the way down with ever weaker viscous resistance, then finds the resting place
+    /// itself. On the way what rounding hides may be any force: a cable laid in touch begins there.
+    /// Where that ends in no rest, it may not.
     pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         let kept = (self.rollback.saved.clone(), self.rollback.can_restore);
         self.save();
@@ -293,7 +306,8 @@ impl Dynamics {
         let laid = self.motion.x.clone();
         let mut resistance = self.first_resistance();
         let (full, floor) = (resistance, 1e-5 * resistance);
-        // Set where Newton without resistance has failed: then steps are solved exactly, until what resists is nothing.
+        // Set where Newton without resistance has failed: then steps are solved exactly, until what
+        // resists is nothing.
         let mut stubborn = false;
         let mut total = 0;
         let mut last = Failure { node: 0, residual: f64::NAN, cause: FailureCause::StillMoves };
@@ -308,7 +322,8 @@ impl Dynamics {
             let exact = self.task.tolerance;
             self.task.tolerance = if stubborn { exact } else { 1e2 * exact };
             self.task.most_noise = noise * exact;
-            // A first lay carries no normal force yet: without refreshing, it would slide as if on ice.
+            // A first lay carries no normal force yet: without refreshing, it would slide as if on
+            // ice.
             let mut pose = self.still_pose();
             let done = self.lag_until(&mut pose, RELAX_LAG_ROUNDS);
             self.task.tolerance = exact;
@@ -371,7 +386,8 @@ impl Dynamics {
         Err(last)
     }
 
-    /// Finds the resting place with contact at the present time; `dragged` are the hand-set support positions, m.
+    /// Finds the resting place with contact at the present time; `dragged` are the hand-set support
+    /// positions, m.
     ///
     /// # Errors
     /// A typed reason when there is none, or none was found.
@@ -424,8 +440,9 @@ impl Dynamics {
         }
     }
 
-    /// Begins at `shape`, a rest without contact, if the cable gets there from its lay without coming near to anything. The way down
-    /// with contact takes as many rounds as a cable that hangs has bars.
+    /// Begins at `shape`, a rest without contact, if the cable gets there from its lay without
+    /// coming near to anything. The way down with contact takes as many rounds as a cable that
+    /// hangs has bars.
     pub(in crate::model::fem) fn begin_at(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
         let touched = self.problem.floor_friction.is_some() || self.contacts.own.shape.is_on();
         let alone = self.rider.is_none() && !touched && !self.problem.world.is_empty();
@@ -445,7 +462,8 @@ impl Dynamics {
         }
         self.motion.x = to;
         self.forget_history();
-        // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so that little force is left over.
+        // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so
+        // that little force is left over.
         self.prepare_task(self.motion.time, Some(dragged));
         self.task.max_iterations = REST_ITERATIONS;
         let exact = self.task.tolerance;
@@ -459,8 +477,8 @@ impl Dynamics {
         self.task.tolerance = exact;
     }
 
-    /// The resting place; one that the cable reaches without ever touching itself is found as if it could pass itself, for
-    /// its first lay is no shape it could have.
+    /// The resting place; one that the cable reaches without ever touching itself is found as if it
+    /// could pass itself, for its first lay is no shape it could have.
     fn find_rest(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
         let time = self.motion.time;
         let shape = self.contacts.own.shape;
@@ -486,7 +504,8 @@ impl Dynamics {
         Ok(self.relax(time, dragged))
     }
 
-    /// Why a cable that nothing but friction holds does not rest where it was brought: what each node alone is let off with adds up.
+    /// Why a cable that nothing but friction holds does not rest where it was brought: what each
+    /// node alone is let off with adds up.
     pub(in crate::model::fem) fn slides_as_a_whole(&self) -> Option<String> {
         if self.problem.supports.iter().any(|s| s.at.is_some()) || self.contacts.own.shape.is_on() {
             return None;
@@ -497,7 +516,8 @@ impl Dynamics {
             .then(|| format!("it slides: {left:.3e} N of {scale:.3e} N are held by nothing"))
     }
 
-    /// How far (m) both ends have moved to `sought` at least, if that is further than the cable is long.
+    /// How far (m) both ends have moved to `sought` at least, if that is further than the cable is
+    /// long.
     fn ran_away(&self, sought: &[Vec2]) -> Option<f64> {
         let moved = |a: Option<&Vec2>, b: Option<&Vec2>| Some((a? - b?).norm());
         let now = &self.motion.x;

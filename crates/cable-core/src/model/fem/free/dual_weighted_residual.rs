@@ -1,17 +1,19 @@
 //! The dual-weighted residual estimates how wrong the forces are.
 //!
-//! Each element's chord lacks δ to the chord of the exact catenary under the same force. The span then closes with
-//! another start force, and pulleys slide a little to keep their balance:
+//! Each element's chord lacks δ to the chord of the exact catenary under the same force. The span
+//! then closes with another start force, and pulleys slide a little to keep their balance:
 //! ```text
 //! δF₀ = −C⁻¹ Σδ(F₀ + δF₀),     C = ∂reach/∂F₀
 //! ```
-//! (R. Becker and R. Rannacher, *An optimal control approach to a posteriori error estimation in finite element methods*,
-//! Acta Numerica 2001: the residual weighted by the inverse Hessian, here 2×2.) The lack is taken at the force it leads to,
-//! in a few rounds: one is enough for a taut span; in a slack one, whose horizontal force is a small part of its tension,
-//! what is left after one is no longer small beside that.
+//! (R. Becker and R. Rannacher, *An optimal control approach to a posteriori error estimation in
+//! finite element methods*, Acta Numerica 2001: the residual weighted by the inverse Hessian, here
+//! 2×2.) The lack is taken at the force it leads to, in a few rounds: one is enough for a taut
+//! span; in a slack one, whose horizontal force is a small part of its tension, what is left after
+//! one is no longer small beside that.
 //!
-//! What is estimated is the error of the whole force vector beside every stop, in parts of the greatest tension: a slack span
-//! may have its greatest tension right to many digits and its horizontal force wrong in the third.
+//! What is estimated is the error of the whole force vector beside every stop, in parts of the
+//! greatest tension: a slack span may have its greatest tension right to many digits and its
+//! horizontal force wrong in the third.
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::beam::equilibrium::Beam;
@@ -22,21 +24,24 @@ use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
 use crate::model::fem::free::stations::{Layout, SpanEnds};
 
-/// Rounds of the correction, and the part of it below which another round changes nothing that shows.
+/// Rounds of the correction, and the part of it below which another round changes nothing that
+/// shows.
 const ROUNDS: usize = 8;
 const CORRECTION_TOLERANCE: f64 = 0.01;
-/// By how much finer elements are made where the lack of the present ones says nothing, and how often at most: 4⁵ = 1024 times.
+/// By how much finer elements are made where the lack of the present ones says nothing, and how
+/// often at most: 4⁵ = 1024 times.
 const REFINEMENT_FACTOR: usize = 4;
 const MOST_FINER: usize = 5;
 /// Most elements of a span that is only solved for its error: some milliseconds.
 const MOST_CELLS: usize = 1 << 15;
-/// Rounding errors of a span's closure, in units of the last place of its length. Measured against the closed form: up to 5,
-/// of two answers.
+/// Rounding errors of a span's closure, in units of the last place of its length. Measured against
+/// the closed form: up to 5, of two answers.
 const ROUNDING: f64 = 8.0;
 
-/// Part of the greatest tension to which friction is known that remembers many steps: where rounding stops Newton a balance is
-/// accepted at 1e-8, and what that leaves adds up. Less: one in ten histories of stiff cables is farther from that of `spans`
-/// (up to 8e-8 in 300); more: nobody asks for less.
+/// Part of the greatest tension to which friction is known that remembers many steps: where
+/// rounding stops Newton a balance is accepted at 1e-8, and what that leaves adds up. Less: one in
+/// ten histories of stiff cables is farther from that of `spans` (up to 8e-8 in 300); more: nobody
+/// asks for less.
 const MEMORY: f64 = 1e-7;
 
 /// Arc lengths that differ by less are those of one node of two meshes, m.
@@ -70,7 +75,8 @@ pub fn relative_error(network: &mut Network) -> f64 {
     share * (1.0 + CORRECTION_TOLERANCE)
 }
 
-/// Estimated error of the shape, m: what the chords up to a node lack in all, and what the force that closes the span moves its end.
+/// Estimated error of the shape, m: what the chords up to a node lack in all, and what the force
+/// that closes the span moves its end.
 #[must_use]
 pub fn position_error(network: &mut Network) -> f64 {
     let changes = force_errors(network);
@@ -126,8 +132,9 @@ fn force_errors(network: &mut Network) -> Vec<[Vec2; 2]> {
     errors
 }
 
-/// By how much more force at its start the exact catenary would close a span, N. Where a fold lies in one element its lack says
-/// nothing about the force: the span is solved on finer elements until it does.
+/// By how much more force at its start the exact catenary would close a span, N. Where a fold lies
+/// in one element its lack says nothing about the force: the span is solved on finer elements until
+/// it does.
 fn closing_force(network: &Network, ends: SpanEnds, span: &Span) -> Vec2 {
     let (material, goal) = (&network.material, span.walk.reach);
     if let Some(off) = correction(material, &network.layout, ends, span.force, goal) {
@@ -172,8 +179,9 @@ fn correction(material: &Material, layout: &Layout, ends: SpanEnds, force: Vec2,
     None
 }
 
-/// Greatest difference of a force on a stop between a network and the same on half as long bars, in parts of the greatest tension,
-/// for an error of fourth order: sixteen fifteenths of it is the error of the coarser.
+/// Greatest difference of a force on a stop between a network and the same on half as long bars, in
+/// parts of the greatest tension, for an error of fourth order: sixteen fifteenths of it is the
+/// error of the coarser.
 #[must_use]
 pub fn difference(coarse: &Network, fine: &Network) -> f64 {
     let (mut largest, mut off) = (0.0, 0.0);
@@ -185,8 +193,8 @@ pub fn difference(coarse: &Network, fine: &Network) -> f64 {
     if largest > 0.0 { off / (0.9375 * largest) } else { off }
 }
 
-/// Adds what frictionless pulleys do to small changes of the forces beside the stops: they slide until the tensions
-/// agree again.
+/// Adds what frictionless pulleys do to small changes of the forces beside the stops: they slide
+/// until the tensions agree again.
 fn let_pulleys_follow(network: &Network, changes: &mut [[Vec2; 2]]) {
     let pulleys = network.pulleys();
     let faults: Vec<Option<f64>> = pulleys
@@ -207,7 +215,8 @@ fn let_pulleys_follow(network: &Network, changes: &mut [[Vec2; 2]]) {
     }
 }
 
-/// Estimated relative error of the largest tension on the finer of two meshes, fourth order: a fifteenth of the change.
+/// Estimated relative error of the largest tension on the finer of two meshes, fourth order: a
+/// fifteenth of the change.
 #[must_use]
 pub fn halving_error(coarse: &Beam, fine: &Beam) -> f64 {
     let (mut largest, mut change) = (fine.bending_force(), 0.0);

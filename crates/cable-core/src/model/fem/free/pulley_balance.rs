@@ -1,16 +1,17 @@
 //! The pulley balance finds how much cable lies on each side of the pulleys that join the spans.
 //!
-//! Each span is solved for itself (`span`); what joins them is the arc length `s` at each pulley. With the tension
-//! before and after a pulley, ρ = ln(T_after/T_before), and the bounds of Coulomb's law (capstan: ±μ·turn):
+//! Each span is solved for itself (`span`); what joins them is the arc length `s` at each pulley.
+//! With the tension before and after a pulley, ρ = ln(T_after/T_before), and the bounds of
+//! Coulomb's law (capstan: ±μ·turn):
 //! ```text
 //! frictionless   ρ = 0
 //! stick          s = s_old,      −μφ ≤ ρ ≤ μφ
 //! slip           ρ = −μφ where s grew (the cable went to the side before), ρ = +μφ where it shrank
 //! ```
-//! ρ is the slope of the energy in `s` but for a positive factor, so a resting place is stable where ∂ρ/∂s is
-//! positive: the pivots of the (tridiagonal) Newton matrix must be. When Newton stalls or ends at an unstable place,
-//! each pulley in turn is bisected for a change of ρ from − to +, which only stable places have.
-//! Wheels with a radius are in `wheel`.
+//! ρ is the slope of the energy in `s` but for a positive factor, so a resting place is stable
+//! where ∂ρ/∂s is positive: the pivots of the (tridiagonal) Newton matrix must be. When Newton
+//! stalls or ends at an unstable place, each pulley in turn is bisected for a change of ρ from −
+//! to +, which only stable places have. Wheels with a radius are in `wheel`.
 
 use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
@@ -21,7 +22,8 @@ use crate::model::fem::free::stations::{Hold, Layout, SpanEnds, Wheel};
 
 /// Newton steps for the pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
-/// Powers of ten by which a fold is rounded off at first: to a tenth of the load, where any start converges.
+/// Powers of ten by which a fold is rounded off at first: to a tenth of the load, where any start
+/// converges.
 const FOLD_ROUNDING_DECADES: i32 = 6;
 /// Rounds of bisection.
 const MAX_ROUNDS: usize = 60;
@@ -67,7 +69,8 @@ pub struct Network {
     /// Arc length at each stop before anything slid (friction remembers it), m.
     held_at: Vec<f64>,
     warm: bool,
-    /// Every pulley with what friction remembers of it, in order; empty until it was asked for (`rubbing`).
+    /// Every pulley with what friction remembers of it, in order; empty until it was asked for
+    /// (`rubbing`).
     pub rubbing: Vec<Rubbing>,
 }
 
@@ -159,8 +162,8 @@ impl Network {
         Ok(())
     }
 
-    /// A span folded so sharply that one element turns round in itself: where its tension vanishes D has a kink, which is
-    /// rounded off and then sharpened tenfold at a time.
+    /// A span folded so sharply that one element turns round in itself: where its tension vanishes
+    /// D has a kink, which is rounded off and then sharpened tenfold at a time.
     fn unfold(&self, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
         let (mut force, mut steps) = (guess, 0);
         for power in (0..=FOLD_ROUNDING_DECADES).rev() {
@@ -217,12 +220,14 @@ impl Network {
         Balance { ratio, law: [-bound, 0.0, bound] }
     }
 
-    /// How far the arc length at a pulley has moved since friction last held, m (the middle of a wheel's arc).
+    /// How far the arc length at a pulley has moved since friction last held, m (the middle of a
+    /// wheel's arc).
     fn slid(&self, stop: usize) -> f64 {
         self.layout.stops[stop].arc_length + 0.5 * self.layout.stops[stop].lap - self.held_at[stop]
     }
 
-    /// What is wrong at a pulley: 0 where it rests, else positive where the arc length must shrink. `None`: held.
+    /// What is wrong at a pulley: 0 where it rests, else positive where the arc length must shrink.
+    /// `None`: held.
     pub(in crate::model::fem) fn fault(&self, stop: usize, wheel: &Wheel) -> Option<f64> {
         let b = self.law(stop, wheel);
         if !(wheel.friction > 0.0) {
@@ -308,7 +313,8 @@ impl Network {
         false
     }
 
-    /// Moves every pulley by `alpha` of its step, within its room, and not beyond where friction held it.
+    /// Moves every pulley by `alpha` of its step, within its room, and not beyond where friction
+    /// held it.
     fn move_pulleys(&mut self, pulleys: &[usize], from: &[f64], step: &[f64], alpha: f64) {
         for (i, &k) in pulleys.iter().enumerate() {
             self.layout.stops[k].arc_length = from[i];
@@ -369,7 +375,8 @@ impl Network {
         (right, stable)
     }
 
-    /// ∂(force before, force after the pulley at stop `k`)/∂(arc length at the pulley of stop `of`).
+    /// ∂(force before, force after the pulley at stop `k`)/∂(arc length at the pulley of stop
+    /// `of`).
     pub(in crate::model::fem) fn rates_at(&self, k: usize, of: usize) -> [Vec2; 2] {
         let mut rates = [Vec2::zeros(); 2];
         for (span, &ends) in self.spans.iter().zip(&self.ends) {
@@ -415,7 +422,8 @@ impl Network {
         let turn = turn_between(before, after);
         let turning =
             perp(after).dot(&rates[1]) / after.norm_squared() - perp(before).dot(&rates[0]) / before.norm_squared();
-        // The bound that holds: the lower one where ρ lies below it or the pulley gave cable to the side before.
+        // The bound that holds: the lower one where ρ lies below it or the pulley gave cable to the
+        // side before.
         let lower = (after.norm() / before.norm()).ln() - fault < 0.0;
         let sign = if lower { -1.0 } else { 1.0 };
         ratio - sign * wheel.friction * turn.signum() * turning
@@ -479,7 +487,8 @@ impl Network {
         Ok(())
     }
 
-    /// A pulley that wants beyond the stop beside it: past a load the load changes sides, past an end it runs out.
+    /// A pulley that wants beyond the stop beside it: past a load the load changes sides, past an
+    /// end it runs out.
     fn pass(&mut self, stop: usize, up: bool) -> Result<(), Failure> {
         let other = if up { stop + 1 } else { stop - 1 };
         let inner = other > 0 && other + 1 < self.layout.stops.len();

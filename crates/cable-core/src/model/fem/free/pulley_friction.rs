@@ -1,17 +1,19 @@
 //! This module balances all pulleys with friction together, with what friction remembers of each.
 //!
-//! What is unknown at a wheel are the angles p₁, p₂ at which the cable meets and leaves it and the material s₁, s₂ there; at a point
-//! only the material. The spans between follow from these (`span`), so the equations are few:
+//! What is unknown at a wheel are the angles p₁, p₂ at which the cable meets and leaves it and the
+//! material s₁, s₂ there; at a point only the material. The spans between follow from these
+//! (`span`), so the equations are few:
 //!
 //! ```text
 //! wheel    t(p₁) × F₁ = 0,  t(p₂) × F₂ = 0,  and the two of the friction on it (`spans::contact::wheel_friction`)
 //! point    holds: s = s_old,    slides with m: ln(T₂/T₁) = m·turn
 //! ```
 //!
-//! Slip is complementary to friction: a pulley that holds lies within its cone, one that slides has moved against its friction since the
-//! last step *at points fixed to the wheel*. The middle of the arc is no such point: it wanders by half the radius times what the
-//! directions turn, which is more than a stiff cable gives by, so that friction could be found the other way round.
-//! Newton with a line search for one set of modes, then the modes are asked.
+//! Slip is complementary to friction: a pulley that holds lies within its cone, one that slides has
+//! moved against its friction since the last step *at points fixed to the wheel*. The middle of the
+//! arc is no such point: it wanders by half the radius times what the directions turn, which is
+//! more than a stiff cable gives by, so that friction could be found the other way round. Newton
+//! with a line search for one set of modes, then the modes are asked.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -28,11 +30,13 @@ const MAX_STEPS: usize = 40;
 const MAX_HALVINGS: usize = 14;
 /// Sets of modes for each pulley.
 const MAX_MODES: usize = 12;
-/// The equations are solved when none is off by more than this part: of a tension, an angle, and of [`MATERIAL`] of the cable.
+/// The equations are solved when none is off by more than this part: of a tension, an angle, and of
+/// [`MATERIAL`] of the cable.
 const RESIDUAL_TOLERANCE: f64 = 1e-13;
 /// The same where no step makes it smaller, as in `network`.
 const RESIDUAL_LIMIT: f64 = 1e-8;
-/// Part of the cable's length that weighs as much as the whole tension. More: steps are judged by tension alone; less: by material.
+/// Part of the cable's length that weighs as much as the whole tension. More: steps are judged by
+/// tension alone; less: by material.
 const MATERIAL: f64 = 0.01;
 /// Farthest that an end may go round its wheel in a step, rad: more comes out on the other side.
 const MOST_TURN: f64 = 0.5;
@@ -72,7 +76,8 @@ pub struct Rubbing {
     s: [f64; 2],
 }
 
-/// What can be varied at a pulley: the angle and the material at its side 0 or 1; the material of a point at both.
+/// What can be varied at a pulley: the angle and the material at its side 0 or 1; the material of a
+/// point at both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Unknown {
     Angle(usize),
@@ -127,7 +132,8 @@ impl Network {
         self.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.friction > 0.0))
     }
 
-    /// Begins the memory of every pulley with the balance found; on each wheel friction is shared evenly.
+    /// Begins the memory of every pulley with the balance found; on each wheel friction is shared
+    /// evenly.
     pub fn remember(&mut self) {
         let on = self.on_wheel();
         self.rubbing = Vec::new();
@@ -146,7 +152,8 @@ impl Network {
         }
     }
 
-    /// Begins the memory of every pulley with an answer of another model; false where that does not say enough.
+    /// Begins the memory of every pulley with an answer of another model; false where that does not
+    /// say enough.
     pub fn remember_answer(&mut self, answer: &CableSolution) -> bool {
         let on = self.on_wheel();
         let mut found = Vec::new();

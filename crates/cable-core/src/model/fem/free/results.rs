@@ -16,7 +16,8 @@ pub struct Point {
     pub arc_length: f64,
     /// Where it is, m.
     pub at: Vec2,
-    /// Tension, N: the larger of those beside it, the one that breaks the cable. A stiff cable may push: less than zero.
+    /// Tension, N: the larger of those beside it, the one that breaks the cable. A stiff cable may
+    /// push: less than zero.
     pub tension: f64,
     /// d(angle)/d(arc length), 1/m.
     pub curvature: f64,
@@ -44,7 +45,8 @@ impl Point {
     }
 }
 
-/// All points of a solved network in order of arc length, of a cable of a radius (m), appended to `out`.
+/// All points of a solved network in order of arc length, of a cable of a radius (m), appended to
+/// `out`.
 pub fn points(network: &Network, cable_radius: f64, out: &mut Vec<Point>) {
     out.clear();
     let layout = &network.layout;
@@ -162,7 +164,8 @@ fn anchor(network: &Network, k: usize, cable_radius: f64, out: &mut Vec<Point>) 
     }
 }
 
-/// Outward normal, arc length (m) and tension (N) at a fraction of the arc of a wheel whose friction remembers them.
+/// Outward normal, arc length (m) and tension (N) at a fraction of the arc of a wheel whose
+/// friction remembers them.
 fn remembered(network: &Network, stop: usize, fraction: f64) -> Option<(Vec2, f64, f64)> {
     let k = network.pulleys().iter().position(|&k| k == stop)?;
     let pulley = network.rubbing.get(k)?;
@@ -170,8 +173,8 @@ fn remembered(network: &Network, stop: usize, fraction: f64) -> Option<(Vec2, f6
     Some((normal, pulley.material_at(network, fraction)?, tension))
 }
 
-/// Force of the cable on a stop, N: it is pulled back along the cable before it and on along the cable after it, and
-/// carries the load that acts there, and the cable on its wheel.
+/// Force of the cable on a stop, N: it is pulled back along the cable before it and on along the
+/// cable after it, and carries the load that acts there, and the cable on its wheel.
 #[must_use]
 pub fn reaction(stop: &Stop, [before, after]: [Vec2; 2], body: Vec2) -> Vec2 {
     match stop.hold {

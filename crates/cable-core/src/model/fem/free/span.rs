@@ -1,13 +1,13 @@
 //! A span consists of the elements between two anchors; it is solved for the force at its start.
 //!
-//! Node by node the tension force is known once it is known at the start: F drops by q Δs along an element and by
-//! the load at a stop. What is left are two unknowns however many elements there are, and their equation is the
-//! minimum of a convex function (the dual of the potential energy):
+//! Node by node the tension force is known once it is known at the start: F drops by q Δs along an
+//! element and by the load at a stop. What is left are two unknowns however many elements there
+//! are, and their equation is the minimum of a convex function (the dual of the potential energy):
 //! ```text
 //! minimise  D(F₀) = Σ Ψₑ(Fₑ) − F₀·d,     ∇D = Σ chordₑ − d,     ∇²D = Σ ∂chordₑ/∂Fₑ
 //! ```
-//! Every minimum is an equilibrium in tension: compression and unstable states have no place in it. Newton with a
-//! line search; accepted on the gradient where D itself has no digits left.
+//! Every minimum is an equilibrium in tension: compression and unstable states have no place in it.
+//! Newton with a line search; accepted on the gradient where D itself has no digits left.
 
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::free::element::Material;
@@ -19,10 +19,12 @@ const MAX_STEPS: usize = 200;
 const MAX_HALVINGS: usize = 40;
 /// Fraction of the promised decrease a step must give (Armijo). Any small number will do.
 const ARMIJO: f64 = 1e-4;
-/// A span is closed when the gap is this part of its length; a few rounding errors of a sum over its elements.
+/// A span is closed when the gap is this part of its length; a few rounding errors of a sum over
+/// its elements.
 const CLOSURE_TOLERANCE: f64 = 4e-16;
-/// Gap, in parts of the length, that is still taken for closed when Newton no longer halves it: the gap of taut stiff
-/// spans stops at about 1e-13. Newton is quadratic here, so a step that does not halve it meets rounding.
+/// Gap, in parts of the length, that is still taken for closed when Newton no longer halves it: the
+/// gap of taut stiff spans stops at about 1e-13. Newton is quadratic here, so a step that does not
+/// halve it meets rounding.
 const CLOSURE_LIMIT: f64 = 1e-10;
 /// A step this small, in parts of the force, changes nothing any more.
 const FORCE_ROUNDING: f64 = 1e-15;
@@ -54,7 +56,8 @@ pub struct Span {
 }
 
 impl Span {
-    /// How the forces at both ends change with the arc length at an end (`by_end`: the last stop, else the first).
+    /// How the forces at both ends change with the arc length at an end (`by_end`: the last stop,
+    /// else the first).
     #[must_use]
     pub fn force_rates(&self, material: &Material, layout: &Layout, ends: SpanEnds, by_end: bool) -> [Vec2; 2] {
         let rate = reach_rate(material, layout, ends, self.force, by_end);
@@ -63,7 +66,8 @@ impl Span {
     }
 }
 
-/// Runs over the elements between two stops: `each(ds, middle force)`; returns the force before the last stop.
+/// Runs over the elements between two stops: `each(ds, middle force)`; returns the force before the
+/// last stop.
 pub fn elements(
     material: &Material,
     layout: &Layout,
@@ -140,8 +144,9 @@ fn load_and_length(material: &Material, layout: &Layout, SpanEnds { first, last 
     (material.body * length + loads, length)
 }
 
-/// A start force near the answer: the parabola where the span is taut, else the catenary's own first guess (A. Peyrot
-/// and A. Goulois, *Analysis of cable structures*, Computers & Structures 1979), point loads spread evenly.
+/// A start force near the answer: the parabola where the span is taut, else the catenary's own
+/// first guess (A. Peyrot and A. Goulois, *Analysis of cable structures*, Computers & Structures
+/// 1979), point loads spread evenly.
 #[must_use]
 pub fn first_guess(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2) -> Vec2 {
     let (load, length) = load_and_length(material, layout, ends);
@@ -172,7 +177,8 @@ pub fn first_guess(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2
     if strain <= 0.0 && beta.sqrt() <= CROSS_LOAD_FRACTION * weight {
         return load * 0.5;
     }
-    // Taut: T/EA − β/T² = strain, β = (load across the chord)²/24. Concave and rising: Newton from the left is monotone.
+    // Taut: T/EA − β/T² = strain, β = (load across the chord)²/24. Concave and rising: Newton from
+    // the left is monotone.
     let ea = material.axial_stiffness;
     let mut tension = if strain > 0.0 { (ea * strain).max((beta * ea).cbrt()) } else { (beta * ea).cbrt() };
     for _ in 0..12 {
@@ -193,7 +199,8 @@ const SLACK_STRAIN: f64 = -0.02;
 /// Part of the load that must act across the chord for the parabola to mean anything.
 const CROSS_LOAD_FRACTION: f64 = 1e-6;
 
-/// Solves a span between points `d` apart (m) from a start force. `None` when Newton fails (a number blew up).
+/// Solves a span between points `d` apart (m) from a start force. `None` when Newton fails (a
+/// number blew up).
 #[must_use]
 pub fn solve(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
     let (load, length) = load_and_length(material, layout, ends);

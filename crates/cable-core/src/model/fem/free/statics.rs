@@ -1,7 +1,9 @@
-//! `Statics` finds the equilibrium of a cable that touches nothing but its supports, and follows it quasi-statically.
+//! `Statics` finds the equilibrium of a cable that touches nothing but its supports, and follows it
+//! quasi-statically.
 //!
-//! A flexible cable is solved span by span (`span`, `network`): no start can fail, and what is found is in tension and
-//! stable by construction. The mesh follows the error estimate where the scene does not give one.
+//! A flexible cable is solved span by span (`span`, `network`): no start can fail, and what is
+//! found is in tension and stable by construction. The mesh follows the error estimate where the
+//! scene does not give one.
 
 use std::sync::Arc;
 
@@ -24,7 +26,8 @@ use crate::state::State;
 
 /// Elements to start with where nothing says how many: 1e-6 for a usual span, and 50 µs.
 const FIRST_SEGMENTS: usize = 40;
-/// Most elements the error estimate may ask for. Beyond, rounding grows faster than the error falls.
+/// Most elements the error estimate may ask for. Beyond, rounding grows faster than the error
+/// falls.
 const MOST_SEGMENTS: usize = 4000;
 /// Part of the tolerance the estimate must stay below.
 const ESTIMATE_FRACTION: f64 = 0.5;
@@ -32,23 +35,25 @@ const ESTIMATE_FRACTION: f64 = 0.5;
 const ORDER: f64 = 4.0;
 /// Rounds of mesh refinement.
 const MAX_MESHES: usize = 6;
-/// Weight given to a weightless cable without loads, in parts of EA: far below the strain that rounding hides.
+/// Weight given to a weightless cable without loads, in parts of EA: far below the strain that
+/// rounding hides.
 const HINT_OF_WEIGHT_UNLOADED: f64 = 1e-18;
 /// Weight given to a weightless cable, in parts of its loads: where it is slack it has no shape
 /// of its own, this gives it that of a very light one. Far below any tension asked for.
 const HINT_OF_WEIGHT: f64 = 1e-12;
-/// Smoothing tension in parts of the load, see [`Material::smoothing`]. Seen only where the tension falls to it; at 1e-9
-/// a fold at EA 1e9 closed to 1e-8 m only, for want of digits of the force.
+/// Smoothing tension in parts of the load, see [`Material::smoothing`]. Seen only where the tension
+/// falls to it; at 1e-9 a fold at EA 1e9 closed to 1e-8 m only, for want of digits of the force.
 const SMOOTHING: f64 = 1e-7;
-/// Longest move of a support in one slow step where friction must remember the way, in parts of the cable length.
+/// Longest move of a support in one slow step where friction must remember the way, in parts of the
+/// cable length.
 const SLOW_MOVE: f64 = 0.01;
 /// Most slow steps in one call.
 const MAX_SLOW_STEPS: f64 = 400.0;
 /// How often a slow step may be halved.
 const MAX_HALVINGS: usize = 8;
 
-/// The balance of pulleys without friction. On wheels it is found with the material on them by a mean of the tension (to 1e-7 of it),
-/// and then exactly.
+/// The balance of pulleys without friction. On wheels it is found with the material on them by a
+/// mean of the tension (to 1e-7 of it), and then exactly.
 fn solve_smooth(network: &mut Network) -> Result<bool, Failure> {
     network.solve()?;
     if network.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.radius > 0.0)) {
@@ -72,7 +77,8 @@ pub struct Statics {
     slid: Vec<Option<f64>>,
     /// The flexible cable of the last answer: where the next one starts.
     network: Option<Network>,
-    /// The same on a finer mesh where pulleys rub: it tells what the mesh does to what friction remembers.
+    /// The same on a finer mesh where pulleys rub: it tells what the mesh does to what friction
+    /// remembers.
     finer: Option<Network>,
     /// The stops of the last answer and the tension forces before and after them, N.
     rested: Option<(Layout, Vec<[Vec2; 2]>)>,
@@ -143,7 +149,8 @@ impl Statics {
         self.points.push(point(layout.length, at(stops.len() - 1)));
     }
 
-    /// Finds the resting place at the present time; `dragged` are the hand-set support positions, m.
+    /// Finds the resting place at the present time; `dragged` are the hand-set support positions,
+    /// m.
     ///
     /// # Errors
     /// A typed reason when there is none, or none was found.
@@ -264,7 +271,8 @@ impl Statics {
         Ok(StepReport { cost, warnings: self.warnings(hinted) })
     }
 
-    /// The balance of pulleys that rub: from what they remember, else as the cable was laid; whether it was laid anew.
+    /// The balance of pulleys that rub: from what they remember, else as the cable was laid;
+    /// whether it was laid anew.
     fn begin_rubbing(&self, network: &mut Network, dragged: &[Option<Vec2>]) -> Result<bool, Failure> {
         if let Some(old) = &self.network
             && network.remember_from(old)
@@ -286,9 +294,9 @@ impl Statics {
         network.rub().map(|()| true)
     }
 
-    /// Goes the same way with bars half as long in steps half as long and with a memory of its own: by how much the forces differ, in
-    /// parts of the greatest. What mesh and steps do to friction adds up in what friction remembers, of which the present balance
-    /// knows nothing.
+    /// Goes the same way with bars half as long in steps half as long and with a memory of its own:
+    /// by how much the forces differ, in parts of the greatest. What mesh and steps do to friction
+    /// adds up in what friction remembers, of which the present balance knows nothing.
     fn follow_finer(&mut self, network: &Network, time: f64, dragged: &[Option<Vec2>], first: bool) -> f64 {
         let Some(finer) = self.finer(network, time, dragged, first) else {
             // It begins anew from here.
@@ -340,7 +348,8 @@ impl Statics {
         Some(finer)
     }
 
-    /// Where a support was in the last answer, of a wheel its centre (where the cable meets it is no move of the support), m.
+    /// Where a support was in the last answer, of a wheel its centre (where the cable meets it is
+    /// no move of the support), m.
     fn support_at(&self, support: usize) -> Option<Vec2> {
         let stop = self.network.as_ref()?.layout.stops.iter().find(|s| s.support == Some(support))?;
         match stop.hold {
@@ -349,8 +358,8 @@ impl Statics {
         }
     }
 
-    /// Rest with bending stiffness, from the flexible cable: on a mesh and on that of half the bars, whose difference
-    /// tells the error (fourth order: a fifteenth of it is left).
+    /// Rest with bending stiffness, from the flexible cable: on a mesh and on that of half the
+    /// bars, whose difference tells the error (fourth order: a fifteenth of it is left).
     fn bend(&mut self, network: Network, time: f64, hinted: bool) -> Result<StepReport, SolveError> {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         // A stiff cable has a shape of its own: it needs no hint of weight.
@@ -372,7 +381,8 @@ impl Statics {
             }
         }
         if given && outcome == Outcome::Stable {
-            // The given mesh is kept; the finer one only tells its error, sixteen fifteenths of the change.
+            // The given mesh is kept; the finer one only tells its error, sixteen fifteenths of the
+            // change.
             let mut fine = coarse.halved();
             if fine.solve() == Outcome::Stable {
                 estimate = Some(16.0 * dual_weighted_residual::halving_error(&coarse, &fine));

@@ -1,10 +1,11 @@
 //! The mesh adapts between steps: sliding nodes come and go, and nodes beside them make room.
 //!
 //! After every accepted step
-//! - a sliding node that no longer presses on its corner is let go (the round is as far out as the barrier reaches,
-//!   so nothing jumps);
+//! - a sliding node that no longer presses on its corner is let go (the round is as far out as the
+//!   barrier reaches, so nothing jumps);
 //! - a corner or circle that presses on a bar or a node gets a sliding node;
-//! - marks are moved to the middle of the arc, long arcs get more nodes (friction acts at them), passed ones lose theirs;
+//! - marks are moved to the middle of the arc, long arcs get more nodes (friction acts at them),
+//!   passed ones lose theirs;
 //! - bars that grew too long are cut, nodes that came too near a sliding one are taken out.
 //!
 //! Material, place and momentum of what stays are left as they are.
@@ -18,11 +19,12 @@ use crate::model::fem::newton::step_setup::load_scale;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::floor_friction;
 
-/// Corners that turn by less (rad) are left to the barrier: there a chain jerks by less than 1e-3 of its tension.
+/// Corners that turn by less (rad) are left to the barrier: there a chain jerks by less than 1e-3
+/// of its tension.
 pub(in crate::model::fem) const LEAST_TURN: f64 = 0.05;
 
-/// Bars beside sliding nodes are kept between these parts of an even bar. Tighter: nodes come and go all the time;
-/// wider: the bars beside a corner are coarse.
+/// Bars beside sliding nodes are kept between these parts of an even bar. Tighter: nodes come and
+/// go all the time; wider: the bars beside a corner are coarse.
 const SHORTEST_BAR_FRACTION: f64 = 0.35;
 /// See `SHORTEST_BAR_FRACTION`.
 const LONGEST_BAR_FRACTION: f64 = 1.6;
@@ -30,37 +32,41 @@ const LONGEST_BAR_FRACTION: f64 = 1.6;
 /// A node this near (in even bars) to a new sliding node is in its way.
 pub(in crate::model::fem) const NODE_REMOVAL_FRACTION: f64 = 0.1;
 
-/// Tension in weights of an even bar from which a corner gets a sliding node, and below which it loses it: a slack
-/// cable lies on corners with its nodes, and the barrier carries it as well.
+/// Tension in weights of an even bar from which a corner gets a sliding node, and below which it
+/// loses it: a slack cable lies on corners with its nodes, and the barrier carries it as well.
 const SLIDING_NODE_TENSION: f64 = 4.0;
 /// See `SLIDING_NODE_TENSION`.
 const MATERIAL_NODE_TENSION: f64 = 2.0;
 
-/// Turn (rad) the wrong way round a corner that a step may end with. The node leaves after the step; with more, its
-/// tangents would lie inside the obstacle.
+/// Turn (rad) the wrong way round a corner that a step may end with. The node leaves after the
+/// step; with more, its tangents would lie inside the obstacle.
 const REVERSE_TURN_LIMIT: f64 = 0.02;
 
-/// √(EI/T), in even bars, beyond which a cable's bend is seen by the mesh. Less: chains jerk at corners, node by node; more: what a corner's bend
-/// costs is left out where it need not be.
+/// √(EI/T), in even bars, beyond which a cable's bend is seen by the mesh. Less: chains jerk at
+/// corners, node by node; more: what a corner's bend costs is left out where it need not be.
 const RESOLVED_BEND_BARS: f64 = 0.5;
 
 /// Half of the turn (rad) up to which a slack cable may leave a round with one node.
 const MOST_BEND: f64 = 1.0;
 
-/// Half of the turn (rad) up to which the node that takes the place of a sliding one goes where the tangents meet.
+/// Half of the turn (rad) up to which the node that takes the place of a sliding one goes where the
+/// tangents meet.
 const TANGENT_NODE_HALF_TURN: f64 = 1.4;
 
-/// Turn (rad) below which a node that leaves its corner is taken out; else it becomes a node of the cable.
+/// Turn (rad) below which a node that leaves its corner is taken out; else it becomes a node of the
+/// cable.
 const REMOVED_CORNER_TURN: f64 = 0.3;
 
 /// Plain nodes whose two bars are together shorter than this (in even bars) are taken out.
 const SPARE_NODE_BARS: f64 = 1.3;
 
-/// Length of the sum of the directions before and after a node below which the cable counts as folded there.
+/// Length of the sum of the directions before and after a node below which the cable counts as
+/// folded there.
 const FOLD_DIRECTION_SUM: f64 = 0.2;
 
-/// Tension of a taut cable in motion, in units of EA (v/c)^(4/3): something that it hits across at a speed v makes 0.63 of it. Less: sliding nodes come and go
-/// where a falling cable strikes; more: a cable drawn fast over corners jerks at them.
+/// Tension of a taut cable in motion, in units of EA (v/c)^(4/3): something that it hits across at
+/// a speed v makes 0.63 of it. Less: sliding nodes come and go where a falling cable strikes; more:
+/// a cable drawn fast over corners jerks at them.
 const IMPACT: f64 = 3.0;
 
 /// How far from a corner (m of arc length) its speed is looked at.
@@ -69,7 +75,8 @@ const NEIGHBOURHOOD: f64 = 0.3;
 /// Part by which a change of the mesh may change tension in motion.
 const TENSION_CHANGE_LIMIT: f64 = 0.05;
 
-/// Part of the cable's weight that counts as tension there: what is nearly slack may change by as much.
+/// Part of the cable's weight that counts as tension there: what is nearly slack may change by as
+/// much.
 const WEIGHT_PART: f64 = 0.1;
 
 /// Least part of the material between two nodes on each side of a node put between them.
@@ -88,8 +95,9 @@ struct Share {
 }
 
 impl Share {
-    /// Ways (m), how much each bar is stretched (length over unstretched length), and the unstretched length of both (m). What is stretched
-    /// keeps its strain and takes what it needs for that from what is slack; where that is not enough both are stretched by as much more.
+    /// Ways (m), how much each bar is stretched (length over unstretched length), and the
+    /// unstretched length of both (m). What is stretched keeps its strain and takes what it needs
+    /// for that from what is slack; where that is not enough both are stretched by as much more.
     fn of(ways: [f64; 2], stretch: [f64; 2], whole: f64) -> Self {
         let needs = [0, 1].map(|j| if stretch[j] > 1.0 { ways[j] / stretch[j] } else { ways[j] });
         let sum = needs[0] + needs[1];
@@ -122,8 +130,9 @@ impl Dynamics {
         let mut changed = self.let_go(&[], rests);
         let taken = self.take_hold(rests);
         if !taken.is_empty() {
-            // What took hold may lift its neighbour off. Itself it waits for a step where inertia does not count: it took over weight of the
-            // nodes beside it, which under a corner pulls it away until they have moved.
+            // What took hold may lift its neighbour off. Itself it waits for a step where inertia
+            // does not count: it took over weight of the nodes beside it, which under a corner
+            // pulls it away until they have moved.
             self.let_go(if rests { &taken } else { &[] }, rests);
             changed = true;
         }
@@ -204,7 +213,8 @@ impl Dynamics {
         Some(Load { floor, lifted, at_material, ..load })
     }
 
-    /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether there were any.
+    /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether
+    /// there were any.
     fn let_go(&mut self, kept: &[Seat], rests: bool) -> bool {
         let mut changed = false;
         let mut k = 1;
@@ -256,11 +266,13 @@ impl Dynamics {
         self.contacts.floor_slid[k] = floor_friction::as_slide(self.contacts.floor_slid[k], along);
     }
 
-    /// A sliding node becomes one that moves with its material: something else is in the way of a bar in its place.
+    /// A sliding node becomes one that moves with its material: something else is in the way of a
+    /// bar in its place.
     ///
-    /// It goes where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars lie where they lay. The material there is
-    /// not that of its mark, unless that was in the middle of the arc: see [`Share`]. (A mark 0.08 mm off gave a slack cable of 2 MN
-    /// 2000 N there, and broke it.)
+    /// It goes where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars lie
+    /// where they lay. The material there is not that of its mark, unless that was in the middle of
+    /// the arc: see [`Share`]. (A mark 0.08 mm off gave a slack cable of 2 MN 2000 N there, and
+    /// broke it.)
     pub(in crate::model::fem) fn settle_down(&mut self, k: usize) -> bool {
         match self.mesh.sliding.get(k).copied().flatten() {
             Some(node) => self.as_of(node.seat, |d| d.take_off_seat(k)),
@@ -304,7 +316,8 @@ impl Dynamics {
         true
     }
 
-    /// Whether a sliding node on an obstacle is pulled away from it, or is in the way of a node that has to pass.
+    /// Whether a sliding node on an obstacle is pulled away from it, or is in the way of a node
+    /// that has to pass.
     fn lifts_off(&self, k: usize) -> bool {
         let Some(node) = self.mesh.sliding[k] else { return false };
         let beside = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
@@ -331,8 +344,8 @@ impl Dynamics {
         self.turn_at(k, &self.motion.x)
     }
 
-    /// The sliding nodes of obstacles that the cable, at positions `x` (m), turns round the wrong way: there a corner would
-    /// have to pull.
+    /// The sliding nodes of obstacles that the cable, at positions `x` (m), turns round the wrong
+    /// way: there a corner would have to pull.
     pub(in crate::model::fem) fn pulled(&self, x: &[Vec2]) -> Option<usize> {
         self.pulled_by(x, REVERSE_TURN_LIMIT)
     }
@@ -407,8 +420,9 @@ impl Dynamics {
         taken
     }
 
-    /// How the material between two nodes is shared by a cable in motion where a sliding node comes between them; None where the cable is
-    /// not taut, pulled by less than what its own speed across, hitting something, would make of it, or where the node would stretch it.
+    /// How the material between two nodes is shared by a cable in motion where a sliding node comes
+    /// between them; None where the cable is not taut, pulled by less than what its own speed
+    /// across, hitting something, would make of it, or where the node would stretch it.
     fn share_of_sliding(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> Option<Share> {
         let (mesh, x) = (&self.mesh, &self.motion.x);
         let ways =
@@ -453,7 +467,8 @@ impl Dynamics {
         self.mesh.axial_stiffness * share.added_strain < TENSION_CHANGE_LIMIT * (tension + WEIGHT_PART * weight)
     }
 
-    /// Whether a sliding node between two nodes would bend the cable the right way and its bars would meet nothing.
+    /// Whether a sliding node between two nodes would bend the cable the right way and its bars
+    /// would meet nothing.
     fn fits(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> bool {
         let x = &self.motion.x;
         let paths = [
@@ -480,7 +495,8 @@ impl Dynamics {
         turn > -REVERSE_TURN_LIMIT && sides && (0..2).all(|j| self.way_is_clear(&paths[j], nodes[j]))
     }
 
-    /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc length and itself.
+    /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc
+    /// length and itself.
     fn seat_for(&self, node: usize, on_segment: bool, gap: &crate::contact::Gap) -> Option<(usize, f64, SlidingNode)> {
         let (mesh, x, last) = (&self.mesh, &self.motion.x, self.mesh.nodes() - 1);
         let (center, radius) =
@@ -493,8 +509,8 @@ impl Dynamics {
         let path = mesh.path(bar, x);
         let along = if on_segment { path.direction } else { path.direction + mesh.path(node, x).direction };
         let sense = if gap.normal.dot(&perp(along)) > 0.0 { -1.0 } else { 1.0 };
-        // A cable folded back on itself at an obstacle runs neither way round it, one that is bent away from it hits it
-        // with a node.
+        // A cable folded back on itself at an obstacle runs neither way round it, one that is bent
+        // away from it hits it with a node.
         if !on_segment && (along.norm() < FOLD_DIRECTION_SUM || self.turn(node) * sense < 0.0) {
             return None;
         }
@@ -534,8 +550,9 @@ impl Dynamics {
         Some((bar, arc_length, sliding))
     }
 
-    /// Whether the bend of a cable under a tension (N) is longer than bars are: then nodes that move with their material show it, and a
-    /// sliding node, which carries no moment, would leave it out.
+    /// Whether the bend of a cable under a tension (N) is longer than bars are: then nodes that
+    /// move with their material show it, and a sliding node, which carries no moment, would leave
+    /// it out.
     pub(in crate::model::fem) fn bends_visibly(&self, tension: f64) -> bool {
         let stiffness = self.mesh.bending_stiffness;
         let least = self.meshing.bar_weight + stiffness / (self.problem.length * self.problem.length);
@@ -590,7 +607,8 @@ impl Dynamics {
             let path = self.mesh.path(e, x);
             let unwound = path.arcs.iter().any(|&a| a < -0.1);
             if length > LONGEST_BAR_FRACTION * even && path.straight > 0.8 * LONGEST_BAR_FRACTION * even && !unwound {
-                // Even pieces, the straight part permitting; beside a sliding node the odd piece is its.
+                // Even pieces, the straight part permitting; beside a sliding node the odd piece is
+                // its.
                 let slides = [e, e + 1].map(|k| self.mesh.sliding[k].is_some());
                 let part = match slides {
                     [false, true] => even,

@@ -9,7 +9,8 @@ use crate::model::fem::mesh::tangent_path::End;
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
 const MARK_TOLERANCE: f64 = 1e-9;
 
-/// An arc of more than this (rad) from the tangent to the first mark gets another mark, in the middle of it.
+/// An arc of more than this (rad) from the tangent to the first mark gets another mark, in the
+/// middle of it.
 pub(in crate::model::fem) const MARKED_ARC_LIMIT: f64 = 0.8;
 
 /// Rounds with less than this part of an even bar on them keep one mark.
@@ -19,8 +20,9 @@ pub(in crate::model::fem) const ONE_MARK_BAR_FRACTION: f64 = 0.3;
 const SERIES_LOG_RATIO: f64 = 1e-4;
 
 impl Dynamics {
-    /// Moves the mark of a round with one node to where the arc is strained as a whole as friction would strain it: in its middle where
-    /// nothing rubs. In motion the material between the old mark and the new one is that of the bar that it leaves, whose strain stays.
+    /// Moves the mark of a round with one node to where the arc is strained as a whole as friction
+    /// would strain it: in its middle where nothing rubs. In motion the material between the old
+    /// mark and the new one is that of the bar that it leaves, whose strain stays.
     pub(in crate::model::fem) fn move_marks(&mut self, rests: bool) -> bool {
         let mut moved = false;
         for k in 1..self.mesh.nodes().saturating_sub(1) {
@@ -87,7 +89,8 @@ impl Dynamics {
             let shared = [k - 1, k + 1].map(|j| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
             let x = &self.motion.x;
             let arcs = [self.mesh.path(k - 1, x).arcs[1], self.mesh.path(k, x).arcs[0]];
-            // On a large round the marks of a cable at rest are as far apart as nodes elsewhere: what friction holds is known between marks only.
+            // On a large round the marks of a cable at rest are as far apart as nodes elsewhere:
+            // what friction holds is known between marks only.
             let spacing =
                 if rests { smaller(0.5 * MARKED_ARC_LIMIT, even / node.end.radius) } else { 0.5 * MARKED_ARC_LIMIT };
             let big = |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > ONE_MARK_BAR_FRACTION * even;
@@ -124,8 +127,9 @@ impl Dynamics {
     }
 }
 
-/// The part of an arc before its mark: with the tension T₁ of one bar before it and T₂ of the other behind it the arc is as long as with a
-/// tension whose logarithm changes evenly, T₁ e^{−xu}, 0 ≤ u ≤ 1:
+/// The part of an arc before its mark: with the tension T₁ of one bar before it and T₂ of the other
+/// behind it the arc is as long as with a tension whose logarithm changes evenly, T₁ e^{−xu}, 0 ≤ u
+/// ≤ 1:
 /// ```text
 /// f T₁ + (1 − f) T₂ = T₁ (1 − e^{−x})/x,   x = ln T₁/T₂,      f = 1/x − 1/(eˣ − 1)
 /// ```

@@ -1,4 +1,5 @@
-//! An edit puts a node into a mesh or takes one out: material, place and momentum of what stays do not change.
+//! An edit puts a node into a mesh or takes one out: material, place and momentum of what stays do
+//! not change.
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;
@@ -68,7 +69,8 @@ impl Dynamics {
         }
     }
 
-    /// Takes a node out that moves with its material. Its neighbours, where they are free, go on with its momentum, now and before.
+    /// Takes a node out that moves with its material. Its neighbours, where they are free, go on
+    /// with its momentum, now and before.
     fn remove_plain(&mut self, k: usize) {
         let beside = [k - 1, k + 1].map(|j| self.mesh.sliding.get(j).copied().flatten());
         let Some(round) = beside.into_iter().flatten().next() else { return self.merge(k) };

@@ -1,19 +1,23 @@
 //! The active set predicts the contacts that a Newton step is about to make.
 //!
-//! The barrier is felt from a gap of d̂ on only. A Newton step that knows nothing of what lies beyond runs into it, is cut
-//! where the first node would touch, and the next runs into the next node: where a cable comes down on the ground a step
-//! took as many iterations as nodes landed. So what the step δ would carry past its landing gap g* is made to stop there,
-//! and the step is found again:
+//! The barrier is felt from a gap of d̂ on only. A Newton step that knows nothing of what lies
+//! beyond runs into it, is cut where the first node would touch, and the next runs into the next
+//! node: where a cable comes down on the ground a step took as many iterations as nodes landed. So
+//! what the step δ would carry past its landing gap g* is made to stop there, and the step is found
+//! again:
 //! ```text
 //! min ½ δᵀHδ + gᵀδ   subject to   n·δc + r ≥ −(g − g*)    for each contact ahead, c its point
 //! ```
-//! with the violated constraints as stiff springs, added until there are no more. r is what the gap changes beside its slope
-//! (`stop`), taken at the step found last: a bar that slides along a corner turns, and straight on it would run into the corner however
-//! much its gap opens at first (a second-order correction: N. Maratos, "Exact penalty function algorithms for finite
-//! dimensional and control optimization problems", thesis, University of London, 1978; R. Fletcher, "Second order
-//! corrections for non-differentiable optimization", Lecture Notes in Mathematics 912, 1982). Without it a taut cable that a hand draws
-//! round a corner goes a hundredth of its way in each iteration. With r = 0 the step δ = 0 keeps every constraint, so what is found goes
-//! downhill; with r it may not, and the step without constraints is then taken as far as it is free.
+//! with the violated constraints as stiff springs, added until there are no more. r is what the gap
+//! changes beside its slope (`stop`), taken at the step found last: a bar that slides along a
+//! corner turns, and straight on it would run into the corner however much its gap opens at first
+//! (a second-order correction: N. Maratos, "Exact penalty function algorithms for finite
+//! dimensional and control optimization problems", thesis, University of London, 1978; R. Fletcher,
+//! "Second order corrections for non-differentiable optimization", Lecture Notes in Mathematics
+//! 912, 1982). Without it a taut cable that a hand draws round a corner goes a hundredth of its way
+//! in each iteration. With r = 0 the step δ = 0 keeps every constraint, so what is found goes
+//! downhill; with r it may not, and the step without constraints is then taken as far as it is
+//! free.
 
 use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
@@ -26,20 +30,22 @@ use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::Coupling;
 
-/// Rounds of adding constraints. More find nothing new where a front of contact runs along the cable.
+/// Rounds of adding constraints. More find nothing new where a front of contact runs along the
+/// cable.
 const MAX_ROUNDS: usize = 6;
 
 /// Part of a Newton step that may be free without looking for what is in its way.
 const FREE_STEP_FRACTION: f64 = 0.99;
 
-/// Least descent of a step held by contacts ahead, part of that of the free one. Less: steps that only bend round corners and gain nothing;
-/// more: good ones are given up.
+/// Least descent of a step held by contacts ahead, part of that of the free one. Less: steps that
+/// only bend round corners and gain nothing; more: good ones are given up.
 const LEAST_DESCENT_FRACTION: f64 = 0.1;
 
 /// Landing gap, part of the barrier's reach: about where the barrier holds a node that lands.
 const LANDING_GAP_FRACTION: f64 = 0.5;
 
-/// Part of its gap that a contact within the barrier may lose in one step: less than the search of the step lets it.
+/// Part of its gap that a contact within the barrier may lose in one step: less than the search of
+/// the step lets it.
 const GAP_LOSS_FRACTION: f64 = 0.45;
 
 /// What a step is about to touch.
@@ -104,8 +110,8 @@ impl PredictedContacts {
         contacts.find_within(problem, mesh, x, contacts.barrier.reach + longest(direction), &mut self.touches);
     }
 
-    /// Solves again, with contacts ahead as constraints; `system` is pinned, and `direction` the step that ran into them.
-    /// Where that fails `direction` stays as it is.
+    /// Solves again, with contacts ahead as constraints; `system` is pinned, and `direction` the
+    /// step that ran into them. Where that fails `direction` stays as it is.
     pub(in crate::model::fem) fn solve(
         &mut self,
         context: &StepContext<'_>,
@@ -207,8 +213,8 @@ mod tests {
 
     const STEP: f64 = 1.0 / 240.0;
 
-    /// A loose cable of 10 m and 100 bars in the air, in a slight wave above a floor, at 5 m/s downwards: it lands all along
-    /// its length in the next step, here sooner and there later.
+    /// A loose cable of 10 m and 100 bars in the air, in a slight wave above a floor, at 5 m/s
+    /// downwards: it lands all along its length in the next step, here sooner and there later.
     fn about_to_land() -> Dynamics {
         let mut scene = catalog::hanging_span();
         let shape = Shape::Terrain { points_m: vec![[-5.0, 0.0], [15.0, 0.0]] };

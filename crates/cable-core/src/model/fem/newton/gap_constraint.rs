@@ -6,8 +6,8 @@ use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::{Coupling, couple};
 
-/// Stiffness of a constraint in units of the largest stiffness at its nodes. Softer: nodes still run into the barrier; much
-/// harder: rounding.
+/// Stiffness of a constraint in units of the largest stiffness at its nodes. Softer: nodes still
+/// run into the barrier; much harder: rounding.
 const HARDNESS: f64 = 1e5;
 
 /// Change of the way a constraint leaves, in gaps left, that is not followed.
@@ -79,7 +79,8 @@ impl Stop {
         self.shares.iter().map(|&(k, part)| self.normal.dot(&at(k)) * part).sum()
     }
 
-    /// How much more than that it opens, m: a bar that turns while it slides along a corner comes nearer to it.
+    /// How much more than that it opens, m: a bar that turns while it slides along a corner comes
+    /// nearer to it.
     ///
     /// With e = b − a the distance of p from the line is ± e × (p − a)/|e|, whatever the step.
     fn bend(&self, x: &[Vec2], step: &[f64]) -> f64 {
@@ -101,8 +102,8 @@ impl Stop {
         (then - now) * now.signum() - self.opening(step)
     }
 
-    /// Holds a contact that a step would pass, by a spring ½ K (n·δc − way)²; a held one follows what the step bends. Returns whether
-    /// the matrix changed, and whether anything did.
+    /// Holds a contact that a step would pass, by a spring ½ K (n·δc − way)²; a held one follows
+    /// what the step bends. Returns whether the matrix changed, and whether anything did.
     pub fn hold(
         &mut self,
         system: &mut System,

@@ -1,11 +1,13 @@
-//! This solver minimises the energy of one implicit step by Newton's method with a banded factor and steps that cross nothing.
+//! This solver minimises the energy of one implicit step by Newton's method with a banded factor
+//! and steps that cross nothing.
 //!
 //! ```text
 //! Φ(x) = ½ Σ mᵢ a² |xᵢ − x̃ᵢ|² + E(x) − Σ fᵢ·xᵢ + Σ w B(g(x)) + Σ D(y(x))
 //! ```
-//! with a = α₀/h of the integrator and x̃ what its history predicts (a = 0 for a step without inertia), and, where the cable can touch
-//! nothing, −½ mₑ a² |(x₂ − x₁) − (x̃₂ − x̃₁)|² for each bar (see `mass`). Damping
-//! of a bar with time constant τ is a second bar of stiffness EA τ a whose rest length is the one predicted.
+//! with a = α₀/h of the integrator and x̃ what its history predicts (a = 0 for a step without
+//! inertia), and, where the cable can touch nothing, −½ mₑ a² |(x₂ − x₁) − (x̃₂ − x̃₁)|² for each
+//! bar (see `mass`). Damping of a bar with time constant τ is a second bar of stiffness EA τ a
+//! whose rest length is the one predicted.
 
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
@@ -29,26 +31,30 @@ const DECREASE: f64 = 1e-4;
 /// Line search halvings before the step is given up.
 const MAX_HALVINGS: usize = 30;
 
-/// Unbalanced force, in tolerances, that is accepted where iterating gains nothing more: 3e-5 of the whole load.
+/// Unbalanced force, in tolerances, that is accepted where iterating gains nothing more: 3e-5 of
+/// the whole load.
 const STALLED_RESIDUAL_TOLERANCES: f64 = 30.0;
 
 /// Energies are trusted to this part of the sum of their magnitudes.
 const ENERGY_NOISE: f64 = 1e-13;
 
-/// Part of force times coordinate that counts as magnitude: times `ENERGY_NOISE` four roundings of the coordinate. With
-/// none, a stiff pendulum's last iteration is lost in the rounding of 98 N times 1 m and its step is halved for nothing.
+/// Part of force times coordinate that counts as magnitude: times `ENERGY_NOISE` four roundings of
+/// the coordinate. With none, a stiff pendulum's last iteration is lost in the rounding of 98 N
+/// times 1 m and its step is halved for nothing.
 pub const WORK_MAGNITUDE_FRACTION: f64 = 0.01;
 
-/// Rounding of a gap, part of the coordinates it is worked out from. Smaller: a cable squeezed to a gap of 1e-7 m fails for
-/// 0.01 N in 1e6; larger: contact forces are known worse than they could be.
+/// Rounding of a gap, part of the coordinates it is worked out from. Smaller: a cable squeezed to a
+/// gap of 1e-7 m fails for 0.01 N in 1e6; larger: contact forces are known worse than they could
+/// be.
 const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Unbalanced force of a stretch of cable at rest, in tolerances: those of its nodes add up. More: the laws, which ask this of stretches to 1e-5 of
-/// the forces, refuse steps; less: iterations for nothing that shows.
+/// Unbalanced force of a stretch of cable at rest, in tolerances: those of its nodes add up. More:
+/// the laws, which ask this of stretches to 1e-5 of the forces, refuse steps; less: iterations for
+/// nothing that shows.
 pub(in crate::model::fem) const DRIFT: f64 = 4.0;
 
-/// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag that could have got there;
-/// more: iterations spent on what the next step does as well.
+/// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag
+/// that could have got there; more: iterations spent on what the next step does as well.
 const MAX_PUSHES: usize = 12;
 
 /// What the solve of a step reads: cable, mesh, contacts, and the input of the step.
@@ -72,7 +78,8 @@ pub(in crate::model::fem) struct Residual {
     pub(in crate::model::fem) node: usize,
     /// In parts of what is accepted there.
     pub(in crate::model::fem) excess: f64,
-    /// The greatest force (N) that adds up along a stretch, in parts of what may add up for one force left at a node.
+    /// The greatest force (N) that adds up along a stretch, in parts of what may add up for one
+    /// force left at a node.
     drift: f64,
 }
 
@@ -81,9 +88,9 @@ pub(in crate::model::fem) struct Residual {
 pub(in crate::model::fem) struct Rounding {
     /// Rounding of the largest force by its stiffness, N.
     pub(in crate::model::fem) noise: f64,
-    /// The force that opening the gap by its rounding relieves, N, where it is more than the tolerance.
-    /// It is never all of the force: a step in motion that had come to a gap below its own rounding
-    /// was taken for balanced, with 2e11 N of contact and nothing to hold them.
+    /// The force that opening the gap by its rounding relieves, N, where it is more than the
+    /// tolerance. It is never all of the force: a step in motion that had come to a gap below its
+    /// own rounding was taken for balanced, with 2e11 N of contact and nothing to hold them.
     relief: f64,
     /// Unbalanced force accepted in any case, N.
     tolerance: f64,
@@ -124,7 +131,8 @@ pub struct Workspace {
     pub(in crate::model::fem) ahead: PredictedContacts,
     /// Pulls carried as unknowns; empty: those of the present lengths.
     pub(in crate::model::fem) carried: Vec<bar_energy::Carried>,
-    /// Branches of the friction of `rubs`, where that is being found out; empty: those of the present pose.
+    /// Branches of the friction of `rubs`, where that is being found out; empty: those of the
+    /// present pose.
     pub(in crate::model::fem) branches: Vec<friction::Branch>,
     /// How far each has slid before an iteration, m.
     pub(in crate::model::fem) slid: Vec<f64>,
@@ -179,7 +187,8 @@ impl Workspace {
         })
     }
 
-    /// Gradient of the last assembly, N: at a held node minus the force of the cable on what holds it.
+    /// Gradient of the last assembly, N: at a held node minus the force of the cable on what holds
+    /// it.
     #[must_use]
     pub fn gradient_at(&self, node: usize) -> Vec2 {
         self.system.gradient_at(node)
@@ -237,7 +246,8 @@ impl Workspace {
                 s.add_gradient(i, (away * k - task.force[i]) * scale);
                 s.hessian.add(2 * i, 2 * i, k * scale);
                 s.hessian.add(2 * i + 1, 2 * i + 1, k * scale);
-                // Work is measured from the start of the step, so that its size is that of the change.
+                // Work is measured from the start of the step, so that its size is that of the
+                // change.
                 (0.5 * k * away.norm_squared(), task.force[i].dot(&(x[i] - task.start[i])))
             };
             value += scale * (kinetic - work);
@@ -269,11 +279,13 @@ impl Workspace {
         value
     }
 
-    /// The unbalanced force (N) that is farthest beyond what is accepted, where, and by how many times: the tolerance, or where contact forces are
-    /// known no better their rounding. At rest what is left at the nodes of a stretch adds up to a force of its own.
+    /// The unbalanced force (N) that is farthest beyond what is accepted, where, and by how many
+    /// times: the tolerance, or where contact forces are known no better their rounding. At rest
+    /// what is left at the nodes of a stretch adds up to a force of its own.
     pub(in crate::model::fem) fn residual(&self, mesh: &Mesh, task: &StepInput) -> Residual {
         let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
-        // On the way to a rest any force may be hidden, for what is laid in touch begins there, and where an outline squeezes the cable.
+        // On the way to a rest any force may be hidden, for what is laid in touch begins there, and
+        // where an outline squeezes the cable.
         let hidden = if task.moves && !task.outlined { self.rounding.relief } else { self.rounding.noise };
         let known = smaller(hidden, task.most_noise);
         let accepted = larger(task.tolerance, known);
@@ -371,7 +383,8 @@ impl Workspace {
                 return failed(FailureCause::EnergyNotFinite);
             }
             let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != pose.x[k]);
-            // A support that squeezes the cable harder than numbers can tell has come as far as it can.
+            // A support that squeezes the cable harder than numbers can tell has come as far as it
+            // can.
             let squeezed = left && task.may_lag && self.rounding.noise > task.tolerance;
             if squeezed {
                 self.goal.clone_from(&pose.x);
@@ -450,8 +463,8 @@ impl Workspace {
         }
     }
 
-    /// Moves `pose` along the direction as far as is free and lowers Φ; None if nothing does. Returns Φ and the part of
-    /// the step taken; the system is assembled there.
+    /// Moves `pose` along the direction as far as is free and lowers Φ; None if nothing does.
+    /// Returns Φ and the part of the step taken; the system is assembled there.
     fn search(&mut self, step: &StepContext<'_>, pose: &mut Pose, descent: Descent) -> Option<(f64, f64)> {
         let StepContext { mesh, task, .. } = *step;
         let Descent { value, slope, supports_move } = descent;
@@ -488,7 +501,8 @@ impl Workspace {
     }
 }
 
-/// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and Hessian, returns the energy, J.
+/// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and
+/// Hessian, returns the energy, J.
 #[inline(never)]
 fn add_coupling(s: &mut System, task: &StepInput, x: &[Vec2]) -> f64 {
     let mut value = 0.0;

@@ -1,12 +1,16 @@
-//! This solver takes a step in contact by Newton's method with the pulls of the bars as unknowns, without line search.
+//! This solver takes a step in contact by Newton's method with the pulls of the bars as unknowns,
+//! without line search.
 //!
-//! As in [`crate::model::fem::newton::mixed_free`] a pull Q follows its linear equation, so that the stiffness across a bar is that of the tension to come
-//! and not of a bar stretched for a moment: the iterations no longer grow with the number of bars. The energy may rise on the
-//! way, so nothing is asked of it (a watchdog: R. Chamberlain, M. Powell, C. Lemarechal, H. Pedersen, "The watchdog
-//! technique for forcing convergence in algorithms for constrained optimization", Mathematical Programming Study 16, 1982). Only gaps
-//! are watched, and that none becomes so small that its force drowns in rounding: nothing else keeps a node from creeping up to an
-//! obstacle by a part of its gap in every iteration. What has not converged after a few iterations is left to the minimiser, from the same start.
-//! Where the cable meets itself the minimiser goes first, and the undamped Newton is tried where it finds nothing.
+//! As in [`crate::model::fem::newton::mixed_free`] a pull Q follows its linear equation, so that
+//! the stiffness across a bar is that of the tension to come and not of a bar stretched for a
+//! moment: the iterations no longer grow with the number of bars. The energy may rise on the way,
+//! so nothing is asked of it (a watchdog: R. Chamberlain, M. Powell, C. Lemarechal, H. Pedersen,
+//! "The watchdog technique for forcing convergence in algorithms for constrained optimization",
+//! Mathematical Programming Study 16, 1982). Only gaps are watched, and that none becomes so small
+//! that its force drowns in rounding: nothing else keeps a node from creeping up to an obstacle by
+//! a part of its gap in every iteration. What has not converged after a few iterations is left to
+//! the minimiser, from the same start. Where the cable meets itself the minimiser goes first, and
+//! the undamped Newton is tried where it finds nothing.
 
 use crate::contact::friction::Branch;
 use crate::energy::Curvature;
@@ -17,21 +21,25 @@ use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::friction_state::ContactSet;
 
-/// Iterations before the minimiser is asked. Fewer: one of its iterations costs as much as five of these, and with 24 eleven steps of a
-/// cable of 1000 bars dropped on a floor came to it, of 336; more: where it is needed after all they are lost.
+/// Iterations before the minimiser is asked. Fewer: one of its iterations costs as much as five of
+/// these, and with 24 eleven steps of a cable of 1000 bars dropped on a floor came to it, of 336;
+/// more: where it is needed after all they are lost.
 const MAX_STEPS: usize = 40;
 
-/// Parts of the push of bars that are counted where all of it makes the matrix indefinite, one after the other. Iterations of a
-/// cable of 1000 bars that drops, over 24 drops, with none of it at once: 15 % more; with 0.5 and none: 2 % more.
+/// Parts of the push of bars that are counted where all of it makes the matrix indefinite, one
+/// after the other. Iterations of a cable of 1000 bars that drops, over 24 drops, with none of it
+/// at once: 15 % more; with 0.5 and none: 2 % more.
 const PUSH_PARTS: [f64; 3] = [0.7, 0.4, 0.0];
 
-/// Part of the first residual with which what was reached is handed on; with more the minimiser begins anew.
+/// Part of the first residual with which what was reached is handed on; with more the minimiser
+/// begins anew.
 const HANDED_ON_RESIDUAL_FRACTION: f64 = 1e-2;
 
 /// Strain that counts as none.
 const ROUNDING: f64 = 1e-12;
 
-/// Part of the sliding at which friction changes from holding to slipping that counts as none: of friction as much.
+/// Part of the sliding at which friction changes from holding to slipping that counts as none: of
+/// friction as much.
 const BRANCH_ROUNDING: f64 = 1e-14;
 
 /// Whether a solve goes on where the cable comes within reach of itself.
@@ -76,8 +84,9 @@ impl Workspace {
         done.map(|d| Converged { iterations: d.iterations + undamped, ..d })
     }
 
-    /// The pose at the end of a step; None where this does not find it, the pose then as it was or not far from it. Unless that
-    /// is allowed the cable must not come within reach of itself on the way.
+    /// The pose at the end of a step; None where this does not find it, the pose then as it was or
+    /// not far from it. Unless that is allowed the cable must not come within reach of itself on
+    /// the way.
     fn undamped_newton(&mut self, step: &StepContext<'_>, self_touch: SelfTouch, pose: &mut Pose) -> Option<Converged> {
         self.begun.x.clone_from(&pose.x);
         self.begun.slide.clone_from(&pose.slide);
@@ -108,7 +117,8 @@ impl Workspace {
         }
     }
 
-    /// Moves a pose that is still where the step began to where its speed carries it, as far as nothing is in the way.
+    /// Moves a pose that is still where the step began to where its speed carries it, as far as
+    /// nothing is in the way.
     fn move_on(&mut self, step: &StepContext<'_>, pose: &mut Pose) {
         let StepContext { mesh, task, .. } = *step;
         if pose.x != task.begins() {
@@ -178,9 +188,10 @@ impl Workspace {
         None
     }
 
-    /// The direction again where bars that push make the matrix indefinite: with less and less of their push counted, until it is
-    /// definite. None of it is what the minimiser takes, but that is a different matrix, far from the equations, and what it finds
-    /// goes to and fro. False where that does not help; the system is pinned, and what it held is lost.
+    /// The direction again where bars that push make the matrix indefinite: with less and less of
+    /// their push counted, until it is definite. None of it is what the minimiser takes, but that
+    /// is a different matrix, far from the equations, and what it finds goes to and fro. False
+    /// where that does not help; the system is pinned, and what it held is lost.
     fn ease(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2]) -> bool {
         if !self.coupling.is_empty() || mesh.bending_stiffness > 0.0 {
             return false;
@@ -218,7 +229,8 @@ impl Workspace {
         false
     }
 
-    /// Whether the bars that count as stretched are those that are, and friction holds and slips where it is taken to.
+    /// Whether the bars that count as stretched are those that are, and friction holds and slips
+    /// where it is taken to.
     fn flags_hold(&self, mesh: &Mesh, contacts: &ContactSet, x: &[Vec2]) -> bool {
         let rubs = contacts.rubs.iter().zip(&self.branches);
         let slip = contacts.slip;
@@ -308,9 +320,11 @@ mod tests {
         d
     }
 
-    /// Landing nodes are thrown together along the floor with forces of kN: where friction was not found by branches, 14 of these
-    /// steps went to and fro until the minimiser was asked. A step in which a node lands is balanced twice, as friction follows the normal forces of
-    /// its own step: 495 iterations and 17 steps of a dozen or more, below 380 and none where friction was that of the step before.
+    /// Landing nodes are thrown together along the floor with forces of kN: where friction was not
+    /// found by branches, 14 of these steps went to and fro until the minimiser was asked. A step
+    /// in which a node lands is balanced twice, as friction follows the normal forces of its own
+    /// step: 495 iterations and 17 steps of a dozen or more, below 380 and none where friction was
+    /// that of the step before.
     #[test]
     fn a_landing_front_is_found_without_the_minimiser() {
         let mut d = dropped(1.0, 100);
@@ -336,8 +350,9 @@ mod tests {
             }
         }
         println!("{whole} iterations, {long} steps left to the minimiser");
-        // Measured: 7087 and 10, as a landing is balanced twice since friction follows the normal forces of its own step. With those of the step before
-        // 4429 and none, from another first rest 4731 and 3; and 6702 and 19 where contacts were thrown across holding.
+        // Measured: 7087 and 10, as a landing is balanced twice since friction follows the normal
+        // forces of its own step. With those of the step before 4429 and none, from another first
+        // rest 4731 and 3; and 6702 and 19 where contacts were thrown across holding.
         assert!(whole < 7800 && long < 16, "{whole} iterations, {long} steps left to the minimiser");
     }
 

@@ -1,4 +1,5 @@
-//! The step bound keeps a step of all nodes short: no node goes too far, nothing is crossed, some cable stays beside sliding nodes.
+//! The step bound keeps a step of all nodes short: no node goes too far, nothing is crossed, some
+//! cable stays beside sliding nodes.
 
 use crate::contact::sweep::Sweep;
 use crate::math::{Vec2, larger};
@@ -6,11 +7,13 @@ use crate::model::fem::mesh::tangent_path::{End, Path};
 use crate::model::fem::newton::minimize::{StepContext, Workspace};
 use crate::model::fem::newton::step_input::{Pose, StepInput};
 
-/// Part of each gap that a Newton step leaves. Smaller: gaps shrink faster than Newton opens them again (with 0.2 twice as many
-/// steps of ends thrown about are halved, five times as many where the cable meets itself); larger: more steps.
+/// Part of each gap that a Newton step leaves. Smaller: gaps shrink faster than Newton opens them
+/// again (with 0.2 twice as many steps of ends thrown about are halved, five times as many where
+/// the cable meets itself); larger: more steps.
 const KEPT_GAP_FRACTION: f64 = 0.5;
 
-/// The same for gaps wider than the barrier's reach, in reaches: a little less than where foreseen contacts land.
+/// The same for gaps wider than the barrier's reach, in reaches: a little less than where foreseen
+/// contacts land.
 const KEPT_REACH_FRACTION: f64 = 0.45;
 
 /// Least part of the cable between a sliding node and its neighbour that one iteration leaves.
@@ -23,8 +26,8 @@ impl Workspace {
         if largest > task.max_move { task.max_move / largest } else { 1.0 }
     }
 
-    /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some cable between sliding
-    /// nodes and their neighbours.
+    /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some
+    /// cable between sliding nodes and their neighbours.
     pub(in crate::model::fem) fn free_way(&mut self, step: &StepContext<'_>, pose: &Pose, fraction: f64) -> f64 {
         let StepContext { problem, mesh, contacts, .. } = *step;
         let (direction, geometry) = (&self.direction, problem.world.geometry());
@@ -65,8 +68,9 @@ impl Workspace {
         contacts.own.shape.free_fraction(&pose.x, &mesh.arc_length, &move_of, limits, &mut self.order)
     }
 
-    /// The same from where the system was assembled last. A step shorter than every gap leaves, whichever way it goes, is free:
-    /// nearly all last iterations are, and sweeps of every bar cost as much as the rest of one.
+    /// The same from where the system was assembled last. A step shorter than every gap leaves,
+    /// whichever way it goes, is free: nearly all last iterations are, and sweeps of every bar cost
+    /// as much as the rest of one.
     pub(in crate::model::fem) fn free_from_here(&mut self, step: &StepContext<'_>, pose: &Pose, fraction: f64) -> f64 {
         let StepContext { mesh, contacts, .. } = *step;
         let still = |k: usize| self.direction[2 * k] == 0.0 && self.direction[2 * k + 1] == 0.0;
@@ -98,7 +102,8 @@ mod tests {
     use crate::scene::{Obstacle, Shape, Support, catalog};
     use proptest::prelude::*;
 
-    /// A cable that lies in a shallow dip, its ends let go. On corners that jut out there would be sliding nodes, which are always looked at.
+    /// A cable that lies in a shallow dip, its ends let go. On corners that jut out there would be
+    /// sliding nodes, which are always looked at.
     fn lying() -> Dynamics {
         let mut scene = catalog::hanging_span();
         let points_m = vec![[-4.0, 0.0], [3.0, -0.1], [11.0, 0.1]];

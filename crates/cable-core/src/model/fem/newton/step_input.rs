@@ -26,15 +26,18 @@ pub struct StepInput {
     pub inertia: Vec<f64>,
     /// x̃, m.
     pub predicted: Vec<Vec2>,
-    /// Of each bar what couples the inertia of its nodes (m a², N/m) and its predicted chord (m); empty: nothing does.
+    /// Of each bar what couples the inertia of its nodes (m a², N/m) and its predicted chord (m);
+    /// empty: nothing does.
     pub coupling: Vec<(f64, Vec2)>,
-    /// Stiffness of the loss of each bar where it is taut, and where it is slack, N: EA τ a of a viscous one (0: no loss).
+    /// Stiffness of the loss of each bar where it is taut, and where it is slack, N: EA τ a of a
+    /// viscous one (0: no loss).
     pub loss: Vec<[f64; 2]>,
     /// EI τ/h, N m² (0: no damping).
     pub bending_damping: f64,
     /// Predicted length of each bar, m.
     pub predicted_length: Vec<f64>,
-    /// Nodes that hands hold by springs, with the stiffness (N/m) and place (m) that these have in this step: a part of inertia and prediction there.
+    /// Nodes that hands hold by springs, with the stiffness (N/m) and place (m) that these have in
+    /// this step: a part of inertia and prediction there.
     pub hands: Vec<(usize, f64, Vec2)>,
     /// External force on each node, N.
     pub force: Vec<Vec2>,
@@ -46,7 +49,8 @@ pub struct StepInput {
     pub outlined: bool,
     /// Where the step began, m.
     pub start: Vec<Vec2>,
-    /// Where the iteration begins, m, where that is not where the step begins: an outline moved; else empty.
+    /// Where the iteration begins, m, where that is not where the step begins: an outline moved;
+    /// else empty.
     pub laid: Vec<Vec2>,
     /// Plan view: largest friction force of each node, N (empty otherwise).
     pub floor_limit: Vec<f64>,
@@ -67,8 +71,9 @@ pub struct StepInput {
 }
 
 impl StepInput {
-    /// What the loss of bar `e` of rest length `l` pulls with at a length `p` (m), and its slope by that, N and N/m: c (P − P̂)/L, and where it
-    /// is slack that of P = L with the slope of a slack bar from there on.
+    /// What the loss of bar `e` of rest length `l` pulls with at a length `p` (m), and its slope by
+    /// that, N and N/m: c (P − P̂)/L, and where it is slack that of P = L with the slope of a slack
+    /// bar from there on.
     #[must_use]
     pub fn loss_at(&self, e: usize, taut: bool, l: f64, p: f64) -> (f64, f64) {
         let [c, slack] = self.loss.get(e).copied().unwrap_or_default();

@@ -1,4 +1,5 @@
-//! The setup of a step collects forces, targets, inertia, damping and stick-slip states at an instant.
+//! The setup of a step collects forces, targets, inertia, damping and stick-slip states at an
+//! instant.
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::{Dynamics, INNER_STEP, REACH};
@@ -14,9 +15,10 @@ use crate::scene::SupportKind;
 /// Unbalanced force accepted, part of the whole load.
 const TOLERANCE: f64 = 1e-6;
 
-/// Time constant of material damping, s, of a cable that may rub, where its own damping ratio does not ask for more. Without it
-/// a soft cable (EA 1e5 N) shows 11 % of axial noise in a drag. A cable that can touch nothing has its own damping alone: of what
-/// a weight that swings 9 times a second pulls beyond itself this would take a twelfth.
+/// Time constant of material damping, s, of a cable that may rub, where its own damping ratio does
+/// not ask for more. Without it a soft cable (EA 1e5 N) shows 11 % of axial noise in a drag. A
+/// cable that can touch nothing has its own damping alone: of what a weight that swings 9 times a
+/// second pulls beyond itself this would take a twelfth.
 const MATERIAL_DAMPING: f64 = 1e-3;
 
 /// Newton iterations of a dynamic step.
@@ -25,16 +27,18 @@ const STEP_ITERATIONS: usize = 120;
 /// Factors of sliding nodes count as found when they change by less than this.
 const SCALE_TOLERANCE: f64 = 1e-9;
 
-/// Friction of the floor for a node counts as found when it changes by less than this part. More: the cones of a report are not those that were
-/// solved for (the checker asks for 1e-3); less: rounds of what moves by rounding.
+/// Friction of the floor for a node counts as found when it changes by less than this part. More:
+/// the cones of a report are not those that were solved for (the checker asks for 1e-3); less:
+/// rounds of what moves by rounding.
 const FLOOR_FRICTION_TOLERANCE: f64 = 1e-6;
 
-/// Forces at a sliding node within this part of each other are equal: the law is read off bars, whose tension is
-/// known to the residual only.
+/// Forces at a sliding node within this part of each other are equal: the law is read off bars,
+/// whose tension is known to the residual only.
 const EVEN_FORCE: f64 = 1e-7;
 
-/// Part of the greatest friction of a sliding node by which its friction may differ from that of its turn and grip after a step. Less: rounds for
-/// nothing that shows; more: friction beyond its cone (the checker asks for 1e-3 of the normal force).
+/// Part of the greatest friction of a sliding node by which its friction may differ from that of
+/// its turn and grip after a step. Less: rounds for nothing that shows; more: friction beyond its
+/// cone (the checker asks for 1e-3 of the normal force).
 const LAWFUL: f64 = 2e-4;
 
 /// What a pose says of the friction of sliding nodes with which it was found.
@@ -64,7 +68,8 @@ impl Dynamics {
         StepContext { problem: &self.problem, mesh: &self.mesh, contacts: &self.contacts, task: &self.task }
     }
 
-    /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go where `dragged` says.
+    /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go
+    /// where `dragged` says.
     pub(in crate::model::fem) fn prepare_task(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
         self.prepare_step([to, to], dragged);
     }
@@ -104,7 +109,8 @@ impl Dynamics {
             {
                 let drawn = dragged.and_then(|d| d.get(k).copied().flatten());
                 let at = self.motion.followers[k].map_or(drawn.unwrap_or(at), |f| f.position());
-                // What was stopped and is free again catches up no faster than this beyond its own motion, which is followed exactly.
+                // What was stopped and is free again catches up no faster than this beyond its own
+                // motion, which is followed exactly.
                 let own = s.place_at(from).map_or(0.0, |(before, _)| (at - before).norm());
                 let most = if self.motion.followers[k].is_some() { 0.0 } else { own } + MAX_SPEED * (to - from);
                 let at = if to > from { within(self.motion.x[node], at, most) } else { at };
@@ -170,7 +176,8 @@ impl Dynamics {
         self.motion.x = x;
     }
 
-    /// Plan view: the friction that the floor has for each node where the cable lies now; returns whether any of it changed.
+    /// Plan view: the friction that the floor has for each node where the cable lies now; returns
+    /// whether any of it changed.
     fn press_on_floor(&mut self, x: &[Vec2], slide: Option<&[f64]>) -> bool {
         let Some((friction, normal)) = self.problem.floor_friction else {
             self.task.floor_limit.clear();
@@ -200,9 +207,10 @@ impl Dynamics {
         }
     }
 
-    /// Reads turn and grip of every sliding node off a pose and says how that differs from what the pose was found with. Where `one` is set
-    /// only the first of the grips that are wrong is changed, and turns half of the way: nearly slack bars hang from a round, and turn over it by the
-    /// more the less they pull.
+    /// Reads turn and grip of every sliding node off a pose and says how that differs from what the
+    /// pose was found with. Where `one` is set only the first of the grips that are wrong is
+    /// changed, and turns half of the way: nearly slack bars hang from a round, and turn over it by
+    /// the more the less they pull.
     ///
     /// What slid the wrong way until its grip was seen to be wrong has not slid at all.
     pub(in crate::model::fem) fn update_grips(&mut self, pose: &mut Pose, one: bool) -> StickSlipChanges {
@@ -250,7 +258,8 @@ impl Dynamics {
         grips
     }
 
-    /// Parts of the weight of the bars beside sliding node `k` on rounds that may act there, at positions (m).
+    /// Parts of the weight of the bars beside sliding node `k` on rounds that may act there, at
+    /// positions (m).
     fn parts_that_lie(&self, k: usize, x: &[Vec2]) -> [f64; 2] {
         let mesh = &self.mesh;
         [k - 1, k].map(|e| {
@@ -260,7 +269,8 @@ impl Dynamics {
         })
     }
 
-    /// Whether the cable is flexible and nothing but its supports can touch it on the way to places `to` (m).
+    /// Whether the cable is flexible and nothing but its supports can touch it on the way to places
+    /// `to` (m).
     fn moves_freely(&self, to: &[Vec2]) -> bool {
         let slides = !self.meshing.never_slides && self.mesh.sliding.iter().any(Option::is_some);
         !slides
@@ -316,8 +326,8 @@ fn within(from: Vec2, to: Vec2, most: f64) -> Vec2 {
     if distance > most { from + way * (most / distance) } else { to }
 }
 
-/// Gap (m) that a support keeps from what it is driven against. The bar beside it presses there with hardly a lever: nearer,
-/// and its normal force, 1e14 N at 1e-8 m, is all that Newton sees.
+/// Gap (m) that a support keeps from what it is driven against. The bar beside it presses there
+/// with hardly a lever: nearer, and its normal force, 1e14 N at 1e-8 m, is all that Newton sees.
 const SUPPORT_GAP: f64 = 0.2 * REACH;
 
 /// Rounding of a gap, m.
@@ -335,7 +345,8 @@ pub(in crate::model::fem) fn clear_way(problem: &Problem, from: Vec2, to: Vec2) 
         return to;
     }
     let gap = |p: Vec2| problem.world.signed_gap(p, SUPPORT_GAP).map_or(SUPPORT_GAP, |g| g.gap_m);
-    // A support that the scene puts on a surface may stay on it; none may come nearer than it stands.
+    // A support that the scene puts on a surface may stay on it; none may come nearer than it
+    // stands.
     let least = gap(from) - GAP_ROUNDING;
     let free = problem.world.free_fraction([from, from], [to, to], KEPT_SUPPORT_GAP_FRACTION);
     let mut part = if free >= 1.0 { 1.0 } else { free };
@@ -364,8 +375,9 @@ pub(in crate::model::fem) fn tolerance(problem: &Problem, whole: f64) -> f64 {
     (TOLERANCE * whole).max(rounding)
 }
 
-/// Time constant of viscous loss, s: that of the damping ratio at the first axial mode of the whole cable, and where it `rubs` no less than
-/// [`MATERIAL_DAMPING`]. Taut bars of a cable that can touch nothing have relaxation branches in its place (`loss`).
+/// Time constant of viscous loss, s: that of the damping ratio at the first axial mode of the whole
+/// cable, and where it `rubs` no less than [`MATERIAL_DAMPING`]. Taut bars of a cable that can
+/// touch nothing have relaxation branches in its place (`loss`).
 pub(in crate::model::fem) fn damping_time(problem: &Problem, rubs: bool) -> f64 {
     let wave = (problem.axial_stiffness / problem.linear_density).sqrt();
     let first_mode = std::f64::consts::PI * wave / problem.damped_length;

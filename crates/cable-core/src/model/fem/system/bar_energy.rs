@@ -1,15 +1,16 @@
-//! The energy of a bar in a step consists of stretching, damping, and the weight that its material carries along.
+//! The energy of a bar in a step consists of stretching, damping, and the weight that its material
+//! carries along.
 //!
 //! With P the length of its way and L its unstretched length, ε = P/L − 1:
 //! ```text
 //! E = ½ EA L ε²,     ∂E/∂P = T = EA ε,      ∂E/∂L = −Θ = −(T + ½ T ε),
 //! ∂²E/∂P² = EA/L,    ∂²E/∂P∂L = −EA P/L²,   ∂²E/∂L² = EA P²/L³
 //! ```
-//! At a node that moves with the material P depends on where the node is; at a sliding node L depends on its slide.
-//! The weight of the bar acts at the centroid c of its way (`bar_weight.rs`), so a change δL of the material adds −b·(c − x₀) δL, with x₀
-//! the sliding node it came through.
-//! Viscous loss with time constant τ is a second bar of stiffness EA τ a whose strain is measured from the one predicted; so is that of
-//! relaxation branches in a taut bar (`loss.rs`).
+//! At a node that moves with the material P depends on where the node is; at a sliding node L
+//! depends on its slide. The weight of the bar acts at the centroid c of its way (`bar_weight.rs`),
+//! so a change δL of the material adds −b·(c − x₀) δL, with x₀ the sliding node it came through.
+//! Viscous loss with time constant τ is a second bar of stiffness EA τ a whose strain is measured
+//! from the one predicted; so is that of relaxation branches in a taut bar (`loss.rs`).
 
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
@@ -18,9 +19,10 @@ use crate::model::fem::newton::step_input::{Pose, StepInput};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::bar_weight::Weight;
 
-/// EA with which a bar resists at its length, N: a flexible one only pulls, as it gives way sideways between its nodes instead of
-/// pushing. With any part of EA slack cables stand in arches on the ground and push their supports (a hundredth: 5.7 kN of a power
-/// cable that lies loose). A cable with bending stiffness does push.
+/// EA with which a bar resists at its length, N: a flexible one only pulls, as it gives way
+/// sideways between its nodes instead of pushing. With any part of EA slack cables stand in arches
+/// on the ground and push their supports (a hundredth: 5.7 kN of a power cable that lies loose). A
+/// cable with bending stiffness does push.
 #[must_use]
 pub fn stiffness(mesh: &Mesh, stretched: bool) -> f64 {
     if stretched || !mesh.is_flexible() { mesh.axial_stiffness } else { 0.0 }
@@ -41,8 +43,9 @@ pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
     mesh.rest_length[e] + mesh.thermal_stretch * (slide[e + 1] - slide[e])
 }
 
-/// What a bar pulls at the material of the sliding node at its start (`j` 0) or end (1), as the slope of its energy by the slide of that node
-/// sees it (without the factor of its energy), N: Θ, the loss, and the weight that comes over with the material.
+/// What a bar pulls at the material of the sliding node at its start (`j` 0) or end (1), as the
+/// slope of its energy by the slide of that node sees it (without the factor of its energy), N: Θ,
+/// the loss, and the weight that comes over with the material.
 #[must_use]
 pub fn pull_at_slide(mesh: &Mesh, task: &StepInput, e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
@@ -68,7 +71,8 @@ pub fn lifted(mesh: &Mesh, body: Vec2, e: usize, j: usize, x: &[Vec2]) -> f64 {
     body.dot(&(Weight::of(mesh, e, &mesh.path(e, x), body).center - x[e + j]))
 }
 
-/// The pull at the present length P of a bar between nodes that move with the material, and its slope by P, N and N/m.
+/// The pull at the present length P of a bar between nodes that move with the material, and its
+/// slope by P, N and N/m.
 #[must_use]
 pub fn pull(mesh: &Mesh, task: &StepInput, e: usize, taut: bool, p: f64) -> (f64, f64) {
     let l = mesh.rest_length[e];
@@ -77,8 +81,9 @@ pub fn pull(mesh: &Mesh, task: &StepInput, e: usize, taut: bool, p: f64) -> (f64
     (stiffness * (p / l - 1.0) + loss, stiffness / l + slope)
 }
 
-/// Adds the bar `e`; returns its energy and the size of what was summed (its rounding counted in), J. The stiffness across
-/// the bar is that of the pull `carried`, if there is one, not that of its present length.
+/// Adds the bar `e`; returns its energy and the size of what was summed (its rounding counted in),
+/// J. The stiffness across the bar is that of the pull `carried`, if there is one, not that of its
+/// present length.
 pub fn add(
     s: &mut System,
     mesh: &Mesh,
@@ -150,7 +155,8 @@ fn add_sliding(
     let carried = mesh.thermal_stretch;
     let hung = Weight::of(mesh, e, &path, task.body);
     let sign = [-1.0, 1.0];
-    // Work is measured from the sliding node itself: with friction the two sides of it count differently.
+    // Work is measured from the sliding node itself: with friction the two sides of it count
+    // differently.
     let weight = [0, 1].map(|j| if slides[j] { task.body.dot(&(hung.center - pose.x[e + j])) } else { 0.0 });
     // Generalised directions of P and of L, and of the weight's lever, at both ends.
     let along = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { t * sign[j] });

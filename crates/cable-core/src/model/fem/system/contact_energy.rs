@@ -25,8 +25,9 @@ pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &ContactPair, gradient: Vec2
     }
 }
 
-/// The barrier of one touch; returns its energy (J) and its stiffness where it weighs one (N/m). Its distance d from the corner has curvature (θ the turn of the segment, u its
-/// direction, c the touching point, all linear in the nodes):
+/// The barrier of one touch; returns its energy (J) and its stiffness where it weighs one (N/m).
+/// Its distance d from the corner has curvature (θ the turn of the segment, u its direction, c the
+/// touching point, all linear in the nodes):
 /// ```text
 /// node:     ∇²d = (I − n nᵀ)/d  at a corner, 0 at an edge
 /// segment:  ∇²d = −(θ qᵀ + q θᵀ) − d θ θᵀ,   q = u·δc,   θ = n·(δb − δa)/l
@@ -79,7 +80,8 @@ pub fn add_touch(
     (b.value * weight, b.curvature)
 }
 
-/// Friction of the contacts with obstacles, on these branches or, where there are none, where it is; returns its energy, J.
+/// Friction of the contacts with obstacles, on these branches or, where there are none, where it
+/// is; returns its energy, J.
 pub fn add_rubs(
     s: &mut System,
     mesh: &Mesh,

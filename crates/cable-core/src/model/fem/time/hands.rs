@@ -1,4 +1,5 @@
-//! Hands draw supports in a step with inertia: by a spring, which is a force on a node, or the support itself.
+//! Hands draw supports in a step with inertia: by a spring, which is a force on a node, or the
+//! support itself.
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;

@@ -1,4 +1,5 @@
-//! The history holds where the cable is and how it moves, and the checkpoint to which a failed step returns.
+//! The history holds where the cable is and how it moves, and the checkpoint to which a failed step
+//! returns.
 
 use crate::math::RigidPose;
 use crate::math::{Vec2, cross, perp};
@@ -20,7 +21,8 @@ pub(in crate::model::fem) struct Motion {
     pub(in crate::model::fem) v_older: Vec<Vec2>,
     /// Arc length at sliding nodes one step ago, m.
     pub(in crate::model::fem) s_before: Vec<f64>,
-    /// What the relaxation branches of each bar pull with, one bar after the other, N; empty: nothing (see `loss`).
+    /// What the relaxation branches of each bar pull with, one bar after the other, N; empty:
+    /// nothing (see `loss`).
     pub(in crate::model::fem) branch: Vec<f64>,
     /// Rate of the arc length at sliding nodes, m/s.
     pub(in crate::model::fem) w: Vec<f64>,
@@ -75,16 +77,17 @@ pub(in crate::model::fem) struct Checkpoint {
     reaction: Vec<Vec2>,
 }
 
-/// How far (parts of a bar) the middle of a fold is moved aside. Less: the fold opens later than it would; more: its bars are
-/// stretched by half of the square of it.
+/// How far (parts of a bar) the middle of a fold is moved aside. Less: the fold opens later than it
+/// would; more: its bars are stretched by half of the square of it.
 const ASIDE: f64 = 1e-4;
 
 /// Sine of the turn off a line below which a fold lies in it.
 const FOLD_LINE_SINE: f64 = 1e-6;
 
 impl Dynamics {
-    /// Moves the middle of each fold that lies in one line a little aside, as a motion begins. In the line itself a bar would
-    /// have to pass through no length to turn over: a weight that fell beside its slack cable hung in the fold.
+    /// Moves the middle of each fold that lies in one line a little aside, as a motion begins. In
+    /// the line itself a bar would have to pass through no length to turn over: a weight that fell
+    /// beside its slack cable hung in the fold.
     pub(in crate::model::fem) fn open_folds(&mut self) {
         let (mesh, x) = (&self.mesh, &mut self.motion.x);
         for k in 1..x.len().saturating_sub(1) {

@@ -4,8 +4,9 @@
 //! ```text
 //! Δp = F/a + (past − older) Δp₋ − older Δp₌
 //! ```
-//! so that the impulse of each kind of force is filtered as their sum is. What a round does to the cable that runs over it is what bends its way:
-//! the pull of the bars beside it, and the change of the momentum of what lies on it and of what goes over it.
+//! so that the impulse of each kind of force is filtered as their sum is. What a round does to the
+//! cable that runs over it is what bends its way: the pull of the bars beside it, and the change of
+//! the momentum of what lies on it and of what goes over it.
 
 use crate::contact::friction;
 use crate::math::Vec2;
@@ -170,7 +171,8 @@ impl Dynamics {
         sum
     }
 
-    /// The forces that a step balanced at a pose, N: on what moves with its material, and the weight of what does not less what carries that.
+    /// The forces that a step balanced at a pose, N: on what moves with its material, and the
+    /// weight of what does not less what carries that.
     pub(in crate::model::fem) fn forces_in_step(&self, pose: &Pose) -> Kinds {
         let (problem, mesh, task, x) = (&self.problem, &self.mesh, &self.task, &pose.x);
         let gravity =
@@ -225,8 +227,9 @@ impl Dynamics {
         sum
     }
 
-    /// Adds the impulses of a step of these weights in which forces (N) were balanced: the step is made, contacts are not yet
-    /// made plastic. `slid` is the momentum of what lay on rounds before (kg m/s), `slide` how far it slid (m).
+    /// Adds the impulses of a step of these weights in which forces (N) were balanced: the step is
+    /// made, contacts are not yet made plastic. `slid` is the momentum of what lay on rounds before
+    /// (kg m/s), `slide` how far it slid (m).
     pub(in crate::model::fem) fn account_for_step(
         &mut self,
         weights: Weights,
@@ -266,7 +269,8 @@ impl Dynamics {
         account.late = [Vec2::zeros(); 4];
     }
 
-    /// A plastic contact of the step of velocities gave the cable so much, and of what the step's contact forces gave it so much is not of its history, N s.
+    /// A plastic contact of the step of velocities gave the cable so much, and of what the step's
+    /// contact forces gave it so much is not of its history, N s.
     pub(in crate::model::fem) fn account_for_landing(&mut self, given: Vec2, forgotten: Vec2) {
         let account = &mut self.motion.account;
         account.add(CONTACTS, given);
@@ -285,7 +289,8 @@ impl Dynamics {
         (account.reached, account.to) = (reached, self.motion.time);
     }
 
-    /// A change of the mesh in which a seat takes hold of material or lets it go: what that does to the momentum it does.
+    /// A change of the mesh in which a seat takes hold of material or lets it go: what that does to
+    /// the momentum it does.
     pub(in crate::model::fem) fn as_of<R>(&mut self, seat: Seat, change: impl FnOnce(&mut Self) -> R) -> R {
         let history = |d: &Self| d.moved_by(&d.motion.v) - d.moved_by(&d.motion.v_before);
         let (before, known) = (self.momentum(), history(self));

@@ -1,8 +1,9 @@
 //! A cable at rest sleeps until something that acts on it changes.
 //!
-//! On rough ground two or three nodes may tremble for ever inside the reach of the barrier. Where no node has left its
-//! place by more than that for a while, and all that acts on the cable is what acted then, nothing more will happen:
-//! the state is kept, speeds are 0 and a step costs a comparison.
+//! On rough ground two or three nodes may tremble for ever inside the reach of the barrier. Where
+//! no node has left its place by more than that for a while, and all that acts on the cable is what
+//! acted then, nothing more will happen: the state is kept, speeds are 0 and a step costs a
+//! comparison.
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::{Dynamics, REACH};
@@ -10,7 +11,8 @@ use crate::model::fem::dynamics::{Dynamics, REACH};
 /// How long a cable must have been still, s. Shorter: a slow swing that turns round may be caught.
 const SLEEP_DELAY_S: f64 = 0.5;
 
-/// How far (m) a node may have moved in that time: five times the reach of the barrier: a trembling contact moves its neighbours by a few.
+/// How far (m) a node may have moved in that time: five times the reach of the barrier: a trembling
+/// contact moves its neighbours by a few.
 const SLEEP_DISTANCE: f64 = 5.0 * REACH;
 
 /// What is watched to know whether the cable is still, and what acted when it fell asleep.
@@ -67,7 +69,8 @@ impl Dynamics {
             && (0..self.task.target.len()).filter(held).all(|k| self.pacing.sleep.target[k] == self.task.target[k])
     }
 
-    /// Whether the cable sleeps on until the time `to` (s), supports dragged by hand to `dragged` (m).
+    /// Whether the cable sleeps on until the time `to` (s), supports dragged by hand to `dragged`
+    /// (m).
     pub(in crate::model::fem) fn sleeps_until(&mut self, to: f64, dragged: &[Option<Vec2>]) -> bool {
         if self.outline_moves() {
             self.pacing.sleep.asleep = false;

@@ -1,28 +1,29 @@
 //! Steps follow how fast a taut cable vibrates.
 //!
-//! BDF2 puts (3x₁ − 4x₀ + x₋)/2h = ẋ − h²/3 x⃛ + … for ẋ, so that a vibration of angular frequency ω comes out slower by
-//! (ωh)²/3 of it, and loses π(ωh)³/2 of its amplitude a period (Hairer, Wanner, "Solving ordinary differential equations
-//! II", 1996, V.1). Even steps have a part of BDF3 and half of that error; it is BDF2's that is reckoned with, for steps that change. The
-//! frequency of a motion is read off it, ω² = Σ m a² / Σ m v² over the last while, a and v without the mean of the cable, which falls or
-//! is carried along.
+//! BDF2 puts (3x₁ − 4x₀ + x₋)/2h = ẋ − h²/3 x⃛ + … for ẋ, so that a vibration of angular frequency
+//! ω comes out slower by (ωh)²/3 of it, and loses π(ωh)³/2 of its amplitude a period (Hairer,
+//! Wanner, "Solving ordinary differential equations II", 1996, V.1). Even steps have a part of BDF3
+//! and half of that error; it is BDF2's that is reckoned with, for steps that change. The frequency
+//! of a motion is read off it, ω² = Σ m a² / Σ m v² over the last while, a and v without the mean
+//! of the cable, which falls or is carried along.
 
 use crate::math::{Vec2, bounded};
 use crate::model::fem::dynamics::Dynamics;
 
-/// The shortest step is this part of the longest, 1/240 s: frequencies up to 17 Hz are exact to 1e-3,
-/// those of 40 Hz to 6e-3. Smaller: a vibrating cable costs more than its vibration is worth; larger:
-/// only lower frequencies are exact.
+/// The shortest step is this part of the longest, 1/240 s: frequencies up to 17 Hz are exact to
+/// 1e-3, those of 40 Hz to 6e-3. Smaller: a vibrating cable costs more than its vibration is worth;
+/// larger: only lower frequencies are exact.
 const SHORTEST_STEP_FRACTION: f64 = 0.125;
 
-/// Vibrations of less than this part of the cable's length are left as they are: what is left over from coming to rest rings at
-/// any frequency, and 0.1 mm in 10 m is no motion that a user sees.
+/// Vibrations of less than this part of the cable's length are left as they are: what is left over
+/// from coming to rest rings at any frequency, and 0.1 mm in 10 m is no motion that a user sees.
 const VIBRATION_FRACTION: f64 = 1e-5;
 
 /// Change of the step from one frame to the next. BDF2 is stable up to 2.4.
 const STEP_CHANGE_LIMIT: f64 = 2.0;
 
-/// What was seen is forgotten with this time, s. Half a period of what needs shorter steps passes in it: with less the step
-/// would be short where a vibration turns and long where it is fastest.
+/// What was seen is forgotten with this time, s. Half a period of what needs shorter steps passes
+/// in it: with less the step would be short where a vibration turns and long where it is fastest.
 const MEMORY: f64 = 0.25;
 
 /// What was seen of the motion, and the step that follows from it.

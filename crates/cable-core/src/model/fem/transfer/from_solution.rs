@@ -1,10 +1,12 @@
-//! This module continues from a solution, of another model or an earlier instant, and keeps what friction holds.
+//! This module continues from a solution, of another model or an earlier instant, and keeps what
+//! friction holds.
 //!
-//! A [`State`] says where a cable is; an answer also says what tension it has. Between two places of the cable with forces
-//! F₁ = T₁t₁ and F₂ = T₂t₂ the obstacles must push with C = F₁ − F₂ − bΔs: N = C·n is the normal force there and C·t friction.
-//! Friction here is a spring of the length ε to an anchor (`contact/friction.rs`), of the force μN(2y/ε − y|y|/ε²): the
-//! sliding y that gives the friction the answer had is what a contact remembers from then on. Corners and posts get their sliding
-//! nodes at once, with the material the answer has there.
+//! A [`State`] says where a cable is; an answer also says what tension it has. Between two places
+//! of the cable with forces F₁ = T₁t₁ and F₂ = T₂t₂ the obstacles must push with C = F₁ − F₂ − bΔs:
+//! N = C·n is the normal force there and C·t friction. Friction here is a spring of the length ε to
+//! an anchor (`contact/friction.rs`), of the force μN(2y/ε − y|y|/ε²): the sliding y that gives the
+//! friction the answer had is what a contact remembers from then on. Corners and posts get their
+//! sliding nodes at once, with the material the answer has there.
 
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
@@ -28,8 +30,8 @@ const ON_ROUND: f64 = 1e-3;
 /// Turn (rad) that one mark can carry: the way to it must not go round the other side.
 const MOST: f64 = 2.8;
 
-/// Marks on a round that is taken over, for each bar that would lie on it. Fewer: tension jumps by more (1.2e-3 of the greatest with 1 round a post of
-/// 450°, 7e-4 with 1.5); more: more nodes.
+/// Marks on a round that is taken over, for each bar that would lie on it. Fewer: tension jumps by
+/// more (1.2e-3 of the greatest with 1 round a post of 450°, 7e-4 with 1.5); more: more nodes.
 const MARKS: f64 = 1.5;
 
 /// Bars beside a new sliding node are at least this part of an even one.
@@ -39,7 +41,8 @@ const LEAST_BAR: f64 = 0.35;
 struct SolutionCurve<'a>(&'a [Node]);
 
 impl SolutionCurve<'_> {
-    /// The nodes on either side of a material point (m), and how far it is from the first to the second.
+    /// The nodes on either side of a material point (m), and how far it is from the first to the
+    /// second.
     fn around(&self, s: f64) -> Option<(&Node, &Node, f64)> {
         let nodes = self.0;
         let k = nodes.partition_point(|n| n.arc_length_m <= s).clamp(1, nodes.len().max(2) - 1);
@@ -52,8 +55,8 @@ impl SolutionCurve<'_> {
         self.around(s).map_or(0.0, |(a, b, f)| a.tension_n + (b.tension_n - a.tension_n) * f)
     }
 
-    /// Position, m: on the parabola of curvature and strain between two nodes. Where an arc begins the curvature jumps; the
-    /// lesser counts.
+    /// Position, m: on the parabola of curvature and strain between two nodes. Where an arc begins
+    /// the curvature jumps; the lesser counts.
     fn place(&self, s: f64) -> Option<Vec2> {
         let (a, b, f) = self.around(s)?;
         let (from, to) = (a.at(), b.at());
@@ -249,9 +252,10 @@ impl Dynamics {
         out
     }
 
-    /// Gives every bar between two nodes in contact the material that makes its tension that of the answer: rounds are the
-    /// barrier's reach wider than the answer's, which between two corners that hold would be a great strain. What that takes is
-    /// given by the spans on either side as they can: a loose end all of it, two spans by their lengths.
+    /// Gives every bar between two nodes in contact the material that makes its tension that of the
+    /// answer: rounds are the barrier's reach wider than the answer's, which between two corners
+    /// that hold would be a great strain. What that takes is given by the spans on either side as
+    /// they can: a loose end all of it, two spans by their lengths.
     fn adopt_stretch(&mut self, curve: &SolutionCurve<'_>) {
         let on = |d: &Self, k: usize| {
             d.mesh.sliding[k].is_some()
@@ -276,7 +280,8 @@ impl Dynamics {
         self.motion.s_before.clone_from(&self.mesh.arc_length);
     }
 
-    /// The same for nodes in contact one after the other; `next` is the next that is held or in contact.
+    /// The same for nodes in contact one after the other; `next` is the next that is held or in
+    /// contact.
     fn stretch_run(&mut self, curve: &SolutionCurve<'_>, [first, last]: [usize; 2], next: usize) {
         let s = self.mesh.arc_length.clone();
         let mut lengths = vec![0.0; last + 1 - first];
@@ -306,7 +311,8 @@ impl Dynamics {
         }
     }
 
-    /// Plan view: every node remembers the sliding with which the floor does what the answer asks for there, as far as it can.
+    /// Plan view: every node remembers the sliding with which the floor does what the answer asks
+    /// for there, as far as it can.
     fn adopt_floor_friction(&mut self, curve: &SolutionCurve<'_>) {
         if self.problem.floor_friction.is_none() {
             return;

@@ -1,5 +1,6 @@
-//! Hands that hold supports by springs. The node is held, at the velocity that its own mass has between the cable and the spring: that is taken at the end
-//! of the sub-step, so no spring is too stiff for it.
+//! Hands that hold supports by springs. The node is held, at the velocity that its own mass has
+//! between the cable and the spring: that is taken at the end of the sub-step, so no spring is too
+//! stiff for it.
 
 use crate::math::Vec2;
 use crate::model::input_filter::Hand;
@@ -18,7 +19,8 @@ impl MassSpringModel {
         (self.drives.hands[support], self.drives.followers[support]) = (Some(hand), None);
     }
 
-    /// Velocities of what hands hold after a `kick` (s) of the sub-step's forces; the spring is as at its end, `h` (s) later.
+    /// Velocities of what hands hold after a `kick` (s) of the sub-step's forces; the spring is as
+    /// at its end, `h` (s) later.
     pub(in crate::model::mass_spring) fn pull_by_hands(&mut self, [kick, h]: [f64; 2]) {
         for (hand, &node) in self.drives.hands.iter().zip(&self.chain.node_of) {
             let Some(hand) = hand else { continue };
@@ -32,7 +34,8 @@ impl MassSpringModel {
         }
     }
 
-    /// Where nodes that hands hold go without springs of the cable in a preview's sub-step of `h` (s): nodes and their velocities before it.
+    /// Where nodes that hands hold go without springs of the cable in a preview's sub-step of `h`
+    /// (s): nodes and their velocities before it.
     pub(in crate::model::mass_spring) fn predict_hands(&mut self, h: f64, chain: &mut Chain) -> Vec<(usize, Vec2)> {
         let mut found = Vec::new();
         for (hand, &node) in self.drives.hands.iter().zip(&self.chain.node_of) {

@@ -7,16 +7,20 @@ use crate::model::mass_spring::{MassSpringModel, Touch};
 
 /// Distance kept ready for contact beside what is travelled, m.
 pub(in crate::model::mass_spring) const CONTACT_SKIN: f64 = 1e-4;
-/// Greatest speed at which a penetration is pushed out, m/s: more throws the cable off, less lets it sink for longer.
+/// Greatest speed at which a penetration is pushed out, m/s: more throws the cable off, less lets
+/// it sink for longer.
 const PUSH_OUT_SPEED: f64 = 1.0;
-/// Time in which a shallow one is pushed out, s: a cable that rests a few micrometres deep must not jump.
+/// Time in which a shallow one is pushed out, s: a cable that rests a few micrometres deep must not
+/// jump.
 const PUSH_OUT_TIME: f64 = 0.02;
-/// Passes over the contacts of a sub-step: one leaves neighbours in each other's way, more changes nothing visible.
+/// Passes over the contacts of a sub-step: one leaves neighbours in each other's way, more changes
+/// nothing visible.
 const CONTACT_PASSES: usize = 2;
 
 impl MassSpringModel {
-    /// Refuses to go on from where the middle of the cable is inside an obstacle: distances have no sign there, and what should push it
-    /// out would hold it in. What lies in less deep is pushed out.
+    /// Refuses to go on from where the middle of the cable is inside an obstacle: distances have no
+    /// sign there, and what should push it out would hold it in. What lies in less deep is pushed
+    /// out.
     pub(in crate::model::mass_spring) fn refuse_buried(&self) -> Result<(), SolveError> {
         let world = &self.problem.world;
         if world.is_empty() {
@@ -37,9 +41,9 @@ impl MassSpringModel {
         Ok(())
     }
 
-    /// Makes velocities such that nothing is entered in this sub-step: at each contact an inelastic normal impulse and
-    /// a friction impulse within the Coulomb cone. Inside the cone the tangential velocity becomes exactly zero, so a
-    /// held cable does not creep.
+    /// Makes velocities such that nothing is entered in this sub-step: at each contact an inelastic
+    /// normal impulse and a friction impulse within the Coulomb cone. Inside the cone the
+    /// tangential velocity becomes exactly zero, so a held cable does not creep.
     pub(in crate::model::mass_spring) fn contacts(&mut self, h: f64) {
         self.contacts.touches.clear();
         if self.problem.world.is_empty() {

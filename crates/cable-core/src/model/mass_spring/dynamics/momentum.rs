@@ -1,5 +1,6 @@
-//! The account of a cable's momentum in a step: what each kind of force gave it, sub-step by sub-step. There is none of previews, and of cables over
-//! pulleys, whose material takes its momentum along.
+//! The account of a cable's momentum in a step: what each kind of force gave it, sub-step by
+//! sub-step. There is none of previews, and of cables over pulleys, whose material takes its
+//! momentum along.
 
 use crate::math::Vec2;
 use crate::model::mass_spring::MassSpringModel;
@@ -29,7 +30,8 @@ impl MassSpringModel {
         self.chain.v.iter().zip(&self.chain.mass).map(|(v, m)| v * *m).sum()
     }
 
-    /// Adds what forces give in a `kick` (s), supports beside what they have changed of the momentum of what they hold.
+    /// Adds what forces give in a `kick` (s), supports beside what they have changed of the
+    /// momentum of what they hold.
     pub(in crate::model::mass_spring) fn account_for_kick(&mut self, kick: f64) {
         if self.report.account.before.is_none() {
             return;

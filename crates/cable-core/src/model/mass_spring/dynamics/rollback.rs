@@ -1,4 +1,5 @@
-//! A rollback keeps the state before a step, in the same memory step after step, to return to it where the step fails.
+//! A rollback keeps the state before a step, in the same memory step after step, to return to it
+//! where the step fails.
 
 use crate::model::mass_spring::MassSpringModel;
 

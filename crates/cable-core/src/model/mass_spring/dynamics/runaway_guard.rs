@@ -1,18 +1,19 @@
 //! The runaway guard holds back a motion that runs away, and says so.
 //!
-//! Steps are stable by construction, so nothing here acts in a sound run. It is there for what construction does not
-//! cover (a stiff contact, a support thrown about): the picture stays finite and the answer says that it was held back,
-//! where and when.
+//! Steps are stable by construction, so nothing here acts in a sound run. It is there for what
+//! construction does not cover (a stiff contact, a support thrown about): the picture stays finite
+//! and the answer says that it was held back, where and when.
 
 use crate::math::Vec2;
 use crate::model::mass_spring::MassSpringModel;
 use crate::solution::{Warning, WarningKind};
 
-/// Fastest a node may move, m/s. Recoil of a broken rope stays below it (breaking strain times wave speed: 20 m/s for
-/// steel, 300 m/s for nylon); a lower limit cuts that, a higher one lets thin obstacles cost ever shorter sub-steps.
+/// Fastest a node may move, m/s. Recoil of a broken rope stays below it (breaking strain times wave
+/// speed: 20 m/s for steel, 300 m/s for nylon); a lower limit cuts that, a higher one lets thin
+/// obstacles cost ever shorter sub-steps.
 const NODE_SPEED_LIMIT: f64 = 300.0;
-/// Kinetic energy over what supports, loads and stretch can have given beyond which the motion is not believed. Less
-/// damps real whips, more shows the explosion first.
+/// Kinetic energy over what supports, loads and stretch can have given beyond which the motion is
+/// not believed. Less damps real whips, more shows the explosion first.
 const MOST_ENERGY: f64 = 10.0;
 /// What is left of velocities in such a sub-step: 0.7 takes a tenfold energy back in seven of them.
 const BRAKE: f64 = 0.7;
@@ -44,14 +45,15 @@ impl MassSpringModel {
         let lumps: f64 = p.supports.iter().map(|s| s.mass * g + s.force.at(self.clock.time_s).norm()).sum();
         let loads: f64 = p.loads.iter().map(|l| l.force.at(self.clock.time_s).norm()).sum();
         let pull = p.body_force(self.clock.time_s).norm() * p.length + lumps + loads;
-        // Falling and being pulled the whole length twice, from the top of its swing to the bottom; and what it can
-        // hold in stretch until it breaks.
+        // Falling and being pulled the whole length twice, from the top of its swing to the bottom;
+        // and what it can hold in stretch until it breaks.
         let strain = (p.cable.breaking_tension_n / p.axial_stiffness).min(1.0);
         let stretch = 0.5 * p.axial_stiffness * strain * strain * p.length;
         Trouble { work: 2.0 * pull * p.length + stretch, ..Trouble::default() }
     }
 
-    /// Cuts velocities and brakes a motion that has more energy than anything gave it. Returns the greatest speed, m/s.
+    /// Cuts velocities and brakes a motion that has more energy than anything gave it. Returns the
+    /// greatest speed, m/s.
     pub(in crate::model::mass_spring) fn calm(&mut self, trouble: &mut Trouble) -> f64 {
         let (mut energy, mut mass, mut momentum) = (0.0, 0.0, Vec2::zeros());
         let (mut fastest, mut node, mut support) = (0.0, 0, 0.0);

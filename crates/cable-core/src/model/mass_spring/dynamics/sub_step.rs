@@ -1,4 +1,5 @@
-//! A sub-step computes forces and contacts and moves the nodes; it allocates nothing once the buffers have grown.
+//! A sub-step computes forces and contacts and moves the nodes; it allocates nothing once the
+//! buffers have grown.
 
 use crate::error::SolveError;
 use crate::math::{Vec2, smaller};
@@ -6,9 +7,11 @@ use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::is_led;
 use crate::model::mass_spring::{MassSpringModel, SmoothedTarget};
 
-/// Fraction of the stable sub-step that is used: more is unstable as elements stretch, less is slower.
+/// Fraction of the stable sub-step that is used: more is unstable as elements stretch, less is
+/// slower.
 const STEP_SAFETY: f64 = 0.8;
-/// Greatest fraction of the cable's radius a node travels in a sub-step: more could pass a thin obstacle.
+/// Greatest fraction of the cable's radius a node travels in a sub-step: more could pass a thin
+/// obstacle.
 const TRAVEL_RADIUS_FRACTION: f64 = 0.25;
 /// Shortest sub-step, of the stable one: below, motion has run away.
 const SHORTEST_SUB_STEP_FRACTION: f64 = 1e-6;
@@ -31,7 +34,8 @@ impl MassSpringModel {
             };
             let strain = length / l0 - 1.0;
             let rate = (t.dot(&(self.chain.v[e + 1] - self.chain.v[e])) - shortening * (1.0 + strain)) / l0;
-            // A cable cannot push: neither its elasticity nor its damping. (NaN falls through to the result.)
+            // A cable cannot push: neither its elasticity nor its damping. (NaN falls through to
+            // the result.)
             let pull = ea * (strain + self.chain.damping_time_s * rate);
             let tension = if strain < 0.0 || pull < 0.0 { 0.0 } else { pull };
             self.chain.tension[e] = tension;
@@ -84,8 +88,9 @@ impl MassSpringModel {
         }
     }
 
-    /// The longest stable sub-step, s. By Gershgorin's circles a node of mass m between springs k₁, k₂ swings no faster
-    /// than ω² = 2(k₁ + k₂)/m, and bending adds 16 EI/(m l³) (its row is 1, −4, 6, −4, 1).
+    /// The longest stable sub-step, s. By Gershgorin's circles a node of mass m between springs k₁,
+    /// k₂ swings no faster than ω² = 2(k₁ + k₂)/m, and bending adds 16 EI/(m l³) (its row is 1, −4,
+    /// 6, −4, 1).
     pub(in crate::model::mass_spring) fn stable_step(&self) -> f64 {
         let p = &self.problem;
         let mut fastest = 0.0;
@@ -106,7 +111,8 @@ impl MassSpringModel {
         STEP_SAFETY * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
     }
 
-    /// Advances by `dt_s` in equal sub-steps below the stability limit, shorter where motion is fast.
+    /// Advances by `dt_s` in equal sub-steps below the stability limit, shorter where motion is
+    /// fast.
     pub(in crate::model::mass_spring) fn integrate(
         &mut self,
         dt_s: f64,
@@ -147,8 +153,9 @@ impl MassSpringModel {
             self.supports(h);
             self.forces();
             self.tell(gauge, same);
-            // Velocities go with the middle of a sub-step: from that of the last one to that of this. A motion that begins has half a
-            // kick; with a whole one all falls g h t/2 too far, an error of first order.
+            // Velocities go with the middle of a sub-step: from that of the last one to that of
+            // this. A motion that begins has half a kick; with a whole one all falls g h t/2 too
+            // far, an error of first order.
             let kick = self.clock.behind_s + 0.5 * h;
             self.clock.behind_s = 0.5 * h;
             self.pull_by_hands([kick, h]);
@@ -189,7 +196,8 @@ impl MassSpringModel {
         releases.map(|at| at - self.clock.time_s).fold(h, smaller)
     }
 
-    /// Tells a gauge the tension; whether its points are the `same` as the nodes, which then are no pulleys.
+    /// Tells a gauge the tension; whether its points are the `same` as the nodes, which then are no
+    /// pulleys.
     fn tell(&self, gauge: &mut TensionGauge, same: bool) {
         if same {
             let last = self.chain.rest.len();
@@ -228,7 +236,8 @@ impl MassSpringModel {
         }
     }
 
-    /// Nodes let go as the sub-step began have the velocity of then: of the time before, `held_s`, their forces were their supports'.
+    /// Nodes let go as the sub-step began have the velocity of then: of the time before, `held_s`,
+    /// their forces were their supports'.
     fn begin_let_go(&mut self, held_s: f64) {
         for k in 0..self.drives.let_go.len() {
             let i = self.drives.let_go[k];

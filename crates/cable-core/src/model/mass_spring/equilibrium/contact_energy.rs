@@ -1,9 +1,10 @@
 //! Contacts and friction of a resting chain are energies.
 //!
-//! A contact is a spring from `OFFSET` on, ½k(gap − δ)² for gap < δ, on the signed sums of pairs that make the force of a
-//! polyline continuous (see [`crate::contact::pairs`]). Friction is measured from an anchor: the material point that was
-//! there and where, y = (X(s) − a)·t, limited by μ times the normal force of the last accepted step; after a solve the
-//! anchor follows, y ← clamp(y, ±ε) (see [`crate::contact::friction`]). A held contact then neither creeps nor forgets,
+//! A contact is a spring from `OFFSET` on, ½k(gap − δ)² for gap < δ, on the signed sums of pairs
+//! that make the force of a polyline continuous (see [`crate::contact::pairs`]). Friction is
+//! measured from an anchor: the material point that was there and where, y = (X(s) − a)·t, limited
+//! by μ times the normal force of the last accepted step; after a solve the anchor follows, y ←
+//! clamp(y, ±ε) (see [`crate::contact::friction`]). A held contact then neither creeps nor forgets,
 //! and sliding ends at the least that balances.
 
 use crate::contact::Gap;
@@ -13,14 +14,15 @@ use crate::math::{Mat2, Vec2, larger, perp};
 use crate::model::mass_spring::equilibrium::newton::System;
 use crate::model::mass_spring::{Anchor, MassSpringModel, Surface, Touch};
 
-/// Gap at which a contact begins to push, m; the whole load on one contact closes it. Less is stiffer and takes more
-/// steps, more lifts the cable.
+/// Gap at which a contact begins to push, m; the whole load on one contact closes it. Less is
+/// stiffer and takes more steps, more lifts the cable.
 const OFFSET: f64 = 2e-5;
-/// What lies nearer than this to an obstacle at the start was laid there, m: the bars' barrier keeps a millimetre. Less
-/// lets the cable slide while it falls that far, more anchors what hangs beside.
+/// What lies nearer than this to an obstacle at the start was laid there, m: the bars' barrier
+/// keeps a millimetre. Less lets the cable slide while it falls that far, more anchors what hangs
+/// beside.
 const FIRST_CONTACT_DISTANCE: f64 = 2e-3;
-/// Sliding at which friction is called up whole, m: less takes more steps, more creeps, and near a held end, where a
-/// stiff cable moves by less, friction is called up in part only.
+/// Sliding at which friction is called up whole, m: less takes more steps, more creeps, and near a
+/// held end, where a stiff cable moves by less, friction is called up in part only.
 const SLIP: f64 = 5e-6;
 /// A contact takes the anchor of material this near, in even lengths.
 const ANCHOR_REACH_LENGTHS: f64 = 0.75;
@@ -188,7 +190,8 @@ impl Contacts {
         !self.rubs.is_empty() || !model.wheels.pulleys.is_empty()
     }
 
-    /// Adds energy, gradient and Hessian of contacts (as they are here) and friction (as it was frozen).
+    /// Adds energy, gradient and Hessian of contacts (as they are here) and friction (as it was
+    /// frozen).
     pub(in crate::model::mass_spring) fn assemble(&mut self, model: &MassSpringModel, system: &mut System) -> f64 {
         self.find(model, OFFSET);
         let mut value = 0.0;
@@ -199,7 +202,8 @@ impl Contacts {
             let (n, force) = (gap.normal, k * depth);
             let shares = [1.0 - c, c];
             let stiff = n * n.transpose() * k;
-            // ∇²gap: a contact inside an element turns its normal with it, a node turns round a corner.
+            // ∇²gap: a contact inside an element turns its normal with it, a node turns round a
+            // corner.
             let line = perp(n);
             let away = (model.chain.x[e] * shares[0] + model.chain.x[e + 1] * shares[1] - gap.point).norm();
             let turning = line * line.transpose() * if push.inside { 0.0 } else { self.round(push, away) };
@@ -306,8 +310,9 @@ impl Rub {
 }
 
 impl MassSpringModel {
-    /// What a floor leaves open of tension, over the largest: where the cable does not slide on it, friction is whatever the
-    /// way there left, up to μ times what presses. 0 where nothing is remembered.
+    /// What a floor leaves open of tension, over the largest: where the cable does not slide on it,
+    /// friction is whatever the way there left, up to μ times what presses. 0 where nothing is
+    /// remembered.
     pub(in crate::model::mass_spring) fn held_by_floor(&self) -> f64 {
         let Some((mu, normal)) = self.problem.floor_friction else { return 0.0 };
         let on_floor = self.contacts.anchors.iter().take_while(|a| a.surface == Surface::Floor).count();

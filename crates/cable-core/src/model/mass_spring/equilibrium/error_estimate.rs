@@ -1,8 +1,10 @@
-//! How wrong the figures of a chain at rest are: beside `spans`, which has no mesh, where that lays the cable; beside `fem` where that knows a stiff
-//! one better than was asked for; else beside chains of elements twice and four times as long.
+//! How wrong the figures of a chain at rest are: beside `spans`, which has no mesh, where that lays
+//! the cable; beside `fem` where that knows a stiff one better than was asked for; else beside
+//! chains of elements twice and four times as long.
 //!
-//! Masses and springs are of the second order in the air and of the first at corners and where the cable touches down, as the bars of `fem` in
-//! contact are, and what is said is the same (`fem/two_meshes`).
+//! Masses and springs are of the second order in the air and of the first at corners and where the
+//! cable touches down, as the bars of `fem` in contact are, and what is said is the same
+//! (`fem/two_meshes`).
 
 use crate::model::fem::FemModel;
 use crate::model::initial_equilibrium::initial_equilibrium;
@@ -14,7 +16,8 @@ use crate::solution::ErrorEstimates;
 
 /// Fewer elements than this have no half of use.
 const LEAST_ELEMENTS: usize = 8;
-/// Part of what the coarser two of three meshes differ by that the error of the finest is at least: that of the first order.
+/// Part of what the coarser two of three meshes differ by that the error of the finest is at least:
+/// that of the first order.
 const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
 
 /// Who goes on beside a chain.
@@ -100,7 +103,8 @@ impl MassSpringModel {
         self.report.beside = ErrorEstimator::Coarse(Box::new(coarse));
     }
 
-    /// Errors beside the answer of `fem` on a mesh of its own, where that is known to better than was asked for.
+    /// Errors beside the answer of `fem` on a mesh of its own, where that is known to better than
+    /// was asked for.
     fn beside_fem(&self) -> Option<ErrorEstimates> {
         let mut fem = FemModel::new(self.problem.clone(), Settings { segments: None, ..self.settings }).ok()?;
         for (k, at) in self.drives.drag.iter().enumerate() {
@@ -118,7 +122,8 @@ impl MassSpringModel {
         ErrorEstimates::between(&self.answer(), exact).plus(&ErrorEstimates::rounding(exact, &self.problem))
     }
 
-    /// The same cable at rest on a part of the elements: laid for itself (`first`), or from where this one lies.
+    /// The same cable at rest on a part of the elements: laid for itself (`first`), or from where
+    /// this one lies.
     fn coarser(&self, times: usize, first: bool) -> Option<Self> {
         if self.chain.rest.len() < LEAST_ELEMENTS {
             return None;

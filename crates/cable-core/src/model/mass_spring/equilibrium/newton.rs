@@ -1,11 +1,12 @@
 //! Newton's method on one energy finds where the chain rests.
 //!
-//! Springs that only pull, U = EA (length − l₀)²/2l₀ for length > l₀, are convex in nodes and material coordinates
-//! together, so no compressed state can come out; weight is linear. Bending, contacts and friction (see `contact_energy`)
-//! add their terms, the σ of a pulley stands in the place of its node's x. The tangent is a band: a step costs about as
-//! much as a few sweeps of relaxation, of which a stiff chain needs N·√(EA/T) for each swing. The diagonal is shifted
-//! (K. Levenberg, A method for the solution of certain non-linear problems in least squares, Quarterly of Applied
-//! Mathematics 2, 1944) until the energy or the unbalanced force falls.
+//! Springs that only pull, U = EA (length − l₀)²/2l₀ for length > l₀, are convex in nodes and
+//! material coordinates together, so no compressed state can come out; weight is linear. Bending,
+//! contacts and friction (see `contact_energy`) add their terms, the σ of a pulley stands in the
+//! place of its node's x. The tangent is a band: a step costs about as much as a few sweeps of
+//! relaxation, of which a stiff chain needs N·√(EA/T) for each swing. The diagonal is shifted (K.
+//! Levenberg, A method for the solution of certain non-linear problems in least squares, Quarterly
+//! of Applied Mathematics 2, 1944) until the energy or the unbalanced force falls.
 //!
 //! Derivatives of a spring beside a pulley, t its direction, L its length, λ the thermal stretch:
 //! ```text
@@ -21,32 +22,36 @@ use crate::model::Model;
 use crate::model::mass_spring::MassSpringModel;
 use crate::model::mass_spring::equilibrium::contact_energy::Contacts;
 
-/// Unbalanced force at rest, of the force scale: round-off allows little less, more shows in the reactions.
+/// Unbalanced force at rest, of the force scale: round-off allows little less, more shows in the
+/// reactions.
 const RESIDUAL: f64 = 1e-9;
 /// The same where something is touched: contacts that come and go leave more.
 const TOUCHING_RESIDUAL: f64 = 1e-7;
-/// Stiffness lent to elements that are slack at the start, whose tension there is known (corrected bars are shorter by
-/// their sag, which is more than a stiff spring stretches): how it fades from step to step. More makes truly slack
-/// elements slow, less starts with wild steps.
+/// Stiffness lent to elements that are slack at the start, whose tension there is known (corrected
+/// bars are shorter by their sag, which is more than a stiff spring stretches): how it fades from
+/// step to step. More makes truly slack elements slow, less starts with wild steps.
 const LENT_STIFFNESS_FADE: f64 = 0.1;
-/// Units in the last place by which positions are off when they are good: strain is off by that over l₀, tension EA
-/// times it. Two positions and the length between them lose about one each, and both springs of a node add up.
+/// Units in the last place by which positions are off when they are good: strain is off by that
+/// over l₀, tension EA times it. Two positions and the length between them lose about one each, and
+/// both springs of a node add up.
 const ULPS: f64 = 8.0;
 /// Newton steps. The hardest scene of the catalogue takes some 200.
 const MAX_STEPS: usize = 1500;
-/// First shift of the diagonal, of EA over the shortest element; and how it falls and rises with success. Smaller starts
-/// with wild steps, larger wastes a few steps.
+/// First shift of the diagonal, of EA over the shortest element; and how it falls and rises with
+/// success. Smaller starts with wild steps, larger wastes a few steps.
 const FIRST_SHIFT: f64 = 1e-8;
 const SHIFT_DOWN: f64 = 0.1;
 const SHIFT_UP: f64 = 8.0;
-/// Shift beyond which no step helps, of that or of the stiffness of contacts where that is more; and below which it is left alone.
+/// Shift beyond which no step helps, of that or of the stiffness of contacts where that is more;
+/// and below which it is left alone.
 const LAST_SHIFT: f64 = 1e3;
 const LEAST_SHIFT: f64 = 1e-14;
-/// Up to this step friction follows the normal forces at every step, which is fastest; where that runs in circles, later
-/// ones first solve with them frozen, for so many steps at most.
+/// Up to this step friction follows the normal forces at every step, which is fastest; where that
+/// runs in circles, later ones first solve with them frozen, for so many steps at most.
 const EAGER_FRICTION_STEPS: usize = 150;
 const MOST_FROZEN: usize = 25;
-/// Greatest move in a step where there is something to run into, of the cable's radius: more steps over an edge.
+/// Greatest move in a step where there is something to run into, of the cable's radius: more steps
+/// over an edge.
 const MOST_MOVE: f64 = 0.5;
 /// Greatest slide through a pulley in a step, of the even length: more turns an element inside out.
 const MOST_SLIDE: f64 = 0.25;
@@ -83,7 +88,8 @@ impl System {
         })
     }
 
-    /// Adds a block; on the diagonal it must be symmetric, of (i, j) and (j, i) only one is to be added.
+    /// Adds a block; on the diagonal it must be symmetric, of (i, j) and (j, i) only one is to be
+    /// added.
     pub(in crate::model::mass_spring) fn add_block(&mut self, i: usize, j: usize, block: &Mat2) {
         for r in 0..2 {
             for c in 0..2 {
@@ -110,7 +116,8 @@ impl System {
 }
 
 impl MassSpringModel {
-    /// Moves the nodes to rest; `anew` forgets where friction held. On an error they are somewhere on the way.
+    /// Moves the nodes to rest; `anew` forgets where friction held. On an error they are somewhere
+    /// on the way.
     pub(in crate::model::mass_spring) fn equilibrium(&mut self, anew: bool) -> Result<(), SolveError> {
         self.chain.v.fill(Vec2::zeros());
         self.clock.behind_s = 0.0;
@@ -204,8 +211,8 @@ impl MassSpringModel {
         })
     }
 
-    /// Unbalanced force that counts as none, N: a part of the forces here, but never below what round-off of the
-    /// positions makes of EA.
+    /// Unbalanced force that counts as none, N: a part of the forces here, but never below what
+    /// round-off of the positions makes of EA.
     fn rest_tolerance(&self) -> f64 {
         let part = if self.touches_something() { TOUCHING_RESIDUAL } else { RESIDUAL };
         let far =

@@ -1,12 +1,14 @@
-//! A quasi-static step moves the supports a little; the chain comes to rest there, and friction remembers.
+//! A quasi-static step moves the supports a little; the chain comes to rest there, and friction
+//! remembers.
 
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::mass_spring::MassSpringModel;
 
-/// Longest way of a support between two resting places, of the even length (friction is measured from where the material
-/// was, and a longer way leaves that element) and of the cable's radius where there is something to hit (a longer one
-/// stretches the end so far that Newton's first steps draw a node in under a corner, where it locks).
+/// Longest way of a support between two resting places, of the even length (friction is measured
+/// from where the material was, and a longer way leaves that element) and of the cable's radius
+/// where there is something to hit (a longer one stretches the end so far that Newton's first steps
+/// draw a node in under a corner, where it locks).
 const SUPPORT_WAY_LENGTHS: f64 = 0.5;
 /// Most resting places in a step, and the shortest part of one that is tried after a failure.
 const MOST_PARTS: f64 = 1e4;

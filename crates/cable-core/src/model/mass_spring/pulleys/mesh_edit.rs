@@ -1,14 +1,15 @@
 //! Nodes are put into the chain and taken out of it beside pulleys.
 //!
-//! Mass and momentum are conserved, kinetic energy falls or stays (it is convex). A node taken out shortens the way by
-//! the sag it stood for, one put in hangs on that sag: the difference of rest length is spread over the whole stretch
-//! between its fixed marks, so that tension does not jump where it happens.
+//! Mass and momentum are conserved, kinetic energy falls or stays (it is convex). A node taken out
+//! shortens the way by the sag it stood for, one put in hangs on that sag: the difference of rest
+//! length is spread over the whole stretch between its fixed marks, so that tension does not jump
+//! where it happens.
 
 use crate::math::Vec2;
 use crate::model::mass_spring::MassSpringModel;
 
-/// Free part of an element beside a pulley, of the even length, below which its other node is taken out: less shortens
-/// the stable step, more remeshes more often.
+/// Free part of an element beside a pulley, of the even length, below which its other node is taken
+/// out: less shortens the stable step, more remeshes more often.
 const SHORTEST_FREE_PART: f64 = 0.3;
 /// And beyond which it is halved.
 const LONGEST_FREE_PART: f64 = 1.7;
@@ -88,7 +89,8 @@ impl MassSpringModel {
         let sliding = self.chain.v[i] - r.direction * u;
         let velocity = (self.chain.v[other] + sliding) * 0.5;
         let half = 0.5 * r.free;
-        // The sag of a parabola under its own weight, q L²/8T with the half element L/2 on each side.
+        // The sag of a parabola under its own weight, q L²/8T with the half element L/2 on each
+        // side.
         let body = self.problem.body_force(self.clock.time_s);
         let across = body - r.direction * body.dot(&r.direction);
         let sag = across * (0.5 * half * 0.5 * self.chain.share[e] / self.chain.tension[e]);
@@ -107,8 +109,9 @@ impl MassSpringModel {
         true
     }
 
-    /// Gives element `e` (the plain one of those that changed) `more` rest length, taken evenly from the rest of its
-    /// stretch: material coordinates of the nodes up to the next mark shift a little.
+    /// Gives element `e` (the plain one of those that changed) `more` rest length, taken evenly
+    /// from the rest of its stretch: material coordinates of the nodes up to the next mark shift a
+    /// little.
     fn settle_length(&mut self, e: usize, more: f64) {
         let mark = |n: usize| n == 0 || n + 1 == self.chain.x.len() || !self.plain(n);
         let mut first = e;

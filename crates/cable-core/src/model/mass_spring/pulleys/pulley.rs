@@ -1,27 +1,31 @@
 //! A pulley is a node fixed in space whose material slides through it.
 //!
-//! The node holds the centre x of the wheel and the material coordinate σ at a *mark* fixed on the wheel. The elements
-//! beside it run to where they touch the wheel and on along the arc to the mark. With R the radius of the centre line, f
-//! its sense (+1 clockwise), θ the angle of the free part and θₘ that of the tangent at the mark:
+//! The node holds the centre x of the wheel and the material coordinate σ at a *mark* fixed on the
+//! wheel. The elements beside it run to where they touch the wheel and on along the arc to the
+//! mark. With R the radius of the centre line, f its sense (+1 clockwise), θ the angle of the free
+//! part and θₘ that of the tangent at the mark:
 //!
 //! ```text
 //! d = L t + i(R₁f₁ − R₂f₂) t   (complex)   ⇒   t = (L d + ρ perp d)/|d|²,   ρ = R₂f₂ − R₁f₁,   L = √(d² − ρ²)
 //! length = L + R₁f₁ (θₘ₁ − θ) + R₂f₂ (θ − θₘ₂),      ∂length/∂(ends) = ∓t
 //! ```
 //!
-//! so an element is a spring of that length with rest length λ(s₂ − s₁), whatever it winds round, and the energy is exact.
-//! The material obeys ṡ = u with the mass of the half elements beside it and of the arc,
-//! m u̇ = λ(Θ_b − Θ_a) + q·(c_b − c_a) + friction, Θ = T + T²/2EA, c the middle of the straight part; friction holds within the capstan's
-//! cone |T_b − T_a| ≤ tanh(μφ/2)(T_b + T_a), taken where the cable touches the wheel. Material sliding through a fixed
-//! point in space is after S. Sueda, G. L. Jones, D. I. W. Levin, D. K. Pai, "Large-scale dynamic simulation of highly
-//! constrained strands", ACM Transactions on Graphics 30 (2011); they share masses consistently, here they are lumped.
+//! so an element is a spring of that length with rest length λ(s₂ − s₁), whatever it winds round,
+//! and the energy is exact. The material obeys ṡ = u with the mass of the half elements beside it
+//! and of the arc, m u̇ = λ(Θ_b − Θ_a) + q·(c_b − c_a) + friction, Θ = T + T²/2EA, c the middle of
+//! the straight part; friction holds within the capstan's cone |T_b − T_a| ≤ tanh(μφ/2)(T_b + T_a),
+//! taken where the cable touches the wheel. Material sliding through a fixed point in space is
+//! after S. Sueda, G. L. Jones, D. I. W. Levin, D. K. Pai, "Large-scale dynamic simulation of
+//! highly constrained strands", ACM Transactions on Graphics 30 (2011); they share masses
+//! consistently, here they are lumped.
 
 use crate::math::{Vec2, cross, perp};
 use crate::model::mass_spring::MassSpringModel;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
-/// Tension over the weight of half an element below which the direction of the force there says nothing.
+/// Tension over the weight of half an element below which the direction of the force there says
+/// nothing.
 const DIRECTION_TENSION_RATIO: f64 = 4.0;
 
 part! {
@@ -97,7 +101,8 @@ pub(in crate::model::mass_spring) fn angle_of(v: Vec2) -> f64 {
 }
 
 impl Pulley {
-    /// The pulleys of a cable, at its first node until [`Self::sit`]; `way` gives the direction in which the cable comes and goes.
+    /// The pulleys of a cable, at its first node until [`Self::sit`]; `way` gives the direction in
+    /// which the cable comes and goes.
     pub(in crate::model::mass_spring) fn all(p: &Problem) -> Vec<Self> {
         let at = |k: usize| p.supports.get(k).and_then(|s| s.position_at(0.0)).map(|a| a.0);
         let down = p.body_force(0.0).try_normalize(0.0).unwrap_or(Vec2::new(0.0, -1.0));
@@ -135,7 +140,8 @@ impl Pulley {
             .collect()
     }
 
-    /// Centroid of the arc between the mark and where the cable has the direction `angle`, round `center`.
+    /// Centroid of the arc between the mark and where the cable has the direction `angle`, round
+    /// `center`.
     fn middle_of_arc(&self, center: Vec2, angle: f64) -> Vec2 {
         let half = 0.5 * wrap(angle - self.mark);
         let (sin, cos) = (self.mark + half).sin_cos();
@@ -222,7 +228,8 @@ impl MassSpringModel {
             let i = self.wheels.pulleys[k].node;
             for e in [i - 1, i] {
                 let r = self.reach_at(e, x);
-                // What lies on a wheel is taken as if unstretched: σ then moves the straight part alone.
+                // What lies on a wheel is taken as if unstretched: σ then moves the straight part
+                // alone.
                 self.chain.share[e] = self.chain.span[e] - (r.arc[0] + r.arc[1]) / self.problem.thermal_stretch;
             }
         }
@@ -245,13 +252,14 @@ impl MassSpringModel {
         0.5 * (before + self.chain.share.get(n).copied().unwrap_or(0.0))
     }
 
-    /// Tensions beside pulley `k`, its turn, and the force on its material at positions `x`. `tension` is of each element.
+    /// Tensions beside pulley `k`, its turn, and the force on its material at positions `x`.
+    /// `tension` is of each element.
     pub(in crate::model::mass_spring) fn load_pulley(&mut self, k: usize, body: Vec2) {
         let i = self.wheels.pulleys[k].node;
         let (b, a) = (self.reach(i - 1), self.reach(i));
         let (tb, ta) = (self.chain.tension[i - 1], self.chain.tension[i]);
-        // Half a free part's weight lies between the middle of an element and the wheel: that also turns the cable a
-        // little, and moves where it touches.
+        // Half a free part's weight lies between the middle of an element and the wheel: that also
+        // turns the cable a little, and moves where it touches.
         let touch = |r: &Reach, tension: f64, half: Vec2| {
             let force = r.direction * tension + half;
             let size = force.norm();
@@ -275,7 +283,8 @@ impl MassSpringModel {
         p.drive = self.problem.thermal_stretch * (theta(tb) - theta(ta)) + body.dot(&(b.middle - a.middle));
     }
 
-    /// The sliding of one sub-step of `h`, pushed for a time `kick` (s): friction stops it within the capstan's cone.
+    /// The sliding of one sub-step of `h`, pushed for a time `kick` (s): friction stops it within
+    /// the capstan's cone.
     pub(in crate::model::mass_spring) fn slide(&mut self, [kick, h]: [f64; 2]) {
         let (least, thermal) = (self.least_span(), self.problem.thermal_stretch);
         for k in 0..self.wheels.pulleys.len() {
@@ -296,7 +305,8 @@ impl MassSpringModel {
         }
     }
 
-    /// Material `ds` comes to the side before the pulley: the nodes that get it take its momentum with it.
+    /// Material `ds` comes to the side before the pulley: the nodes that get it take its momentum
+    /// with it.
     fn carry(&mut self, k: usize, ds: f64) {
         let (i, u) = (self.wheels.pulleys[k].node, self.wheels.pulleys[k].rate);
         self.chain.s[i] += ds;

@@ -1,15 +1,16 @@
 //! This solver balances the preview's springs for the whole chain at once.
 //!
-//! With λ = −T h² (T tension, h the sub-step), w the inverse masses, t the directions and C = length − l₀ at the predicted
-//! place, Δx = w ∇C λ and C + λ l₀/(EA h²) = 0 make
+//! With λ = −T h² (T tension, h the sub-step), w the inverse masses, t the directions and C =
+//! length − l₀ at the predicted place, Δx = w ∇C λ and C + λ l₀/(EA h²) = 0 make
 //!
 //! ```text
 //! A λ = −C,   A_ee = w_e + w_{e+1} + l₀/(EA h²),   A_{e,e+1} = −w_{e+1} t_e·t_{e+1}
 //! ```
 //!
-//! tridiagonal; elements that would push are let go. Between the elements b before and a after a pulley the material σ
-//! (mass m, thermal stretch θ) takes the place of the node: C_b = C_b⁰ − θΔσ, C_a = C_a⁰ + θΔσ. Friction is Coulomb's on a
-//! round, |T_b − T_a| ≤ g (T_b + T_a), g = tanh(μφ/2), sliding in the sense s = ±1 or stuck:
+//! tridiagonal; elements that would push are let go. Between the elements b before and a after a
+//! pulley the material σ (mass m, thermal stretch θ) takes the place of the node: C_b = C_b⁰ − θΔσ,
+//! C_a = C_a⁰ + θΔσ. Friction is Coulomb's on a round, |T_b − T_a| ≤ g (T_b + T_a), g = tanh(μφ/2),
+//! sliding in the sense s = ±1 or stuck:
 //!
 //! ```text
 //! stuck:  Δσ = 0                                  as long as |θ(T_b − T_a) + mΔσ⁰/h²| ≤ θ g (T_b + T_a)
@@ -17,15 +18,16 @@
 //! A_bb += θ²/m (1 − s g),  A_ba = −θ²/m (1 + s g),  A_aa += θ²/m (1 + s g),  A_ab = −θ²/m (1 − s g)
 //! ```
 //!
-//! so the ratio of the capstan, (1 + g)/(1 − g) = e^{μφ}, holds at the end of the sub-step and not a sub-step late. The
-//! tensions in g's law are those at the wheel: half an element's weight, taken from the last sub-step, is added.
+//! so the ratio of the capstan, (1 + g)/(1 − g) = e^{μφ}, holds at the end of the sub-step and not
+//! a sub-step late. The tensions in g's law are those at the wheel: half an element's weight, taken
+//! from the last sub-step, is added.
 
 use crate::math::Vec2;
 use crate::model::mass_spring::MassSpringModel;
 use crate::model::mass_spring::pulleys::pulley::Pulley;
 
-/// Rounds of letting go of elements that would push, and of pulleys that hold or slide. In most sub-steps one does; the
-/// last round stands as it is, its error is that of one sub-step.
+/// Rounds of letting go of elements that would push, and of pulleys that hold or slide. In most
+/// sub-steps one does; the last round stands as it is, its error is that of one sub-step.
 const ROUNDS: usize = 8;
 
 /// What the material on a pulley does in a sub-step.
@@ -61,7 +63,8 @@ pub(in crate::model::mass_spring) struct Chain {
 }
 
 impl MassSpringModel {
-    /// Moves the predicted nodes, and the material on pulleys, so that the springs balance; tensions are those that do it.
+    /// Moves the predicted nodes, and the material on pulleys, so that the springs balance;
+    /// tensions are those that do it.
     pub(in crate::model::mass_spring) fn project(&mut self, h: f64, b: &mut Chain) {
         self.chain_rows(h, b);
         for _ in 0..ROUNDS {
@@ -170,12 +173,14 @@ impl MassSpringModel {
         }
     }
 
-    /// Δσ⁰, m: how far the material would slide without springs, but with friction in the given sense (0: without).
+    /// Δσ⁰, m: how far the material would slide without springs, but with friction in the given
+    /// sense (0: without).
     fn free_way(&self, p: &Pulley, sense: f64, h: f64) -> f64 {
         p.rate * h - sense * self.problem.thermal_stretch * p.grip() * self.beyond(p) * h * h / p.mass
     }
 
-    /// How much more the tensions at the wheel sum up to than those of the elements, N, in the last sub-step.
+    /// How much more the tensions at the wheel sum up to than those of the elements, N, in the last
+    /// sub-step.
     fn beyond(&self, p: &Pulley) -> f64 {
         p.tension[0] + p.tension[1] - self.chain.tension[p.node - 1] - self.chain.tension[p.node]
     }
@@ -223,8 +228,8 @@ impl MassSpringModel {
 }
 
 impl Chain {
-    /// A λ = −C of the active elements (L. H. Thomas' elimination; A is diagonally dominant but for friction, whose
-    /// columns sum to more than zero as g < 1).
+    /// A λ = −C of the active elements (L. H. Thomas' elimination; A is diagonally dominant but for
+    /// friction, whose columns sum to more than zero as g < 1).
     fn solve(&mut self) {
         let elements = self.diagonal.len();
         self.pivot.resize(elements, 0.0);

@@ -1,14 +1,17 @@
-//! The preview moves stiff cables in real time: compliant constraints in fixed small sub-steps instead of stable explicit ones.
+//! The preview moves stiff cables in real time: compliant constraints in fixed small sub-steps
+//! instead of stable explicit ones.
 //!
-//! A spring is the constraint C = length − l₀ with compliance l₀/EA (M. Macklin, M. Müller, N. Chentanez, "XPBD:
-//! position-based simulation of compliant constrained dynamics", Motion in Games, 2016), one iteration in each of many
-//! sub-steps (M. Macklin et al., "Small steps in physics simulation", Symposium on Computer Animation, 2019). Unlike the
-//! papers the constraints of a chain are not taken one after the other but solved together (`chain`).
-//! It is a picture, not a measurement: implicit in time, so fast motion is damped, and contacts act a sub-step late.
+//! A spring is the constraint C = length − l₀ with compliance l₀/EA (M. Macklin, M. Müller, N.
+//! Chentanez, "XPBD: position-based simulation of compliant constrained dynamics", Motion in Games,
+//! 2016), one iteration in each of many sub-steps (M. Macklin et al., "Small steps in physics
+//! simulation", Symposium on Computer Animation, 2019). Unlike the papers the constraints of a
+//! chain are not taken one after the other but solved together (`chain`). It is a picture, not a
+//! measurement: implicit in time, so fast motion is damped, and contacts act a sub-step late.
 //!
-//! Directions are those of the predicted place x* = 2xₙ − xₙ₋₁, so swings across a taut cable, of frequency ω, obey
-//! xₙ₊₁ = (1 − ω²h²) x*, whose roots have modulus √(1 − ω²h²) up to ωh = 1 and leave the unit circle at ω²h² = 4/3: taut
-//! cables take shorter sub-steps, still longer than explicit ones by √(EA/T).
+//! Directions are those of the predicted place x* = 2xₙ − xₙ₋₁, so swings across a taut cable, of
+//! frequency ω, obey xₙ₊₁ = (1 − ω²h²) x*, whose roots have modulus √(1 − ω²h²) up to ωh = 1 and
+//! leave the unit circle at ω²h² = 4/3: taut cables take shorter sub-steps, still longer than
+//! explicit ones by √(EA/T).
 
 use crate::error::SolveError;
 use crate::math::Vec2;
@@ -19,7 +22,8 @@ use crate::model::mass_spring::xpbd::constraint_solve::Chain;
 use crate::model::settings::Stepping;
 use crate::solution::{Warning, WarningKind};
 
-/// Longest sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in proportion.
+/// Longest sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in
+/// proportion.
 const LONGEST_SUB_STEP_S: f64 = 1.0 / 600.0;
 /// And shortest: a snap that asks for less is damped instead, for a sub-step or two.
 const SHORTEST_SUB_STEP_S: f64 = LONGEST_SUB_STEP_S / 64.0;
@@ -74,7 +78,8 @@ impl MassSpringModel {
         Ok(())
     }
 
-    /// ω² of the fastest swing across the cable, 1/s², by Gershgorin's circles: 2(T_b/l_b + T_a/l_a)/m at a node.
+    /// ω² of the fastest swing across the cable, 1/s², by Gershgorin's circles: 2(T_b/l_b +
+    /// T_a/l_a)/m at a node.
     fn sway(&self) -> f64 {
         let (mut fastest, mut before) = (0.0, 0.0);
         let held = self.drives.held.iter().zip(&self.chain.mass);

@@ -1,8 +1,9 @@
 //! A stretch of an arc has closed forms of tension and material.
 //!
-//! With λ = λ₀ frozen dT/dψ = mT − (c/λ)(b·t + m b·n) is solved by T⁰, see [`law`](crate::model::spans::boundary::capstan). What is left of it, and the
-//! material, are integrals of functions that hardly change along a stretch, and whose derivatives at both ends are known:
-//! with f = 1/λ, k = τ/EA, q = b·t + m b·n and r = dq/dψ = m b·t − b·n (dr/dψ = −q),
+//! With λ = λ₀ frozen dT/dψ = mT − (c/λ)(b·t + m b·n) is solved by T⁰, see
+//! [`law`](crate::model::spans::boundary::capstan). What is left of it, and the material, are
+//! integrals of functions that hardly change along a stretch, and whose derivatives at both ends
+//! are known: with f = 1/λ, k = τ/EA, q = b·t + m b·n and r = dq/dψ = m b·t − b·n (dr/dψ = −q),
 //!
 //! ```text
 //! T' = mT − c f q            T'' = mT' − c(f' q + f r)         T''' = mT'' − c(f'' q + 2 f' r − f q)
@@ -11,18 +12,19 @@
 //! T = T⁰ − c ∫ G dξ,         G = e^{m(h−ξ)} q (f − f₀)         material = c ∫ f dξ
 //! ```
 //!
-//! both by the rule of Hermite that is exact to the fifth power,
-//! ∫ g = h/2 (g₀ + g₁) + h²/10 (g₀' − g₁') + h³/120 (g₀'' + g₁''): one exponential and one turn for a stretch, and nothing in
-//! between.
+//! both by the rule of Hermite that is exact to the fifth power, ∫ g = h/2 (g₀ + g₁) + h²/10 (g₀' −
+//! g₁') + h³/120 (g₀'' + g₁''): one exponential and one turn for a stretch, and nothing in between.
 
 use crate::math::{exp, sin_cos};
 use crate::model::spans::boundary::capstan::{Law, LocalLoad, Step};
 
-/// Longest stretch taken at once, rad: the rule leaves h⁶/100 800 of what 1/λ changes along it, itself of the order of T/EA.
+/// Longest stretch taken at once, rad: the rule leaves h⁶/100 800 of what 1/λ changes along it,
+/// itself of the order of T/EA.
 const PANEL: f64 = 0.3;
 
-/// A way (rad) so short that what changes on it is known from its start to third order: what is left out is its fourth power
-/// times a part of the tension. Larger: material is off. Smaller: one more look at both tensions where they are to be one.
+/// A way (rad) so short that what changes on it is known from its start to third order: what is
+/// left out is its fourth power times a part of the tension. Larger: material is off. Smaller: one
+/// more look at both tensions where they are to be one.
 pub(in crate::model::spans) const SHORT_ARC: f64 = 1e-3;
 
 /// A way along an arc, in as many stretches as it needs.
@@ -38,7 +40,8 @@ pub(in crate::model::spans) struct Way {
     load: (f64, f64),
 }
 
-/// Farthest way along an arc, rad: 1600 turns. Less: drums are refused; more: a step of Newton into nowhere takes a minute.
+/// Farthest way along an arc, rad: 1600 turns. Less: drums are refused; more: a step of Newton into
+/// nowhere takes a minute.
 pub(in crate::model::spans) const MOST_TURN: f64 = 1e4;
 
 /// How tension and material go on from a point of an arc: derivatives by the angle.

@@ -1,27 +1,29 @@
-//! A curve is the boundary of an obstacle as the centre line of the cable runs along it, with a coordinate p that grows
-//! along the cable.
+//! A curve is the boundary of an obstacle as the centre line of the cable runs along it, with a
+//! coordinate p that grows along the cable.
 //!
-//! The centre line runs at the offset c (cable radius and what the obstacle adds) from the obstacle. On an edge p counts
-//! metres, on an arc (a convex corner, a post, a wheel) radians, so that a sharp corner needs no case of its own. With
-//! the sense σ = +1 where the solid lies right of travel and −1 where it lies left, t the direction of travel and n the
-//! outward normal,
+//! The centre line runs at the offset c (cable radius and what the obstacle adds) from the
+//! obstacle. On an edge p counts metres, on an arc (a convex corner, a post, a wheel) radians, so
+//! that a sharp corner needs no case of its own. With the sense σ = +1 where the solid lies right
+//! of travel and −1 where it lies left, t the direction of travel and n the outward normal,
 //!
 //! ```text
 //! n = σ perp t        edge: x = x₀ + t p        arc: x = C + c n,  dt/dp = −n,  dn/dp = t
 //! ```
 //!
-//! A concave kink is a break: a tensioned cable bridges it by a free span. So is an edge the load does not press the
-//! cable on to (b·n ≥ 0: walls, undersides): the cable hangs beside it by a free span from corner to corner. What lies
-//! between two breaks is a chain; a contact never leaves its chain. Beyond the ends of its chain the curve goes on
-//! straight or round, so that Newton may look there; what that would cut is found by the search for penetration.
+//! A concave kink is a break: a tensioned cable bridges it by a free span. So is an edge the load
+//! does not press the cable on to (b·n ≥ 0: walls, undersides): the cable hangs beside it by a free
+//! span from corner to corner. What lies between two breaks is a chain; a contact never leaves its
+//! chain. Beyond the ends of its chain the curve goes on straight or round, so that Newton may look
+//! there; what that would cut is found by the search for penetration.
 
 use std::sync::Arc;
 
 use crate::contact::geometry::{Body, Edge};
 use crate::math::{Vec2, bounded, cross, perp, sin_cos};
 
-/// An edge holds the cable if the load presses on it with more than this part of itself. Smaller: a wall that rounding
-/// tilts would hold a cable that hangs beside it. Larger: floors steeper than 89.99° would not hold.
+/// An edge holds the cable if the load presses on it with more than this part of itself. Smaller: a
+/// wall that rounding tilts would hold a cable that hangs beside it. Larger: floors steeper than
+/// 89.99° would not hold.
 const PRESSING_FRACTION: f64 = 1e-9;
 
 /// A direction beyond the end of an arc by less than this (rad) is rounding.
@@ -271,8 +273,8 @@ impl Curve {
         }
     }
 
-    /// The chain a piece belongs to and the number of the piece in it; None if it cannot hold a cable. A chain of a closed
-    /// boundary is always counted from the same turn.
+    /// The chain a piece belongs to and the number of the piece in it; None if it cannot hold a
+    /// cable. A chain of a closed boundary is always counted from the same turn.
     pub fn chain(&self, i: i64, load: Vec2) -> Option<(i64, ChainRange)> {
         if !self.holds(i, load) {
             return None;
@@ -295,14 +297,16 @@ impl Curve {
         Some((i + turn, ChainRange { first: first + turn, last: last + turn }))
     }
 
-    /// The piece beyond the kink at the start (side 0) or the end of a chain; None where there is none.
+    /// The piece beyond the kink at the start (side 0) or the end of a chain; None where there is
+    /// none.
     pub fn beyond_kink(&self, home: ChainRange, side: usize) -> Option<i64> {
         let (i, after) = if side == 0 { (home.first - 1, home.first) } else { (home.last + 1, home.last + 1) };
         let there = self.period.is_some() || (i >= 0 && i < self.pieces.len() as i64);
         (there && !self.is_round() && self.piece(after).kink_before).then_some(i)
     }
 
-    /// The piece of one turn that stands for a feature of the obstacle, the nearest to a point where it has several.
+    /// The piece of one turn that stands for a feature of the obstacle, the nearest to a point
+    /// where it has several.
     pub fn piece_of(&self, feature: usize, at: Vec2) -> Option<i64> {
         let mut best: Option<(f64, i64)> = None;
         for k in (0..self.pieces.len()).filter(|&k| self.pieces[k].feature == Some(feature)) {
@@ -347,7 +351,8 @@ impl Curve {
         self.origin(i) + x
     }
 
-    /// p on the arc i where its tangent is that of `along`, kept on the arc (on a post: within half a turn of 0).
+    /// p on the arc i where its tangent is that of `along`, kept on the arc (on a post: within half
+    /// a turn of 0).
     pub fn with_tangent(&self, i: i64, along: Vec2) -> f64 {
         let piece = self.piece(i);
         let x = match piece.form {
@@ -357,7 +362,8 @@ impl Curve {
         self.origin(i) + x
     }
 
-    /// Calls back with each place between p and q, on arc i, at which its tangent is that of `along`.
+    /// Calls back with each place between p and q, on arc i, at which its tangent is that of
+    /// `along`.
     pub fn running(&self, i: i64, along: Vec2, p: f64, q: f64, mut each: impl FnMut(f64)) {
         let Form::Arc { from, .. } = self.piece(i).form else { return };
         let turn = std::f64::consts::TAU;
@@ -369,7 +375,8 @@ impl Curve {
         }
     }
 
-    /// Whether the tangent of arc i comes to be `along` only before its start (−1) or after its end (+1); 0 where it does on it.
+    /// Whether the tangent of arc i comes to be `along` only before its start (−1) or after its end
+    /// (+1); 0 where it does on it.
     pub fn aside(&self, i: i64, along: Vec2) -> i64 {
         let piece = self.piece(i);
         let Form::Arc { from, .. } = piece.form else { return 0 };
@@ -394,7 +401,8 @@ impl Curve {
     }
 }
 
-/// The pieces of a polygon, ground or thin line at an offset, with the solid right of travel; and whether it closes.
+/// The pieces of a polygon, ground or thin line at an offset, with the solid right of travel; and
+/// whether it closes.
 fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
     let mut edges: Vec<(Edge, usize)> = Vec::with_capacity(2 * body.edges.len());
     edges.extend(body.edges.iter().enumerate().map(|(k, e)| (*e, k)));

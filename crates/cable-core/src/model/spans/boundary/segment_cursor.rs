@@ -1,5 +1,6 @@
-//! One piece of a track, seen from a point of it: what lies on the same piece needs no search, and its direction is that of
-//! the point turned by a small angle. And where on a piece two tensions come to be one.
+//! One piece of a track, seen from a point of it: what lies on the same piece needs no search, and
+//! its direction is that of the point turned by a small angle. And where on a piece two tensions
+//! come to be one.
 
 use std::cell::Cell;
 
@@ -9,8 +10,8 @@ use crate::model::spans::boundary::capstan::{Law, LocalLoad, Step};
 use crate::model::spans::boundary::curve::{ChainRange, Curve, Place};
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 
-/// Where two tensions are about one before this part of a piece it is not asked whether they are so on it. Larger: asked after
-/// all more often.
+/// Where two tensions are about one before this part of a piece it is not asked whether they are so
+/// on it. Larger: asked after all more often.
 const MEETING_SKIP_FRACTION: f64 = 0.9;
 
 /// Looks at both tensions before their meeting is sought within bounds.
@@ -106,9 +107,9 @@ impl SegmentCursor<'_> {
         self.law.along(&self.from, p - self.p0, t, m)
     }
 
-    /// Where before p₁ two tensions, each with its m, that differ at its point come to be one, and both ways there; None
-    /// where that is not before p₁, and both ways there. On an edge both Θ are linear, round a sharp corner both T are
-    /// exponential, else about.
+    /// Where before p₁ two tensions, each with its m, that differ at its point come to be one, and
+    /// both ways there; None where that is not before p₁, and both ways there. On an edge both Θ
+    /// are linear, round a sharp corner both T are exponential, else about.
     pub fn crossing(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> (Option<f64>, [Step; 2]) {
         let law = self.law;
         let whole = p1 - self.p0;
@@ -151,7 +152,8 @@ impl SegmentCursor<'_> {
         (Some(at), ways)
     }
 
-    /// As [`Self::crossing`] round an arc, from about where: Newton's method, the last step from the derivatives alone.
+    /// As [`Self::crossing`] round an arc, from about where: Newton's method, the last step from
+    /// the derivatives alone.
     fn closing(&self, about: f64, whole: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> Option<(f64, [Step; 2])> {
         let mut way = about;
         for _ in 0..FREE_SEARCH_LOOKS {

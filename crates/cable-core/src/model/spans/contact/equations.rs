@@ -1,14 +1,16 @@
 //! A contact has two equations for its material; they stand here with their derivatives.
 //!
-//! Where some of it sticks, at the fronts p_l and p_r, with A the material between end and front as it slides:
+//! Where some of it sticks, at the fronts p_l and p_r, with A the material between end and front as
+//! it slides:
 //!
 //! ```text
 //! s₁ + A₁ − s_old(p_l) = 0,      s₂ − A₂ − s_old(p_r) = 0
 //! ```
 //!
-//! Where all of it slides with m: s₂ − s₁ − A = 0 and T₂ = the tension the law makes of T₁. Moving an end by dp under the
-//! same end tension is the same as a tension there changed by −T'(p) dp, so every derivative by p follows from the one by
-//! tension. At a front both stretches have the same tension, so that moving it changes nothing.
+//! Where all of it slides with m: s₂ − s₁ − A = 0 and T₂ = the tension the law makes of T₁. Moving
+//! an end by dp under the same end tension is the same as a tension there changed by −T'(p) dp, so
+//! every derivative by p follows from the one by tension. At a front both stretches have the same
+//! tension, so that moving it changes nothing.
 
 use crate::math::larger;
 use crate::model::spans::boundary::capstan::Track;
@@ -26,7 +28,8 @@ pub(in crate::model::spans) struct Rows {
 
 /// The rows of a contact in a mode, and where it sticks if it does.
 ///
-/// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself; `spots`: the places of its ends.
+/// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself;
+/// `spots`: the places of its ends.
 pub(in crate::model::spans) fn rows(
     track: &Track<'_>,
     history: &TensionProfile,
@@ -43,7 +46,8 @@ pub(in crate::model::spans) fn rows(
         Mode::Hold => {
             let held = history.hold(track, e);
             let (mut out, fronts) = match held {
-                // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the rows.
+                // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the
+                // rows.
                 Held::Between(fronts) | Held::Beyond(_, fronts) => (holding(track, e, spots, &fronts), fronts),
                 Held::Meet(fronts) => {
                     let mut out = holding(track, e, spots, &fronts);
@@ -63,9 +67,9 @@ pub(in crate::model::spans) fn rows(
 
 /// The row of an end that is held on the boundary, made linear in its tension.
 ///
-/// Near the old tension what a change x of it moves is φ = ∓ k x|x|, k = 1/(2·D·EA·τ), D the difference of the slopes
-/// of tension at the front: flat at x = 0, where Newton starts. Its root √|φ| is straight. Where the end has not moved
-/// the answer is x = 0, with nothing to solve.
+/// Near the old tension what a change x of it moves is φ = ∓ k x|x|, k = 1/(2·D·EA·τ), D the
+/// difference of the slopes of tension at the front: flat at x = 0, where Newton starts. Its root
+/// √|φ| is straight. Where the end has not moved the answer is x = 0, with nothing to solve.
 fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, side: usize, front: &Front) {
     let (old_t, old_s) = history.at(track, e.p[side]);
     let gap = e.s[side] - old_s;
@@ -87,8 +91,8 @@ fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, si
     let inner = e.p[side] + (e.p[1 - side] - e.p[side]) * 1e-9;
     let drop = (law.slope(&place, old_t, m) - history.slope(track, inner)).abs() / place.stretch;
     if drop <= SLOPE_DIFFERENCE_FRACTION * law.load.norm() {
-        // It slides on as it slid: the material follows the tension along the whole of the old sliding, evenly, which a
-        // tension that has not changed yet does not show.
+        // It slides on as it slid: the material follows the tension along the whole of the old
+        // sliding, evenly, which a tension that has not changed yet does not show.
         out.of_tension[side] = false;
         if x == 0.0 {
             let nudged = old_t + DIFFERENCE_STEP * (old_t.abs() + law.load.norm() * size) * target.signum();
@@ -117,7 +121,8 @@ fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, si
     }
 }
 
-/// Where a cable runs away it is followed with a drag η: T₂ less what the law makes of T₁ is η (s_old(p₁) − s₁), the slip.
+/// Where a cable runs away it is followed with a drag η: T₂ less what the law makes of T₁ is η
+/// (s_old(p₁) − s₁), the slip.
 fn sliding(track: &Track<'_>, history: &TensionProfile, e: &Ends, [a, b]: &[Place; 2], m: f64) -> Rows {
     let way = track.slide(e.p[0], e.p[1], e.t[0], m);
     let slope = track.law.slope(a, e.t[0], m);
@@ -151,7 +156,8 @@ fn sliding(track: &Track<'_>, history: &TensionProfile, e: &Ends, [a, b]: &[Plac
     }
 }
 
-/// Friction fully mobilised: from the end that is drawn the tension falls by the law, to nothing at most.
+/// Friction fully mobilised: from the end that is drawn the tension falls by the law, to nothing at
+/// most.
 fn drawn(track: &Track<'_>, e: &Ends, spots: &[Place; 2], m: f64) -> Rows {
     let from = usize::from(m > 0.0);
     let to = 1 - from;
@@ -189,8 +195,8 @@ fn holding(track: &Track<'_>, e: &Ends, spots: &[Place; 2], fronts: &[Front; 2])
     out
 }
 
-/// What is added where the fronts meet: the meeting point moves with both tensions, and the old tension there differs from
-/// the new one.
+/// What is added where the fronts meet: the meeting point moves with both tensions, and the old
+/// tension there differs from the new one.
 fn meeting(
     out: &mut Rows,
     track: &Track<'_>,
@@ -219,9 +225,11 @@ fn meeting(
     }
 }
 
-/// The mode to go on with: a contact that holds beyond its cone slides; one that would slide the wrong way holds.
+/// The mode to go on with: a contact that holds beyond its cone slides; one that would slide the
+/// wrong way holds.
 ///
-/// `held`: where it sticks; `patience`: how many times rounding that is; 1 while it costs nothing to change.
+/// `held`: where it sticks; `patience`: how many times rounding that is; 1 while it costs nothing
+/// to change.
 pub(in crate::model::spans) fn next_mode(
     track: &Track<'_>,
     history: &TensionProfile,
@@ -255,8 +263,9 @@ pub(in crate::model::spans) fn next_mode(
                     return if drawn < -rounding { Mode::Hold } else { mode };
                 }
             }
-            // With m = +μ material goes on along p, so there is less of it than was, s < s_old, at every p. The slip is
-            // least where the tension is what it was: before it the one stretch is the greater, after it the other.
+            // With m = +μ material goes on along p, so there is less of it than was, s < s_old, at
+            // every p. The slip is least where the tension is what it was: before it the one
+            // stretch is the greater, after it the other.
             let (old, _) = history.at(track, e.p[0]);
             let least = if (old - e.t[0]) * m > 0.0 { history.front(track, e.p[0], e.t[0], e.p[1]).p } else { e.p[0] };
             let s = e.s[0] + track.slide(e.p[0], least, e.t[0], m).material;
@@ -266,7 +275,8 @@ pub(in crate::model::spans) fn next_mode(
     }
 }
 
-/// Part of a tension by which the cone of friction may be left. Smaller: chatter of rounding; larger: creep.
+/// Part of a tension by which the cone of friction may be left. Smaller: chatter of rounding;
+/// larger: creep.
 const CONE_ROUNDING: f64 = 1e-13;
 /// Part of the material coordinate that is rounding.
 const ROUNDING: f64 = 1e-15;
@@ -274,7 +284,8 @@ const ROUNDING: f64 = 1e-15;
 const DIFFERENCE_STEP: f64 = 1e-6;
 /// Slopes of tension nearer to each other than this part of the load are one.
 const SLOPE_DIFFERENCE_FRACTION: f64 = 1e-6;
-/// Part of the material coordinate that an end held on the boundary may be off without having moved.
+/// Part of the material coordinate that an end held on the boundary may be off without having
+/// moved.
 const END_MOVE_TOLERANCE: f64 = 1e-14;
 /// Part of the material coordinate that is no movement: rounding.
 const STICK_ROUNDING: f64 = 1e-15;

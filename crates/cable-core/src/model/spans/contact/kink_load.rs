@@ -1,8 +1,9 @@
 //! A load in a concave kink of a boundary is held by both its edges.
 //!
-//! What slides down into a kink stays there as long as the force V on it lies between the cones of friction of the two edges:
-//! it leaves along its own edge where V·t back from the kink is more than μN, with N = −V·n of that edge alone, and likewise along
-//! the other. The cable beside it may lie on either edge, joined to it.
+//! What slides down into a kink stays there as long as the force V on it lies between the cones of
+//! friction of the two edges: it leaves along its own edge where V·t back from the kink is more
+//! than μN, with N = −V·n of that edge alone, and likewise along the other. The cable beside it may
+//! lie on either edge, joined to it.
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::changes::resolve;
@@ -56,7 +57,8 @@ fn other(course: &Course, c: &Contact, kink: Kink) -> Option<(Vec2, Vec2)> {
     Some((place.tangent, place.normal))
 }
 
-/// The way V pushes the load out of its kink: away along its own edge, or on along the other (`true`).
+/// The way V pushes the load out of its kink: away along its own edge, or on along the other
+/// (`true`).
 fn leaves(course: &Course, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) -> Option<bool> {
     let out = |along: f64, press: f64| along > course.friction(c) * larger(press, 0.0) + room * f.size;
     if out(-kink.sign() * f.sum.dot(&f.tangent), -f.sum.dot(&f.normal)) {

@@ -1,5 +1,5 @@
-//! Loads and ends of the cable that come down onto a boundary are found and put down where they did; `point_load` says
-//! what they are there.
+//! Loads and ends of the cable that come down onto a boundary are found and put down where they
+//! did; `point_load` says what they are there.
 
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp};
@@ -74,7 +74,8 @@ pub(in crate::model::spans) fn touch(
         _ => Vec2::zeros(),
     };
     let pressed = l.tip.is_none() || drawn.dot(&l.gap.normal) < -LIFT_FRACTION * drawn.norm();
-    // An end that nothing presses down slides on with its load as it lies down, or comes to lie in a heap.
+    // An end that nothing presses down slides on with its load as it lies down, or comes to lie in
+    // a heap.
     let load = course.law.load;
     let down = load - l.gap.normal * load.dot(&l.gap.normal);
     let along = if pressed { l.along } else { down * if l.tip == Some(0) { -1.0 } else { 1.0 } };

@@ -1,16 +1,18 @@
 //! A dead load may lie on a boundary, inside the cable or at an end of it.
 //!
-//! Such a load P is a contact without extent: p₁ = p₂ = q, and its material is its own (after it the next number, so that
-//! what is summed up to there has the load in it, and what is summed up to before it has not). With F₋ and F₊ the force of
-//! the cable before and after it, pressed by N n and rubbed by −mN t as all that lies (see `capstan`), V = F₊ − F₋ + P:
+//! Such a load P is a contact without extent: p₁ = p₂ = q, and its material is its own (after it
+//! the next number, so that what is summed up to there has the load in it, and what is summed up to
+//! before it has not). With F₋ and F₊ the force of the cable before and after it, pressed by N n
+//! and rubbed by −mN t as all that lies (see `capstan`), V = F₊ − F₋ + P:
 //!
 //! ```text
 //! V + N n − m N t = 0:      N = −V·n,      V·(t + m n) = 0  where it slides with m,      |V·t| ≤ μN  where it sticks
 //! ```
 //!
-//! The cable beside it comes from the air at any angle, a span that ends in q; or it lies on the same chain, F = T t, and
-//! there is no span between the two: they are *joined*, and T stands where the force of that span would stand. At an end of
-//! the cable nothing is beyond it, and P is what draws the end.
+//! The cable beside it comes from the air at any angle, a span that ends in q; or it lies on the
+//! same chain, F = T t, and there is no span between the two: they are *joined*, and T stands where
+//! the force of that span would stand. At an end of the cable nothing is beyond it, and P is what
+//! draws the end.
 
 use crate::catenary::PointForce;
 use crate::math::{Vec2, larger, smaller};
@@ -22,7 +24,8 @@ use crate::model::spans::failure::Failure;
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie};
 
-/// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger: creep.
+/// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger:
+/// creep.
 const CONE_ROUNDING: f64 = 1e-12;
 /// Part of the material coordinate that is no movement.
 const MATERIAL_ROUNDING: f64 = 1e-15;
@@ -30,8 +33,8 @@ const MATERIAL_ROUNDING: f64 = 1e-15;
 pub(in crate::model::spans) const LIFT_FRACTION: f64 = 1e-9;
 /// Equations must hold to this part of the forces; the solver stops at 1e-11.
 const BALANCE_TOLERANCE: f64 = 1e-7;
-/// A contact's end this near to a load, of the strand's length, may end there. Smaller: it is found after more halvings. Larger: loads
-/// in the air are set down for nothing.
+/// A contact's end this near to a load, of the strand's length, may end there. Smaller: it is found
+/// after more halvings. Larger: loads in the air are set down for nothing.
 const CATCH_DISTANCE_FRACTION: f64 = 0.02;
 
 /// What a load feels.
@@ -112,8 +115,8 @@ pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: 
     }
 }
 
-/// The friction of what came down in a step that is not remembered yet, of the force there: loads have had none, and cable rubs
-/// as if it had come down where it was found.
+/// The friction of what came down in a step that is not remembered yet, of the force there: loads
+/// have had none, and cable rubs as if it had come down where it was found.
 pub(in crate::model::spans) fn fresh(strand: &CableRun, course: &Course) -> f64 {
     let missing = |j: usize| {
         let c = &strand.contacts[j];
@@ -128,8 +131,8 @@ pub(in crate::model::spans) fn fresh(strand: &CableRun, course: &Course) -> f64 
     (0..strand.contacts.len()).map(missing).fold(0.0, larger)
 }
 
-/// Whether all of a strand is about to slide one way (1: towards its end, −1: towards its start): at each contact the tensions are
-/// those of sliding, but for this part of them.
+/// Whether all of a strand is about to slide one way (1: towards its end, −1: towards its start):
+/// at each contact the tensions are those of sliding, but for this part of them.
 pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way: f64, near: f64) -> bool {
     let slides = |(j, c): (usize, &Contact)| {
         let m = way * course.friction(c);
@@ -176,8 +179,8 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usiz
     Ok(())
 }
 
-/// L: loads that lift are let go, those within a contact are set down there, ends that are pressed down rub, and what lies
-/// on one chain beside a load is joined to it; whether there was any.
+/// L: loads that lift are let go, those within a contact are set down there, ends that are pressed
+/// down rub, and what lies on one chain beside a load is joined to it; whether there was any.
 pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) -> Result<bool, Failure> {
     for j in 0..strand.contacts.len() {
         if strand.contacts[j].is_load() {
@@ -273,8 +276,8 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
     Ok(false)
 }
 
-/// C: where Newton stalls an end of a contact may have come to a load: it ends there, whatever the load rests with. The load
-/// that is nearest to an end is set down; whether there was one.
+/// C: where Newton stalls an end of a contact may have come to a load: it ends there, whatever the
+/// load rests with. The load that is nearest to an end is set down; whether there was one.
 pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> bool {
     let mut best: Option<(f64, usize, usize, f64)> = None;
     let lies = |s: f64| strand.contacts.iter().any(|c| c.is_load() && c.ends.s[0] == s);

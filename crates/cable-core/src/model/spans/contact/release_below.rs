@@ -1,9 +1,10 @@
 //! A cable round a post may hang free below it, where its tension is too small to bear it there.
 //!
-//! On an arc the pressure P = T − (c/λ) b·n obeys P' = mP − 2(c/λ) b·t, so that P e^{−mψ} falls up to the *bottom* of the arc, where
-//! b·t = 0 with the load away from the centre, and grows behind it: if P is not below nothing at a bottom it is so nowhere near it. What
-//! pulls is a stretch about a bottom; the contact is parted there and a span hangs in its place. Two contacts of one post with
-//! a bottom between them are two until they meet.
+//! On an arc the pressure P = T − (c/λ) b·n obeys P' = mP − 2(c/λ) b·t, so that P e^{−mψ} falls up
+//! to the *bottom* of the arc, where b·t = 0 with the load away from the centre, and grows behind
+//! it: if P is not below nothing at a bottom it is so nowhere near it. What pulls is a stretch
+//! about a bottom; the contact is parted there and a span hangs in its place. Two contacts of one
+//! post with a bottom between them are two until they meet.
 
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::changes::resolve;
@@ -11,8 +12,8 @@ use crate::model::spans::contact::friction_memory::{Ends, Mode, TensionProfile};
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 use crate::model::spans::run::{CableRun, Contact, Course, Next};
 
-/// Pull on a post that is none, of the tensions at the ends of the contact: rounding. Larger than what the check lets pass: contacts
-/// that it refuses are not parted.
+/// Pull on a post that is none, of the tensions at the ends of the contact: rounding. Larger than
+/// what the check lets pass: contacts that it refuses are not parted.
 const PULL_ROUNDING: f64 = 1e-9;
 
 /// Whether a bottom of a round boundary lies between two places on it.

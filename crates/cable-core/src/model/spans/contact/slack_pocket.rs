@@ -1,26 +1,29 @@
 //! A pocket is slack in a concave kink.
 //!
-//! A cable under tension bridges a kink of δ by a span that is tangent to both its edges; its size goes with its tension,
-//! x = T tan(δ/2)/w on each edge. Where there is more cable than that the span shrinks to nothing: the cable lies in the kink
-//! without tension, and what is over lies there loose. Such a *pocket* is two ends of contacts held in the kink, T = 0 on
-//! both, with as much material between them as there is over, surplus = s₁ − s₂ ≥ 0. Where the surplus is used up the cable
-//! draws a span across the kink again. Between the two nothing jumps: T → 0 as surplus → 0.
+//! A cable under tension bridges a kink of δ by a span that is tangent to both its edges; its size
+//! goes with its tension, x = T tan(δ/2)/w on each edge. Where there is more cable than that the
+//! span shrinks to nothing: the cable lies in the kink without tension, and what is over lies there
+//! loose. Such a *pocket* is two ends of contacts held in the kink, T = 0 on both, with as much
+//! material between them as there is over, surplus = s₁ − s₂ ≥ 0. Where the surplus is used up the
+//! cable draws a span across the kink again. Between the two nothing jumps: T → 0 as surplus → 0.
 //!
-//! What is over is a heap in the kink that weighs B = −b·surplus and more where dead loads are in it. The two edges have to carry
-//! it: pressed alone, N₁n₁ + N₂n₂ = −B, where −B is between their normals; else by the one edge it lies on, within its cone.
-//! A heap that neither carries slides on down (see [`heap`]).
+//! What is over is a heap in the kink that weighs B = −b·surplus and more where dead loads are in
+//! it. The two edges have to carry it: pressed alone, N₁n₁ + N₂n₂ = −B, where −B is between their
+//! normals; else by the one edge it lies on, within its cone. A heap that neither carries slides on
+//! down (see [`heap`]).
 //!
-//! The span that replaces a surplus of −e: an arc tangent to both edges x from the kink is δ x/tan(δ/2) long, and so
-//! e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
+//! The span that replaces a surplus of −e: an arc tangent to both edges x from the kink is δ
+//! x/tan(δ/2) long, and so e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
 
 use crate::math::{Vec2, cross};
 use crate::model::spans::run::{CableRun, Contact, Course, Next};
 
-/// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it. Larger: the cable there is
-/// too short by as much.
+/// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it.
+/// Larger: the cable there is too short by as much.
 pub(in crate::model::spans) const POCKET_SHORTAGE_FRACTION: f64 = 1e-11;
-/// Spans of less tension than this part of the cable's weight may have become pockets where a step fails. Smaller: it takes
-/// more halvings to come so near. Larger: more of them are tried for nothing.
+/// Spans of less tension than this part of the cable's weight may have become pockets where a step
+/// fails. Smaller: it takes more halvings to come so near. Larger: more of them are tried for
+/// nothing.
 const POCKET_TENSION_FRACTION: f64 = 1e-2;
 /// Ends of two chains this near to each other (m) are one kink.
 const KINK_DISTANCE_M: f64 = 1e-9;
@@ -29,7 +32,8 @@ const HEAP_CONE_ROUNDING: f64 = 1e-9;
 /// A span drawn across a kink takes at most this part of the contacts beside it.
 const KINK_SPAN_FRACTION: f64 = 0.3;
 
-/// Where the ends of the contacts before and after span k would lie in a kink: p on both, the turn, rad.
+/// Where the ends of the contacts before and after span k would lie in a kink: p on both, the turn,
+/// rad.
 fn kink(strand: &CableRun, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
     let (a, b) = (strand.contacts.get(k.checked_sub(1)?)?, strand.contacts.get(k)?);
     if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.is_load() || b.is_load() {

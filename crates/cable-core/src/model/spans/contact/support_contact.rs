@@ -46,8 +46,8 @@ fn lay(strand: &mut CableRun, side: usize, j: usize, p: f64) {
     (e.p[side], e.s[side]) = (p, s);
 }
 
-/// An end that leaves the boundary: a span begins where a parabola of the height h and tension T there would,
-/// x = √(2Th/w_n).
+/// An end that leaves the boundary: a span begins where a parabola of the height h and tension T
+/// there would, x = √(2Th/w_n).
 fn lift(strand: &mut CableRun, course: &Course, side: usize, j: usize, at: Vec2) {
     let c = &mut strand.contacts[j];
     let track = course.track(c);

@@ -1,7 +1,9 @@
-//! The friction of one wheel, for models that have cables of their own: what it remembers, and the two equations of the cable on it.
+//! The friction of one wheel, for models that have cables of their own: what it remembers, and the
+//! two equations of the cable on it.
 //!
-//! The law is that of every contact here (`law`, `history`, `rub`). Slip is seen at points fixed to the wheel, since where the cable
-//! meets and leaves it wanders with its directions and moves no material.
+//! The law is that of every contact here (`law`, `history`, `rub`). Slip is seen at points fixed to
+//! the wheel, since where the cable meets and leaves it wanders with its directions and moves no
+//! material.
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::capstan::{Law, Track};
@@ -11,8 +13,8 @@ use crate::model::spans::contact::friction_memory::{Ends, Held, Knot, Mode, Tens
 
 /// A wheel is one arc.
 const WHEEL_RANGE: ChainRange = ChainRange { first: 0, last: 0 };
-/// Part of the cone within which a cable taken over counts as sliding. Less: rounding of the answer decides; more: a cable that holds
-/// is let slide, for as much of its tension.
+/// Part of the cone within which a cable taken over counts as sliding. Less: rounding of the answer
+/// decides; more: a cable that holds is let slide, for as much of its tension.
 const SLIDING_CONE_TOLERANCE: f64 = 1e-7;
 
 /// Load (N/m), 1 + αΔT and EA (N) of the cable.
@@ -23,7 +25,8 @@ pub(in crate::model) struct OnWheel {
     pub stiffness: f64,
 }
 
-/// Where the cable meets and leaves a wheel: angle (rad, growing along the cable), material (m), tension (N).
+/// Where the cable meets and leaves a wheel: angle (rad, growing along the cable), material (m),
+/// tension (N).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::model) struct WheelEnds {
     pub p: [f64; 2],
@@ -56,7 +59,8 @@ impl From<&WheelEnds> for Ends {
 }
 
 impl WheelFriction {
-    /// A wheel of a radius (of the centre line, m) that the cable passes clockwise (`facing` +1) or the other way (−1).
+    /// A wheel of a radius (of the centre line, m) that the cable passes clockwise (`facing` +1) or
+    /// the other way (−1).
     pub fn new(radius: f64, friction: f64, facing: f64) -> Self {
         let mode = if friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) };
         Self { curve: Curve::wheel(radius, friction, facing), history: TensionProfile::default(), mode, held: None }
@@ -87,7 +91,8 @@ impl WheelFriction {
         [place.tangent, place.normal]
     }
 
-    /// Begins with what is known of the cable on it: angle, material (m) and tension (N) at points in order.
+    /// Begins with what is known of the cable on it: angle, material (m) and tension (N) at points
+    /// in order.
     pub fn begin(&mut self, on: &OnWheel, points: &[[f64; 3]]) {
         let knots: Vec<Knot> = points.iter().map(|&[p, s, tension]| Knot { p, s, tension, m: 0.0 }).collect();
         let friction = self.curve.friction;
@@ -113,8 +118,8 @@ impl WheelFriction {
         WheelRows { residual: rows.residual, by: rows.by, of_tension: rows.of_tension }
     }
 
-    /// Goes over to sliding or holding where the law asks for it at these ends; whether it did. `patience` is how many times
-    /// rounding a violation must be.
+    /// Goes over to sliding or holding where the law asks for it at these ends; whether it did.
+    /// `patience` is how many times rounding a violation must be.
     pub fn change_mode(&mut self, on: &OnWheel, ends: &WheelEnds, patience: f64) -> bool {
         let e = Ends::from(ends);
         let next = equations::next_mode(&self.track(on), &self.history, &e, None, self.mode, [false; 2], patience);

@@ -1,5 +1,5 @@
-//! The first guess of a run has contacts where the shortest path of its route bends, and its material spread evenly along
-//! the route.
+//! The first guess of a run has contacts where the shortest path of its route bends, and its
+//! material spread evenly along the route.
 
 use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};
@@ -16,23 +16,27 @@ use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 
 /// Ends of a route this near to a boundary lie on it, of the cable's radius.
 const LYING_END_RADII: f64 = 0.05;
-/// The same of a free end and of the points of the route behind it, which fall on what is below them. Smaller: an end drawn by hand a
-/// little above the ground hangs from its support, through the ground; larger: what hangs beside an obstacle is laid on it.
+/// The same of a free end and of the points of the route behind it, which fall on what is below
+/// them. Smaller: an end drawn by hand a little above the ground hangs from its support, through
+/// the ground; larger: what hangs beside an obstacle is laid on it.
 const FALLING_END_RADII: f64 = 1.0;
-/// Tension with which the cable is laid at least where it does not lie in one piece, of its weight. Smaller: spans over
-/// hollows shrink to nothing. Larger: friction at a free end has to hold it, and it slides there first.
+/// Tension with which the cable is laid at least where it does not lie in one piece, of its weight.
+/// Smaller: spans over hollows shrink to nothing. Larger: friction at a free end has to hold it,
+/// and it slides there first.
 const FIRST_TENSION_WEIGHTS: f64 = 1e-3;
-/// A route longer than the cable by more than this part is not how it lies: no cable is strained so. It is laid along the string
-/// then. Smaller: a cable laid taut is laid anew with other tensions. Larger: the first guess is far off.
+/// A route longer than the cable by more than this part is not how it lies: no cable is strained
+/// so. It is laid along the string then. Smaller: a cable laid taut is laid anew with other
+/// tensions. Larger: the first guess is far off.
 const ROUTE_EXCESS_FRACTION: f64 = 0.05;
-/// Points of a route between its ends lie on a boundary if they are this near, of the cable's radius: routes follow the
-/// surface, the centre line is cut off at kinks.
+/// Points of a route between its ends lie on a boundary if they are this near, of the cable's
+/// radius: routes follow the surface, the centre line is cut off at kinks.
 const ROUTE_CONTACT_RADII: f64 = 0.5;
-/// How far along the route, in radii of a post, the cable may come up to it before or after the string does: less than half
-/// a turn, so that turns are not mistaken for each other.
+/// How far along the route, in radii of a post, the cable may come up to it before or after the
+/// string does: less than half a turn, so that turns are not mistaken for each other.
 const POST_APPROACH_RADII: f64 = 2.5;
-/// How much further than at its nearest a route that is drawn round a wheel may be from its centre, of the radius. Smaller: the chords of
-/// a coarse polygon are left; larger: of a route that only comes near more is taken for its round.
+/// How much further than at its nearest a route that is drawn round a wheel may be from its centre,
+/// of the radius. Smaller: the chords of a coarse polygon are left; larger: of a route that only
+/// comes near more is taken for its round.
 const ABOUT: f64 = 0.1;
 /// Rounds of bringing a free end to where the material ends; each gains the digits of the strain.
 const END_FIT_ROUNDS: usize = 6;
@@ -98,7 +102,8 @@ fn along(
             _ => true,
         })
     });
-    // Evenly along the route; from the end that is held, strained by what draws the other, where that is not held.
+    // Evenly along the route; from the end that is held, strained by what draws the other, where
+    // that is not held.
     let loose = |side: usize| part.supports[side].is_none();
     let drawn = |side: usize| match (&heads[side], ties[side]) {
         (None, Tie::Hangs(force)) => (force + course.law.load * tail(part, instant, way, side)).norm(),
@@ -159,7 +164,8 @@ fn along(
     }
     spread(&mut strand, course);
     solve_spans(&mut strand, course)?;
-    // Without a route the way is straight from support to support: round a wheel from tangent to tangent.
+    // Without a route the way is straight from support to support: round a wheel from tangent to
+    // tangent.
     let wheel = |q: &Pulley| layout.problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
     let tangent_ways = layout.problem.route.len() < 2 && part.pulleys.iter().any(wheel);
     if (slack > ROUTE_EXCESS_FRACTION || tangent_ways) && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
@@ -197,7 +203,8 @@ fn lies_whole(mut strand: CableRun, course: &Course, [a, b]: [&Head; 2], tension
     strand
 }
 
-/// Two stretches that meet at a kink of δ are joined by a span of length Tδ/w: half of it, m; 0 where they do not meet.
+/// Two stretches that meet at a kink of δ are joined by a span of length Tδ/w: half of it, m; 0
+/// where they do not meet.
 fn joint(course: &Course, heads: &[Option<Head>; 2], meet: bool, tension: f64) -> f64 {
     match heads {
         [Some(a), Some(b)] if meet => {
@@ -260,7 +267,8 @@ fn bends(
         // One that the string passes without a bend touches in one point, seen from either end.
         let [p1, p2] = if p2 > p1 { [p1, p2] } else { [0.5 * (p1 + p2); 2] };
         let half = 0.5 * curve.length(p1, p2, seat.home) / course.law.stretch(tension);
-        // Round a post the string's points are not those of the cable: where it comes and goes on the route itself.
+        // Round a post the string's points are not those of the cable: where it comes and goes on
+        // the route itself.
         let seen = |p: f64, w: f64| {
             let place = curve.place(p, seat.home);
             if curve.is_round() { way.close(place.at, w, POST_APPROACH_RADII * place.stretch) } else { w }
@@ -288,8 +296,8 @@ fn bare(part: &Part, instant: &BoundaryConditions) -> Option<CableRun> {
     })
 }
 
-/// Material as it lies along the taut string, strained by `stretch`, from the end that is held; from the first contact as
-/// the route has it where none is.
+/// Material as it lies along the taut string, strained by `stretch`, from the end that is held;
+/// from the first contact as the route has it where none is.
 pub(in crate::model::spans) fn measure(strand: &mut CableRun, course: &Course, loose: [bool; 2], stretch: f64) {
     let n = strand.contacts.len();
     let point = |strand: &CableRun, k: usize, side: usize| strand.ends_of(course, k)[side];
@@ -319,7 +327,8 @@ pub(in crate::model::spans) fn measure(strand: &mut CableRun, course: &Course, l
     }
 }
 
-/// Length of a route from an end that hangs to the highest of its points, about where it is first held, m.
+/// Length of a route from an end that hangs to the highest of its points, about where it is first
+/// held, m.
 fn tail(part: &Part, instant: &BoundaryConditions, way: &Way, side: usize) -> f64 {
     let up = -instant.load;
     let high = |k: &usize| way.points[*k].dot(&up);
@@ -390,8 +399,9 @@ pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
     }
 }
 
-/// A contact as it is laid: from its end that is free, where its tension is known, or held, where its material is; else from its middle.
-/// With two free ends it is laid with the tension of the one that draws less.
+/// A contact as it is laid: from its end that is free, where its tension is known, or held, where
+/// its material is; else from its middle. With two free ends it is laid with the tension of the one
+/// that draws less.
 fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> TensionProfile {
     let end = |side: usize| Knot { p: e.p[side], s: e.s[side], tension: e.t[side], m: 0.0 };
     let start = match (free, held) {
@@ -429,7 +439,8 @@ struct Head {
     count: usize,
 }
 
-/// Whether the first points of a route (the last, for side 1) lie on one chain: the end and the others as `near` as that, m.
+/// Whether the first points of a route (the last, for side 1) lie on one chain: the end and the
+/// others as `near` as that, m.
 fn lying(course: &Course, world: &World, near: [f64; 2], points: &[Vec2], side: usize) -> Option<Head> {
     let n = points.len();
     let point = |k: usize| points[if side == 0 { k } else { n - 1 - k }];
@@ -488,8 +499,9 @@ fn seats(
         if let Some(q) = pulley {
             let curve = q.curve + usize::from(q.facing < 0.0);
             let home = ChainRange { first: 0, last: 0 };
-            // Tangents say how far it turns but for whole turns. A wheel passed on its side turns it by −90° (it lifts off, almost) to
-            // 270°: half a turn, two tails that hang from it, lies in the middle of that.
+            // Tangents say how far it turns but for whole turns. A wheel passed on its side turns
+            // it by −90° (it lifts off, almost) to 270°: half a turn, two tails that hang from it,
+            // lies in the middle of that.
             let turn = if q.facing == 0.0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
             // The route may be drawn round it: where it comes and where it goes.
             let radius = course.curves[curve].place(0.0, home).stretch;
@@ -521,11 +533,11 @@ fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, w: f64, turn: f64) -> Op
     Some(())
 }
 
-/// Lets each seat go on to the corner beside it where the string comes up to its corner, or leaves it, through the edge
-/// between the two; the rounds of all.
+/// Lets each seat go on to the corner beside it where the string comes up to its corner, or leaves
+/// it, through the edge between the two; the rounds of all.
 ///
-/// The string of points passes just by such a corner, that of the cable's radius bends round it: along the edge nothing
-/// turns, and Newton's method does not find across it.
+/// The string of points passes just by such a corner, that of the cable's radius bends round it:
+/// along the edge nothing turns, and Newton's method does not find across it.
 fn stretched(course: &Course, seats: &mut [Seat], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
     let mut found = rounds(course, seats, ends[0], ends[1]);
     for _ in 0..MOST_STRETCHED {
@@ -569,7 +581,8 @@ fn rounds(course: &Course, seats: &[Seat], start: Vec2, end: Vec2) -> Vec<[Round
     out
 }
 
-/// Direction of the line that touches two circles: with n = σ perp t, (C₂ − C₁)·perp t = σ₁r₁ − σ₂r₂.
+/// Direction of the line that touches two circles: with n = σ perp t, (C₂ − C₁)·perp t = σ₁r₁ −
+/// σ₂r₂.
 fn tangent(a: Round, b: Round) -> Vec2 {
     let d = b.0 - a.0;
     let far = d.norm();

@@ -1,10 +1,11 @@
 //! Runs are set up where another model's answer has the cable, with the friction it has there.
 //!
-//! Consecutive nodes on one chain of a boundary form a contact. On an arc the contact extends from its
-//! outer nodes to the points where the cable beside it is tangent, with the material of the arc's
-//! length. The friction memory is set up from the tensions midway between the nodes: a chain of bars
-//! has its tensions there, and jumps at the nodes. Between two neighbouring tensions the single
-//! mobilised friction coefficient m is used that connects them, limited to the friction cone.
+//! Consecutive nodes on one chain of a boundary form a contact. On an arc the contact extends from
+//! its outer nodes to the points where the cable beside it is tangent, with the material of the
+//! arc's length. The friction memory is set up from the tensions midway between the nodes: a chain
+//! of bars has its tensions there, and jumps at the nodes. Between two neighbouring tensions the
+//! single mobilised friction coefficient m is used that connects them, limited to the friction
+//! cone.
 
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
@@ -15,7 +16,8 @@ use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::solution::Node;
 
-/// A node this near to a boundary (m) lies on it: a barrier keeps nodes as far off as it reaches, 1e-4 m.
+/// A node this near to a boundary (m) lies on it: a barrier keeps nodes as far off as it reaches,
+/// 1e-4 m.
 const CONTACT_DISTANCE_M: f64 = 2.5e-4;
 /// Of the material of a strand, what is kept between two contacts at least.
 const CONTACT_SPACING_FRACTION: f64 = 1e-6;
@@ -37,8 +39,8 @@ impl Station {
     }
 }
 
-/// The strands of a cable as an answer has it, with at most a part of the cone of friction called upon; None where they
-/// cannot be told from it.
+/// The strands of a cable as an answer has it, with at most a part of the cone of friction called
+/// upon; None where they cannot be told from it.
 pub(in crate::model::spans) fn take(
     layout: &Layout,
     course: &Course,
@@ -243,8 +245,8 @@ impl Run<'_> {
         }
         knots.push(knot(1));
         let track = course.track(&contact);
-        // What is beyond the cone goes to where the tension is known without friction: away from an end that lies, to one that
-        // is not held.
+        // What is beyond the cone goes to where the tension is known without friction: away from an
+        // end that lies, to one that is not held.
         let lies = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
         let at_end = [self.first == 0, self.last + 1 == stations.len()];
         let free = strand.ties.map(|t| matches!(t, Tie::Hangs(_) | Tie::Loose(_)));
@@ -254,8 +256,8 @@ impl Run<'_> {
         } else {
             TensionProfile::through(&track, &knots, self.within)
         };
-        // Other models' nodes have their material as their bars have it, not as the tension between them strains it: what that is off goes
-        // to the span beyond, where there is one.
+        // Other models' nodes have their material as their bars have it, not as the tension between
+        // them strains it: what that is off goes to the span beyond, where there is one.
         if !at_end[usize::from(!back)] {
             contact.history.measure(&track, back);
             if let [first, .., last] = contact.history.knots() {
@@ -336,7 +338,8 @@ impl Run<'_> {
         Some((q, station.s + way, tension))
     }
 
-    /// Direction of travel of the line that touches the arc at p and goes through a point beside it.
+    /// Direction of travel of the line that touches the arc at p and goes through a point beside
+    /// it.
     fn tangent_from(&self, beside: Vec2, p: f64, side: usize) -> Option<Vec2> {
         let place = self.curve.place(p, self.home);
         let center = place.at - place.normal * place.stretch;

@@ -1,11 +1,12 @@
-//! The route of a run is that of the scene, or goes from support to support and over what is in the way.
+//! The route of a run is that of the scene, or goes from support to support and over what is in the
+//! way.
 
 use crate::contact::World;
 use crate::math::{Vec2, bounded};
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
 
-/// Part of the way from one end to the other by which a route that is led over things keeps clear of them. Smaller: rounding may let it touch.
-/// Larger: it goes round more than it needs to.
+/// Part of the way from one end to the other by which a route that is led over things keeps clear
+/// of them. Smaller: rounding may let it touch. Larger: it goes round more than it needs to.
 const ROUTE_CLEARANCE_FRACTION: f64 = 1e-4;
 
 /// A route with the length along it.
@@ -160,7 +161,8 @@ pub(in crate::model::spans) fn way(layout: &Layout, part: &Part, instant: &Bound
     Way::new(points)
 }
 
-/// What leads from `a` to `b` where the straight way is blocked: out from under what either is under, then above everything between.
+/// What leads from `a` to `b` where the straight way is blocked: out from under what either is
+/// under, then above everything between.
 fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
     let free = |p: Vec2, q: Vec2| world.free_fraction([p, p], [q, q], 0.0) >= 1.0;
     if world.is_empty() || free(a, b) {

@@ -259,7 +259,8 @@ fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, sheet: &mut Sy
             let s = if side == 0 { strand.from } else { strand.to };
             r[tangency] = (c.ends.s[side] - s) * scale;
             b.add(tangency, s_column, scale);
-            // A free end has no tension and finds its place; a held one has a place and finds its tension.
+            // A free end has no tension and finds its place; a held one has a place and finds its
+            // tension.
             let of = if lies(strand, j, side) { 2 } else { 0 };
             for i in 0..2 {
                 b.add(row + 1 + i, p_column, by(i, of));

@@ -50,7 +50,8 @@ fn noise(k: usize) -> f64 {
     ((k as f64 + 1.0) * 12.9898).sin() * 43758.5453 % 1.0
 }
 
-/// Every entry of the Jacobian beside a difference of residuals, at a state a little off the answer.
+/// Every entry of the Jacobian beside a difference of residuals, at a state a little off the
+/// answer.
 fn compare(strand: &CableRun, course: &Course, seed: usize) {
     let mut x = Vec::new();
     gather(strand, &mut x);
@@ -76,7 +77,8 @@ fn compare(strand: &CableRun, course: &Course, seed: usize) {
     let n = x.len();
     let largest: Vec<f64> =
         (0..n).map(|i| (0..n).map(|j| band.entry(i, j).abs() * size(j)).fold(0.0, f64::max)).collect();
-    // What lies in a kink stays there: its place, and the force of a span that is not there, are no unknowns.
+    // What lies in a kink stays there: its place, and the force of a span that is not there, are no
+    // unknowns.
     let fixed = |j: usize| match j % 6 {
         0 | 1 => !strand.has_span(j / 6),
         of => of % 2 == 0 && strand.in_pocket(j / 6, (of - 2) / 2),
@@ -95,7 +97,8 @@ fn compare(strand: &CableRun, course: &Course, seed: usize) {
         up[j] += h;
         down[j] -= h;
         let (up, down) = (residual(&up), residual(&down));
-        // What is held on the boundary has a row that is linear only near its answer, see `rub::pin`.
+        // What is held on the boundary has a row that is linear only near its answer, see
+        // `rub::pin`.
         let linear = |i: &usize| !(i % 6 > 2 && i % 6 < 5 && strand.is_pinned(i / 6, i % 6 - 3));
         for i in (0..n).filter(linear) {
             let exact = band.entry(i, j) * size(j);

@@ -1,7 +1,8 @@
-//! A heap is where folds lie in one place: where nothing lies without tension but at a foot or in a kink, the rest is there.
+//! A heap is where folds lie in one place: where nothing lies without tension but at a foot or in a
+//! kink, the rest is there.
 //!
-//! The two edges of a kink carry it pressed alone where its weight is between their normals; else the one it lies on does, within its
-//! cone.
+//! The two edges of a kink carry it pressed alone where its weight is between their normals; else
+//! the one it lies on does, within its cone.
 
 use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::curve::Place;

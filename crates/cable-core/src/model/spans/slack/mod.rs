@@ -1,24 +1,27 @@
 //! A run of cable rests on obstacles without tension.
 //!
-//! If there is more cable than its drained route needs (see `drained_route`), only the parts that hang
-//! have tension. They hang plumb: F is the weight below. The tension vanishes at each foot and in each
-//! kink, where a cable under tension would not turn. Between two such points the cable passes over one
-//! crest; on both sides its tension falls as in a cable that slides down there,
+//! If there is more cable than its drained route needs (see `drained_route`), only the parts that
+//! hang have tension. They hang plumb: F is the weight below. The tension vanishes at each foot and
+//! in each kink, where a cable under tension would not turn. Between two such points the cable
+//! passes over one crest; on both sides its tension falls as in a cable that slides down there,
 //!
 //! ```text
 //! dT/ds = −b·t ∓ μN,   T ≥ 0
 //! ```
 //!
-//! and the greater of the two is what friction has to hold: less than all of it, if the one falls below the other before its end. Where
-//! both are nothing the cable lies loose, and what is over lies there in folds. A plane cannot show where, nor in how many layers: they are
-//! spread evenly over that ground, which carries their weight where it carries the rest. Of a plumb end h long, stretched,
+//! and the greater of the two is what friction has to hold: less than all of it, if the one falls
+//! below the other before its end. Where both are nothing the cable lies loose, and what is over
+//! lies there in folds. A plane cannot show where, nor in how many layers: they are spread evenly
+//! over that ground, which carries their weight where it carries the rest. Of a plumb end h long,
+//! stretched,
 //!
 //! ```text
 //! h = λ (s + b s²/2EA)
 //! ```
 //!
-//! Any other rest of the same cable is one that pulls or leans somewhere, and then only by what friction remembers. Where a crest is
-//! held by less friction than it takes, the cable runs over it: that is no such rest.
+//! Any other rest of the same cable is one that pulls or leans somewhere, and then only by what
+//! friction remembers. Where a crest is held by less friction than it takes, the cable runs over
+//! it: that is no such rest.
 
 mod bridge;
 mod heap;
@@ -36,9 +39,11 @@ use crate::model::spans::slack::heap::{Heap, heap};
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
 const CREST_CONE_ROUNDING: f64 = 1e-9;
-/// Part of the cable that there must be too much of: what is as long as its way lies along it, and remembers what friction does.
+/// Part of the cable that there must be too much of: what is as long as its way lies along it, and
+/// remembers what friction does.
 const EXCESS_CABLE_FRACTION: f64 = 1e-9;
-/// Turn (rad) up to which two stretches are one, and by which what hangs beside a roof may be off its end.
+/// Turn (rad) up to which two stretches are one, and by which what hangs beside a roof may be off
+/// its end.
 const STRAIGHT_TURN: f64 = 1e-6;
 /// Halvings of a stretch in the search for where its tension ends.
 const HALVINGS: usize = 60;
@@ -70,11 +75,13 @@ enum Line {
     Lies(Stretch),
     /// In one place.
     Heap(Heap),
-    /// Free between a support and a crest, with tension: from a point, with a force in the cable there (N).
+    /// Free between a support and a crest, with tension: from a point, with a force in the cable
+    /// there (N).
     Spans { from: Vec2, force: Vec2 },
 }
 
-/// A stretch of a boundary, p from where to where, with the part `m` of friction that is called upon against going on.
+/// A stretch of a boundary, p from where to where, with the part `m` of friction that is called
+/// upon against going on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stretch {
     curve: usize,
@@ -139,7 +146,8 @@ pub(in crate::model::spans) fn lay(
     match held {
         [Some(_), Some(_)] => strand(along_route()?),
         [Some(at), None] | [None, Some(at)] => {
-            // As the route lays it out on the ground; else it comes down in a heap below the support.
+            // As the route lays it out on the ground; else it comes down in a heap below the
+            // support.
             let laid_out = layout.problem.route.len() > 1 && drawn.norm() == 0.0;
             let laid = if laid_out { along_route().and_then(&strand) } else { None };
             laid.filter(|s| {
@@ -151,8 +159,9 @@ pub(in crate::model::spans) fn lay(
     }
 }
 
-/// Gives each part its material, what is over to those without tension, or to a heap; None where nothing is over or nothing holds it. A
-/// free end lies where the cable ends if that is before the route does.
+/// Gives each part its material, what is over to those without tension, or to a heap; None where
+/// nothing is over or nothing holds it. A free end lies where the cable ends if that is before the
+/// route does.
 fn pay_out(
     mut parts: Vec<Part>,
     course: &Course,
@@ -183,7 +192,8 @@ fn pay_out(
     Some(parts)
 }
 
-/// Takes so much material (m) off a free end (0: the start) that lies without tension; None where it does not.
+/// Takes so much material (m) off a free end (0: the start) that lies without tension; None where
+/// it does not.
 fn cut(parts: &mut Vec<Part>, end: usize, mut off: f64) -> Option<()> {
     loop {
         let at = if end == 0 { 0 } else { parts.len().checked_sub(1)? };
@@ -232,8 +242,8 @@ impl Drape<'_> {
         legs.iter().map(line).collect()
     }
 
-    /// Every part with its tension, and the material that takes; None where a crest does not hold. What is drawn tight in a kink goes on
-    /// through it.
+    /// Every part with its tension, and the material that takes; None where a crest does not hold.
+    /// What is drawn tight in a kink goes on through it.
     fn parts(&self, lines: &[Line], held: [bool; 2]) -> Option<Vec<Part>> {
         let mut stops = vec![0];
         for k in 1..lines.len() {
@@ -259,7 +269,8 @@ impl Drape<'_> {
         }
     }
 
-    /// The parts between such stops; else the stop, if that is it, at which a tension is not nothing.
+    /// The parts between such stops; else the stop, if that is it, at which a tension is not
+    /// nothing.
     fn chains(&self, lines: &[Line], stops: &[usize], held: [bool; 2]) -> Result<Vec<Part>, Option<usize>> {
         let (mut out, mut bridged) = (Vec::new(), false);
         let support = |line: &Line, end: usize| match line {
@@ -286,8 +297,8 @@ impl Drape<'_> {
         (to - from).dot(&self.frame.up)
     }
 
-    /// Whether it has no tension between two lines: at a foot, and in a kink that a cable under tension would bridge. None where it
-    /// turns with nothing to turn it.
+    /// Whether it has no tension between two lines: at a foot, and in a kink that a cable under
+    /// tension would bridge. None where it turns with nothing to turn it.
     fn rests(&self, a: &Line, b: &Line) -> Option<bool> {
         let plumb = |s: &Stretch, p: f64| cross(s.place(self.course, p).tangent, self.frame.up).abs() <= STRAIGHT_TURN;
         match (a, b) {
@@ -309,8 +320,9 @@ impl Drape<'_> {
         }
     }
 
-    /// What lies between two points without tension, or from or to a support. Where a support hangs nearby and the crest draws the cable
-    /// tight there, a span bridges to it; whether that was done at the end. Else on which side it is drawn tight, if that is it.
+    /// What lies between two points without tension, or from or to a support. Where a support hangs
+    /// nearby and the crest draws the cable tight there, a span bridges to it; whether that was
+    /// done at the end. Else on which side it is drawn tight, if that is it.
     fn chain(
         &self,
         lines: &[Line],
@@ -420,12 +432,14 @@ impl Drape<'_> {
         Ok(false)
     }
 
-    /// A stretch in its parts: where the tension from its start holds, where there is none, where that from its end does.
+    /// A stretch in its parts: where the tension from its start holds, where there is none, where
+    /// that from its end does.
     fn stretch(&self, s: &Stretch, [forth, back]: [f64; 2], out: &mut Vec<Part>) {
         let (course, friction, [p0, p1]) = (self.course, s.friction(self.course), s.p);
         let forth_at = |p: f64| if p == p0 { forth } else { s.slide(course, p0, p, forth, -friction).tension };
         let back_at = |p: f64| if p == p1 { back } else { s.slide(course, p1, p, back, friction).tension };
-        // Each ends at once or rises and falls again; from where it has fallen to nothing there is none.
+        // Each ends at once or rises and falls again; from where it has fallen to nothing there is
+        // none.
         let seek = |mut has: f64, mut not: f64, holds: &dyn Fn(f64) -> bool| {
             if holds(not) {
                 return not;
@@ -504,8 +518,9 @@ impl Loose {
         self.parts.iter().map(press).sum()
     }
 
-    /// Whether all that lies has no tension. Where it is drawn over crests, and where all that is over is a heap in a kink, a strand under
-    /// hardly any tension is much the same, and can be followed as it moves.
+    /// Whether all that lies has no tension. Where it is drawn over crests, and where all that is
+    /// over is a heap in a kink, a strand under hardly any tension is much the same, and can be
+    /// followed as it moves.
     pub fn spreads(&self) -> bool {
         let lies = |p: &Part| matches!(p.form, Line::Hangs(_)) || p.is_loose();
         self.parts.iter().all(lies) && self.parts.iter().any(|p| p.is_loose() && p.s[1] - p.s[0] > NONE_M)

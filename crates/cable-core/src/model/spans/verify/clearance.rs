@@ -1,9 +1,11 @@
-//! This check asks that no answer is inside anything; it shares nothing with the search for contacts (`penetration`).
+//! This check asks that no answer is inside anything; it shares nothing with the search for
+//! contacts (`penetration`).
 //!
-//! A stretch of a catenary or of an arc that turns by no more than a right angle is convex: with its ends a, b and its
-//! tangents there it lies in the triangle of a, b and the point where the tangents meet. What is nowhere nearer to that
-//! triangle than the cable's radius is nowhere nearer to the stretch; else the stretch is halved. Distances are those of
-//! points from lines, without a sign: no way into an obstacle leads past its boundary.
+//! A stretch of a catenary or of an arc that turns by no more than a right angle is convex: with
+//! its ends a, b and its tangents there it lies in the triangle of a, b and the point where the
+//! tangents meet. What is nowhere nearer to that triangle than the cable's radius is nowhere nearer
+//! to the stretch; else the stretch is halved. Distances are those of points from lines, without a
+//! sign: no way into an obstacle leads past its boundary.
 
 use crate::contact::World;
 use crate::contact::geometry::{Body, Edge};
@@ -19,7 +21,8 @@ const MOST_HALVINGS: u32 = 40;
 /// Longest stretch of an arc taken at once, rad.
 const TURN: f64 = 1.0;
 
-/// A triangle that holds a stretch of cable: its corners, and its sides as (point, unit vector inwards).
+/// A triangle that holds a stretch of cable: its corners, and its sides as (point, unit vector
+/// inwards).
 struct Hull {
     corners: [Vec2; 3],
     sides: [(Vec2, Vec2); 3],
@@ -54,7 +57,8 @@ impl Hull {
         self.sides.iter().all(|(at, n)| (middle - at).dot(n) + half.x * n.x.abs() + half.y * n.y.abs() > -r)
     }
 
-    /// Whether an edge is nowhere nearer than r, as far as the sides, the edge itself and the ways from its ends tell.
+    /// Whether an edge is nowhere nearer than r, as far as the sides, the edge itself and the ways
+    /// from its ends tell.
     fn misses_edge(&self, e: &Edge, r: f64) -> bool {
         let (n, t) = (e.normal(), e.tangent);
         self.sides.iter().any(|(at, n)| (e.p - at).dot(n) <= -r && (e.q - at).dot(n) <= -r)
@@ -66,7 +70,8 @@ impl Hull {
             || self.aside(e.q, |n| n.dot(&t) >= 0.0, r)
     }
 
-    /// Whether a point is nowhere nearer than r, as far as the sides and the ways to the corners tell.
+    /// Whether a point is nowhere nearer than r, as far as the sides and the ways to the corners
+    /// tell.
     fn misses_point(&self, v: Vec2, r: f64) -> bool {
         self.sides.iter().any(|(at, n)| (v - at).dot(n) <= -r) || self.aside(v, |_| true, r)
     }
@@ -76,13 +81,15 @@ impl Hull {
         self.corners.iter().all(|c| (c - v).dot(&n) >= r)
     }
 
-    /// Whether all of it is at least r from a point in the direction of one of its corners, of those that will do.
+    /// Whether all of it is at least r from a point in the direction of one of its corners, of
+    /// those that will do.
     fn aside(&self, v: Vec2, will_do: impl Fn(Vec2) -> bool, r: f64) -> bool {
         let unit = self.corners.iter().map(|c| (c - v, (c - v).norm())).filter(|(_, far)| *far >= r && *far > 0.0);
         unit.map(|(way, far)| way / far).any(|n| will_do(n) && self.beyond(v, n, r))
     }
 
-    /// Whether it is clear of a body. `beside`: a corner or circle that what it holds runs round at the right distance.
+    /// Whether it is clear of a body. `beside`: a corner or circle that what it holds runs round at
+    /// the right distance.
     fn misses(&self, body: &Body, beside: Option<usize>) -> bool {
         let r = body.offset - smaller(DEPTH, 0.1 * body.offset);
         if let Some(center) = body.center {

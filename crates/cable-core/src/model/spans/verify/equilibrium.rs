@@ -1,5 +1,6 @@
-//! This check does not use the solver: it finds lengths by quadrature of the law of the free cable, the balance of each
-//! contact from its ends, and the cone of friction along it. `clearance` asks that nothing is inside an obstacle.
+//! This check does not use the solver: it finds lengths by quadrature of the law of the free cable,
+//! the balance of each contact from its ends, and the cone of friction along it. `clearance` asks
+//! that nothing is inside an obstacle.
 
 use crate::math::{GAUSS, Vec2, bounded, cross};
 use crate::model::spans::boundary::capstan::{Step, Track};
@@ -11,7 +12,8 @@ use crate::model::spans::failure::Failure;
 use crate::model::spans::results;
 use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 
-/// Equations must hold to this part of the length, the tension, the angle. The solver stops at 1e-11.
+/// Equations must hold to this part of the length, the tension, the angle. The solver stops at
+/// 1e-11.
 const BALANCE_TOLERANCE: f64 = 1e-7;
 /// Compression that is rounding, of the greatest tension.
 const COMPRESSION_ROUNDING: f64 = 1e-9;
@@ -28,8 +30,8 @@ const ONE_PANEL_FOLD_DISTANCE: f64 = 4.0;
 /// Panels of the quadrature of a span, in v; 5 Gauss points each leave 1e-12.
 const PANEL: f64 = 0.5;
 
-/// Returns an error unless the solution satisfies equilibrium. The caller keeps the stick zones that the
-/// contacts were solved with.
+/// Returns an error unless the solution satisfies equilibrium. The caller keeps the stick zones
+/// that the contacts were solved with.
 pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Result<(), Failure> {
     let mut before = strand.from;
     let greatest = strand
@@ -60,8 +62,8 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Resu
     Ok(())
 }
 
-/// Whether supports and contacts, as they are reported, hold all of the weight and the loads: what no part of the network asked
-/// for is missed by each part's own check.
+/// Whether supports and contacts, as they are reported, hold all of the weight and the loads: what
+/// no part of the network asked for is missed by each part's own check.
 pub(in crate::model::spans) fn balanced(layout: &Layout, network: &CableEquilibrium) -> Result<(), Failure> {
     let (left, size) = results::unbalanced(layout, network);
     if left.norm() <= BALANCE_TOLERANCE * size {
@@ -91,8 +93,9 @@ fn span(strand: &CableRun, course: &Course, k: usize) -> Result<(), Failure> {
 
 /// The way of a catenary by quadrature of f(F) = τ(F/T + F/EA).
 ///
-/// With b along the load, H the part of F across it and s* where F is across it, s = s* + (H/b) sinh v makes T = H cosh v:
-/// smooth however sharp the cable folds. Straight up and down (H = 0) the integral is split at the fold.
+/// With b along the load, H the part of F across it and s* where F is across it, s = s* + (H/b)
+/// sinh v makes T = H cosh v: smooth however sharp the cable folds. Straight up and down (H = 0)
+/// the integral is split at the fold.
 fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2 {
     // Inside the piece: a load at its start acts before it.
     let start = strand.force(course, k, 0.5 * (from + to)) + course.law.load * (0.5 * (to - from));
@@ -126,7 +129,8 @@ fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Ve
     sum
 }
 
-/// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its tangent.
+/// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its
+/// tangent.
 fn contact(strand: &CableRun, course: &Course, j: usize, greatest: f64) -> Result<(), Failure> {
     let c = &strand.contacts[j];
     let (track, e) = (course.track(c).seen_from(c.ends.p[0]), &c.ends);
@@ -173,13 +177,15 @@ fn contact(strand: &CableRun, course: &Course, j: usize, greatest: f64) -> Resul
     along(&track, c, greatest, strand.to - strand.from)
 }
 
-/// Material that may be missing along a contact, of the strand's length. Smaller: contacts laid along the nodes of another model, which
-/// know their material to the distance of those nodes, are refused; larger: folds are lost (8 cm of 20 m were).
+/// Material that may be missing along a contact, of the strand's length. Smaller: contacts laid
+/// along the nodes of another model, which know their material to the distance of those nodes, are
+/// refused; larger: folds are lost (8 cm of 20 m were).
 const LOST_MATERIAL_FRACTION: f64 = 1e-4;
 
-/// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On each stretch between two knots
-/// one part of friction is called upon: what holds for that and at the next knot holds all along. No material of the strand's
-/// `length` (m) is lost between two knots, nor between the ends and the first and last of them.
+/// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On
+/// each stretch between two knots one part of friction is called upon: what holds for that and at
+/// the next knot holds all along. No material of the strand's `length` (m) is lost between two
+/// knots, nor between the ends and the first and last of them.
 fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(), Failure> {
     let friction = track.friction;
     let room = BALANCE_TOLERANCE * (greatest + 1e-9);
@@ -236,15 +242,16 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(
     Ok(())
 }
 
-/// Whether tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and N ds/dp > T − cb.
+/// Whether tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and
+/// N ds/dp > T − cb.
 fn firm(track: &Track<'_>, p: f64, q: f64, t: f64, m: f64) -> bool {
     let place = track.place(p);
     let load = place.stretch * track.law.load.norm() / track.law.thermal;
     place.turn != 0.0 && track.law.stiffness > 0.0 && t - (q - p) * (m.abs() * t + 2.0 * load) > load && m.abs() <= 1.0
 }
 
-/// Where the load has changed since something was laid, what sticks has changed by less than friction takes up: the cone from
-/// point to point.
+/// Where the load has changed since something was laid, what sticks has changed by less than
+/// friction takes up: the cone from point to point.
 fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Failure> {
     let past = &c.history;
     let [first, last] = c.ends.p;

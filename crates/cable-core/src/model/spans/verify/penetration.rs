@@ -1,8 +1,9 @@
 //! This search finds where a free span runs into an obstacle.
 //!
-//! Under an even load a catenary is nowhere deeper in an edge than where it runs along it, F × t = 0, which is one
-//! division; nowhere nearer to a corner or a centre v than where (x − v)·F = 0, which is a root of one variable. Those
-//! points are asked of the obstacle's signed distance, so that a point is inside only if nothing nearer says otherwise.
+//! Under an even load a catenary is nowhere deeper in an edge than where it runs along it, F × t =
+//! 0, which is one division; nowhere nearer to a corner or a centre v than where (x − v)·F = 0,
+//! which is a root of one variable. Those points are asked of the obstacle's signed distance, so
+//! that a point is inside only if nothing nearer says otherwise.
 
 use crate::catenary::Catenary;
 use crate::contact::geometry::Body;
@@ -10,16 +11,17 @@ use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::spans::run::{CableRun, Course};
 
-/// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both branches of a deep
-/// catenary is seen from one only.
+/// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both
+/// branches of a deep catenary is seen from one only.
 const SAMPLES: usize = 8;
 /// Halvings of a root.
 const MAX_HALVINGS: usize = 60;
 /// Roots are found to this part of the catenary.
 const ROOT: f64 = 1e-12;
 
-/// A cable whose tangent makes less than this angle with its load hangs along it. Smaller: rounding says which side of the
-/// tangent it is on. Larger: steep spans are looked at more closely than they must be.
+/// A cable whose tangent makes less than this angle with its load hangs along it. Smaller: rounding
+/// says which side of the tangent it is on. Larger: steep spans are looked at more closely than
+/// they must be.
 const HANGING_ANGLE: f64 = 1e-6;
 
 /// A point of a span inside an obstacle.
@@ -45,8 +47,8 @@ struct Arc<'a> {
     at: Vec2,
     shape: &'a Catenary,
     load: Vec2,
-    /// Its tangents at both ends: it bends away from the load, and so lies beyond each of them. None where it hangs along the
-    /// load.
+    /// Its tangents at both ends: it bends away from the load, and so lies beyond each of them.
+    /// None where it hangs along the load.
     sides: [Option<Side>; 2],
 }
 
@@ -68,7 +70,8 @@ impl<'a> Arc<'a> {
         self.sides.iter().flatten().any(|(at, normal)| (at - v).dot(normal) >= by)
     }
 
-    /// Whether all of edge k and of the one before it face it from at least so far, seen from one of those tangents.
+    /// Whether all of edge k and of the one before it face it from at least so far, seen from one
+    /// of those tangents.
     fn misses_edges(&self, body: &Body, k: usize, by: f64) -> bool {
         let before = k.checked_sub(1).or(body.edges.len().checked_sub(1));
         let edges = [Some(k), before].map(|k| k.and_then(|k| body.edges.get(k)));
@@ -221,7 +224,8 @@ fn search(arc: &Arc<'_>, body: &Body, low: Vec2, high: Vec2, tolerance: f64, mut
         if let Some(s) = arc.along(e.tangent) {
             let d = arc.point(s) - e.p;
             let (x, height) = (d.dot(&e.tangent), d.dot(&perp(e.tangent)));
-            // What is deep is nearest to an edge, or to the kink beside it, that it does not lie straight below.
+            // What is deep is nearest to an edge, or to the kink beside it, that it does not lie
+            // straight below.
             let aside = larger(body.offset, -height);
             if height < body.offset - tolerance && x > -aside && x < e.length() + aside {
                 found(s);

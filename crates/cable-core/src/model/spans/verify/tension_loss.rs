@@ -6,9 +6,9 @@ use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Course};
 use crate::model::spans::verify::penetration;
 
-/// A span has hardly any tension left when the force across its load is below this part of the load on it: it then hangs
-/// in a hairpin 1/50 as wide as it is long. Smaller: failures of slack spans are put down to the solver. Larger: the other
-/// way round.
+/// A span has hardly any tension left when the force across its load is below this part of the load
+/// on it: it then hangs in a hairpin 1/50 as wide as it is long. Smaller: failures of slack spans
+/// are put down to the solver. Larger: the other way round.
 const SLACK_FORCE_FRACTION: f64 = 5e-3;
 
 /// What was lost, where on the cable (m) and in the plane (m), in the last state that was found.

@@ -9,14 +9,16 @@ use crate::model::spans::verify::penetration;
 /// Points of each catenary and contact.
 const POINTS: usize = 24;
 
-/// A contact's end that moves by more than this (m or rad) may have gone round something. Smaller: more is looked at closely.
+/// A contact's end that moves by more than this (m or rad) may have gone round something. Smaller:
+/// more is looked at closely.
 const CHECKED_MOVE: f64 = 0.5;
 
 /// A corner this near to a tangent is on it, m: rounding.
 const TANGENCY_DISTANCE_M: f64 = 1e-12;
 
-/// Whether the ends of the spans alone tell that nothing was passed: contacts are the same, and every corner lies on the same
-/// side of each span before and after. A span is convex: above its tangents and below its chord, seen against the load.
+/// Whether the ends of the spans alone tell that nothing was passed: contacts are the same, and
+/// every corner lies on the same side of each span before and after. A span is convex: above its
+/// tangents and below its chord, seen against the load.
 pub(in crate::model::spans) fn clear(old: &CableRun, new: &CableRun, course: &Course, corners: &[Corner]) -> bool {
     let load = course.law.load;
     let same = |(a, b): (&Contact, &Contact)| {
