@@ -1,5 +1,6 @@
 //! The errors of a scene and of a solve, by operation, with the numbers in them.
 
+mod no_equilibrium;
 mod unsupported;
 
 use thiserror::Error;
@@ -8,6 +9,7 @@ use crate::math::Vec2;
 use crate::model_id::Model;
 use crate::solution::verification::Finding;
 
+pub use self::no_equilibrium::{FailureCause, NoEquilibrium};
 pub use self::unsupported::{Unsupported, UnsupportedReach};
 
 /// Why a scene is refused.
@@ -262,7 +264,7 @@ pub enum SolveError {
     #[error("there is no resting place: {why}")]
     NoRestingPlace {
         /// What pulls it away.
-        why: String,
+        why: NoEquilibrium,
     },
     /// Two models were asked, and neither has an answer or a reason that is one for every model.
     #[error("{told}; and {other}")]
@@ -348,7 +350,7 @@ pub enum SolveError {
         /// Where it acts.
         place: Box<Place>,
         /// Why the last try failed.
-        cause: String,
+        cause: FailureCause,
     },
 }
 
@@ -399,7 +401,7 @@ mod tests {
                     dt_s: 1e-3,
                     residual_n: bad,
                     place: place(),
-                    cause: String::new(),
+                    cause: FailureCause::NoDescent,
                 },
                 SolveError::NonFinite { quantity: "position", arc_length_m: 1.0, time_s: bad },
             ];
@@ -414,7 +416,7 @@ mod tests {
     #[test]
     fn the_clearer_reason_of_two_models_is_told() {
         let vague = |model| SolveError::NotConverged { model, iterations: 1, residual_n: 1.0, place: Box::default() };
-        let clear = SolveError::NoRestingPlace { why: "it slides".to_owned() };
+        let clear = SolveError::NoRestingPlace { why: NoEquilibrium::SlidesOff };
         assert_eq!(SolveError::clearer(clear.clone(), vague(Model::Fem)), clear);
         assert_eq!(SolveError::clearer(vague(Model::Spans), clear.clone()), clear);
         let both = SolveError::clearer(vague(Model::Spans), vague(Model::Fem)).to_string();

@@ -66,6 +66,15 @@ pub struct Simulation {
     verification: Verification,
 }
 
+/// What an instant that is read is part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Instant {
+    /// The cables rest, and a run begins here.
+    AtRest,
+    /// A run goes on.
+    InMotion,
+}
+
 impl Simulation {
     /// Validates the scene and builds the model of each of its cables, at their routes, at rest.
     ///
@@ -165,9 +174,9 @@ impl Simulation {
     }
 
     /// Reads the present instant: answers, and what is to be said of them.
-    fn refresh(&mut self, moving: bool) {
+    fn refresh(&mut self, instant: Instant) {
         self.answers = self.cables.iter().map(BreakableCable::answer).collect();
-        if !moving {
+        if instant == Instant::AtRest {
             self.initial_places = self.answers.iter().map(|a| AlongCable::places(&a.nodes)).collect();
         }
         for (answer, first) in self.answers.iter_mut().zip(&self.initial_places) {
@@ -189,7 +198,7 @@ impl Simulation {
             })
             .collect();
         self.energy = observed.iter().map(|s| s.energy).sum();
-        if moving {
+        if instant == Instant::InMotion {
             self.warning_monitor.moving(&observed, time_s)
         } else {
             self.warning_monitor.at_rest(&observed, time_s)
@@ -284,7 +293,7 @@ impl Simulation {
         let found = self.settle_until_sound();
         if found.is_err() {
             self.cables = before;
-            self.refresh(false);
+            self.refresh(Instant::AtRest);
         }
         found?;
         self.warn_not_unique();
@@ -299,7 +308,7 @@ impl Simulation {
         let mut first: Option<SolveError> = None;
         loop {
             let found = self.for_each_cable(BreakableCable::settle).and_then(|()| {
-                self.refresh(false);
+                self.refresh(Instant::AtRest);
                 self.check_sound()
             });
             let Err(error) = found else { return Ok(()) };
@@ -430,7 +439,7 @@ impl Simulation {
             false => self.for_each_cable(|c| c.advance(dt_s, inertia)),
         };
         // A cable alone that fails stays where it came: that is what there is to see then.
-        self.refresh(true);
+        self.refresh(Instant::InMotion);
         done?;
         // In motion nothing else is there to go back to: the verdict stands with the answer.
         if inertia == Inertia::Dynamic {
@@ -610,7 +619,7 @@ impl Simulation {
             self.vehicle = Vehicle::of(&self.scene);
             self.cost = Cost::default();
             self.warnings.clear();
-            self.refresh(false);
+            self.refresh(Instant::AtRest);
         }
     }
 
@@ -632,7 +641,7 @@ impl Simulation {
         for (new, old) in self.cables.iter_mut().zip(&old.cables) {
             new.carry(old)?;
         }
-        self.refresh(false);
+        self.refresh(Instant::AtRest);
         Ok(())
     }
 
@@ -644,7 +653,7 @@ impl Simulation {
         for (c, s) in self.cables.iter_mut().zip(states) {
             c.set_state(s)?;
         }
-        self.refresh(false);
+        self.refresh(Instant::AtRest);
         Ok(())
     }
 

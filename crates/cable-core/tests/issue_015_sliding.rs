@@ -36,8 +36,9 @@ fn missing(scene: &Scene, model: Model) -> Option<f64> {
     match settle(scene, model) {
         Ok(_) => None,
         Err(SolveError::NoRestingPlace { why }) => {
+            let said = why.to_string();
             let figure =
-                why.strip_prefix("it slides: ").and_then(|w| w.split_once(" %")).unwrap_or_else(|| panic!("{why}"));
+                said.strip_prefix("it slides: ").and_then(|w| w.split_once(" %")).unwrap_or_else(|| panic!("{said}"));
             Some(figure.0.parse().unwrap())
         }
         Err(other) => panic!("{model}: {other}"),

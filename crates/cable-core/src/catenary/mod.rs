@@ -24,7 +24,7 @@ pub use chain::{Chain, ChainForce, PointForce};
 
 use kernel::{ChainPiece, HorizontalForce};
 
-use crate::error::SolveError;
+use crate::error::{NoEquilibrium, SolveError};
 use crate::math::{Vec2, bounded, perp};
 
 /// Below this ratio of load to EA the load cannot be told from none on a stretched cable (its
@@ -80,7 +80,7 @@ pub enum SpanError {
 
 impl From<SpanError> for SolveError {
     fn from(e: SpanError) -> Self {
-        Self::NoRestingPlace { why: e.to_string() }
+        Self::NoRestingPlace { why: NoEquilibrium::Span { reason: e.to_string() } }
     }
 }
 

@@ -79,7 +79,9 @@ impl Similar {
             SolveError::TensionLost { model, loss, arc_length_m, at_m } => {
                 SolveError::TensionLost { model, loss, arc_length_m: arc_length_m / l, at_m: self.at_back(at_m) }
             }
-            SolveError::NoRestingPlace { why } => SolveError::NoRestingPlace { why: self.told(why) },
+            SolveError::NoRestingPlace { why } => {
+                SolveError::NoRestingPlace { why: why.with_places(|s| s / l, |at| self.at_back(at)) }
+            }
             SolveError::Unsupported { model, feature } => {
                 let feature = feature.with_places(|s| s / l, |at| self.at_back(at));
                 SolveError::Unsupported { model, feature }
@@ -101,7 +103,7 @@ impl Similar {
                 dt_s: dt_s / t,
                 residual_n,
                 place: self.place_back(&place),
-                cause: self.told(cause),
+                cause: cause.with_speed(|v| v * t / l),
             },
             SolveError::Neither { told, other } => {
                 SolveError::Neither { told: Box::new(self.error(*told)), other: Box::new(self.error(*other)) }

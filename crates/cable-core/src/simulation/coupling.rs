@@ -15,7 +15,7 @@
 //! The step is that of the cable where that is shorter: then both see each other at every instant
 //! that either of them knows.
 
-use super::Simulation;
+use super::{Instant, Simulation};
 use crate::breakage::BreakableCable;
 use crate::error::SolveError;
 use crate::math::RigidPose;
@@ -274,7 +274,7 @@ impl Simulation {
         self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
         let done = self.for_each_cable(|c| c.advance(dt_s, inertia));
         let left_m = self.hold_vehicle();
-        self.refresh(true);
+        self.refresh(Instant::InMotion);
         done.map(|()| Some(left_m))
     }
 

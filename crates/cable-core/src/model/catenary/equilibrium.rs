@@ -3,7 +3,7 @@
 
 use super::layout::{Anchor, Layout, angle_near, angle_of, unsupported};
 use super::slide::{Arc, Mode, Slide, Stretches};
-use crate::error::{Place, SolveError, Unsupported};
+use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
 use crate::problem::Problem;
@@ -360,9 +360,7 @@ fn run_off(slide: &Slide<'_>, s: &Stretches) -> Result<(), SolveError> {
         let anchor = &slide.layout.anchors[k];
         if short && anchor.held.is_none() {
             let name = slide.problem.supports.get(anchor.support).map_or("", |p| p.name.as_str());
-            return Err(SolveError::NoRestingPlace {
-                why: format!("the cable runs off through pulley `{name}`, which nothing holds back"),
-            });
+            return Err(SolveError::NoRestingPlace { why: NoEquilibrium::RunsOff { pulley: name.to_owned() } });
         }
     }
     Ok(())

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::equilibrium::first_arcs;
 use crate::catenary::PointForce;
-use crate::error::{SolveError, Unsupported};
+use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, perp};
 use crate::model::Model;
 use crate::problem::{Problem, SupportPoint};
@@ -113,7 +113,7 @@ impl Layout {
             loads,
         };
         if layout.anchors.is_empty() {
-            return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
+            return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
         layout.hint_weight(p);
         layout.face_wheels(p);

@@ -20,7 +20,7 @@ use self::report::{report, straight};
 use self::slide::Mode;
 use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
-use crate::error::{SolveError, Unsupported};
+use crate::error::{FailureCause, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, Node, SupportReaction, Warning, WarningKind};
@@ -301,7 +301,7 @@ impl Mechanics for CatenaryModel {
                             dt_s: step,
                             residual_n,
                             place,
-                            cause: format!("no balance in {iterations} iterations"),
+                            cause: FailureCause::NoBalance { iterations },
                         });
                     }
                 }

@@ -566,7 +566,7 @@ impl Dynamics {
                             dt_s: size,
                             residual_n: f.residual,
                             place: self.place(f.node),
-                            cause: f.cause.to_string(),
+                            cause: f.cause,
                         });
                     }
                 }

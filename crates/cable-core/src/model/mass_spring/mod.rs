@@ -72,7 +72,7 @@ use crate::state::State;
 use dynamics::momentum::Account;
 use dynamics::rollback::Rollback;
 use dynamics::{Clock, SupportDrives};
-use equilibrium::contact_energy::ContactMemory;
+use equilibrium::contact_energy::{Anchors, ContactMemory};
 use equilibrium::error_estimate::ErrorEstimator;
 use mesh::Chain;
 use pulleys::pulley::Wheels;
@@ -269,7 +269,7 @@ impl MassSpringModel {
         if !self.laid {
             self.lay();
         }
-        let found = self.equilibrium(true);
+        let found = self.equilibrium(Anchors::Forgotten);
         if found.is_err() {
             *self = kept;
         }

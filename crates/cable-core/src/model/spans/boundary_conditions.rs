@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::catenary::PointForce;
 use crate::contact::swept_corners::{self, Corner};
-use crate::error::{SolveError, Unsupported};
+use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::Model;
 use crate::model::catenary::layout::hint_of_weight;
@@ -56,8 +56,8 @@ pub(in crate::model::spans) struct Pulley {
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct Layout {
     pub problem: Arc<Problem>,
-    /// Whether it counts the cable from the end of the scene's: its problem is that one turned.
-    pub turned: bool,
+    /// The end of the scene's cable from which it counts.
+    pub counted_from: CableEnd,
     loads: Vec<Load>,
     /// Where it must not pass, in order of x.
     pub corners: Arc<[Corner]>,
@@ -78,12 +78,33 @@ pub(in crate::model::spans) fn unsupported(feature: Unsupported) -> SolveError {
     SolveError::Unsupported { model: Model::Spans, feature }
 }
 
+/// An end of a cable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) enum CableEnd {
+    Start,
+    End,
+}
+
+impl CableEnd {
+    pub fn other(self) -> Self {
+        match self {
+            Self::Start => Self::End,
+            Self::End => Self::Start,
+        }
+    }
+}
+
 impl Layout {
+    /// Whether its problem is that of the scene reversed.
+    pub fn is_reversed(&self) -> bool {
+        self.counted_from == CableEnd::End
+    }
+
     /// The layout of a cable.
     ///
     /// # Errors
     /// `Unsupported` for what the model lacks.
-    pub fn new(problem: &Arc<Problem>, turned: bool) -> Result<Self, SolveError> {
+    pub fn new(problem: &Arc<Problem>, counted_from: CableEnd) -> Result<Self, SolveError> {
         let p = problem;
         if p.bending_stiffness > 0.0 {
             return Err(unsupported(Unsupported::BendingStiffness));
@@ -133,18 +154,18 @@ impl Layout {
             strands.push(part);
         }
         if p.supports.iter().all(|s| s.at.is_none()) && p.world.is_empty() {
-            return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
+            return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
         let corners = swept_corners::corners(&problem.world).into();
-        let mut layout = Self { problem: problem.clone(), turned, loads, corners, strands };
+        let mut layout = Self { problem: problem.clone(), counted_from, loads, corners, strands };
         layout.face_wheels();
         Ok(layout)
     }
 
     /// Which side of its wheel the cable passes: over means above where it travels to the right.
     fn face_wheels(&mut self) {
-        let p = &self.problem;
+        let (p, reversed) = (&self.problem, self.counted_from == CableEnd::End);
         let held: Vec<usize> = (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).collect();
         let at = |k: usize| p.supports[k].at.unwrap_or_default();
         for pulley in self.strands.iter_mut().flat_map(|s| &mut s.pulleys) {
@@ -156,7 +177,7 @@ impl Layout {
             let before = i.checked_sub(1).and_then(|j| held.get(j)).map_or(at(pulley.support), |&k| at(k));
             let after = held.get(i + 1).map_or(at(pulley.support), |&k| at(k));
             let way = after.x - before.x;
-            let right = if way < 0.0 || (way == 0.0 && self.turned) { -1.0 } else { 1.0 };
+            let right = if way < 0.0 || (way == 0.0 && reversed) { -1.0 } else { 1.0 };
             let over = if s.side == PulleySide::Over { 1.0 } else { -1.0 };
             pulley.facing = right * over;
         }

@@ -39,11 +39,11 @@ mod verify;
 
 use std::sync::Arc;
 
-use crate::error::{Place, SolveError, Unsupported};
+use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
 use crate::model::catenary::slack_without_weight;
 use crate::model::gauge::TensionGauge;
-use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, unsupported};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, Layout, unsupported};
 use crate::model::spans::continuation::{CableEquilibrium, SearchStart, StepStats, Unfound};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::Work;
@@ -87,7 +87,8 @@ impl SpansModel {
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
-        let layout = counted(&problem, reversed::is_led_up(&problem))?;
+        let from = if reversed::is_led_up(&problem) { CableEnd::End } else { CableEnd::Start };
+        let layout = counted(&problem, from)?;
         let n = problem.supports.len();
         let mut points: Vec<Vec2> = problem.route.clone();
         if points.len() < 2 {
@@ -126,7 +127,7 @@ impl SpansModel {
         match &self.network {
             Some(network) => {
                 let report = results::report(&self.layout, network);
-                if self.layout.turned { self.turned().report(&report) } else { report }
+                if self.layout.is_reversed() { self.turned().report(&report) } else { report }
             }
             None => self.shown.clone(),
         }
@@ -144,7 +145,7 @@ impl SpansModel {
             && let Some((loss, arc_length_m, at_m)) =
                 verify::tension_loss::lost(&network.strands, &network.course, &trouble)
         {
-            let arc_length_m = if self.layout.turned { self.turned().s(arc_length_m) } else { arc_length_m };
+            let arc_length_m = if self.layout.is_reversed() { self.turned().s(arc_length_m) } else { arc_length_m };
             return SolveError::TensionLost { model: Model::Spans, loss, arc_length_m, at_m };
         }
         self.in_words(trouble)
@@ -152,7 +153,7 @@ impl SpansModel {
 
     /// A trouble of the layout in the words everyone uses.
     fn in_words(&self, trouble: Failure) -> SolveError {
-        said(&self.problem, if self.layout.turned { self.turned().trouble(trouble) } else { trouble })
+        said(&self.problem, if self.layout.is_reversed() { self.turned().trouble(trouble) } else { trouble })
     }
 
     /// What leads from how the layout counts the cable to how the scene does, where that is
@@ -169,7 +170,7 @@ impl SpansModel {
             Err(unfound) => {
                 let (mut there, mut dragged) = (BoundaryConditions::default(), self.dragged.clone());
                 dragged.reverse();
-                let other = counted(&self.problem, !self.layout.turned).ok().and_then(|other| {
+                let other = counted(&self.problem, self.layout.counted_from.other()).ok().and_then(|other| {
                     other.instant(&dragged, self.time_s, &mut there);
                     Some((CableEquilibrium::rest(&other, &there, work).ok()?, other))
                 });
@@ -207,7 +208,7 @@ impl SpansModel {
     /// to the place from which the cable is drawn here.
     fn histories(&self, start: SearchStart, work: &mut Work) -> String {
         let Some(network) = &self.network else { return String::new() };
-        let turned = self.layout.turned;
+        let turned = self.layout.is_reversed();
         let tensions = |network: &CableEquilibrium| {
             let [start, end, greatest] = results::tensions(network);
             if turned { [end, start, greatest] } else { [start, end, greatest] }
@@ -259,25 +260,12 @@ impl SpansModel {
     }
 }
 
-/// That a cable slides away, and by how much more friction, as a part of what there is, it would be
-/// held.
-fn slides_away(part: f64) -> SolveError {
-    let more = 100.0 * (part - 1.0);
-    // Three digits, the last one up: so much more does hold it.
-    let digits = (2.0 - more.log10().floor()).clamp(0.0, 9.0);
-    let unit = 10f64.powi(-(digits as i32));
-    let shown = (more / unit).ceil() * unit;
-    SolveError::NoRestingPlace {
-        why: format!("it slides: {shown:.0$} % more friction would hold it where it is laid", digits as usize),
-    }
-}
-
-/// Why a cable that nothing holds finds no rest where nothing rubs.
-const NOTHING_RUBS: &str = "it slides: nothing rubs that would hold it where it is laid";
-
 /// The layout of a cable counted from its start, or from its end.
-fn counted(problem: &Arc<Problem>, turned: bool) -> Result<Layout, SolveError> {
-    if turned { Layout::new(&Arc::new(reversed::problem(problem)), true) } else { Layout::new(problem, false) }
+fn counted(problem: &Arc<Problem>, from: CableEnd) -> Result<Layout, SolveError> {
+    match from {
+        CableEnd::Start => Layout::new(problem, from),
+        CableEnd::End => Layout::new(&Arc::new(reversed::problem(problem)), from),
+    }
 }
 
 /// A trouble in the words everyone uses.
@@ -342,10 +330,11 @@ impl Mechanics for SpansModel {
         let range = if seeks { self.histories(start, &mut work) } else { String::new() };
         self.work = work;
         if let Some(part) = needed {
-            return Err(slides_away(part));
+            let why = NoEquilibrium::TooLittleFriction { friction_ratio: part };
+            return Err(SolveError::NoRestingPlace { why });
         }
         let taken = found.map_err(|(trouble, stopped)| match slides && !self.rubs() {
-            true => SolveError::NoRestingPlace { why: NOTHING_RUBS.to_owned() },
+            true => SolveError::NoRestingPlace { why: NoEquilibrium::NoFriction },
             false => self.said(stopped.as_deref(), trouble),
         })?;
         let mut report = self.report_of(taken);
@@ -467,7 +456,7 @@ impl Mechanics for SpansModel {
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
-        let nodes = self.layout.turned.then(|| self.turned().nodes(&answer.nodes));
+        let nodes = self.layout.is_reversed().then(|| self.turned().nodes(&answer.nodes));
         let nodes = nodes.as_ref().unwrap_or(&answer.nodes);
         let taken = CableEquilibrium::taken(&self.layout, &instant, nodes, &mut work);
         self.work = work;
@@ -478,7 +467,7 @@ impl Mechanics for SpansModel {
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
         let n = self.dragged.len();
-        let k = if self.layout.turned { n.checked_sub(support + 1) } else { Some(support) };
+        let k = if self.layout.is_reversed() { n.checked_sub(support + 1) } else { Some(support) };
         if let Some(d) = k.and_then(|k| self.dragged.get_mut(k)) {
             *d = Some(target_m);
         }

@@ -57,7 +57,7 @@ pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibriu
         }
     }
     let mut nodes = Nodes::new(&layout.problem, greatest);
-    nodes.turned = layout.turned;
+    nodes.turned = layout.is_reversed();
     let mut contacts = Vec::new();
     for strand in &network.strands {
         if let Some(loose) = &strand.loose {

@@ -1,6 +1,6 @@
 //! This module finds equilibria in contact, and takes quasi-static steps.
 
-use crate::error::{SolveError, Unsupported};
+use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, bounded, larger};
 use crate::model::fem::dynamics::{Dynamics, REACH};
 use crate::model::fem::equilibrium::initial_guess::push_out;
@@ -11,7 +11,7 @@ use crate::model::fem::obstacle::moving_outline::MovingOutline;
 use crate::model::fem::results;
 use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::time::bdf2::ROUNDS_EACH;
-use crate::model::{Model, StepReport};
+use crate::model::{Inertia, Model, StepReport};
 use crate::state::State;
 
 /// Work budget of one search for an equilibrium: iterations times nodes. Smaller: scenes that
@@ -138,7 +138,7 @@ impl Dynamics {
             if settled || round + 1 == CORNER_ROUNDS {
                 break;
             }
-            let found = self.remesh(true);
+            let found = self.remesh(Inertia::QuasiStatic);
             // Marks that are moved take strain from bar to bar, which has to be balanced once more.
             settled = !found.bars;
             if settled && !found.marks {
@@ -251,7 +251,7 @@ impl Dynamics {
     /// changed.
     fn accept_rest(&mut self, pose: &Pose, to: f64) -> bool {
         self.accept_pose(pose, to);
-        self.remesh(true).seats
+        self.remesh(Inertia::QuasiStatic).seats
     }
 
     /// The same, corners as they are.
@@ -415,9 +415,7 @@ impl Dynamics {
                 let sought = self.motion.x.clone();
                 self.restore();
                 if self.ran_away(&sought).is_some() {
-                    let why =
-                        "nothing holds the cable where it is laid: it slides away by more than its length".to_owned();
-                    return Err(SolveError::NoRestingPlace { why });
+                    return Err(SolveError::NoRestingPlace { why: NoEquilibrium::SlidesOff });
                 }
                 if f.cause == FailureCause::WorkSpent {
                     let (model, segments) = (Model::Fem, self.mesh.rest_length.len());
@@ -506,14 +504,13 @@ impl Dynamics {
 
     /// Why a cable that nothing but friction holds does not rest where it was brought: what each
     /// node alone is let off with adds up.
-    pub(in crate::model::fem) fn slides_as_a_whole(&self) -> Option<String> {
+    pub(in crate::model::fem) fn slides_as_a_whole(&self) -> Option<NoEquilibrium> {
         if self.problem.supports.iter().any(|s| s.at.is_some()) || self.contacts.own.shape.is_on() {
             return None;
         }
         let left = results::unbalanced(self, &self.motion.x, self.motion.time).norm();
         let scale = load_scale(&self.problem).1;
-        (left > UNHELD_LOAD_FRACTION * scale)
-            .then(|| format!("it slides: {left:.3e} N of {scale:.3e} N are held by nothing"))
+        (left > UNHELD_LOAD_FRACTION * scale).then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
     }
 
     /// How far (m) both ends have moved to `sought` at least, if that is further than the cable is
@@ -525,8 +522,8 @@ impl Dynamics {
         (way > self.problem.length).then_some(way)
     }
 
-    /// What a cable that found no rest at `x` runs through, in words: out of there it cannot get.
-    fn through(&self, x: &[Vec2]) -> Option<String> {
+    /// What a cable that found no rest at `x` runs through: out of there it cannot get.
+    fn through(&self, x: &[Vec2]) -> Option<NoEquilibrium> {
         let (mesh, world) = (&self.mesh, &self.problem.world);
         if x.len() != mesh.nodes() {
             return None;
@@ -537,13 +534,8 @@ impl Dynamics {
         let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
         let [a, b] = mesh.straight(e, x);
         let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
-        Some(format!(
-            "the cable is laid through `{}`, at ({:.3} m, {:.3} m), {:.3} m along it, and nothing leads it out: draw a route_m round it, or leave a way to where its ends are held",
-            world.obstacle_name(gap.obstacle),
-            gap.point.x,
-            gap.point.y,
-            mesh.arc_length[e]
-        ))
+        let obstacle = world.obstacle_name(gap.obstacle).to_owned();
+        Some(NoEquilibrium::ThroughObstacle { obstacle, at_m: gap.point, arc_length_m: mesh.arc_length[e] })
     }
 
     /// Whether the cable is in touch with itself.

@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use crate::error::{Place, SolveError, Unsupported};
+use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::beam::equilibrium::{Beam, Outcome};
 use crate::model::fem::free::dual_weighted_residual;
@@ -213,7 +213,7 @@ impl Statics {
         let adaptive = self.settings.segments.or(self.problem.cable.segments).is_none();
         let mut layout = Layout::new(&self.problem, time, dragged, &self.slid);
         if layout.stops.len() < 2 || layout.anchored().is_none() {
-            return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
+            return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
         let (material, hinted) = self.material(time, &layout);
         let (mut segments, mut iterations) = (self.segments, 0);
@@ -471,11 +471,11 @@ impl Statics {
         match failure {
             Failure::Span(k, residual) | Failure::Unbalanced(k, residual) => not_converged(k, residual),
             Failure::RunsOut(k) => {
-                SolveError::NoRestingPlace { why: format!("the cable runs out through pulley `{}`", name(k)) }
+                SolveError::NoRestingPlace { why: NoEquilibrium::RunsOut { pulley: name(k).to_owned() } }
             }
-            Failure::LeavesWheel(k) => SolveError::NoRestingPlace {
-                why: format!("the cable does not press on the wheel of pulley `{}` on the side it runs on", name(k)),
-            },
+            Failure::LeavesWheel(k) => {
+                SolveError::NoRestingPlace { why: NoEquilibrium::LeavesWheel { pulley: name(k).to_owned() } }
+            }
         }
     }
 

@@ -12,6 +12,7 @@
 
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp, smaller};
+use crate::model::Inertia;
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Load, Seat, SlidingNode, StickSlip, round_of};
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
@@ -122,8 +123,9 @@ pub(in crate::model::fem) struct Remeshed {
 }
 
 impl Dynamics {
-    /// Adapts the mesh to what the cable runs over, at rest or in motion.
-    pub(in crate::model::fem) fn remesh(&mut self, rests: bool) -> Remeshed {
+    /// Adapts the mesh to what the cable runs over, without inertia or with it.
+    pub(in crate::model::fem) fn remesh(&mut self, inertia: Inertia) -> Remeshed {
+        let rests = inertia == Inertia::QuasiStatic;
         if self.contacts.own.shape.is_on() {
             return Remeshed::default();
         }

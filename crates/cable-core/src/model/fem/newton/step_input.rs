@@ -1,7 +1,6 @@
 //! The step input says what a step is about; beside it stand its unknowns and how it ended.
 
-use thiserror::Error;
-
+pub use crate::error::FailureCause;
 use crate::math::Vec2;
 
 /// The unknowns of a step.
@@ -142,50 +141,6 @@ pub struct Failure {
     pub residual: f64,
     /// Why.
     pub cause: FailureCause,
-}
-
-/// The reasons for which a step, or the search for an equilibrium, fails.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum FailureCause {
-    /// The energy or its gradient is not finite.
-    #[error("the energy is not finite")]
-    EnergyNotFinite,
-    /// A position or velocity after the step is not finite.
-    #[error("not finite")]
-    StateNotFinite,
-    /// The iteration has not converged in as many iterations as it may take.
-    #[error("too many iterations")]
-    TooManyIterations,
-    /// All the work that one equilibrium may take is done: no other way is tried.
-    #[error("the work for one resting place is spent")]
-    WorkSpent,
-    /// No shift makes the tangent stiffness positive definite.
-    #[error("the tangent is not positive definite")]
-    TangentIndefinite,
-    /// A sliding node holds a corner that would have to pull: the step is tried again without it.
-    #[error("a corner would have to pull")]
-    CornerPulls,
-    /// No consistent set of sliding nodes that stick and that slip was found.
-    #[error("it was not found which corners hold the cable and over which it slips")]
-    StickSlipUndecided,
-    /// A bar would pass through a corner.
-    #[error("the cable would run through a corner")]
-    CornerCrossed,
-    /// The relaxation ends with nodes that still move.
-    #[error("it never came to rest")]
-    StillMoves,
-    /// The relaxation carries the cable away without end.
-    #[error("it slides away")]
-    SlidesAway,
-    /// A held node stays short of its target.
-    #[error("a support cannot reach its place")]
-    SupportShort,
-    /// No step length lowers the energy.
-    #[error("no descent")]
-    NoDescent,
-    /// The working memory cannot be had.
-    #[error("there is no memory for it")]
-    OutOfMemory,
 }
 
 /// What a step did.

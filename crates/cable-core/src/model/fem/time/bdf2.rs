@@ -14,6 +14,7 @@
 //! cable back at 0.4 to 0.8 of its speed.
 
 use crate::math::{Vec2, bounded, larger, perp};
+use crate::model::Inertia;
 use crate::model::fem::dynamics::{Dynamics, STIFFNESS_CHANGE};
 use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
 use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose};
@@ -262,7 +263,7 @@ impl Dynamics {
         self.contacts.carriage = None;
         if !self.meshing.never_slides {
             self.answers.keeps = self.motion.time >= self.pacing.due * (1.0 - f64::EPSILON);
-            self.remesh(false);
+            self.remesh(Inertia::Dynamic);
             self.answers.keeps = false;
             self.answers.stepped = self.answers.kept.take();
             if let Some(node) = self.crossing() {

@@ -1,7 +1,7 @@
 //! A sub-step computes forces and contacts and moves the nodes; it allocates nothing once the
 //! buffers have grown.
 
-use crate::error::SolveError;
+use crate::error::{FailureCause, SolveError};
 use crate::math::{Vec2, smaller};
 use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::is_led;
@@ -144,7 +144,7 @@ impl MassSpringModel {
                     dt_s: h,
                     residual_n: self.chain.f[node].norm(),
                     place: self.problem.place(self.chain.s[node], self.chain.x[node], self.clock.time_s),
-                    cause: format!("it moves at {fastest:.3e} m/s there"),
+                    cause: FailureCause::RunawaySpeed { speed_m_per_s: fastest },
                 });
             }
             left -= h;

@@ -74,6 +74,15 @@ impl Push {
     }
 }
 
+/// What becomes of the points where friction held before an equilibrium is sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::mass_spring) enum Anchors {
+    /// Friction holds anew where the cable is.
+    Forgotten,
+    /// Friction goes on from where it held.
+    Kept,
+}
+
 /// What the chain touches while it comes to rest.
 pub(in crate::model::mass_spring) struct Contacts {
     stiffness: f64,
@@ -83,8 +92,11 @@ pub(in crate::model::mass_spring) struct Contacts {
 }
 
 impl Contacts {
-    pub(in crate::model::mass_spring) fn new(model: &MassSpringModel, anew: bool) -> Self {
-        let mut anchors = if anew { Vec::new() } else { model.contacts.anchors.clone() };
+    pub(in crate::model::mass_spring) fn new(model: &MassSpringModel, kept: Anchors) -> Self {
+        let mut anchors = match kept {
+            Anchors::Forgotten => Vec::new(),
+            Anchors::Kept => model.contacts.anchors.clone(),
+        };
         // Those of the floor come first, one a node.
         let on_floor = anchors.iter().filter(|a| a.surface == Surface::Floor).count();
         if model.problem.floor_friction.is_some() && on_floor != model.chain.x.len() {
@@ -95,7 +107,7 @@ impl Contacts {
         }
         let stiffness = model.problem.force_scale() / OFFSET;
         let mut this = Self { stiffness, anchors, rubs: Vec::new(), pushes: Vec::new() };
-        if anew {
+        if kept == Anchors::Forgotten {
             this.find(model, FIRST_CONTACT_DISTANCE);
             let laid = this.pushes.iter().filter(|p| p.pair.weight > 0.0).map(|p| p.anchor(model));
             this.anchors.extend(laid);

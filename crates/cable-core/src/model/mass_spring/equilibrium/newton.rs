@@ -15,12 +15,12 @@
 
 use crate::contact::friction;
 use crate::energy::{Blocks, Curvature, Energy};
-use crate::error::SolveError;
+use crate::error::{NoEquilibrium, SolveError};
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, BandFactor, BandMatrix};
 use crate::math::{Mat2, Vec2, larger};
 use crate::model::Model;
 use crate::model::mass_spring::MassSpringModel;
-use crate::model::mass_spring::equilibrium::contact_energy::Contacts;
+use crate::model::mass_spring::equilibrium::contact_energy::{Anchors, Contacts};
 
 /// Unbalanced force at rest, of the force scale: round-off allows little less, more shows in the
 /// reactions.
@@ -116,21 +116,19 @@ impl System {
 }
 
 impl MassSpringModel {
-    /// Moves the nodes to rest; `anew` forgets where friction held. On an error they are somewhere
-    /// on the way.
-    pub(in crate::model::mass_spring) fn equilibrium(&mut self, anew: bool) -> Result<(), SolveError> {
+    /// Moves the nodes to equilibrium. On an error they are somewhere on the way.
+    pub(in crate::model::mass_spring) fn equilibrium(&mut self, anchors: Anchors) -> Result<(), SolveError> {
         self.chain.v.fill(Vec2::zeros());
         self.clock.behind_s = 0.0;
         self.place_supports();
         if !self.drives.held.contains(&true) && !self.touches_something() {
-            let why = "no support holds the cable and there is nothing that it could lie on".to_owned();
-            return Err(SolveError::NoRestingPlace { why });
+            return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingBelow });
         }
         self.weigh();
-        let mut contacts = Contacts::new(self, anew);
+        let mut contacts = Contacts::new(self, anchors);
         for p in &mut self.wheels.pulleys {
             p.rate = 0.0;
-            if anew {
+            if anchors == Anchors::Forgotten {
                 p.anchor = self.chain.s[p.node];
             }
         }

@@ -3,6 +3,7 @@
 
 use crate::error::SolveError;
 use crate::math::Vec2;
+use crate::model::mass_spring::Anchors;
 use crate::model::mass_spring::MassSpringModel;
 
 /// Longest way of a support between two resting places, of the even length (friction is measured
@@ -50,7 +51,7 @@ impl MassSpringModel {
                 // A hand goes straight.
                 self.drives.drag[k] = target.map(|t| starts[k] + (t - starts[k]) * next);
             }
-            match self.equilibrium(false) {
+            match self.equilibrium(Anchors::Kept) {
                 Ok(()) => {
                     iterations += self.report.cost.iterations;
                     done = next;

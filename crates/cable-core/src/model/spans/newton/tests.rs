@@ -1,4 +1,4 @@
-use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, Layout};
 use crate::model::spans::continuation::CableEquilibrium;
 use crate::model::spans::newton::*;
 use crate::model::spans::run::Next;
@@ -35,7 +35,7 @@ fn loaded(
     (c.length_m, c.friction) = (length, friction);
     c.supports = vec![Support::fixed("A", route_m[0]), Support::fixed("B", *route_m.last().unwrap())];
     c.route_m = route_m;
-    let layout = Layout::new(&problems(&scene).unwrap().remove(0), false).unwrap();
+    let layout = Layout::new(&problems(&scene).unwrap().remove(0), CableEnd::Start).unwrap();
     let mut instant = BoundaryConditions::default();
     layout.instant(&[None, None], 0.0, &mut instant);
     let mut work = Work::default();
