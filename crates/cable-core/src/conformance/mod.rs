@@ -99,7 +99,7 @@ impl Tolerance {
 }
 
 /// A law, and how far an answer of a model is from it.
-struct Law {
+struct ModelLaw {
     name: &'static str,
     ability: Ability,
     tolerance: Tolerance,
@@ -107,57 +107,57 @@ struct Law {
 }
 
 /// Every law, in the order of the rooms.
-const LAWS: &[Law] = &[
-    Law { name: "finite", ability: Ability::Equilibrium, tolerance: Tolerance::Exact, error: rest::not_finite },
-    Law {
+const LAWS: &[ModelLaw] = &[
+    ModelLaw { name: "finite", ability: Ability::Equilibrium, tolerance: Tolerance::Exact, error: rest::not_finite },
+    ModelLaw {
         name: "bit-repeatable",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Exact,
         error: rest::not_repeatable,
     },
-    Law {
+    ModelLaw {
         name: "rests on the closed form of the elastic catenary",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Shape(1.0),
         error: rest::closure,
     },
-    Law {
+    ModelLaw {
         name: "reactions sum to the weight",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Equilibrium(1.0),
         error: rest::weight_not_held,
     },
-    Law {
+    ModelLaw {
         name: "reactions have no sum sideways",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Equilibrium(1.0),
         error: rest::sideways_sum,
     },
-    Law {
+    ModelLaw {
         name: "a scene moved gives the same tensions",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Equilibrium(10.0),
         error: rest::moved,
     },
-    Law {
+    ModelLaw {
         name: "a scene mirrored gives the same tensions",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Equilibrium(10.0),
         error: rest::mirrored,
     },
-    Law {
+    ModelLaw {
         name: "a level span is symmetric",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Equilibrium(10.0),
         error: rest::asymmetry,
     },
-    Law {
+    ModelLaw {
         name: "forces scale with weight and stiffness",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Equilibrium(10.0),
         error: rest::scaled,
     },
-    Law {
+    ModelLaw {
         name: "a dead load at a free end is the tension there",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Equilibrium(10.0),
@@ -165,135 +165,135 @@ const LAWS: &[Law] = &[
     },
     // With something to touch each of a hundred nodes may be out of balance by 1e-6 of all that
     // acts.
-    Law {
+    ModelLaw {
         name: "a dead load at a free end is the tension there, with something to touch",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Equilibrium(100.0),
         error: rest::loaded_end_near_floor,
     },
-    Law {
+    ModelLaw {
         name: "a smooth pulley passes tension on",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Shape(1.0),
         error: pulleys::passed_on,
     },
-    Law {
+    ModelLaw {
         name: "reactions with a pulley sum to the weight",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Equilibrium(10.0),
         error: pulleys::weight_not_held,
     },
-    Law {
+    ModelLaw {
         name: "drawn slowly over a rough pulley tension grows by e^{μφ}",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Mesh(1e-3),
         error: pulleys::drawn,
     },
-    Law {
+    ModelLaw {
         name: "let back over a rough pulley tension falls by e^{μφ}",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Mesh(1e-3),
         error: pulleys::let_back,
     },
-    Law {
+    ModelLaw {
         name: "drawn in motion over a rough pulley tension grows by e^{μφ}",
         ability: Ability::Inertia,
         tolerance: Tolerance::Mesh(1e-2),
         error: pulleys::drawn_in_motion,
     },
-    Law {
+    ModelLaw {
         name: "nothing lies inside a pipe",
         ability: Ability::Contact,
         tolerance: Tolerance::Shape(1.0),
         error: contact::penetration,
     },
-    Law {
+    ModelLaw {
         name: "reactions and contact forces sum to the weight",
         ability: Ability::Contact,
         tolerance: Tolerance::Equilibrium(100.0),
         error: contact::weight_not_held,
     },
     // Bars that end on the pipe pull along chords of it: by a hundredth with 40 of them.
-    Law {
+    ModelLaw {
         name: "on a smooth pipe T + T²/2EA − wy is the same everywhere",
         ability: Ability::Contact,
         tolerance: Tolerance::Mesh(2e-2),
         error: contact::bernoulli,
     },
-    Law {
+    ModelLaw {
         name: "a smooth pipe only pushes",
         ability: Ability::Contact,
         tolerance: Tolerance::Shape(10.0),
         error: contact::not_pushed,
     },
-    Law {
+    ModelLaw {
         name: "no contact force leaves the friction cone",
         ability: Ability::Contact,
         tolerance: Tolerance::Mesh(1e-2),
         error: friction::outside_cone,
     },
-    Law {
+    ModelLaw {
         name: "drawn slowly round a rough post tension grows by e^{μφ}",
         ability: Ability::Contact,
         tolerance: Tolerance::Mesh(1e-2),
         error: friction::drawn_round_post,
     },
-    Law {
+    ModelLaw {
         name: "let back round a rough post tension falls by e^{μφ}",
         ability: Ability::Contact,
         tolerance: Tolerance::Mesh(1e-2),
         error: friction::let_back_round_post,
     },
-    Law {
+    ModelLaw {
         name: "drawn slowly over a rough floor tension grows by μw a metre",
         ability: Ability::Contact,
         tolerance: Tolerance::Mesh(1e-2),
         error: friction::drawn_over_floor,
     },
     // `fem` corrects bars for their sag at rest alone: in motion they sag by what they lose.
-    Law {
+    ModelLaw {
         name: "a cable at rest stays at rest",
         ability: Ability::Inertia,
         tolerance: Tolerance::Relative(1e-3),
         error: motion::stirred,
     },
-    Law {
+    ModelLaw {
         name: "a motion is bit-repeatable",
         ability: Ability::Inertia,
         tolerance: Tolerance::Exact,
         error: motion::not_repeatable,
     },
-    Law {
+    ModelLaw {
         name: "a cable let go falls with g",
         ability: Ability::Inertia,
         tolerance: Tolerance::Relative(1e-4),
         error: motion::free_fall,
     },
-    Law {
+    ModelLaw {
         name: "momentum changes by the impulses",
         ability: Ability::Inertia,
         tolerance: Tolerance::Relative(1e-4),
         error: motion::momentum_from_nowhere,
     },
-    Law {
+    ModelLaw {
         name: "a falling end gains no energy",
         ability: Ability::Inertia,
         tolerance: Tolerance::Relative(1e-3),
         error: motion::energy_from_nowhere,
     },
-    Law {
+    ModelLaw {
         name: "drawn slowly a cable breaks when its strain says",
         ability: Ability::Equilibrium,
         tolerance: Tolerance::Mesh(1e-3),
         error: breaks::slow_break_time,
     },
-    Law {
+    ModelLaw {
         name: "in motion a cable breaks when its strain says",
         ability: Ability::Inertia,
         tolerance: Tolerance::Relative(1e-3),
         error: breaks::break_time,
     },
-    Law {
+    ModelLaw {
         name: "the pieces of a broken cable are as long as it was",
         ability: Ability::Inertia,
         tolerance: Tolerance::Relative(1e-12),
@@ -310,7 +310,7 @@ pub fn run(model: Model) -> Result<Vec<Check>, Error> {
 }
 
 /// Whether a law holds, or else whether a model that cannot answer says so.
-fn check(law: &Law, model: Model) -> Result<Check, Error> {
+fn check(law: &ModelLaw, model: Model) -> Result<Check, Error> {
     let found = (law.error)(model);
     if law.ability.is_among(model.capabilities()) {
         return Ok(Check { name: law.name, error: found?, tolerance: law.tolerance.of(model) });

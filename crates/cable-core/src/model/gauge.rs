@@ -1,9 +1,9 @@
 //! The gauge reads the tension of a moving cable after every inner step of a model.
 //!
-//! A jerk passes between two looks at a cable: the inner steps see it. And an instant of it breaks
-//! nothing: fracture under a pulse takes its time, and happens when the mean over that time reaches
-//! the strength (the incubation time criterion: Yu. V. Petrov, N. F. Morozov, "On the modeling of
-//! fracture of brittle solids", Journal of Applied Mechanics 61(3), 1994),
+//! A jerk can pass between two frames; the inner steps resolve it. A single instant of it does not
+//! break a cable: fracture under a pulse takes time, and happens when the mean over that time
+//! reaches the strength (the incubation time criterion: Yu. V. Petrov, N. F. Morozov, "On the
+//! modeling of fracture of brittle solids", Journal of Applied Mechanics 61(3), 1994),
 //! ```text
 //! 1/τ ∫ T(s, t') dt' over t − τ … t  ≥  T_b
 //! ```

@@ -1,12 +1,12 @@
 //! Two meshes are compared to estimate how wrong the figures of a cable in contact are.
 //!
-//! Where `spans` laid the cable its answer has no error of a mesh, and the bars only came to rest
-//! from it: the two differ by what mesh, barrier and grips do, and that is what is said of each
-//! figure. On the way without inertia `spans` goes on beside the bars: it costs a small part of
-//! what they do, and remembers friction as they do.
+//! If `spans` has a solution, that has no mesh error, and the bars came to rest from it: the two
+//! differ by the effect of mesh, barrier and stick-slip states. That difference is the error
+//! estimate of each figure. In quasi-static steps `spans` continues beside the bars: it costs a
+//! small part of what they cost, and has the same friction memory.
 //!
-//! Where it has no answer (slack, stiff, in plan, in touch with itself) the same cable on bars
-//! twice and four times as long is asked. Straight bars between contacts are of the second order,
+//! If it has no solution (slack, stiff, in plan view, in self-contact), the same cable is solved on
+//! bars twice and four times as long. Straight bars between contacts are of the second order,
 //! where the cable touches down or meets a corner of the first: what is left of an error on the
 //! finest of three meshes is a third of what the finer two differ by, or all of it. All of it is
 //! said, and no less than half of what the coarser two differ by: one difference may pass through

@@ -1,4 +1,4 @@
-//! This module reads an answer out of a chain at rest.
+//! This module makes a solution of a chain at rest.
 //!
 //! Forces of contacts and weight act on the chain's nodes. In the answer a contact acts where it
 //! is: a bar that lies on a corner is cut there, its force before and after differ by what the

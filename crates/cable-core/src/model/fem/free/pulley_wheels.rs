@@ -1,4 +1,4 @@
-//! This module leads a cable round the wheels of its pulleys.
+//! This module finds the arcs of a cable on the wheels of its pulleys.
 //!
 //! The cable runs from where it meets a wheel to where it leaves it, tangent at both; these contact
 //! points follow the forces of the spans beside (a few rounds, each gains the ratio of radius to

@@ -1,9 +1,9 @@
 //! The active set predicts the contacts that a Newton step is about to make.
 //!
-//! The barrier is felt from a gap of d̂ on only. A Newton step that knows nothing of what lies
-//! beyond runs into it, is cut where the first node would touch, and the next runs into the next
-//! node: where a cable comes down on the ground a step took as many iterations as nodes landed. So
-//! what the step δ would carry past its landing gap g* is made to stop there, and the step is found
+//! The barrier acts only at gaps below d̂. A Newton step that ignores farther obstacles runs into
+//! them, is cut where the first node would touch, and the next step runs into the next node: where
+//! a cable lands on the ground a step took as many iterations as nodes landed. Therefore contacts
+//! that the step δ would carry past their landing gap g* become constraints, and the step is solved
 //! again:
 //! ```text
 //! min ½ δᵀHδ + gᵀδ   subject to   n·δc + r ≥ −(g − g*)    for each contact ahead, c its point

@@ -1,4 +1,4 @@
-//! The floor of a plan view rubs on what runs over a round.
+//! In plan view the floor has friction with cable that slides over a round.
 //!
 //! A node that moves with its material takes the floor's friction of the straight halves of the
 //! bars beside it as a force on itself. What a sliding node answers for lies before its round, on

@@ -1,6 +1,6 @@
-//! One piece of a track, seen from a point of it: what lies on the same piece needs no search, and
-//! its direction is that of the point turned by a small angle. And where on a piece two tensions
-//! come to be one.
+//! A segment cursor holds one piece of a track as seen from a point of it: places on the same piece
+//! need no search, and their direction is that of the point turned by a small angle. It also finds
+//! where on a piece two tensions become equal.
 
 use std::cell::Cell;
 

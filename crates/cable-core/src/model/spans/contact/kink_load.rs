@@ -1,9 +1,9 @@
 //! A load in a concave kink of a boundary is held by both its edges.
 //!
-//! What slides down into a kink stays there as long as the force V on it lies between the cones of
-//! friction of the two edges: it leaves along its own edge where V·t back from the kink is more
+//! A load that slides into a kink stays there as long as the force V on it lies between the
+//! friction cones of the two edges. It leaves along its own edge if V·t away from the kink is more
 //! than μN, with N = −V·n of that edge alone, and likewise along the other. The cable beside it may
-//! lie on either edge, joined to it.
+//! rest on either edge, joined to the load.
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::changes::resolve;

@@ -1,4 +1,4 @@
-//! The friction of one wheel, for models that have cables of their own: what it remembers, and the
+//! This module gives models with spans of their own the friction of one wheel: its memory, and the
 //! two equations of the cable on it.
 //!
 //! The law is that of every contact here (`law`, `history`, `rub`). Slip is seen at points fixed to

@@ -1,13 +1,13 @@
 //! A drained route is the way of a cable that has drained down from its route.
 //!
-//! With cable enough, nothing is held up but by what is below it: each point of the route falls
-//! along the load, on to the first boundary that faces it. On the way down nothing is passed
-//! through, so that what comes of it lies on the same sides of everything as the route. It is a
-//! word of two letters: it *lies* along a boundary, or *hangs* plumb where the boundary below it
-//! ends and the next one is lower or higher. Where it goes back over what it has just come along it
-//! can be drawn back: the word is reduced as it is written.
+//! With enough cable, only what is below the cable holds it up: each point of the route falls along
+//! the load to the first boundary that faces it. It passes through nothing on the way down, so the
+//! result is on the same side of every obstacle as the route. The result is a word of two letters:
+//! the cable *lies* along a boundary, or *hangs* plumb where the boundary below it ends and the
+//! next one is lower or higher. If it returns over the stretch it has just come along, both are
+//! drawn back: the word is reduced as it is written.
 //!
-//! All of it in the frame of the load: u across it, v against it.
+//! All coordinates are in the frame of the load: u across it, v against it.
 
 use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross, larger, perp, smaller};

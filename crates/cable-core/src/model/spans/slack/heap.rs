@@ -1,8 +1,8 @@
-//! A heap is where folds lie in one place: where nothing lies without tension but at a foot or in a
-//! kink, the rest is there.
+//! A heap is surplus cable folded in one place: if cable can rest without tension only at a foot or
+//! in a kink, all that is left over rests there.
 //!
-//! The two edges of a kink carry it pressed alone where its weight is between their normals; else
-//! the one it lies on does, within its cone.
+//! If its weight points between the normals of a kink's two edges, both carry it by pressure alone;
+//! else the edge it rests on carries it within its friction cone.
 
 use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::curve::Place;

@@ -1,9 +1,9 @@
 //! This module finds tensions along stretches, and the spans over concave kinks in which the cable
 //! has some.
 //!
-//! On slopes beyond their cone what lies draws at what lies above it, through every kink on the
-//! way. With slopes m₁ and m₂ of the edges on either side, seen along the way, and H the force
-//! across the load, a span leaves the one and meets the other along its tangent:
+//! On slopes steeper than the friction cone the cable pulls on the cable above it, through every
+//! kink on the way. With slopes m₁ and m₂ of the edges on either side, seen along the way, and H
+//! the force across the load, a span leaves the one and meets the other along its tangent:
 //!
 //! ```text
 //! bσ = H (m₂ − m₁),   u = τ (Hσ/EA + H (asinh m₂ − asinh m₁)/b),   v = τ ((T₂ − T₁)/b + H² (m₂² − m₁²)/2bEA)

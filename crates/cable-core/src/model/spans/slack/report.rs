@@ -1,4 +1,4 @@
-//! This module reports what lies slack: nodes, and what carries it.
+//! This module reports a slack run of cable: its nodes, and the contacts that carry it.
 
 use crate::math::Vec2;
 use crate::model::arc_nodes;
