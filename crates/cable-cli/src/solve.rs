@@ -48,7 +48,7 @@ pub fn solve(arguments: &SolveArguments) -> Done {
     let mut out = Printer::new();
     let began = Instant::now();
     let waiting = Waiting::begin();
-    let solved = settle_with_bending(&scene, (a.model, settings(a)), arguments.bending);
+    let solved = settle_with_bending(&scene, a.model, settings(a), arguments.bending);
     drop(waiting);
     let wall_time_s = began.elapsed().as_secs_f64();
     match solved {

@@ -1,4 +1,5 @@
-//! [`Error`] joins the errors of the operations that a program calls one after the other: reading a scene, solving it, keeping files.
+//! [`Error`] joins the errors of the operations that a program calls one after the other: reading a
+//! scene, solving it, keeping files.
 
 use thiserror::Error;
 

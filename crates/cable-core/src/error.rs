@@ -1,10 +1,16 @@
 //! The errors of a scene and of a solve, by operation, with the numbers in them.
 
+mod no_equilibrium;
+mod unsupported;
+
 use thiserror::Error;
 
 use crate::math::Vec2;
 use crate::model_id::Model;
 use crate::solution::verification::Finding;
+
+pub use self::no_equilibrium::{FailureCause, NoEquilibrium};
+pub use self::unsupported::{Unsupported, UnsupportedReach};
 
 /// Why a scene is refused.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -145,7 +151,8 @@ pub struct Place {
     pub arc_length_m: f64,
     /// Where that is, m.
     pub at_m: Vec2,
-    /// The nearest support or obstacle by kind and name, and its distance, m; none where there is nothing.
+    /// The nearest support or obstacle by kind and name, and its distance, m; none where there is
+    /// nothing.
     pub near: Option<(String, f64)>,
 }
 
@@ -174,10 +181,12 @@ fn metres(length_m: f64) -> String {
     if size > 0.0 && size < 0.01 || size >= 1e6 { format!("{length_m:.2e} m") } else { format!("{length_m:.3} m") }
 }
 
-/// A force that no cable bears, N: left over it says that a search ran away, not how much is missing.
+/// A force that no cable bears, N: left over it says that a search ran away, not how much is
+/// missing.
 const MAX_CREDIBLE_FORCE_N: f64 = 1e9;
 
-/// A force that is left over, where a solver knows one: a figure that is not finite, or beyond all measure, says nothing to anybody.
+/// A force that is left over, where a solver knows one: a figure that is not finite, or beyond all
+/// measure, says nothing to anybody.
 fn left_over(residual_n: f64) -> String {
     if residual_n.abs() < MAX_CREDIBLE_FORCE_N {
         format!("{residual_n:.3e} N stay unbalanced")
@@ -191,7 +200,8 @@ fn seconds(time_s: f64) -> String {
     if time_s.is_finite() { format!("{time_s} s") } else { "no finite time".to_owned() }
 }
 
-/// Why a model has no answer. Every text says where, in metres and names, and what can be done; none holds a number that is not finite.
+/// Why a model has no answer. Every text says where, in metres and names, and what can be done;
+/// none holds a number that is not finite.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum SolveError {
     /// The iteration did not converge.
@@ -254,7 +264,7 @@ pub enum SolveError {
     #[error("there is no resting place: {why}")]
     NoRestingPlace {
         /// What pulls it away.
-        why: String,
+        why: NoEquilibrium,
     },
     /// Two models were asked, and neither has an answer or a reason that is one for every model.
     #[error("{told}; and {other}")]
@@ -270,7 +280,7 @@ pub enum SolveError {
         /// The model.
         model: Model,
         /// What it lacks.
-        feature: String,
+        feature: Unsupported,
     },
     /// A number blew up.
     #[error("{quantity} is no finite number {} along the cable at {}: a time step, a load or a stiffness is far out of proportion to the others", metres(*.arc_length_m), seconds(*.time_s))]
@@ -340,13 +350,13 @@ pub enum SolveError {
         /// Where it acts.
         place: Box<Place>,
         /// Why the last try failed.
-        cause: String,
+        cause: FailureCause,
     },
 }
 
 impl SolveError {
-    /// Of two models' reasons for one cable the one that a user can act on: what is so whatever the model is told alone; where
-    /// neither says that, both are.
+    /// Of two models' reasons for one cable the one that a user can act on: what is so whatever the
+    /// model is told alone; where neither says that, both are.
     #[must_use]
     pub(crate) fn clearer(first: Self, second: Self) -> Self {
         let certain = |e: &Self| matches!(e, Self::NoRestingPlace { .. } | Self::Buried { .. });
@@ -391,7 +401,7 @@ mod tests {
                     dt_s: 1e-3,
                     residual_n: bad,
                     place: place(),
-                    cause: String::new(),
+                    cause: FailureCause::NoDescent,
                 },
                 SolveError::NonFinite { quantity: "position", arc_length_m: 1.0, time_s: bad },
             ];
@@ -406,15 +416,14 @@ mod tests {
     #[test]
     fn the_clearer_reason_of_two_models_is_told() {
         let vague = |model| SolveError::NotConverged { model, iterations: 1, residual_n: 1.0, place: Box::default() };
-        let clear = SolveError::NoRestingPlace { why: "it slides".to_owned() };
+        let clear = SolveError::NoRestingPlace { why: NoEquilibrium::SlidesOff };
         assert_eq!(SolveError::clearer(clear.clone(), vague(Model::Fem)), clear);
         assert_eq!(SolveError::clearer(vague(Model::Spans), clear.clone()), clear);
         let both = SolveError::clearer(vague(Model::Spans), vague(Model::Fem)).to_string();
         assert!(both.contains("spans") && both.contains("fem"), "{both}");
-        let lifts =
-            SolveError::Unsupported { model: Model::Spans, feature: "the cable lifts off the wheel".to_owned() };
+        let lifts = SolveError::Unsupported { model: Model::Spans, feature: Unsupported::NothingHolds };
         let told = SolveError::clearer(SolveError::clearer(lifts, vague(Model::Fem)), vague(Model::Fem)).to_string();
-        assert!(told.starts_with("spans cannot answer this scene: the cable lifts off the wheel; and"), "{told}");
+        assert!(told.starts_with("spans cannot answer this scene: no support holds the cable: two loads or loose ends, and obstacles at most; and"), "{told}");
         assert_eq!(told.matches("fem").count(), 1, "{told}");
     }
 }

@@ -17,7 +17,8 @@ use crate::scene::Scene;
 use crate::scene::file::MAX_TEXT_BYTES;
 use crate::solution::Solution;
 
-/// Why a file could not be read or written. The data in memory is untouched, and so is the old file.
+/// Why a file could not be read or written. The data in memory is untouched, and so is the old
+/// file.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum FileError {
     /// It cannot be opened or read.
@@ -191,7 +192,8 @@ pub fn write_atomic(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), FileErro
     write_atomic_with(path, |out| out.write_all(bytes))
 }
 
-/// As [`write_atomic`], for what is too large to hold in memory: `fill` writes into a buffer before the file.
+/// As [`write_atomic`], for what is too large to hold in memory: `fill` writes into a buffer before
+/// the file.
 ///
 /// # Errors
 /// Why it cannot be written, or what `fill` met; the old file is then as it was.
@@ -234,7 +236,8 @@ pub fn create_folder(path: impl AsRef<Path>) -> Result<(), FileError> {
 const MANIFEST_NAME: &str = "run.toml";
 /// The scene of a run.
 const SCENE_NAME: &str = "scene.toml";
-/// Held while a run is written; an empty file, which stays, since a lock on a file that is removed excludes nobody.
+/// Held while a run is written; an empty file, which stays, since a lock on a file that is removed
+/// excludes nobody.
 const LOCK_NAME: &str = "run.lock";
 /// The tables of a run, in the order of [`RunWriter::places`].
 const TABLE_NAMES: [&str; 3] = ["history.csv", "nodes.csv", "events.csv"];
@@ -242,7 +245,8 @@ const TABLE_NAMES: [&str; 3] = ["history.csv", "nodes.csv", "events.csv"];
 const RUN_FILES: [&str; 4] = [SCENE_NAME, "history.csv", "nodes.csv", "events.csv"];
 /// Folders, in a run folder, of runs that may one day take the place of the run there.
 const UNFINISHED_PREFIX: &str = "unfinished-";
-/// Most of these folders. More than anybody keeps; without a limit a script that never succeeds fills a disk.
+/// Most of these folders. More than anybody keeps; without a limit a script that never succeeds
+/// fills a disk.
 const MAX_UNFINISHED: usize = 999;
 
 /// A table of a run on the disk: rows that do not fit on it leave it as it was.
@@ -254,7 +258,12 @@ struct TableFile {
 }
 
 /// What a [`TableFile`] held at some moment.
-type Mark = (u64, Fingerprint, Pages);
+#[derive(Clone)]
+struct Mark {
+    bytes: u64,
+    hash: Fingerprint,
+    pages: Pages,
+}
 
 impl TableFile {
     /// Makes a file that is not there yet.
@@ -264,11 +273,12 @@ impl TableFile {
     }
 
     fn mark(&self) -> Mark {
-        (self.bytes, self.hash, self.pages)
+        Mark { bytes: self.bytes, hash: self.hash, pages: self.pages }
     }
 
     /// Takes back what was written since.
-    fn rewind(&mut self, (bytes, hash, pages): Mark) {
+    fn rewind(&mut self, mark: Mark) {
+        let Mark { bytes, hash, pages } = mark;
         // Where even that fails the table ends within a line, which readers leave out.
         let _ = self.file.set_len(bytes);
         (self.bytes, self.hash, self.pages) = (bytes, hash, pages);
@@ -303,13 +313,14 @@ pub enum RunEnd {
     Partial(String),
 }
 
-/// A run folder that is being written. What it holds is readable at any moment, and marked as partial until
-/// [`Self::finish`] says otherwise.
+/// A run folder that is being written. What it holds is readable at any moment, and marked as
+/// partial until [`Self::finish`] says otherwise.
 ///
-/// Three rules keep what was there before. Every file is made new in a folder that was new, empty or a run's; nothing is opened to
-/// be overwritten, so nothing is followed. Where the folder holds a run already, the new one is written into a folder
-/// `unfinished-N` in it, and takes its place only when it is complete. And a lock is held, which the system lets go of
-/// however the process ends.
+/// Three rules keep what was there before. Every file is made new in a folder that was new, empty
+/// or a run's; nothing is opened to be overwritten, so nothing is followed. Where the folder holds
+/// a run already, the new one is written into a folder `unfinished-N` in it, and takes its place
+/// only when it is complete. And a lock is held, which the system lets go of however the process
+/// ends.
 pub struct RunFolder {
     folder: PathBuf,
     /// Where the files are written: the folder, or `unfinished-N` in it.
@@ -321,8 +332,8 @@ pub struct RunFolder {
 }
 
 impl RunFolder {
-    /// Begins a run in a folder that is new, empty, or a run's own (those above it are made): writes its scene and that it is
-    /// partial.
+    /// Begins a run in a folder that is new, empty, or a run's own (those above it are made):
+    /// writes its scene and that it is partial.
     ///
     /// # Errors
     /// Why the folder takes no run, or a file in it cannot be made.
@@ -335,7 +346,8 @@ impl RunFolder {
         // Without a slash at its end, which would follow a link.
         let folder: PathBuf = folder.as_ref().components().collect();
         make_folder(&folder)?;
-        // Looked at before, so that nothing is laid into a folder that takes no run; and again with the lock.
+        // Looked at before, so that nothing is laid into a folder that takes no run; and again with
+        // the lock.
         look(&folder)?;
         let mut locks = Vec::from_iter(lock(&folder)?);
         let mut place = folder.clone();
@@ -353,13 +365,15 @@ impl RunFolder {
         let mut hash = Fingerprint::default();
         hash.bytes(text.as_bytes());
         let manifest = Manifest::new(request, node_choice, FileRecord::new(SCENE_NAME, text.len() as u64, hash));
-        // First that the folder is a run's: a run that dies before its scene is there can be begun again.
+        // First that the folder is a run's: a run that dies before its scene is there can be begun
+        // again.
         put(&place, MANIFEST_NAME, manifest.to_toml().as_bytes())?;
         put(&place, SCENE_NAME, text.as_bytes())?;
         Ok(Self { folder, place, manifest, node_choice, writer: None, _locks: locks })
     }
 
-    /// Where its files are for now: the folder asked for, or one in it while that holds an earlier run.
+    /// Where its files are for now: the folder asked for, or one in it while that holds an earlier
+    /// run.
     #[must_use]
     pub fn place(&self) -> &Path {
         &self.place
@@ -422,12 +436,12 @@ impl RunFolder {
         })
     }
 
-    /// Ends the run. One that is complete takes the place of an earlier one in its folder, and of those that were not
-    /// finished there. Where the run lies then.
+    /// Ends the run. One that is complete takes the place of an earlier one in its folder, and of
+    /// those that were not finished there. Where the run lies then.
     ///
     /// # Errors
-    /// What could not be written, or why an earlier run was not replaced; what was written stays readable, and is partial where the
-    /// end of a complete run could not be noted.
+    /// What could not be written, or why an earlier run was not replaced; what was written stays
+    /// readable, and is partial where the end of a complete run could not be noted.
     pub fn finish(mut self, end: RunEnd) -> Result<PathBuf, FileError> {
         if let Some(writer) = &mut self.writer {
             for (table, name) in writer.places().into_iter().zip(TABLE_NAMES) {
@@ -519,7 +533,8 @@ fn exists(path: &Path) -> bool {
     !matches!(fs::symlink_metadata(path), Err(e) if e.kind() == io::ErrorKind::NotFound)
 }
 
-/// Locks a folder for one run; the file is unlocked when it is closed. None where the file system knows no locks.
+/// Locks a folder for one run; the file is unlocked when it is closed. None where the file system
+/// knows no locks.
 fn lock(folder: &Path) -> Result<Option<fs::File>, FileError> {
     let path = folder.join(LOCK_NAME);
     let mut options = fs::OpenOptions::new();
@@ -537,7 +552,8 @@ fn lock(folder: &Path) -> Result<Option<fs::File>, FileError> {
     match file.try_lock() {
         Ok(()) => Ok(Some(file)),
         Err(fs::TryLockError::WouldBlock) => Err(FileError::folder(folder, RunFolderFault::InUse)),
-        // Two runs at once then write into folders of their own still, since each file and folder is made new.
+        // Two runs at once then write into folders of their own still, since each file and folder
+        // is made new.
         Err(fs::TryLockError::Error(e)) if e.kind() == io::ErrorKind::Unsupported => Ok(None),
         Err(fs::TryLockError::Error(e)) => Err(FileError::write(&path, &e)),
     }
@@ -609,8 +625,9 @@ fn new_unfinished(folder: &Path) -> Result<PathBuf, FileError> {
     Err(FileError::folder(folder, RunFolderFault::Full { count: MAX_UNFINISHED }))
 }
 
-/// Puts a complete successor in the place of a run, where that was begun: each file is in the one folder or in the other, the
-/// manifest is the last that moves, and so it can be gone on with wherever it stopped. The manifest that holds then.
+/// Puts a complete successor in the place of a run, where that was begun: each file is in the one
+/// folder or in the other, the manifest is the last that moves, and so it can be gone on with
+/// wherever it stopped. The manifest that holds then.
 fn replace_if_begun(folder: &Path, manifest: Manifest) -> Result<Manifest, FileError> {
     let Some(from) = successor(folder, &manifest) else { return Ok(manifest) };
     for name in RUN_FILES {
@@ -640,7 +657,8 @@ fn is_unfinished(name: &str) -> bool {
         .is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
 }
 
-/// Removes the runs in a folder that were not finished and that nobody writes or has changed, as far as that can be done.
+/// Removes the runs in a folder that were not finished and that nobody writes or has changed, as
+/// far as that can be done.
 fn remove_unfinished(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
@@ -667,7 +685,8 @@ fn temporary(name: &str) -> String {
     format!("{name}.new")
 }
 
-/// Writes a whole file of a run folder that is locked: beside its place, to the disk, then into its place.
+/// Writes a whole file of a run folder that is locked: beside its place, to the disk, then into its
+/// place.
 fn put(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), FileError> {
     let (path, beside) = (folder.join(name), folder.join(temporary(name)));
     let write = || -> io::Result<()> {
@@ -716,7 +735,8 @@ impl SavedRun {
         self.manifest.as_ref().map(|m| m.status == RunStatus::Complete)
     }
 
-    /// What its reader should know, a sentence each: that it is partial, and what was left out of its tables.
+    /// What its reader should know, a sentence each: that it is partial, and what was left out of
+    /// its tables.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let mut out = Vec::new();
@@ -735,15 +755,16 @@ impl SavedRun {
     }
 }
 
-/// Reads a run folder, whole or partial, up to the last instant that is whole in all its tables. No table may have more than
-/// `limit_bytes`.
+/// Reads a run folder, whole or partial, up to the last instant that is whole in all its tables. No
+/// table may have more than `limit_bytes`.
 ///
 /// # Errors
 /// What is missing or broken, and where.
 pub fn load_run(folder: impl AsRef<Path>, limit_bytes: u64) -> Result<SavedRun, FileError> {
     let folder = folder.as_ref();
     let manifest = read_manifest(folder);
-    // Where a successor is half way into its place, what has not moved yet is still in the folder it comes from.
+    // Where a successor is half way into its place, what has not moved yet is still in the folder
+    // it comes from.
     let from = manifest.as_ref().and_then(|m| successor(folder, m));
     let place =
         |name: &str| from.iter().map(|f| f.join(name)).find(|p| p.exists()).unwrap_or_else(|| folder.join(name));

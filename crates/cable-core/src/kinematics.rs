@@ -18,7 +18,8 @@ impl AlongCable {
         Self(nodes.iter().map(|n| (n.arc_length_m, Vec2::new(n.vx_m_per_s, n.vy_m_per_s))).collect())
     }
 
-    /// The vector at an arc length (m), between the two of the nearest ones; None of a cable without nodes.
+    /// The vector at an arc length (m), between the two of the nearest ones; None of a cable
+    /// without nodes.
     fn at(&self, arc_length: f64) -> Option<Vec2> {
         let k = self.0.partition_point(|(s, _)| *s <= arc_length);
         let (before, after) = (self.0.get(k.saturating_sub(1))?, self.0.get(k).or(self.0.last())?);

@@ -21,8 +21,10 @@
 //! | time | s |
 //!
 //! Dependencies between the modules point one way, without a loop:
-//! `math, model_id → solution → error → scene → contact, catenary, energy → problem → state → model → breakage, warnings, verify →
-//! simulation → timeline, analysis, summary, conformance`, and `record → files → any_error` beside them.
+//! `math, model_id → solution → error → scene → contact, catenary,
+//! energy → problem → state → model → breakage, warnings, verify
+//! → simulation → timeline, analysis, summary, conformance`, and `record → files → any_error`
+//! beside them.
 
 pub mod analysis;
 mod any_error;

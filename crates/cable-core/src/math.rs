@@ -34,18 +34,21 @@ pub fn cross(a: Vec2, b: Vec2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// Tangent of the angles whose series of [`angle`] is as exact as numbers are: the next term is r¹¹/11.
+/// Tangent of the angles whose series of [`angle`] is as exact as numbers are: the next term is
+/// r¹¹/11.
 const MAX_SERIES_TANGENT: f64 = 0.05;
 
-/// The value brought between two bounds, whatever they are: unlike [`f64::clamp`] it does not panic where they are exchanged or no
-/// numbers, as bounds that a solver works out may be. The upper one wins.
+/// The value brought between two bounds, whatever they are: unlike [`f64::clamp`] it does not panic
+/// where they are exchanged or no numbers, as bounds that a solver works out may be. The upper one
+/// wins.
 #[must_use]
 pub fn bounded(value: f64, low: f64, high: f64) -> f64 {
     let above = if value < low { low } else { value };
     if above > high { high } else { above }
 }
 
-/// The angle from `a` to `b`, rad in (−π, π]. Neighbouring elements turn little: there a series, as arctangents are dear.
+/// The angle from `a` to `b`, rad in (−π, π]. Neighbouring elements turn little: there a series, as
+/// arctangents are dear.
 #[must_use]
 pub fn angle(a: Vec2, b: Vec2) -> f64 {
     let (sin, cos) = (cross(a, b), a.dot(&b));
@@ -57,7 +60,8 @@ pub fn angle(a: Vec2, b: Vec2) -> f64 {
     r * (1.0 - s * (1.0 / 3.0 - s * (1.0 / 5.0 - s * (1.0 / 7.0 - s / 9.0))))
 }
 
-/// Angles whose sine and cosine [`sin_cos`] takes from a short series, rad: the next terms are 9e-17 and 6e-19 of them.
+/// Angles whose sine and cosine [`sin_cos`] takes from a short series, rad: the next terms are
+/// 9e-17 and 6e-19 of them.
 const MAX_SHORT_SERIES_ANGLE: f64 = 0.3;
 /// … and from a longer one: just over an eighth of a turn, and terms of 1e-18.
 const MAX_SERIES_ANGLE: f64 = 0.8;
@@ -66,7 +70,8 @@ const MAX_QUARTER_TURNS: f64 = 64.0;
 /// π/2 as a number of few digits and the rest.
 const QUARTER_TURN: [f64; 2] = [1.570_796_325_802_803, 9.920_935_796_805_404e-10];
 
-/// Sine and cosine of an angle, rad. Corners turn little: there by the series, as a call of the library is dear.
+/// Sine and cosine of an angle, rad. Corners turn little: there by the series, as a call of the
+/// library is dear.
 #[must_use]
 #[inline]
 pub fn sin_cos(angle: f64) -> (f64, f64) {
@@ -112,7 +117,8 @@ fn long_series(angle: f64) -> (f64, f64) {
 /// Exponents whose power [`exp`] takes from the series: the next term is 3e-17.
 const MAX_SERIES_EXPONENT: f64 = 0.1;
 
-/// e to the power of x. Friction on small turns multiplies by little: there by the series, as a call of the library is dear.
+/// e to the power of x. Friction on small turns multiplies by little: there by the series, as a
+/// call of the library is dear.
 #[must_use]
 #[inline]
 pub fn exp(x: f64) -> f64 {

@@ -1,4 +1,5 @@
-//! The names of the models: a user asks for one of them, answers and errors tell which one they come from.
+//! The names of the models: a user asks for one of them, answers and errors tell which one they
+//! come from.
 //!
 //! What each of them can do, and how it is built, stands in [`crate::model::registry`].
 
@@ -13,7 +14,8 @@ pub enum Model {
     Auto,
     /// Elastic catenaries between supports: no contact, no motion, no discretisation error.
     Catenary,
-    /// Exact catenaries between contacts that are intervals of a boundary: friction without a mesh, no motion.
+    /// Exact catenaries between contacts that are intervals of a boundary: friction without a mesh,
+    /// no motion.
     Spans,
     /// Corrected bar elements with contact, friction, bending, dynamics.
     Fem,

@@ -25,10 +25,12 @@ use crate::warnings::{Bends, Observed, WarningMonitor};
 /// Step with inertia, s: the inner step of `fem`.
 pub const STEP_S: f64 = 1.0 / 240.0;
 
-/// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows time at 10 Hz.
+/// Longest step a display frame takes, s: longer makes one slow frame cause the next, shorter slows
+/// time at 10 Hz.
 pub const MAX_FRAME_S: f64 = 0.1;
 
-/// Longest step with inertia, s: a quarter of a million inner steps. Longer: a slip of the pen computes for hours without a word.
+/// Longest step with inertia, s: a quarter of a million inner steps. Longer: a slip of the pen
+/// computes for hours without a word.
 const MAX_STEP_S: f64 = 1e3;
 
 /// The same without inertia, s.
@@ -64,6 +66,15 @@ pub struct Simulation {
     verification: Verification,
 }
 
+/// What an instant that is read is part of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Instant {
+    /// The cables rest, and a run begins here.
+    AtRest,
+    /// A run goes on.
+    InMotion,
+}
+
 impl Simulation {
     /// Validates the scene and builds the model of each of its cables, at their routes, at rest.
     ///
@@ -81,8 +92,9 @@ impl Simulation {
         Self::for_question(scene, model, settings, Question::Rest)
     }
 
-    /// As [`Self::with_settings`]; `Model::Auto` is resolved for the question that will be asked. One model serves
-    /// the whole scene: the highest rung any cable needs, and the next one up where a model lacks a feature.
+    /// As [`Self::with_settings`]; `Model::Auto` is resolved for the question that will be asked.
+    /// One model serves the whole scene: the highest rung any cable needs, and the next one up
+    /// where a model lacks a feature.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -90,16 +102,16 @@ impl Simulation {
         let problems = problems(&scene)?;
         if model != Model::Auto {
             let reason = "asked for".to_owned();
-            return Self::from_source(scene, &problems, settings, (model, ModelSource::Registered(model), reason));
+            return Self::from_source(scene, &problems, settings, model, ModelSource::Registered(model), reason);
         }
         let (chosen, reason) = auto::choose_for_all(&problems, question);
         let source = ModelSource::Registered(auto::built_for(chosen));
-        let built = Self::from_source(scene.clone(), &problems, settings, (chosen, source, reason));
+        let built = Self::from_source(scene.clone(), &problems, settings, chosen, source, reason);
         let mut this = match built {
             Err(Error::Solve(SolveError::Unsupported { feature, .. })) if chosen != Model::MOST_CAPABLE => {
                 let reason = format!("{chosen} cannot answer this scene: {feature}");
                 let source = ModelSource::Registered(Model::MOST_CAPABLE);
-                Self::from_source(scene, &problems, settings, (Model::MOST_CAPABLE, source, reason))?
+                Self::from_source(scene, &problems, settings, Model::MOST_CAPABLE, source, reason)?
             }
             built => built?,
         };
@@ -107,8 +119,8 @@ impl Simulation {
         Ok(this)
     }
 
-    /// As [`Self::with_settings`], by a model of the program's own: `constructor` is called for each cable, and for each piece
-    /// that one breaks into.
+    /// As [`Self::with_settings`], by a model of the program's own: `constructor` is called for
+    /// each cable, and for each piece that one breaks into.
     ///
     /// # Errors
     /// As [`Self::new`], or what the constructor says.
@@ -125,7 +137,7 @@ impl Simulation {
             return Self::with_settings(scene, model, settings);
         }
         let problems = problems(&scene)?;
-        Self::from_source(scene, &problems, settings, (source.model(), source, "asked for".to_owned()))
+        Self::from_source(scene, &problems, settings, source.model(), source, "asked for".to_owned())
     }
 
     /// Builds every cable by one source, said to be that model for that reason.
@@ -133,7 +145,9 @@ impl Simulation {
         scene: Scene,
         problems: &[Arc<Problem>],
         settings: Settings,
-        (model, source, reason): (Model, ModelSource, String),
+        model: Model,
+        source: ModelSource,
+        reason: String,
     ) -> Result<Self, Error> {
         let cables = problems.iter().map(|p| BreakableCable::new(source.clone(), p.clone(), settings));
         let cables = cables.collect::<Result<Vec<_>, SolveError>>()?;
@@ -160,9 +174,9 @@ impl Simulation {
     }
 
     /// Reads the present instant: answers, and what is to be said of them.
-    fn refresh(&mut self, moving: bool) {
+    fn refresh(&mut self, instant: Instant) {
         self.answers = self.cables.iter().map(BreakableCable::answer).collect();
-        if !moving {
+        if instant == Instant::AtRest {
             self.initial_places = self.answers.iter().map(|a| AlongCable::places(&a.nodes)).collect();
         }
         for (answer, first) in self.answers.iter_mut().zip(&self.initial_places) {
@@ -184,7 +198,7 @@ impl Simulation {
             })
             .collect();
         self.energy = observed.iter().map(|s| s.energy).sum();
-        if moving {
+        if instant == Instant::InMotion {
             self.warning_monitor.moving(&observed, time_s)
         } else {
             self.warning_monitor.at_rest(&observed, time_s)
@@ -196,7 +210,7 @@ impl Simulation {
     /// What the laws say of answers for the cables, with the robot as it is.
     fn verify(&self, answers: &[CableSolution]) -> Verification {
         let robot = self.vehicle.as_ref().map(Vehicle::report);
-        self.verifier.check_cables(&self.scene, (answers, robot.as_ref()), self.time_s(), Depth::Always)
+        self.verifier.check_cables(&self.scene, answers, robot.as_ref(), self.time_s(), Depth::Always)
     }
 
     /// Says where an answer lies through the robot: models other than `fem` know nothing of it.
@@ -268,16 +282,18 @@ impl Simulation {
         self.cables.first().map_or(0.0, BreakableCable::time_s)
     }
 
-    /// Finds where everything rests. The first answer is kept as the start that [`Self::reset`] returns to.
+    /// Finds where everything rests. The first answer is kept as the start that [`Self::reset`]
+    /// returns to.
     ///
     /// # Errors
-    /// A typed reason when there is no resting place, or none was found; the state is then as before.
+    /// A typed reason when there is no resting place, or none was found; the state is then as
+    /// before.
     pub fn settle(&mut self) -> Result<Solution, SolveError> {
         let before = self.cables.clone();
         let found = self.settle_until_sound();
         if found.is_err() {
             self.cables = before;
-            self.refresh(false);
+            self.refresh(Instant::AtRest);
         }
         found?;
         self.warn_not_unique();
@@ -292,7 +308,7 @@ impl Simulation {
         let mut first: Option<SolveError> = None;
         loop {
             let found = self.for_each_cable(BreakableCable::settle).and_then(|()| {
-                self.refresh(false);
+                self.refresh(Instant::AtRest);
                 self.check_sound()
             });
             let Err(error) = found else { return Ok(()) };
@@ -317,8 +333,8 @@ impl Simulation {
 
     /// What the laws say of the present answers.
     fn check_sound(&self) -> Result<(), SolveError> {
-        // Masses and springs are a quick look and a second opinion, asked for by name: their coarse meshes are told, not refused. A
-        // cable that broke at rest is where it was when it broke.
+        // Masses and springs are a quick look and a second opinion, asked for by name: their coarse
+        // meshes are told, not refused. A cable that broke at rest is where it was when it broke.
         let told =
             self.requested.capabilities().findings_are_told || self.cables.iter().any(|c| !c.breaks().is_empty());
         match self.verification.worst().filter(|_| !told) {
@@ -327,7 +343,8 @@ impl Simulation {
         }
     }
 
-    /// Gives the scene to the next model, where the user left the choice; returns whether there was one.
+    /// Gives the scene to the next model, where the user left the choice; returns whether there was
+    /// one.
     fn switch_model(&mut self, why: &str) -> bool {
         if self.requested != Model::Auto {
             return false;
@@ -348,8 +365,9 @@ impl Simulation {
         true
     }
 
-    /// With friction a resting place is one of many: said of every cable that rubs where it rests, whichever model answered, with what
-    /// other histories would have left in it where `spans` knows.
+    /// With friction a resting place is one of many: said of every cable that rubs where it rests,
+    /// whichever model answered, with what other histories would have left in it where `spans`
+    /// knows.
     fn warn_not_unique(&mut self) {
         for (k, (cable, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
             let problem = cable.problem();
@@ -358,7 +376,7 @@ impl Simulation {
                 continue;
             }
             let seek =
-                || initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), (&[], None)).ok().flatten();
+                || initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), &[], None).ok().flatten();
             let known = if self.settings.histories { seek() } else { None };
             let mut known: Vec<Warning> = known.map(|lay| lay.warnings).unwrap_or_default();
             known.retain(said);
@@ -375,8 +393,9 @@ impl Simulation {
         }
     }
 
-    /// What other histories would have left in a cable, in words: in plan view, where a floor that rubs everywhere chose the rest and
-    /// `spans` has no answer; None where none was sought or found.
+    /// What other histories would have left in a cable, in words: in plan view, where a floor that
+    /// rubs everywhere chose the rest and `spans` has no answer; None where none was sought or
+    /// found.
     fn describe_histories(&self, k: usize) -> Option<String> {
         let cable = self
             .cables
@@ -420,7 +439,7 @@ impl Simulation {
             false => self.for_each_cable(|c| c.advance(dt_s, inertia)),
         };
         // A cable alone that fails stays where it came: that is what there is to see then.
-        self.refresh(true);
+        self.refresh(Instant::InMotion);
         done?;
         // In motion nothing else is there to go back to: the verdict stands with the answer.
         if inertia == Inertia::Dynamic {
@@ -442,8 +461,9 @@ impl Simulation {
         nodes.map(|n| n.tension_n).fold(0.0, larger)
     }
 
-    /// Advances by a display frame: at most [`MAX_FRAME_S`], so a stalled picture makes time run slower instead of
-    /// a step nobody sees. Returns the time advanced (s); its ratio to `dt_s` is the speed to show.
+    /// Advances by a display frame: at most [`MAX_FRAME_S`], so a stalled picture makes time run
+    /// slower instead of a step nobody sees. Returns the time advanced (s); its ratio to `dt_s` is
+    /// the speed to show.
     ///
     /// # Errors
     /// `TimeStep` for a frame that is zero, negative or not a number; otherwise as [`Self::step`].
@@ -456,8 +476,9 @@ impl Simulation {
         Ok(taken)
     }
 
-    /// The same scene by the same model at its start, on so many times as many elements in inner steps so many times as short; None where a
-    /// cable would have too few of them to say anything. It has not settled.
+    /// The same scene by the same model at its start, on so many times as many elements in inner
+    /// steps so many times as short; None where a cable would have too few of them to say anything.
+    /// It has not settled.
     ///
     /// # Errors
     /// As [`Self::new`]; what the settings then ask for is out of range.
@@ -487,8 +508,8 @@ impl Simulation {
         Ok(Some(next))
     }
 
-    /// The same run with an edited scene: cables keep their shape, speed and time; the start of [`Self::reset`] is that
-    /// of the new scene once it is settled.
+    /// The same run with an edited scene: cables keep their shape, speed and time; the start of
+    /// [`Self::reset`] is that of the new scene once it is settled.
     ///
     /// # Errors
     /// What is wrong with the new scene; the old simulation is untouched.
@@ -499,8 +520,8 @@ impl Simulation {
         Ok(next)
     }
 
-    /// Asks every cable the same. Where one of several fails, all are as before: never some of them a step ahead. (A
-    /// cable alone stays where it came, see [`Mechanics::advance`].)
+    /// Asks every cable the same. Where one of several fails, all are as before: never some of them
+    /// a step ahead. (A cable alone stays where it came, see [`Mechanics::advance`].)
     fn for_each_cable(
         &mut self,
         mut f: impl FnMut(&mut BreakableCable) -> Result<StepReport, SolveError>,
@@ -574,8 +595,9 @@ impl Simulation {
         }
     }
 
-    /// Holds a support by a hand at `hand_m` (m), by a spring while masses move: what it pulls with stands in the answer
-    /// ([`SupportReaction::hand`](crate::solution::SupportReaction::hand)). See [`Mechanics::pull_support`].
+    /// Holds a support by a hand at `hand_m` (m), by a spring while masses move: what it pulls with
+    /// stands in the answer ([`SupportReaction::hand`](crate::solution::SupportReaction::hand)).
+    /// See [`Mechanics::pull_support`].
     pub fn pull_support(&mut self, cable: usize, support: usize, hand_m: Vec2) {
         if let Some(c) = self.cables.get_mut(cable) {
             c.pull_support(support, hand_m);
@@ -597,7 +619,7 @@ impl Simulation {
             self.vehicle = Vehicle::of(&self.scene);
             self.cost = Cost::default();
             self.warnings.clear();
-            self.refresh(false);
+            self.refresh(Instant::AtRest);
         }
     }
 
@@ -619,7 +641,7 @@ impl Simulation {
         for (new, old) in self.cables.iter_mut().zip(&old.cables) {
             new.carry(old)?;
         }
-        self.refresh(false);
+        self.refresh(Instant::AtRest);
         Ok(())
     }
 
@@ -631,13 +653,13 @@ impl Simulation {
         for (c, s) in self.cables.iter_mut().zip(states) {
             c.set_state(s)?;
         }
-        self.refresh(false);
+        self.refresh(Instant::AtRest);
         Ok(())
     }
 
-    /// Goes on from an answer of an earlier instant of the same scene: cables where and as fast as they were, all whole, the
-    /// robot where it was. What an answer does not hold is lost: friction takes hold anew, a robot that waits begins to wait
-    /// again.
+    /// Goes on from an answer of an earlier instant of the same scene: cables where and as fast as
+    /// they were, all whole, the robot where it was. What an answer does not hold is lost: friction
+    /// takes hold anew, a robot that waits begins to wait again.
     ///
     /// # Errors
     /// As [`Self::set_states`].

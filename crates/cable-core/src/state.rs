@@ -18,10 +18,14 @@ pub struct State {
     pub position_m: Vec<Vec2>,
     /// Velocity of each node, m/s.
     pub velocity_m_per_s: Vec<Vec2>,
+    /// Whether it is a state of motion even where every velocity is zero: a model goes on from it
+    /// without bringing it to rest first.
+    pub in_motion: bool,
 }
 
 impl State {
-    /// That of a whole cable as an answer has its nodes; one node where the tension jumps and the answer has two.
+    /// That of a whole cable as an answer has its nodes; one node where the tension jumps and the
+    /// answer has two.
     #[must_use]
     pub fn of_nodes(nodes: &[Node], time_s: f64) -> Self {
         let mut state = Self { time_s, ..Self::default() };
@@ -33,6 +37,12 @@ impl State {
             }
         }
         state
+    }
+
+    /// Whether it is a state of motion: said to be one, or with a velocity.
+    #[must_use]
+    pub fn moves(&self) -> bool {
+        self.in_motion || self.velocity_m_per_s.iter().any(|v| v.norm() > 0.0)
     }
 
     /// The first node with a number that is not finite.
@@ -52,7 +62,8 @@ impl State {
         Some(SolveError::NonFinite { quantity: "position or velocity", arc_length_m, time_s: self.time_s })
     }
 
-    /// Arc length of the middle of what lies on a round of a radius (m); nearest to its centre if nothing does.
+    /// Arc length of the middle of what lies on a round of a radius (m); nearest to its centre if
+    /// nothing does.
     #[must_use]
     pub fn on_round(&self, center: Vec2, radius: f64) -> Option<f64> {
         let on = |p: &Vec2| radius > 0.0 && ((p - center).norm() - radius).abs() <= ROUND_TOLERANCE * radius;

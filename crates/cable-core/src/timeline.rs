@@ -1,8 +1,9 @@
 //! A timeline separates the steps of a run from the instants that are shown.
 //!
-//! A run goes in even steps, whatever is looked at. An instant that is asked for between two of them is a step of a copy, which is then
-//! discarded, so no look changes what happens: states at common instants are equal to the bit. Instants are whole ticks of a third of a
-//! nanosecond: 1/240 s and 0.1 ms are both whole numbers of them, and no sum of steps rounds.
+//! A run goes in even steps, whatever is looked at. An instant that is asked for between two of
+//! them is a step of a copy, which is then discarded, so no look changes what happens: states at
+//! common instants are equal to the bit. Instants are whole ticks of a third of a nanosecond: 1/240
+//! s and 0.1 ms are both whole numbers of them, and no sum of steps rounds.
 
 mod coarse;
 mod monitor;
@@ -15,14 +16,16 @@ pub use crate::simulation::STEP_S;
 use crate::simulation::Simulation;
 use crate::solution::{Solution, TensionPeaks};
 
-/// Ticks in a second: the least common multiple of nanoseconds and of thirds of them, so that 1/60, 1/240 and 1/3840 s are whole.
+/// Ticks in a second: the least common multiple of nanoseconds and of thirds of them, so that 1/60,
+/// 1/240 and 1/3840 s are whole.
 const TICKS_PER_S: f64 = 3e9;
 
 /// Step without inertia, s: that of a display.
 pub const QUASI_STATIC_STEP_S: f64 = 1.0 / 60.0;
 
-/// Ends of a range of tensions that are no more than so many times each other are those of one tension that is known, if roughly. Less: peaks that
-/// any finer run has as well are called uncertain; more: a cable is chosen by a peak that another mesh does not have.
+/// Ends of a range of tensions that are no more than so many times each other are those of one
+/// tension that is known, if roughly. Less: peaks that any finer run has as well are called
+/// uncertain; more: a cable is chosen by a peak that another mesh does not have.
 pub const RESOLVED_RATIO: f64 = 1.5;
 
 /// An instant: a whole number of ticks after the start.
@@ -60,8 +63,9 @@ pub struct TensionRanges {
 }
 
 impl TensionRanges {
-    /// Whether the runs beside this one part from it so far that its greatest tension depends on small differences, of mesh and step and
-    /// so of how it began: the ends of a range are more than [`RESOLVED_RATIO`] times apart.
+    /// Whether the runs beside this one part from it so far that its greatest tension depends on
+    /// small differences, of mesh and step and so of how it began: the ends of a range are more
+    /// than [`RESOLVED_RATIO`] times apart.
     #[must_use]
     pub fn depend_on_small_differences(&self) -> bool {
         [self.greatest_n, self.held_n].iter().any(|[from, to]| *to > RESOLVED_RATIO * from)
@@ -88,8 +92,8 @@ pub struct Timeline {
 }
 
 impl Timeline {
-    /// A run of a simulation that has settled at its start, in steps of `step_s` (s): [`STEP_S`] or [`QUASI_STATIC_STEP_S`] where that is
-    /// None. A step is one tick at least.
+    /// A run of a simulation that has settled at its start, in steps of `step_s` (s): [`STEP_S`] or
+    /// [`QUASI_STATIC_STEP_S`] where that is None. A step is one tick at least.
     #[must_use]
     pub fn new(simulation: Simulation, inertia: Inertia, step_s: Option<f64>) -> Self {
         let usual_s = match inertia {
@@ -101,8 +105,8 @@ impl Timeline {
         Self { simulation, inertia, step, count: 0, monitor }
     }
 
-    /// The same, with errors in motion: coarser runs go beside it, for a third of its cost. Where there is none (no elements, or no
-    /// inertia), nothing is added to what the model says.
+    /// The same, with errors in motion: coarser runs go beside it, for a third of its cost. Where
+    /// there is none (no elements, or no inertia), nothing is added to what the model says.
     #[must_use]
     pub fn with_errors(mut self) -> Self {
         self.monitor = RunMonitor::with_errors(&mut self.simulation, self.inertia);
@@ -127,8 +131,8 @@ impl Timeline {
         &self.monitor
     }
 
-    /// Makes all steps up to an instant, `watch` looking at each, and returns the answer at the instant itself. An instant before the last
-    /// step made is answered at that step.
+    /// Makes all steps up to an instant, `watch` looking at each, and returns the answer at the
+    /// instant itself. An instant before the last step made is answered at that step.
     ///
     /// # Errors
     /// As [`Simulation::step`].

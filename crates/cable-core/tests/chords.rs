@@ -1,6 +1,7 @@
-//! Reported nodes follow what leads the cable: no straight line between two neighbours cuts an obstacle or a wheel by more
-//! than 1 mm or 2 % of the cable's diameter, whichever is less. The distances here are brute force, written for this test:
-//! nothing of them is shared with the solvers.
+//! Reported nodes follow what leads the cable: no straight line between two neighbours cuts an
+//! obstacle or a wheel by more than 1 mm or 2 % of the cable's diameter, whichever is less. The
+//! distances here are brute force, written for this test: nothing of them is shared with the
+//! solvers.
 
 use cable_core::scene::{Shape, SupportKind, catalog};
 use cable_core::solution::{CableSolution, Node};
@@ -56,7 +57,8 @@ fn cut(shape: &Shape, radius: f64, chord: [P; 2]) -> f64 {
     }
 }
 
-/// The deepest cut of any chord beyond the cuts of its ends, m, with the arc length and what is cut.
+/// The deepest cut of any chord beyond the cuts of its ends, m, with the arc length and what is
+/// cut.
 fn worst(scene: &Scene, index: usize, answer: &CableSolution) -> (f64, f64, String) {
     let cable = &scene.cables[index];
     let radius = 0.5 * cable.diameter_m;
@@ -135,7 +137,8 @@ impl Random {
     }
 }
 
-/// A cable drawn over a post, a beam or a wheel (by `kind`), of random sizes, 4 mm of slack to none.
+/// A cable drawn over a post, a beam or a wheel (by `kind`), of random sizes, 4 mm of slack to
+/// none.
 fn wrap(seed: u64, kind: usize) -> String {
     let mut r = Random(seed.wrapping_mul(7919).wrapping_add(17));
     for _ in 0..4 {
@@ -195,7 +198,8 @@ fn chords_of_random_wraps_cut_nothing() {
         for kind in 0..3 {
             let scene = Scene::from_toml(&wrap(seed, kind)).unwrap_or_else(|e| panic!("{seed} {kind}: {e}"));
             for (k, model) in Model::SOLVERS.into_iter().enumerate() {
-                // Long elements of `mass-spring` can come to rest right through a sharp corner: no nodes show that way better.
+                // Long elements of `mass-spring` can come to rest right through a sharp corner: no
+                // nodes show that way better.
                 if kind == 1 && model == Model::MassSpring {
                     continue;
                 }

@@ -1,4 +1,5 @@
-//! What an answer at rest draws is as long as its material, and what it reports carries the whole cable: asked of the answer alone.
+//! What an answer at rest draws is as long as its material, and what it reports carries the whole
+//! cable: asked of the answer alone.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -42,7 +43,8 @@ fn not_carried(scene: &Scene, found: &CableSolution) -> f64 {
     sum[0].hypot(sum[1]) / weight
 }
 
-/// By how much (m) a piece between two nodes is longer than its material under the greater of its tensions, at most.
+/// By how much (m) a piece between two nodes is longer than its material under the greater of its
+/// tensions, at most.
 fn too_long(scene: &Scene, found: &CableSolution) -> f64 {
     let stiffness = scene.cables[0].axial_stiffness_n;
     let piece = |n: &[cable_core::solution::Node]| {
@@ -53,8 +55,8 @@ fn too_long(scene: &Scene, found: &CableSolution) -> f64 {
     found.nodes.windows(2).map(piece).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// A soft cable drawn hard over crests that rub: tension falls by half on a crest, and with it the strain by 1 %. With the material spread evenly
-/// over the arc its nodes were 5e-6 m too far apart.
+/// A soft cable drawn hard over crests that rub: tension falls by half on a crest, and with it the
+/// strain by 1 %. With the material spread evenly over the arc its nodes were 5e-6 m too far apart.
 #[test]
 fn material_on_rubbed_crests_is_strained_by_its_own_tension() {
     let ground = [[-100.0, 0.0], [0.0, 0.0], [0.55, 0.6], [2.7, -0.65], [4.2, 0.36], [4.8, 0.0], [100.0, 0.0]];
@@ -70,8 +72,9 @@ fn material_on_rubbed_crests_is_strained_by_its_own_tension() {
     }
 }
 
-/// A mark on a round that rubs moves as its tensions change, and takes strain from bar to bar. Without one more balance after that a corner that
-/// slips carried 4e-4 of the weight too much, and tensions beside it were off by 8e-4.
+/// A mark on a round that rubs moves as its tensions change, and takes strain from bar to bar.
+/// Without one more balance after that a corner that slips carried 4e-4 of the weight too much, and
+/// tensions beside it were off by 8e-4.
 #[test]
 fn marks_that_have_moved_are_balanced_once_more() {
     let ground = [
@@ -116,7 +119,8 @@ fn a_stiff_cable_is_as_long_between_nodes_as_at_them() {
     assert!(off < 1e-8, "{off:.1e} m");
 }
 
-/// A mooring that lies loose on smooth ground: each node was let off with a millionth of the load, and 170 of them, all one way, with 2e-4.
+/// A mooring that lies loose on smooth ground: each node was let off with a millionth of the load,
+/// and 170 of them, all one way, with 2e-4.
 #[test]
 fn what_creeps_over_smooth_ground_is_balanced_as_a_whole() {
     let mut scene = over(&[[-1400.0, 0.0], [2000.0, 0.0]], [[0.0, 0.01], [618.99, 96.34]], 782.557);
@@ -129,9 +133,10 @@ fn what_creeps_over_smooth_ground_is_balanced_as_a_whole() {
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
-    /// A cable drawn up from an end that is held on the ground, either way. A twelfth of such scenes was refused (steps were not short enough for
-    /// contacts stiffer than the bars), the ground under the held end carried its share without a word, and friction of cables counted from right
-    /// to left was told the wrong way round.
+    /// A cable drawn up from an end that is held on the ground, either way. A twelfth of such
+    /// scenes was refused (steps were not short enough for contacts stiffer than the bars), the
+    /// ground under the held end carried its share without a word, and friction of cables counted
+    /// from right to left was told the wrong way round.
     #[test]
     fn mass_spring_carries_a_mooring(
         span in 2.0f64..50.0, rise in 0.2f64..0.6, taut in 1.0005f64..1.02, weight in 0.1f64..20.0, soft in 50.0f64..5000.0,
@@ -149,8 +154,9 @@ proptest! {
     }
 }
 
-/// A slack cable over a round that is wider than its bars are long, and down to the ground: bars leave the round in their middle, and the weight of
-/// what lies on it acts there. With half of it at the free node beyond, the piece from the round to that node was 0.64 N off its balance
+/// A slack cable over a round that is wider than its bars are long, and down to the ground: bars
+/// leave the round in their middle, and the weight of what lies on it acts there. With half of it
+/// at the free node beyond, the piece from the round to that node was 0.64 N off its balance
 /// (105374), and another cable was refused as one that pushes (105486).
 #[test]
 fn weight_on_a_round_acts_on_the_round() {

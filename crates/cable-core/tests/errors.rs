@@ -1,13 +1,16 @@
-//! Whether every figure's stated error covers its true one, and how closely: `fem` and `mass-spring` beside answers without a
-//! mesh (`catenary`, `spans`), or where there are none beside a much finer mesh, over random scenes in twelve families.
+//! Whether every figure's stated error covers its true one, and how closely: `fem` and
+//! `mass-spring` beside answers without a mesh (`catenary`, `spans`), or where there are none
+//! beside a much finer mesh, over random scenes in twelve families.
 //!
-//! Of a finer mesh only differences of the two are known, and so they are called. What is below `ROUNDED` counts as
-//! nothing on both sides. The ratio of stated to true error is asked of four quantities: the greatest tension, the forces on supports, those
-//! of each obstacle, and the shape (how far any node is from where its material is).
+//! Of a finer mesh only differences of the two are known, and so they are called. What is below
+//! `ROUNDED` counts as nothing on both sides. The ratio of stated to true error is asked of four
+//! quantities: the greatest tension, the forces on supports, those of each obstacle, and the shape
+//! (how far any node is from where its material is).
 //!
-//! `cargo test --locked -p cable-core --test errors -- --ignored --nocapture` makes the tables of docs/errors.md
-//! (`ERRORS_CASES=60` a family, `ERRORS_FIRST=1000` seeds, `ERRORS_MODEL=fem`, `ERRORS_FAMILY=posts` alone,
-//! `ERRORS_SHOW=1` each case, `ERRORS_TRUTH=mesh` judges by a mesh six times finer of the same model alone).
+//! `cargo test --locked -p cable-core --test errors -- --ignored --nocapture` makes the tables of
+//! docs/errors.md (`ERRORS_CASES=60` a family, `ERRORS_FIRST=1000` seeds, `ERRORS_MODEL=fem`,
+//! `ERRORS_FAMILY=posts` alone, `ERRORS_SHOW=1` each case, `ERRORS_TRUTH=mesh` judges by a mesh six
+//! times finer of the same model alone).
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -37,15 +40,18 @@ const FAMILIES: [&str; 12] = [
     "closed form",
 ];
 const QUANTITIES: [&str; 4] = ["tension", "supports", "contacts", "shape"];
-/// Errors of this part of the greatest tension are those of two answers' rounding and of what ends their iterations.
+/// Errors of this part of the greatest tension are those of two answers' rounding and of what ends
+/// their iterations.
 const ROUNDED: f64 = 1e-8;
-/// And of this part of the length: by as much the truth's own nodes leave it open where the cable is between them.
+/// And of this part of the length: by as much the truth's own nodes leave it open where the cable
+/// is between them.
 const READ: f64 = 1e-5;
 /// How many more elements the truth has where no model without a mesh answers.
 const FINER: usize = 6;
 
-/// A cable on a level floor that holds, drawn at one end until a front of sliding has gone `fronts[0]` of it, let back and drawn again: tension
-/// falls away from the hand by μw per metre as far as each front, and is what it was beyond.
+/// A cable on a level floor that holds, drawn at one end until a front of sliding has gone
+/// `fronts[0]` of it, let back and drawn again: tension falls away from the hand by μw per metre as
+/// far as each front, and is what it was beyond.
 #[derive(Clone)]
 struct Drawn {
     /// Friction times weight per metre, N/m, and weight per metre.
@@ -65,7 +71,8 @@ impl Drawn {
         self.hold * back.max(a - 2.0 * b + 2.0 * c - u)
     }
 
-    /// How far the hand is from its start after each stroke: the change of tension, a triangle over each front, over EA.
+    /// How far the hand is from its start after each stroke: the change of tension, a triangle over
+    /// each front, over EA.
     fn moves(&self) -> [f64; 3] {
         let stretch = |k: usize, slope: f64| 0.5 * slope * self.hold * self.fronts[k].powi(2) / self.stiffness;
         let (drawn, back, again) = (stretch(0, 1.0), stretch(1, 2.0), stretch(2, 2.0));
@@ -160,7 +167,8 @@ fn beam(dice: &mut Dice, friction: f64) -> Scene {
     led(Shape::Polygon { points_m }, friction, (route, longer, density), stiffness)
 }
 
-/// Where the hand goes from the last support: to and fro along its cable, in steps that add up to some of its stretch and of its slack.
+/// Where the hand goes from the last support: to and fro along its cable, in steps that add up to
+/// some of its stretch and of its slack.
 fn strokes(dice: &mut Dice, scene: &Scene, turns: usize) -> Vec<Vec2> {
     let c = &scene.cables[0];
     let end = c.supports[c.supports.len() - 1].at_m.unwrap();
@@ -365,7 +373,8 @@ fn stated(c: &CableSolution) -> [Option<f64>; 4] {
     [e.max_tension_n, e.support_force_n, e.contact_force_n, e.position_m]
 }
 
-/// What came of one family and model: ratios of stated to true error, one list a quantity; None = nothing is said.
+/// What came of one family and model: ratios of stated to true error, one list a quantity; None =
+/// nothing is said.
 #[derive(Default)]
 struct Tally {
     ratios: [Vec<Option<f64>>; 4],
@@ -415,7 +424,8 @@ fn judge(family: usize, model: Model, (first, cases): (u64, u64)) -> Tally {
     tally
 }
 
-/// Share of what is said that covers, share that is within 0.5 to 10 times, and how many say nothing.
+/// Share of what is said that covers, share that is within 0.5 to 10 times, and how many say
+/// nothing.
 fn shares(ratios: &[Option<f64>]) -> (f64, f64, usize) {
     let said: Vec<f64> = ratios.iter().copied().flatten().collect();
     let part = |of: usize| 100.0 * of as f64 / said.len() as f64;

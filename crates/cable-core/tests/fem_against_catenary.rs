@@ -1,5 +1,5 @@
-//! Two independent solvers of the same question: FEM statics against the elastic catenary, on random supports, pulleys,
-//! wheels, friction, loads, wind and temperature.
+//! Two independent solvers of the same question: FEM statics against the elastic catenary, on
+//! random supports, pulleys, wheels, friction, loads, wind and temperature.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -14,8 +14,8 @@ struct Pulleys {
     friction: f64,
 }
 
-/// Points that rub, or wheels that do not: where both come together the models lay the cable differently at first, and
-/// friction keeps that for ever.
+/// Points that rub, or wheels that do not: where both come together the models lay the cable
+/// differently at first, and friction keeps that for ever.
 fn pulleys() -> impl Strategy<Value = Pulleys> {
     let kind = prop_oneof![Just((0.0, 0.0)), Just((0.15, 0.0)), Just((0.0, 0.2))];
     (prop::collection::vec(0.3..2.0f64, 0..4), kind).prop_map(|(heights, (radius, friction))| Pulleys {
@@ -81,13 +81,15 @@ proptest! {
         let scene = scene(&pulleys, spare, 10f64.powf(log_ea), wind, load);
         let settings = Settings { tolerance: 1e-7, ..Settings::default() };
         let settle = |model| Simulation::with_settings(scene.clone(), model, settings).unwrap().settle();
-        // With friction the rest is not unique: `fem` lays the cable as `spans` does, the catenary by another rule.
+        // With friction the rest is not unique: `fem` lays the cable as `spans` does, the catenary
+        // by another rule.
         let shared = pulleys.friction > 0.0;
         let (fem, catenary) = (settle(Model::Fem), settle(if shared { Model::Spans } else { Model::Catenary }));
         match (fem, catenary) {
             (Ok(fem), Ok(catenary)) => {
                 let largest = catenary.max_tension().tension_n;
-                // On a wheel the largest tension lies at the top, between nodes that the models place differently.
+                // On a wheel the largest tension lies at the top, between nodes that the models
+                // place differently.
                 let off = (fem.max_tension().tension_n - largest).abs();
                 let nodes = if pulleys.radius > 0.0 { 1e-3 } else { 1e-6 };
                 prop_assert!(off < nodes * largest, "largest tension {} against {largest}", fem.max_tension().tension_n);

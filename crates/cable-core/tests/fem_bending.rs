@@ -1,6 +1,7 @@
-//! FEM statics with bending stiffness against every case of the families `elastica` and `stiff_catenary` of
-//! `tests/data/statics.json`: a ladder in the number of bars for every value the references give, identities that need no
-//! solver beside them, and what is said of sharp bends.
+//! FEM statics with bending stiffness against every case of the families `elastica` and
+//! `stiff_catenary` of `tests/data/statics.json`: a ladder in the number of bars for every value
+//! the references give, identities that need no solver beside them, and what is said of sharp
+//! bends.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -91,8 +92,8 @@ fn elasticas() -> Vec<Bent> {
             let tip = [("x_tip", out("axial_tip")), ("side_tip", out("lateral_tip")), ("turn_tip", angle)];
             (scene, tip.to_vec())
         } else if name.starts_with("pure") {
-            // The moment that rolls it up is that of a second clamp at the origin, of the same direction.
-            // Its route winds it once round.
+            // The moment that rolls it up is that of a second clamp at the origin, of the same
+            // direction. Its route winds it once round.
             let mut scene = clamped(1.0, 0.0, INEXTENSIBLE, 1.0, clamp("B", [0.0, 0.0]));
             let corner = |k: u32| (f64::from(k) / 16.0 * std::f64::consts::TAU).sin_cos();
             scene.cables[0].route_m = (0..=16).map(corner).map(|(sin, cos)| [0.15 * sin, 0.15 * (1.0 - cos)]).collect();
@@ -140,7 +141,8 @@ fn value(cable: &CableSolution, bending: f64, key: &str) -> f64 {
         "y_tip" => last.y_m,
         "side_tip" => last.y_m.abs(),
         "turn_tip" => {
-            // The last bar's own direction, and the turn in it of a curvature a u + b u² at u from the tip.
+            // The last bar's own direction, and the turn in it of a curvature a u + b u² at u from
+            // the tip.
             let [two, one] = [&nodes[n - 3], &nodes[n - 2]];
             let from_tip = |n: &Node| last.arc_length_m - n.arc_length_m;
             let [ratio_one, ratio_two] = [one, two].map(|n| n.curvature_per_m / from_tip(n));
@@ -164,7 +166,8 @@ fn solve(scene: &Scene, segments: Option<usize>) -> CableSolution {
     simulation(scene, segments).solution().cables.remove(0)
 }
 
-/// The error of every value at every rung; of fourth order wherever it is above what stretch and rounding leave.
+/// The error of every value at every rung; of fourth order wherever it is above what stretch and
+/// rounding leave.
 fn ladder(cases: &[Bent]) {
     let mut orders = 0;
     for case in cases {
@@ -202,7 +205,8 @@ fn every_elastica_is_of_fourth_order() {
     ladder(&elasticas());
 }
 
-/// First integrals of the weightless elastica: M = P·(lever of the tip), M²/2EI = P (sin or 1 − cos of the turn).
+/// First integrals of the weightless elastica: M = P·(lever of the tip), M²/2EI = P (sin or 1 − cos
+/// of the turn).
 #[test]
 fn references_and_answers_keep_the_first_integrals() {
     for case in elasticas() {
@@ -250,7 +254,8 @@ fn meshes_of_its_own_choice_are_as_good() {
     }
 }
 
-/// Read along straight lines between its nodes a stiff cable is where it is, however few bars its forces need.
+/// Read along straight lines between its nodes a stiff cable is where it is, however few bars its
+/// forces need.
 #[test]
 fn places_between_nodes_lie_on_the_cable() {
     for case in stiff_catenaries() {
@@ -266,7 +271,8 @@ fn places_between_nodes_lie_on_the_cable() {
     }
 }
 
-/// A stiff cable longer than its way pushes where it runs back: T = H cos θ + V sin θ, at every node.
+/// A stiff cable longer than its way pushes where it runs back: T = H cos θ + V sin θ, at every
+/// node.
 #[test]
 fn what_pushes_has_less_than_no_tension() {
     let end = clamp("B", [3.76, -0.70]);
@@ -330,8 +336,8 @@ fn sharp_bends_are_told_with_their_radius() {
     }
 }
 
-/// Length, density, EI, far end, angles of both clamps (°). Without bending stiffness each sags; with it the clamps turn it upwards, or
-/// aside, and on the way up in EI its shape snaps over.
+/// Length, density, EI, far end, angles of both clamps (°). Without bending stiffness each sags;
+/// with it the clamps turn it upwards, or aside, and on the way up in EI its shape snaps over.
 const SNAPPING: [([f64; 3], [f64; 2], [f64; 2]); 4] = [
     ([1.77, 0.877, 16.56], [1.667, 0.0838], [25.9, -41.2]),
     ([1.44, 0.114, 0.2476], [1.3376, 0.418], [41.5, -19.9]),

@@ -1,5 +1,5 @@
-//! Whole scenes without obstacles against reference answers (`tests/data/composite.json`): pulleys, point loads, wind,
-//! temperature, clamps.
+//! Whole scenes without obstacles against reference answers (`tests/data/composite.json`): pulleys,
+//! point loads, wind, temperature, clamps.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -108,8 +108,8 @@ fn clamped_with_bending_stiffness() {
     holds("clamped-EI", 0.5);
 }
 
-/// Heavy elastica EI θ'' = (1 + T/EA)(H sin θ − V cos θ), V = VA + ws, from a clamp at the origin by classical
-/// Runge–Kutta: [x, y, θ, θ'] at `length`.
+/// Heavy elastica EI θ'' = (1 + T/EA)(H sin θ − V cos θ), V = VA + ws, from a clamp at the origin
+/// by classical Runge–Kutta: [x, y, θ, θ'] at `length`.
 fn shoot(force: [f64; 2], curvature: f64, length: f64) -> [f64; 4] {
     const STEPS: usize = 100_000;
     let (w, ea, ei) = (1.246 * 9.80665, 2e5, 5.0);
@@ -133,10 +133,12 @@ fn shoot(force: [f64; 2], curvature: f64, length: f64) -> [f64; 4] {
     u
 }
 
-/// 1. No resting place holds the seven: from the stated point at s = 7.875 m to B are 4.25 m, the cable left is 2.625 m
-///    long and strained 5e-4. That needs no law of bending, no direction of a clamp, no winding.
-/// 2. Where they come from: the elastica shot forward from A with the stated H, VA and κ(0) (48 boundary layers √(EI/H),
-///    rounding grows by e⁴⁸) turns a loop before s = 5.25 m, runs through the stated points, and ends 3.3 m from B at 64°.
+/// 1. No resting place holds the seven: from the stated point at s = 7.875 m to B are 4.25 m, the
+///    cable left is 2.625 m long and strained 5e-4. That needs no law of bending, no direction of a
+///    clamp, no winding.
+/// 2. Where they come from: the elastica shot forward from A with the stated H, VA and κ(0) (48
+///    boundary layers √(EI/H), rounding grows by e⁴⁸) turns a loop before s = 5.25 m, runs through
+///    the stated points, and ends 3.3 m from B at 64°.
 #[test]
 fn the_values_left_out_belong_to_a_cable_that_misses_b() {
     let all = reference();
@@ -171,7 +173,8 @@ fn the_values_left_out_belong_to_a_cable_that_misses_b() {
     assert!((10.0 - x).hypot(1.0 - y) > 3.0 && angle > 1.0, "ends at ({x}, {y}), {angle} rad");
 }
 
-/// The seven of the scene itself, by collocation of the whole boundary value problem (fourth order, 165 000 nodes).
+/// The seven of the scene itself, by collocation of the whole boundary value problem (fourth order,
+/// 165 000 nodes).
 #[test]
 fn the_values_left_out_as_they_should_be() {
     let all = reference();

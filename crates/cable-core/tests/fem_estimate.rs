@@ -1,7 +1,8 @@
-//! What `fem` says of its own error beside answers without one: free spans of every kind beside the catenary.
+//! What `fem` says of its own error beside answers without one: free spans of every kind beside the
+//! catenary.
 //!
-//! `FEM_SPANS=1000 cargo test -p cable-core --test fem_estimate -- --nocapture` prints what came of more of them;
-//! `FEM_FIRST` says from which.
+//! `FEM_SPANS=1000 cargo test -p cable-core --test fem_estimate -- --nocapture` prints what came of
+//! more of them; `FEM_FIRST` says from which.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -17,8 +18,8 @@ fn number(name: &str, other: u64) -> u64 {
     std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(other)
 }
 
-/// A free span: 0.1 m to 10 km, 0.9 to 30 times its chord, level to plumb, EA from 1e3 to 1e9 times its weight, here and there with
-/// wind, warmth, point loads, and a mesh that is given.
+/// A free span: 0.1 m to 10 km, 0.9 to 30 times its chord, level to plumb, EA from 1e3 to 1e9 times
+/// its weight, here and there with wind, warmth, point loads, and a mesh that is given.
 fn span(case: u64) -> (Scene, Settings) {
     let mut dice = Dice(0x5a1e_0000 + case);
     let mut scene = catalog::hanging_span();
@@ -126,8 +127,8 @@ fn every_force_of_a_free_span_is_within_what_is_said() {
     assert!(wrong.is_empty() && refused == 0, "{wrong:?}");
 }
 
-/// A cable in contact: on a bed (level or sloped, straight or with corners), over a post or over the corner of a block; friction 0 to 1, taut to
-/// a twentieth longer than its way.
+/// A cable in contact: on a bed (level or sloped, straight or with corners), over a post or over
+/// the corner of a block; friction 0 to 1, taut to a twentieth longer than its way.
 fn in_contact(case: u64) -> Scene {
     let mut dice = Dice(0x00be_d000 + 31 * case);
     let mut scene = catalog::hanging_span();
@@ -184,7 +185,8 @@ fn in_contact(case: u64) -> Scene {
     scene
 }
 
-/// Contact scenes by number: how many say an error, how many of those lie within it, how many are coarser than asked.
+/// Contact scenes by number: how many say an error, how many of those lie within it, how many are
+/// coarser than asked.
 fn contact_campaign(first: u64, cases: u64) -> [usize; 5] {
     let [mut compared, mut said_so, mut within, mut met, mut refused] = [0; 5];
     let segments = std::env::var("FEM_SEGMENTS").ok().and_then(|v| v.parse().ok());
@@ -235,7 +237,8 @@ fn the_error_of_300_cables_in_contact_is_said() {
     assert!(within as f64 >= 0.95 * compared as f64, "{within} of {compared}");
 }
 
-/// Slack ten times its span: the greatest tension was right to 2e-6, the horizontal force wrong by 1.15e-4 of it.
+/// Slack ten times its span: the greatest tension was right to 2e-6, the horizontal force wrong by
+/// 1.15e-4 of it.
 #[test]
 fn a_slack_span_is_refined_until_its_horizontal_force_is_right() {
     let (mut scene, _) = span(1);
@@ -250,8 +253,9 @@ fn a_slack_span_is_refined_until_its_horizontal_force_is_right() {
     assert!(off <= said && said <= 1e-5, "{off:.1e} {said:.1e}");
 }
 
-/// A cable on a slope without friction, its hanging end bent in 2 m: 7.81 N at B without a word, where 7.8625 N is right. `fem` finds it no
-/// better yet (6.7e-3 off): what it says covers that by far.
+/// A cable on a slope without friction, its hanging end bent in 2 m: 7.81 N at B without a word,
+/// where 7.8625 N is right. `fem` finds it no better yet (6.7e-3 off): what it says covers that by
+/// far.
 #[test]
 fn a_cable_on_a_slope_says_its_error() {
     let mut scene = in_contact(0);

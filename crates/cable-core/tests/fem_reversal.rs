@@ -1,5 +1,6 @@
-//! A cable that lies on a floor, is drawn at one end, let back and drawn again, beside the closed form: however stiff it is, and
-//! however little the hand moves for that, what holding ground gives way by must be less.
+//! A cable that lies on a floor, is drawn at one end, let back and drawn again, beside the closed
+//! form: however stiff it is, and however little the hand moves for that, what holding ground gives
+//! way by must be less.
 
 #![allow(clippy::unwrap_used)] // a failing test is meant to panic
 
@@ -13,11 +14,13 @@ const MASS: f64 = 0.8;
 const FRICTION: f64 = 0.4;
 /// Height of the centre line, m.
 const LOW: f64 = 5e-3;
-/// Fronts of sliding, measured from the drawn end: how far the first pull reached, the way back and the second pull, m.
+/// Fronts of sliding, measured from the drawn end: how far the first pull reached, the way back and
+/// the second pull, m.
 const FRONTS: [f64; 3] = [8.0, 3.0, 1.8];
 
-/// Tension at `s` (m) after stage 0, 1 or 2. On ground that holds its steepest, T falls away from the hand by r = μw per metre;
-/// where it was let back, T rises by r as far as the front, which ends where both meet.
+/// Tension at `s` (m) after stage 0, 1 or 2. On ground that holds its steepest, T falls away from
+/// the hand by r = μw per metre; where it was let back, T rises by r as far as the front, which
+/// ends where both meet.
 fn tension(stage: usize, s: f64) -> f64 {
     let (r, u) = (FRICTION * MASS * G, LENGTH - s);
     let drawn = (r * (FRONTS[0] - u)).max(0.0);
@@ -26,7 +29,8 @@ fn tension(stage: usize, s: f64) -> f64 {
     [drawn, back, again][stage]
 }
 
-/// How far the hand has moved after each stage, m: the change of tension, a triangle over the front, over EA.
+/// How far the hand has moved after each stage, m: the change of tension, a triangle over the
+/// front, over EA.
 fn moves(stiffness: f64) -> [f64; 3] {
     let r = FRICTION * MASS * G;
     let stretch = |k: usize, slope: f64| 0.5 * slope * r * FRONTS[k] * FRONTS[k] / stiffness;
@@ -49,9 +53,10 @@ fn scene(stiffness: f64) -> Scene {
     scene
 }
 
-/// Greatest error of the tension along the cable and at the hand after each stage, in parts of the greatest tension. The stretch
-/// that no pull reaches is left out: the barrier carries the cable 9e-5 m above the floor and the anchor is on it, so that the
-/// first bar of a stiff cable is stretched (4.5 N at EA 1e8 N).
+/// Greatest error of the tension along the cable and at the hand after each stage, in parts of the
+/// greatest tension. The stretch that no pull reaches is left out: the barrier carries the cable
+/// 9e-5 m above the floor and the anchor is on it, so that the first bar of a stiff cable is
+/// stretched (4.5 N at EA 1e8 N).
 fn errors(stiffness: f64) -> [f64; 3] {
     let mut sim = Simulation::new(scene(stiffness), Model::Fem).unwrap();
     sim.settle().unwrap();

@@ -1,5 +1,5 @@
-//! Whatever a hand does: ends thrown about over rough ground, beams and posts. Nothing may cross, nothing may be
-//! anything but a number, and hardly a step may have to be halved.
+//! Whatever a hand does: ends thrown about over rough ground, beams and posts. Nothing may cross,
+//! nothing may be anything but a number, and hardly a step may have to be halved.
 
 #![allow(clippy::unwrap_used)]
 
@@ -193,8 +193,9 @@ fn thirty_metres_of_any_stiffness_drop_on_rubble() {
 
 #[test]
 fn ends_thrown_about_cross_nothing() {
-    // Scenes that each found a fault: no rest, a support squeezed against a post, a corner taken hold of through another, a node
-    // beside a corner taken out so that the cable ran 10 mm inside the corner's edge.
+    // Scenes that each found a fault: no rest, a support squeezed against a post, a corner taken
+    // hold of through another, a node beside a corner taken out so that the cable ran 10 mm inside
+    // the corner's edge.
     let count = throw_about([17, 45, 73, 97, 98], 60, 1.0 / 60.0, false);
     println!("{} steps, {} halved", count.steps, count.halved);
     assert!(count.failed.is_empty(), "{:#?}", count.failed);
@@ -236,8 +237,8 @@ fn ends_thrown_about_ten_thousand_times_do_not_cross_the_cable_itself() {
 
 #[test]
 fn what_is_drawn_round_a_corner_or_along_the_cable_itself_is_not_halved() {
-    // Straight on, a bar that slides along a corner and turns runs into it: six steps of these were halved. One in which a bar goes
-    // slack and taut by turns is.
+    // Straight on, a bar that slides along a corner and turns runs into it: six steps of these were
+    // halved. One in which a bar goes slack and taut by turns is.
     let count = throw_about([0, 3, 7, 9], 80, 1.0 / 60.0, true);
     println!("{} steps, {} halved", count.steps, count.halved);
     assert!(count.failed.is_empty() && count.halved <= 1, "{} {:#?}", count.halved, count.failed);
@@ -261,7 +262,8 @@ fn a_state_inside_an_obstacle_is_refused() {
         }
         states
     };
-    // A millimetre deep it is pushed out, deeper than it reaches it is refused, and is where it was.
+    // A millimetre deep it is pushed out, deeper than it reaches it is refused, and is where it
+    // was.
     sim.set_states(&lowered(1e-3)).unwrap();
     sim.step(1.0 / 60.0).unwrap();
     sim.set_states(&before).unwrap();
@@ -273,8 +275,9 @@ fn a_state_inside_an_obstacle_is_refused() {
     assert_eq!(sim.states(), before);
 }
 
-/// Two metres too long for its way over a slope and a beam, laid a rounding away from the beam's corner: what pulls at a support
-/// is the tension there, not 6e10 N of contact that rounding was taken to hide.
+/// Two metres too long for its way over a slope and a beam, laid a rounding away from the beam's
+/// corner: what pulls at a support is the tension there, not 6e10 N of contact that rounding was
+/// taken to hide.
 #[test]
 fn a_node_on_a_corner_holds_no_force_that_is_not_there() {
     let text = r#"
@@ -347,8 +350,9 @@ fn a_cable_laid_in_touch_finds_a_rest() {
     assert!(tension > 0.9 * weight * tail / most && tension < 1.1 * weight * tail * most, "{tension} N");
 }
 
-/// Drawn up against the underside of a beam, from one corner to the next: weight pulls what holds a corner off there, and a corner that was
-/// let go of at once, again and again, was passed by bars, which friction held with three times the tension.
+/// Drawn up against the underside of a beam, from one corner to the next: weight pulls what holds a
+/// corner off there, and a corner that was let go of at once, again and again, was passed by bars,
+/// which friction held with three times the tension.
 #[test]
 fn a_cable_drawn_up_under_a_beam_slides_round_both_corners() {
     for width in [0.1, 0.11] {

@@ -1,4 +1,5 @@
-//! The cost of `fem` on free cables grows with the number of bars and not faster: iterations do not depend on the mesh.
+//! The cost of `fem` on free cables grows with the number of bars and not faster: iterations do not
+//! depend on the mesh.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -82,7 +83,8 @@ fn iterations_of_a_swinging_span_do_not_grow_with_the_mesh() {
     }
 }
 
-/// A cable of 10 m let go at both ends 1 m above a floor: iterations of `steps` steps and how many were halved.
+/// A cable of 10 m let go at both ends 1 m above a floor: iterations of `steps` steps and how many
+/// were halved.
 fn dropped(bars: usize, steps: usize) -> (usize, usize) {
     let mut scene = catalog::hanging_span();
     let shape = Shape::Terrain { points_m: vec![[-5.0, 0.0], [15.0, 0.0]] };

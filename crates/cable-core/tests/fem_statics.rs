@@ -1,5 +1,5 @@
-//! FEM statics of cables that touch nothing but their supports: accuracy ladders against closed forms, every start,
-//! equilibrium, symmetry.
+//! FEM statics of cables that touch nothing but their supports: accuracy ladders against closed
+//! forms, every start, equilibrium, symmetry.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -65,7 +65,8 @@ fn exact(length: f64, end: [f64; 2], w: f64, ea: f64, start: [f64; 2]) -> [f64; 
     u
 }
 
-/// Largest errors of node positions (in parts of the length) and node tensions (in parts of the largest).
+/// Largest errors of node positions (in parts of the length) and node tensions (in parts of the
+/// largest).
 fn errors(cable: &CableSolution, u: [f64; 2], w: f64, ea: f64) -> [f64; 2] {
     let length = cable.nodes.last().unwrap().arc_length_m;
     let largest = u[0].hypot(u[1].abs().max((u[1] + w * length).abs()));
@@ -78,8 +79,8 @@ fn errors(cable: &CableSolution, u: [f64; 2], w: f64, ea: f64) -> [f64; 2] {
     [position, tension]
 }
 
-/// Halving the bars: errors below the given ones at 8, 16, 32 and 64 bars, of fourth order at last, estimated within a
-/// factor.
+/// Halving the bars: errors below the given ones at 8, 16, 32 and 64 bars, of fourth order at last,
+/// estimated within a factor.
 fn ladder(length: f64, end: [f64; 2], ea: f64, bounds: [[f64; 2]; 4], estimate_within: f64) {
     let w = 20.0;
     let scene = span(length, end, w, ea);
@@ -145,7 +146,8 @@ fn every_start_converges_to_tension() {
                     let scene = span(100.0 * ratio, end, 20.0, ea);
                     let case = format!("L/chord {ratio}, EA {ea:e}, N {segments}, {angle}°");
                     let (cable, iterations) = solve(&scene, segments).unwrap_or_else(|e| panic!("{case}: {e}"));
-                    // Straight up and down the tension goes through zero inside the cable: the solver rounds the fold off first.
+                    // Straight up and down the tension goes through zero inside the cable: the
+                    // solver rounds the fold off first.
                     let count = if angle % 180.0 == 90.0 { &mut folded } else { &mut most };
                     *count = iterations.max(*count);
                     balanced(&scene, &cable, [0.0, -20.0], &case);
@@ -314,7 +316,8 @@ fn published_spans_hold() {
         let off =
             (force - number(case, "out", "H").hypot(number(case, "out", "VA"))).abs() / number(case, "out", "Tmax");
         worst = worst.max(off);
-        // An inextensible cable is one of the greatest EA here; it stretches by T/EA, which tells against the slack.
+        // An inextensible cable is one of the greatest EA here; it stretches by T/EA, which tells
+        // against the slack.
         let slack = l / x.hypot(z) - 1.0;
         let stretch = if case["in"]["EA"].is_null() { number(case, "out", "Tmax") / ea / slack.abs() } else { 0.0 };
         let bound = 1e-8 + stretch + 2.0 * cable.error_estimate.unwrap();

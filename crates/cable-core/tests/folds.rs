@@ -1,6 +1,7 @@
-//! Random scenes of cables with more length than they need, over posts, boxes and rough ground: what hangs down from a contact lies in folds
-//! below it. What is found is looked at with what is written here alone: contacts and supports carry the weight, nothing pushes, nothing is
-//! inside anything, and what lies in folds has no tension.
+//! Random scenes of cables with more length than they need, over posts, boxes and rough ground:
+//! what hangs down from a contact lies in folds below it. What is found is looked at with what is
+//! written here alone: contacts and supports carry the weight, nothing pushes, nothing is inside
+//! anything, and what lies in folds has no tension.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -14,7 +15,8 @@ const GRAVITY: f64 = 9.80665;
 const RADIUS: f64 = 0.014;
 const FAMILIES: [&str; 7] = ["terrain", "floor", "inside", "one place", "no ground", "route", "plan"];
 
-/// Numbers in [0, 1): a linear congruential generator (D. Knuth, "The art of computer programming", volume 2, 1981, 3.3.4).
+/// Numbers in [0, 1): a linear congruential generator (D. Knuth, "The art of computer programming",
+/// volume 2, 1981, 3.3.4).
 struct Chance(u64);
 
 impl Chance {
@@ -384,8 +386,8 @@ fn a_support_close_above_a_post_is_drawn_to_it_by_what_hangs_beyond() {
     assert!(found.supports[0].reaction_x_n.hypot(found.supports[0].reaction_y_n) > post.tension_before_n);
 }
 
-/// Rough ground, two boxes and a post in the air, twice as much cable as the way: a scene in which `fem` worked for 20 s. Of 39.67 m
-/// it hangs plumb everywhere.
+/// Rough ground, two boxes and a post in the air, twice as much cable as the way: a scene in which
+/// `fem` worked for 20 s. Of 39.67 m it hangs plumb everywhere.
 const ROUGH: &str = r#"
 version = 1
 [[cables]]
@@ -436,8 +438,8 @@ fn folds_on_rough_ground_leave_the_ends_what_hangs_on_them() {
     }
 }
 
-/// A cable laid along flat ground and up a slope of 12°, its start free; friction 0.5 holds it there. The way along the middle of the cable
-/// is 14.99706 m long.
+/// A cable laid along flat ground and up a slope of 12°, its start free; friction 0.5 holds it
+/// there. The way along the middle of the cable is 14.99706 m long.
 fn laid_out(length_m: f64, drawn_m: f64) -> Scene {
     let up = [0.978_147_600_733_805_6, 0.207_911_690_817_759_34];
     let end = |along: f64| [-0.014 * up[1] + along * up[0], 0.014 * up[0] + along * up[1]];
@@ -486,7 +488,8 @@ fn a_cable_laid_out_on_ground_that_holds_it_has_no_tension() {
     }
 }
 
-/// Drawn up the slope, all of it slides: what it takes follows from the weight of what lies and the span over the kink alone.
+/// Drawn up the slope, all of it slides: what it takes follows from the weight of what lies and the
+/// span over the kink alone.
 #[test]
 fn what_was_laid_out_without_tension_is_followed_as_it_is_drawn() {
     let drawn = |model: Model| {
@@ -501,7 +504,8 @@ fn what_was_laid_out_without_tension_is_followed_as_it_is_drawn() {
     let (model, tension) = drawn(Model::Auto);
     assert_eq!(model, Model::Spans);
     let (w, mu, turn) = (1.246 * GRAVITY, 0.5f64, 12f64.to_radians());
-    // Without the span: H is drawn along the flat, climbs the slope. The span over the kink carries itself: between these two.
+    // Without the span: H is drawn along the flat, climbs the slope. The span over the kink carries
+    // itself: between these two.
     let flat = 15.0 - 6.0;
     let least = mu * w * (flat - 1.5) + w * (6.0 - 1.5) * (turn.sin() + mu * turn.cos());
     let most = mu * w * flat + w * 6.0 * (turn.sin() + mu * turn.cos());
@@ -510,7 +514,8 @@ fn what_was_laid_out_without_tension_is_followed_as_it_is_drawn() {
     assert!((by_fem - tension).abs() < 5e-3 * tension, "{by_fem} {tension}");
 }
 
-/// In the tank little friction holds: what lies on its slopes draws at what lies above, through kinks, up walls and over crests.
+/// In the tank little friction holds: what lies on its slopes draws at what lies above, through
+/// kinks, up walls and over crests.
 #[test]
 fn loose_cable_in_a_slippery_tank_is_drawn_by_its_slopes() {
     let tank = |friction: f64, length_m: f64, by: [f64; 2]| {

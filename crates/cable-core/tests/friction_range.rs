@@ -19,8 +19,9 @@ fn find(ask: &FrictionQuery) -> FrictionRange {
     friction_range(ask, |_| ControlFlow::Continue(())).expect("three answers")
 }
 
-/// Drawn down over half a turn of a pipe with μ = 0.15, 0.3 and 0.45. With θ from the top, N = T/r + w cos θ and
-/// dT/dθ = μ(T + w r cos θ) − w r sin θ, so T₂ = B + (T₁ + B) e^{μπ} with B = 2 μ w r / (1 + μ²). T₁ is the same weight each time.
+/// Drawn down over half a turn of a pipe with μ = 0.15, 0.3 and 0.45. With θ from the top, N =
+/// T/r + w cos θ and dT/dθ = μ(T + w r cos θ) − w r sin θ, so T₂ = B + (T₁ + B) e^{μπ} with B = 2 μ
+/// w r / (1 + μ²). T₁ is the same weight each time.
 #[test]
 fn a_hand_that_draws_pulls_by_the_capstan_law_of_each_friction() {
     let ask = ask(Model::Spans, 2.0);
@@ -64,7 +65,8 @@ fn the_answer_of_the_scene_lies_in_the_ribbon() {
     }
 }
 
-/// Half a metre down by hand and back up: what the hand did is done to all three, so the middle one is the run itself.
+/// Half a metre down by hand and back up: what the hand did is done to all three, so the middle one
+/// is the run itself.
 #[test]
 fn what_a_hand_did_is_repeated() {
     let mut ask = ask(Model::Spans, 1.0);

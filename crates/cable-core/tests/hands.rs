@@ -1,4 +1,5 @@
-//! What draws a support: a motion of the scene is followed exactly or refused, a hand is no faster than it may be.
+//! What draws a support: a motion of the scene is followed exactly or refused, a hand is no faster
+//! than it may be.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::math::Vec2;
@@ -107,7 +108,8 @@ fn hand(sim: &Simulation) -> (Vec2, Vec2, f64) {
     (Vec2::new(hand.x_m, hand.y_m), Vec2::new(hand.force_x_n, hand.force_y_n), hand.stiffness_n_per_m)
 }
 
-/// What the cable pulls with at its right end, N: the tension at the node before, and what the element between weighs.
+/// What the cable pulls with at its right end, N: the tension at the node before, and what the
+/// element between weighs.
 fn pull(sim: &Simulation) -> Vec2 {
     let nodes = &sim.answers()[0].nodes;
     let c = &sim.scene().cables[0];
@@ -152,7 +154,8 @@ fn a_hand_pulls_by_its_stiffness_and_how_far_it_is_ahead() {
                 let (end, force, _) = hand(&sim);
                 assert!((end - Vec2::new(6.0, 4.0)).norm() < 1e-6, "{model}: the hand is at {end}");
                 let spring = (end - at(&sim)) * k;
-                // Sub-steps of an explicit model have velocities of their own: that of the last, not of the whole step, is damped.
+                // Sub-steps of an explicit model have velocities of their own: that of the last,
+                // not of the whole step, is damped.
                 let end = sim.answers()[0].nodes.last().unwrap();
                 let speed = match model {
                     Model::Fem => (at(&sim) - from) * 240.0,
@@ -202,7 +205,8 @@ fn a_hand_is_no_faster_than_it_may_be_and_a_stiff_one_is_followed_exactly() {
     }
 }
 
-/// Beyond the cable's length the hand pulls harder and harder, says so, and breaks it; what is let go stays.
+/// Beyond the cable's length the hand pulls harder and harder, says so, and breaks it; what is let
+/// go stays.
 #[test]
 fn a_hand_beyond_the_length_pulls_until_the_cable_breaks() {
     for model in [Model::Fem, Model::MassSpring] {

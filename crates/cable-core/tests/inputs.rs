@@ -1,5 +1,5 @@
-//! What a scene may hold, however unusual: no panic, no number that is not finite, starts inside something solid, and the same answer
-//! at every scale.
+//! What a scene may hold, however unusual: no panic, no number that is not finite, starts inside
+//! something solid, and the same answer at every scale.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -367,7 +367,8 @@ fn extreme_values_are_answered_or_refused_in_words() {
     assert!(answered > 9 * refused, "{answered} answered, {refused} refused");
 }
 
-/// A step of no time, back in time, of no number or of ages is refused as such by every model, and nothing has moved.
+/// A step of no time, back in time, of no number or of ages is refused as such by every model, and
+/// nothing has moved.
 #[test]
 fn steps_that_cannot_be_are_refused_and_change_nothing() {
     use cable_core::scene::catalog;
@@ -392,8 +393,9 @@ fn steps_that_cannot_be_are_refused_and_change_nothing() {
     }
 }
 
-/// A cable that is answered at another scale says why the first model has no answer as others do, with the places of its own scene. (No
-/// resting place is found for this one: it lies on a smooth slope, a kilometre long and as light as a thread.)
+/// A cable that is answered at another scale says why the first model has no answer as others do,
+/// with the places of its own scene. (No resting place is found for this one: it lies on a smooth
+/// slope, a kilometre long and as light as a thread.)
 #[test]
 fn what_a_first_model_says_is_told_at_the_scale_of_the_scene() {
     use cable_core::scene::{Obstacle, Shape, Support, catalog};

@@ -1,8 +1,8 @@
 //! A cable whose end is fixed on the surface of a round is as long there as its material.
 //!
-//! Sliding nodes run round a circle as far out as the barrier reaches, 0.1 mm, but the end stands on
-//! the circle itself. The bar between them was 3.7e-6 m longer than its 1.1 mm of stretched material,
-//! in a taut cable without compression or slack.
+//! Sliding nodes run round a circle as far out as the barrier reaches, 0.1 mm, but the end stands
+//! on the circle itself. The bar between them was 3.7e-6 m longer than its 1.1 mm of stretched
+//! material, in a taut cable without compression or slack.
 
 #![allow(clippy::expect_used)] // a failing test is meant to panic
 

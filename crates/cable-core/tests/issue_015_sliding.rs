@@ -1,5 +1,6 @@
-//! Cables slid for hundreds of metres and were said to rest with 3 % of their weight unheld; both ends lay at (0, 0) with a tension
-//! of −inf; 116 N of loose cable lay in no contact. What friction does not hold slides, and it is said how much friction is missing.
+//! Cables slid for hundreds of metres and were said to rest with 3 % of their weight unheld; both
+//! ends lay at (0, 0) with a tension of −inf; 116 N of loose cable lay in no contact. What friction
+//! does not hold slides, and it is said how much friction is missing.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -35,8 +36,9 @@ fn missing(scene: &Scene, model: Model) -> Option<f64> {
     match settle(scene, model) {
         Ok(_) => None,
         Err(SolveError::NoRestingPlace { why }) => {
+            let said = why.to_string();
             let figure =
-                why.strip_prefix("it slides: ").and_then(|w| w.split_once(" %")).unwrap_or_else(|| panic!("{why}"));
+                said.strip_prefix("it slides: ").and_then(|w| w.split_once(" %")).unwrap_or_else(|| panic!("{said}"));
             Some(figure.0.parse().unwrap())
         }
         Err(other) => panic!("{model}: {other}"),
@@ -96,8 +98,9 @@ fn dead_loads_over_a_post_slide_beyond_the_capstan_law() {
     }
 }
 
-/// A line on the ground whose friction acts in full: dT/ds = μw on the ground, H = T at touchdown, the span above it a catenary:
-/// with a = H/w, the height is √(a² + s²) − a. The key goes through a file and back.
+/// A line on the ground whose friction acts in full: dT/ds = μw on the ground, H = T at touchdown,
+/// the span above it a catenary: with a = H/w, the height is √(a² + s²) − a. The key goes through a
+/// file and back.
 #[test]
 fn friction_mobilised_towards_an_end_follows_its_law() {
     let ground = Shape::Terrain { points_m: vec![[-10.0, -RADIUS], [500.0, -RADIUS]] };
@@ -133,8 +136,9 @@ fn other_histories_are_said_of_every_rest_that_rubs() {
 
 #[test]
 fn what_slides_never_comes_to_rest_further_up() {
-    // A cable draped over a post with both ends free, 1 % too long on its heavy side for weight and friction on the post to hold it. It
-    // runs off on that side; it had been put to rest 16 mm further up the light side.
+    // A cable draped over a post with both ends free, 1 % too long on its heavy side for weight and
+    // friction on the post to hold it. It runs off on that side; it had been put to rest 16 mm
+    // further up the light side.
     let (radius, light, length) = (0.425_265_489_236_155_15, 1.424_892_091_429_904_4, 7.296_323_293_046_918);
     let heavy = length - light - std::f64::consts::PI * radius;
     let round = |k: i32| std::f64::consts::PI * (1.0 - f64::from(k) / 24.0);

@@ -1,5 +1,6 @@
-//! A cable that was let out seemed to pass through the corners on which it lies: its shape before a step was drawn with the lengths
-//! after it, so that spans ended beside their contacts. The first rest of the tank took 132 halved steps and 497 iterations.
+//! A cable that was let out seemed to pass through the corners on which it lies: its shape before a
+//! step was drawn with the lengths after it, so that spans ended beside their contacts. The first
+//! rest of the tank took 132 halved steps and 497 iterations.
 
 #![allow(clippy::expect_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,4 +1,5 @@
-//! Mass-spring: every scene of the catalogue, pulleys against the catenary, stiffness, closed forms in time.
+//! Mass-spring: every scene of the catalogue, pulleys against the catenary, stiffness, closed forms
+//! in time.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -152,8 +153,8 @@ fn sliding_in_time_keeps_the_capstans_ratio() {
     assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
 }
 
-/// G. Atwood's machine with a heavy rope: M ẍ = ((m₂ − m₁) + ρ(l₂ − l₁)) g with l₂ − l₁ = 2x + l₀, so
-/// x + c = c·cosh(√(2ρg/M) t), c = ((m₂ − m₁)/ρ + l₀)/2.
+/// G. Atwood's machine with a heavy rope: M ẍ = ((m₂ − m₁) + ρ(l₂ − l₁)) g with l₂ − l₁ = 2x + l₀,
+/// so x + c = c·cosh(√(2ρg/M) t), c = ((m₂ − m₁)/ρ + l₀)/2.
 #[test]
 fn two_weights_on_a_pulley_move_as_atwood_says() {
     let mut scene = waypoints(0.0, 0.0);
@@ -245,8 +246,8 @@ fn heavy_cantilevers_converge() {
     }
 }
 
-/// A stiff cantilever swings with its first frequency 3.516 √(EI/(ρ L⁴)): after half a period it is as far below its
-/// balance as it began above.
+/// A stiff cantilever swings with its first frequency 3.516 √(EI/(ρ L⁴)): after half a period it is
+/// as far below its balance as it began above.
 #[test]
 fn a_cantilever_swings_at_its_frequency() {
     let (ei, rho, length): (f64, f64, f64) = (100.0, 0.5, 2.0);
@@ -273,8 +274,8 @@ fn a_cantilever_swings_at_its_frequency() {
     assert!((turn - 0.5).abs() < 0.02, "{turn}");
 }
 
-/// Let go at 0.1 s under wind that rises and a pull on a lump at its end: the middle of its mass moves by the sum of the
-/// forces over the mass, whatever the cable does.
+/// Let go at 0.1 s under wind that rises and a pull on a lump at its end: the middle of its mass
+/// moves by the sum of the forces over the mass, whatever the cable does.
 #[test]
 fn forces_in_time_move_the_middle_of_mass() {
     let mut scene = catalog::hanging_span();
@@ -319,7 +320,8 @@ fn forces_in_time_move_the_middle_of_mass() {
         sim.step(0.02).unwrap();
     }
     let now = middle(&sim);
-    // A force that rises for a time T to F and stays: after t ≥ T it has moved a mass by F/m ((t − T)²/2 + T(t − T)/2 + T²/6).
+    // A force that rises for a time T to F and stays: after t ≥ T it has moved a mass by F/m ((t −
+    // T)²/2 + T(t − T)/2 + T²/6).
     let moved = |force: f64, rise: f64, t: f64| {
         if t < rise {
             force / rise * t.powi(3) / 6.0
@@ -346,8 +348,8 @@ fn heat_lengthens_a_hanging_cable() {
     assert!((tip / exact - 1.0).abs() < 1e-9, "{tip} against {exact}");
 }
 
-/// From above, on a rough floor and round rough posts: friction of both is remembered from step to step. (It stopped the
-/// program: anchors on posts were taken for nodes on the floor.)
+/// From above, on a rough floor and round rough posts: friction of both is remembered from step to
+/// step. (It stopped the program: anchors on posts were taken for nodes on the floor.)
 #[test]
 fn a_floor_and_posts_rub_at_once() {
     let mut scene = catalog::plan_posts();
@@ -364,8 +366,8 @@ fn a_floor_and_posts_rub_at_once() {
     assert!(last.abs() > start.abs(), "{last} N after {start} N");
 }
 
-/// Drawn slowly over a corner or a round by hand against a dead load: how far the ratio of tensions is from e^{μφ} in the
-/// worst frame, and what the answer says of itself.
+/// Drawn slowly over a corner or a round by hand against a dead load: how far the ratio of tensions
+/// is from e^{μφ} in the worst frame, and what the answer says of itself.
 fn drawn_over(radius_m: Option<f64>, turn_deg: f64, segments: usize) -> (f64, f64) {
     let half = 0.5 * turn_deg.to_radians();
     let (sin, cos) = half.sin_cos();
@@ -400,7 +402,8 @@ fn drawn_over(radius_m: Option<f64>, turn_deg: f64, segments: usize) -> (f64, f6
         if k >= 60 {
             let s = sim.solution();
             let hand = &s.cables[0].supports[1];
-            // A round is left later than a corner where its route turns: 61.2° for 60°, 0.6 % of tension.
+            // A round is left later than a corner where its route turns: 61.2° for 60°, 0.6 % of
+            // tension.
             let turn = half + hand.reaction_y_n.abs().atan2(hand.reaction_x_n.abs());
             let exact = 100.0 * (0.3 * turn).exp();
             worst = worst.max((hand.reaction_x_n.hypot(hand.reaction_y_n) / exact - 1.0).abs());
@@ -412,8 +415,8 @@ fn drawn_over(radius_m: Option<f64>, turn_deg: f64, segments: usize) -> (f64, f6
     (worst, said)
 }
 
-/// On a round the sawtooth falls with the element, on a sharp corner it stays: the answer says how uncertain it is, and that is
-/// no less than what is found and no more than a few times of it.
+/// On a round the sawtooth falls with the element, on a sharp corner it stays: the answer says how
+/// uncertain it is, and that is no less than what is found and no more than a few times of it.
 #[test]
 fn what_corners_leave_uncertain_is_said() {
     for (radius, turn) in [(Some(0.3), 60.0), (None, 30.0)] {

@@ -41,7 +41,8 @@ fn arc(sim: &Simulation) -> f64 {
     sim.solution().cables[0].supports[1].arc_length_m
 }
 
-/// Two weights (kg) at equal height over a pulley, from rest. So stiff that nothing bounces when they are let go.
+/// Two weights (kg) at equal height over a pulley, from rest. So stiff that nothing bounces when
+/// they are let go.
 fn weights([m1, m2]: [f64; 2], density: f64, (radius, friction): (f64, f64), segments: usize) -> Scene {
     let mut scene = cable(
         [10.0, density, 1e10],
@@ -79,8 +80,8 @@ fn first_order(name: &str, errors: &[f64], bound: f64) {
 /// A rope that weighs little, kg/m.
 const LIGHT: f64 = 1e-3;
 
-/// ẍ = g (M₂ − q M₁)/(M₂ + q M₁ + ρπR) with M₁ = m₁ + ρ(l − x), M₂ = m₂ + ρ(l + x), l = 5 m − πR/2, from rest for
-/// `time` (s), by Runge–Kutta 4; m.
+/// ẍ = g (M₂ − q M₁)/(M₂ + q M₁ + ρπR) with M₁ = m₁ + ρ(l − x), M₂ = m₂ + ρ(l + x), l = 5 m − πR/2,
+/// from rest for `time` (s), by Runge–Kutta 4; m.
 fn slipped([m1, m2]: [f64; 2], radius: f64, q: f64, time: f64) -> f64 {
     let arc = std::f64::consts::PI * radius;
     let pull = |x: f64| {
@@ -100,8 +101,9 @@ fn slipped([m1, m2]: [f64; 2], radius: f64, q: f64, time: f64) -> f64 {
     x
 }
 
-/// G. Atwood's machine with its rope's own weight: x = c (cosh kt − 1), c = (m₂ − m₁ + ρd)/2ρ, k² = 2ρg/M, d the difference
-/// of the hanging lengths at the start. With friction T₂ = q T₁, q = e^{μπ}, where the rope comes and goes.
+/// G. Atwood's machine with its rope's own weight: x = c (cosh kt − 1), c = (m₂ − m₁ + ρd)/2ρ, k² =
+/// 2ρg/M, d the difference of the hanging lengths at the start. With friction T₂ = q T₁, q =
+/// e^{μπ}, where the rope comes and goes.
 #[test]
 fn two_weights_move_as_atwood_says_and_as_friction_lets_them() {
     let [m1, m2] = [5.0, 8.0];
@@ -146,7 +148,8 @@ fn a_rubbing_pulley_holds_up_to_eulers_ratio() {
     }
 }
 
-/// Drawn over a pulley by hand against a weight, slowly and fast, either way: e^{μφ} in every frame while it slides.
+/// Drawn over a pulley by hand against a weight, slowly and fast, either way: e^{μφ} in every frame
+/// while it slides.
 #[test]
 fn sliding_keeps_the_capstans_ratio_in_every_frame() {
     for (radius, friction) in [(0.0, 0.1), (0.0, 0.5), (0.2, 0.3)] {
@@ -180,7 +183,8 @@ fn sliding_keeps_the_capstans_ratio_in_every_frame() {
     }
 }
 
-/// Frames of 0.01 and 0.5 s in turn end where fixed ones do, explicit or previewed (an end swung to and fro).
+/// Frames of 0.01 and 0.5 s in turn end where fixed ones do, explicit or previewed (an end swung to
+/// and fro).
 #[test]
 fn uneven_frames_end_where_even_ones_do() {
     for (ea, stepping) in [(2e4, Stepping::Explicit), (1e9, Stepping::Preview)] {

@@ -1,9 +1,11 @@
-//! What a run says of its errors in motion, beside the same run on four times as many elements in a quarter of its steps: random swings, drags
-//! over rough ground, drops, slackenings, throws beside a post, and cables let go at an end.
+//! What a run says of its errors in motion, beside the same run on four times as many elements in a
+//! quarter of its steps: random swings, drags over rough ground, drops, slackenings, throws beside
+//! a post, and cables let go at an end.
 //!
-//! All: `cargo test --locked -p cable-core --test motion_errors -- --ignored --nocapture`; `FROM=60 TO=80` takes others of each family. Of each
-//! figure (greatest tension, supports, contacts, shape) it prints how many were said, the share that what was said covers, and the share that is
-//! between half and ten times the error.
+//! All: `cargo test --locked -p cable-core --test motion_errors -- --ignored --nocapture`;
+//! `FROM=60 TO=80` takes others of each family. Of each figure (greatest tension, supports,
+//! contacts, shape) it prints how many were said, the share that what was said covers, and the
+//! share that is between half and ten times the error.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod dice;
@@ -81,7 +83,8 @@ fn scene(family: usize, number: u64) -> Scene {
     scene
 }
 
-/// How often something was said, was enough, and was neither less than half nor more than ten times what it should have been.
+/// How often something was said, was enough, and was neither less than half nor more than ten times
+/// what it should have been.
 #[derive(Clone, Copy, Debug, Default)]
 struct Tally {
     all: usize,
@@ -147,7 +150,8 @@ fn larger(a: ErrorEstimates, b: &ErrorEstimates) -> ErrorEstimates {
 fn compare(scene: &Scene, model: Model, tallies: &mut [Tally; 4], peaks: &mut Peaks) -> Option<()> {
     let mut run = timeline(scene, model, 1)?.with_errors();
     let mut fine = timeline(scene, model, FINE)?;
-    // Two swings that part are equal wherever they cross: what an answer is off by is the most of a tenth of a second.
+    // Two swings that part are equal wherever they cross: what an answer is off by is the most of a
+    // tenth of a second.
     let mut lately: VecDeque<ErrorEstimates> = VecDeque::new();
     for look in 1..=(LOOKS_PER_S * SECONDS) as u64 {
         let instant = Instant::nearest(look as f64 / LOOKS_PER_S);

@@ -1,7 +1,9 @@
-//! Every scene of the catalogue in which something moves runs to its end, and says the same of its greatest tension whatever the mesh and the tolerance.
+//! Every scene of the catalogue in which something moves runs to its end, and says the same of its
+//! greatest tension whatever the mesh and the tolerance.
 //!
-//! All of it: `cargo test --locked -p cable-core --test motions -- --ignored --nocapture` (an hour); `SCENE=tank` takes one scene, `SEED=7` rolls other
-//! dice, `WAYS=random` leaves out one factor at a time.
+//! All of it: `cargo test --locked -p cable-core --test motions -- --ignored --nocapture` (an
+//! hour); `SCENE=tank` takes one scene, `SEED=7` rolls other dice, `WAYS=random` leaves out one
+//! factor at a time.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod dice;
@@ -59,7 +61,8 @@ fn greatest(scene: &Scene, end: f64, way: Way) -> Result<f64, String> {
     run(scene, end, way, false).map(|found| found.0)
 }
 
-/// The same, and from what to what it may be as the answer says (N), where that is asked for and said.
+/// The same, and from what to what it may be as the answer says (N), where that is asked for and
+/// said.
 fn run(scene: &Scene, end: f64, way: Way, errors: bool) -> Result<(f64, [f64; 2]), String> {
     let mut scene = scene.clone();
     for cable in &mut scene.cables {
@@ -95,7 +98,8 @@ fn run(scene: &Scene, end: f64, way: Way, errors: bool) -> Result<(f64, [f64; 2]
     Ok((most, [range[0].min(most), range[1].max(most)]))
 }
 
-/// What the other runs of a scene are compared with: that on its own mesh, and those that begin a little aside.
+/// What the other runs of a scene are compared with: that on its own mesh, and those that begin a
+/// little aside.
 #[derive(Clone, Copy, Debug)]
 struct Reference {
     most: f64,
@@ -126,7 +130,8 @@ enum Same {
     Near,
     /// Further apart, where starts micrometres aside are, too: within the range that is stated.
     Chaotic,
-    /// The path is not chaotic, but the mesh of one of them is coarse, and the range that it states says so.
+    /// The path is not chaotic, but the mesh of one of them is coarse, and the range that it states
+    /// says so.
     Coarse,
     Apart,
 }
@@ -158,7 +163,8 @@ struct Found {
     apart: Vec<String>,
 }
 
-/// Runs a scene in all these ways, each compared with the same scene on its own mesh, of the same model, inertia and friction.
+/// Runs a scene in all these ways, each compared with the same scene on its own mesh, of the same
+/// model, inertia and friction.
 fn compare(found: &mut Found, (name, scene, end): (&str, &Scene, f64), ways: &[Way]) {
     let mut known: BTreeMap<String, Result<Reference, String>> = BTreeMap::new();
     for &way in ways {
@@ -237,7 +243,8 @@ fn rounds_run_to_their_end_on_every_mesh() {
     greatest(&catalog::draped_slipping(), 5.0, Way { segments: Some(42), ..PLAIN }).expect("it runs");
 }
 
-/// Rounds of finding what slips were used up in silence: 40 N beyond the cone, and the run stopped at 1.1 s.
+/// Rounds of finding what slips were used up in silence: 40 N beyond the cone, and the run stopped
+/// at 1.1 s.
 #[test]
 fn a_draped_cable_slips_without_inertia_on_a_fine_mesh() {
     let way = Way { segments: Some(168), inertia: Inertia::QuasiStatic, ..PLAIN };
@@ -246,8 +253,9 @@ fn a_draped_cable_slips_without_inertia_on_a_fine_mesh() {
     assert!((most / 224.46 - 1.0).abs() < 1e-3, "{most} N");
 }
 
-/// Where cables go slack on the way back, friction that was still that of the round before, what was left at a hundred nodes, and bars that were
-/// changed and not balanced again ended runs: the tank at 7.2 s (`fem`) and 36.7 s (`auto`), the robot's cable at 31.8 s.
+/// Where cables go slack on the way back, friction that was still that of the round before, what
+/// was left at a hundred nodes, and bars that were changed and not balanced again ended runs: the
+/// tank at 7.2 s (`fem`) and 36.7 s (`auto`), the robot's cable at 31.8 s.
 #[test]
 fn slack_cables_run_to_their_end_without_inertia() {
     let still = Way { inertia: Inertia::QuasiStatic, ..PLAIN };

@@ -1,5 +1,6 @@
-//! The floor of a plan view rubs on half a bar between a node and the middle of the bar, where `fem` reads the tension: a node beside a
-//! post that has a long bar on one side was called unsound by 4 mN (`plan-posts` with 500 bars, at 4.28 s).
+//! The floor of a plan view rubs on half a bar between a node and the middle of the bar, where
+//! `fem` reads the tension: a node beside a post that has a long bar on one side was called unsound
+//! by 4 mN (`plan-posts` with 500 bars, at 4.28 s).
 
 #![allow(clippy::expect_used, clippy::panic)] // a failing test is meant to panic
 

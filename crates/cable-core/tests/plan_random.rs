@@ -1,11 +1,13 @@
-//! Random scenes in plan view: posts and corners that rub, pressed on hard from both sides, on a floor that rubs or does not.
+//! Random scenes in plan view: posts and corners that rub, pressed on hard from both sides, on a
+//! floor that rubs or does not.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support, View, catalog};
 use cable_core::{Model, Simulation};
 
-/// A generator with a fixed seed (splitmix64: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014).
+/// A generator with a fixed seed (splitmix64: G. L. Steele, D. Lea, C. H. Flood, "Fast splittable
+/// pseudorandom number generators", OOPSLA 2014).
 struct Random(u64);
 
 impl Random {
@@ -26,7 +28,8 @@ impl Random {
     }
 }
 
-/// A cable in a zigzag between one to five posts and corners, too short for its lay or loose; its hitch is moved from 1 s on.
+/// A cable in a zigzag between one to five posts and corners, too short for its lay or loose; its
+/// hitch is moved from 1 s on.
 fn scene(seed: u64) -> Scene {
     let mut r = Random(seed);
     let posts = 1 + (r.next() * 5.0) as usize;
@@ -89,7 +92,8 @@ fn refused(seeds: std::ops::Range<u64>, moves: bool) -> (usize, Vec<String>) {
     (asked, refused)
 }
 
-/// At most one in fifty is refused, and none is answered that breaks a law: what is unsound is refused.
+/// At most one in fifty is refused, and none is answered that breaks a law: what is unsound is
+/// refused.
 #[test]
 fn routes_that_press_on_posts_come_to_rest() {
     let (asked, refused) = refused(0..100, false);

@@ -22,9 +22,11 @@ fn cost_of_a_robot() {
     let scene = catalog::robot_drive();
     let (began, cpu, mut told) = (Instant::now(), cpu_s(), -1.0);
     let map = cable_core::analysis::safe_reach::line::robot_reach(
-        (&scene, None),
+        &scene,
+        None,
         Settings::default(),
-        ([-2.0, 20.0], 41),
+        [-2.0, 20.0],
+        41,
         |map, share| {
             if share > told + 0.1 {
                 told = share;

@@ -52,7 +52,8 @@ fn the_cable_ends_on_the_hitch_and_follows_it() {
     assert!(far < 1e-9, "the cable's end is {far} m off the hitch");
 }
 
-/// Driven by hand beyond the length of its cable it comes to a stand, and the pull is what its drive and tracks give.
+/// Driven by hand beyond the length of its cable it comes to a stand, and the pull is what its
+/// drive and tracks give.
 #[test]
 fn at_the_end_of_its_cable_it_comes_to_a_stand() {
     let mut scene = catalog::robot_drive();
@@ -67,7 +68,8 @@ fn at_the_end_of_its_cable_it_comes_to_a_stand() {
     assert!(answer.cables[0].breaks.is_empty());
 }
 
-/// Kinetic and potential energy of a cable that falls from rest keep their sum but for what damping takes.
+/// Kinetic and potential energy of a cable that falls from rest keep their sum but for what damping
+/// takes.
 #[test]
 fn energy_is_reported_and_not_made() {
     let mut scene = catalog::hanging_span();

@@ -30,7 +30,8 @@ fn robot(simulation: &Simulation) -> RobotReport {
     simulation.solution().robot.unwrap()
 }
 
-/// Whether the cable crosses the outline, or has a node in it: by polygons alone, not by what the solver uses.
+/// Whether the cable crosses the outline, or has a node in it: by polygons alone, not by what the
+/// solver uses.
 fn crosses(simulation: &Simulation) -> Option<String> {
     let outline: Outline = simulation.scene().robot_outline(0.5).unwrap();
     let r = robot(simulation);
@@ -81,7 +82,8 @@ fn backing_over_its_own_slack_cable_it_pushes_it_along() {
     let mut s = start(scene(15.5, &LEVEL));
     drive(&mut s, -0.6, 5.0);
     let r = robot(&s);
-    // As fast as on free ground, where it gets up to speed in 0.6 s; the heap rubs on the ground before it.
+    // As fast as on free ground, where it gets up to speed in 0.6 s; the heap rubs on the ground
+    // before it.
     assert!((r.x_m - (10.0 - 0.6 * 5.0 + 0.18)).abs() < 0.02, "{r:?}");
     assert!(r.push_x_n > 5.0 && pushed(&s) > 5.0, "{r:?}");
     // Standing it holds what leans on it.
@@ -134,8 +136,8 @@ fn back_and_forth(length_m: f64, ground: &[[f64; 2]]) {
     }
 }
 
-/// Its cable comes from before it and lies over its deck: what presses on the deck, pulls at the hitch and at the riser and what
-/// the ground carries is its weight.
+/// Its cable comes from before it and lies over its deck: what presses on the deck, pulls at the
+/// hitch and at the riser and what the ground carries is its weight.
 #[test]
 fn lying_over_the_robot_the_forces_balance() {
     let mut over = scene(11.5, &LEVEL);
@@ -156,7 +158,8 @@ fn lying_over_the_robot_the_forces_balance() {
     assert!(r.push_y_n < -0.05 * weight, "{r:?}");
     let sideways = sum(|s| s.reaction_x_n) + r.push_x_n;
     assert!(sideways.abs() <= ground.x + 2e-3 * weight, "{sideways}: {r:?} {:?}", cable.contacts);
-    // What it turns round on the deck leads it: sharp, but no kink of a free cable, as there may be in what hangs slack behind it.
+    // What it turns round on the deck leads it: sharp, but no kink of a free cable, as there may be
+    // in what hangs slack behind it.
     let on_deck = |w: &&cable_core::solution::Warning| w.at_m.is_some_and(|at| at[1] > 1.0);
     let kinks = answer.warnings.iter().filter(on_deck).filter(|w| w.kind == WarningKind::Kink).count();
     assert_eq!(kinks, 0, "{:?}", answer.warnings);

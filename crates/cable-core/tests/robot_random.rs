@@ -1,5 +1,6 @@
-//! Robots driven at random over every bundled map, with slack cables and their outlines as obstacles: hardly a step fails, nothing gets
-//! into anything, and the same log gives the same bits. Looked at by polygons alone, not by what the solver uses.
+//! Robots driven at random over every bundled map, with slack cables and their outlines as
+//! obstacles: hardly a step fails, nothing gets into anything, and the same log gives the same
+//! bits. Looked at by polygons alone, not by what the solver uses.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic, missing_docs)] // a failing test is meant to panic
 
@@ -16,8 +17,9 @@ const DRIVES: u64 = 9;
 /// Times a key is pressed or let go in a drive, and frames between.
 const KEYS: (usize, usize) = (5, 16);
 
-/// The next of a fixed row of numbers from 0 to 1 (D. H. Lehmer's generator with the multiplier of S. K. Park and K. W. Miller,
-/// "Random number generators: good ones are hard to find", Communications of the ACM 31(10), 1988).
+/// The next of a fixed row of numbers from 0 to 1 (D. H. Lehmer's generator with the multiplier of
+/// S. K. Park and K. W. Miller, "Random number generators: good ones are hard to find",
+/// Communications of the ACM 31(10), 1988).
 fn next(seed: &mut u64) -> f64 {
     *seed = *seed * 16_807 % 2_147_483_647;
     *seed as f64 / 2_147_483_647.0

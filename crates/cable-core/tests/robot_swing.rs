@@ -1,5 +1,5 @@
-//! A robot that has run its cable taut: the tension swings on because the cable does, as a string in its first mode, and not
-//! because vehicle and cable feel each other with a delay.
+//! A robot that has run its cable taut: the tension swings on because the cable does, as a string
+//! in its first mode, and not because vehicle and cable feel each other with a delay.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -11,13 +11,15 @@ use cable_core::{Model, Settings, Simulation};
 /// Length of its cable, m.
 const LENGTH_M: f64 = 13.05;
 
-/// Driven out until it can no further; the pull on the hitch from 9 s on, N, at each step; its brakes on from then on, or not.
+/// Driven out until it can no further; the pull on the hitch from 9 s on, N, at each step; its
+/// brakes on from then on, or not.
 fn pulls(dt_s: f64, segments: usize, brakes: bool) -> Vec<f64> {
     let mut scene = catalog::robot_drive();
     let robot = scene.robot.as_mut().unwrap();
     robot.path = vec![RobotTask::Drive { to_x_m: 18.0, speed_m_per_s: 0.6 }];
     robot.repeat = false;
-    // Off the ground: how slack lies there differs in every run, and with it how hard the robot is stopped.
+    // Off the ground: how slack lies there differs in every run, and with it how hard the robot is
+    // stopped.
     robot.at_m = [13.0, 0.0];
     scene.cables[0].length_m = LENGTH_M;
     if let Shape::Terrain { points_m } = &mut scene.obstacles[0].shape {
@@ -41,7 +43,8 @@ fn pulls(dt_s: f64, segments: usize, brakes: bool) -> Vec<f64> {
     out
 }
 
-/// Amplitude of a tone of so many hertz in a stretch, by a window that is 0 at both ends (J. von Hann's).
+/// Amplitude of a tone of so many hertz in a stretch, by a window that is 0 at both ends (J. von
+/// Hann's).
 fn tone(pulls: &[f64], (mean, dt_s, hertz): (f64, f64, f64)) -> f64 {
     let turn = std::f64::consts::TAU;
     let part = |k: usize| {
@@ -53,7 +56,8 @@ fn tone(pulls: &[f64], (mean, dt_s, hertz): (f64, f64, f64)) -> f64 {
     2.0 * a.hypot(b) / pulls.len() as f64
 }
 
-/// Mean, amplitude of the strongest tone in the first and in the last half, N, and its frequency, Hz.
+/// Mean, amplitude of the strongest tone in the first and in the last half, N, and its frequency,
+/// Hz.
 fn swing(pulls: &[f64], dt_s: f64) -> [f64; 4] {
     let mean = pulls.iter().sum::<f64>() / pulls.len() as f64;
     let at = |part: &[f64], hertz: f64| tone(part, (mean, dt_s, hertz));
@@ -68,7 +72,8 @@ fn a_robot_on_a_taut_cable_swings_as_its_cable_does_at_any_step_and_mesh() {
     let coarse = swing(&pulls(1.0 / 120.0, 80, false), 1.0 / 120.0);
     println!("{coarse:?}");
     let [mean, first, last, hertz] = coarse;
-    // H. M. Irvine, "Cable Structures", MIT Press, 1981: ω² = (π/L)² T/m · (1 + 8 λ²/π⁴) for small λ² = (wL/T)² EA/T.
+    // H. M. Irvine, "Cable Structures", MIT Press, 1981: ω² = (π/L)² T/m · (1 + 8 λ²/π⁴) for small
+    // λ² = (wL/T)² EA/T.
     let cable = &catalog::robot_drive().cables[0];
     let (length, m) = (LENGTH_M, cable.linear_density_kg_per_m);
     let lambda2 = (m * 9.80665 * length / mean).powi(2) * cable.axial_stiffness_n / mean;

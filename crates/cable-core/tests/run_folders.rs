@@ -66,7 +66,8 @@ fn a_run_is_replaced_by_a_complete_one_only() {
     assert!(!out.join("unfinished-1").exists() && !out.join("unfinished-4").exists());
 }
 
-/// Stopped after any of its renamings, a replacement reads as the new run, and the next run goes on with it.
+/// Stopped after any of its renamings, a replacement reads as the new run, and the next run goes on
+/// with it.
 #[test]
 fn a_replacement_that_stops_anywhere_is_gone_on_with() {
     let [first, second, third] = [12.0, 13.0, 14.0].map(answer);

@@ -1,4 +1,5 @@
-//! A cable that is an obstacle to itself: piles, legs that meet, and what must not change where nothing touches.
+//! A cable that is an obstacle to itself: piles, legs that meet, and what must not change where
+//! nothing touches.
 
 #![allow(clippy::unwrap_used)]
 
@@ -81,9 +82,9 @@ fn a_falling_cable_piles_up_on_itself() {
     assert!((nodes[nodes.len() - 1].arc_length_m - 3.0).abs() < 1e-12);
 }
 
-/// The two legs of a hanging hairpin, 0.3 m apart, thrown at each other with 2 · `speed` (m/s): how often they are found
-/// crossed in the next 24 inner steps, and the least gap. Bars are long for the cable's width: where two cross, no node need be
-/// near the other.
+/// The two legs of a hanging hairpin, 0.3 m apart, thrown at each other with 2 · `speed` (m/s): how
+/// often they are found crossed in the next 24 inner steps, and the least gap. Bars are long for
+/// the cable's width: where two cross, no node need be near the other.
 fn legs_thrown_together(self_contact: bool, speed: f64) -> (usize, f64) {
     let mut scene = scene(6.0, 20, [[-0.15, 3.0], [0.15, 3.0]]);
     scene.cables[0].self_contact = self_contact;
@@ -109,7 +110,8 @@ fn legs_thrown_together(self_contact: bool, speed: f64) -> (usize, f64) {
 
 #[test]
 fn legs_that_would_pass_each_other_within_a_step_do_not() {
-    // 0.33 m and more in an inner step: from one side to the other, past the barrier at both ends of the step.
+    // 0.33 m and more in an inner step: from one side to the other, past the barrier at both ends
+    // of the step.
     for speed in [40.0, 60.0, 80.0] {
         let (crossed, least) = legs_thrown_together(true, speed);
         println!("{speed} m/s: crossed {crossed}, least gap {least:e} m");
@@ -124,7 +126,8 @@ fn an_end_whipped_through_its_own_leg_does_not_pass_it() {
     let settings = Settings { hand_speed_m_per_s: 20.0, ..Settings::default() };
     let mut sim = Simulation::with_settings(scene(6.0, 60, [[0.0, 3.0], [1.5, 2.0]]), Model::Fem, settings).unwrap();
     sim.settle().unwrap();
-    // As fast as a hand may be: 20 m/s, 8 cm in an inner step, where the cable and its barrier together are 3 cm.
+    // As fast as a hand may be: 20 m/s, 8 cm in an inner step, where the cable and its barrier
+    // together are 3 cm.
     sim.drag_support(0, 1, Vec2::new(-2.0, 2.0));
     for k in 0..48 {
         sim.step(1.0 / 240.0).unwrap();

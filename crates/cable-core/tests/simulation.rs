@@ -53,8 +53,9 @@ fn slow_steps_that_nobody_sees_change_nothing() {
     assert!((a - b).abs() < 1e-9 * a, "{a} {b}");
 }
 
-/// Newton iterations of `settle` on the catalogue scenes without obstacles. Fewer is better: change the number then. More
-/// means a worse start, line search or Jacobian: find out which before changing it.
+/// Newton iterations of `settle` on the catalogue scenes without obstacles. Fewer is better: change
+/// the number then. More means a worse start, line search or Jacobian: find out which before
+/// changing it.
 const ITERATIONS: [(&str, Model, usize); 11] = [
     ("hanging-span", Model::Catenary, 4),
     ("hanging-span", Model::Fem, 4),
@@ -87,7 +88,8 @@ fn iterations_of_the_catalogue_stay_as_they_are() {
     assert_eq!(found, ITERATIONS, "{found:#?}");
 }
 
-/// `auto` draws a cable with friction over two wheels to the end, as the capstan says: `catenary` found no balance on the way.
+/// `auto` draws a cable with friction over two wheels to the end, as the capstan says: `catenary`
+/// found no balance on the way.
 #[test]
 fn a_cable_that_rubs_on_wheels_is_drawn_to_the_end() {
     let text = r#"

@@ -1,13 +1,15 @@
-//! Random scenes of slack cables: on floors, in pits, over crests, up slopes, seen from above, ends near the ground, above each
-//! other and in one place. Each has a resting place; what is found is looked at with what is written here alone: contacts and
-//! supports carry the weight, nothing pushes, no support is pushed, and no bar is longer than its material.
+//! Random scenes of slack cables: on floors, in pits, over crests, up slopes, seen from above, ends
+//! near the ground, above each other and in one place. Each has a resting place; what is found is
+//! looked at with what is written here alone: contacts and supports carry the weight, nothing
+//! pushes, no support is pushed, and no bar is longer than its material.
 
 use cable_core::scene::{Cable, Obstacle, Scene, Shape, Support, View, catalog};
 use cable_core::{Model, Simulation};
 
 const GRAVITY: f64 = 9.80665;
 
-/// Numbers in [0, 1): a linear congruential generator (D. Knuth, "The art of computer programming", volume 2, 1981, 3.3.4).
+/// Numbers in [0, 1): a linear congruential generator (D. Knuth, "The art of computer programming",
+/// volume 2, 1981, 3.3.4).
 struct Chance(u64);
 
 impl Chance {

@@ -1,5 +1,6 @@
-//! What `spans` must do around events: tension does not jump where contacts come, go, join or fall slack; what is held still
-//! stays; several supports, loads in wind, undersides and turns round posts.
+//! What `spans` must do around events: tension does not jump where contacts come, go, join or fall
+//! slack; what is held still stays; several supports, loads in wind, undersides and turns round
+//! posts.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -50,7 +51,8 @@ fn signature(answer: &CableSolution) -> (usize, usize) {
     (answer.contacts.len(), answer.nodes.iter().filter(|n| n.tension_n == 0.0).count())
 }
 
-/// Moves the far end from where it is by `way`, looks for events in so many steps and draws each in by halving.
+/// Moves the far end from where it is by `way`, looks for events in so many steps and draws each in
+/// by halving.
 fn continuous(scene: &Scene, way: Vec2, steps: usize) -> usize {
     let mut now = model(scene);
     let last = scene.cables[0].supports[1].at_m.unwrap();
@@ -104,7 +106,8 @@ fn tension_does_not_jump_where_contacts_come_and_go() {
     }
 }
 
-/// A load comes down, what is beside it does, and all of it lifts off again; an end that is drawn comes down.
+/// A load comes down, what is beside it does, and all of it lifts off again; an end that is drawn
+/// comes down.
 #[test]
 fn tension_does_not_jump_where_loads_come_down_and_lift_off() {
     let floor = || ground(&[[-5.0, 0.0], [20.0, 0.0]]);
@@ -122,8 +125,8 @@ fn tension_does_not_jump_where_loads_come_down_and_lift_off() {
     }
 }
 
-/// A valley between two hills: as the end comes nearer the span over the kink shrinks, the cable falls slack in it, and is
-/// drawn taut again on the way back.
+/// A valley between two hills: as the end comes nearer the span over the kink shrinks, the cable
+/// falls slack in it, and is drawn taut again on the way back.
 #[test]
 fn tension_does_not_jump_where_the_cable_falls_slack_in_a_kink() {
     for friction in [0.0, 0.2] {
@@ -163,7 +166,8 @@ fn holding_still_changes_nothing() {
     }
 }
 
-/// Without friction only where the supports are counts, whichever of them went there, and in whatever order.
+/// Without friction only where the supports are counts, whichever of them went there, and in
+/// whatever order.
 #[test]
 fn both_supports_may_move() {
     let hills = ground(&[[-5.0, 0.0], [3.0, 0.0], [4.0, 0.4], [5.0, 0.5], [6.0, 0.4], [7.0, 0.0], [15.0, 0.0]]);
@@ -181,7 +185,8 @@ fn both_supports_may_move() {
     assert!((0..2).all(|k| (p[k] - q[k]).abs() <= 1e-9 * p[k]), "{p:?} {q:?}");
 }
 
-/// A rope led under a beam is pulled up against its underside: its corners hold it, the edge between them does not.
+/// A rope led under a beam is pulled up against its underside: its corners hold it, the edge
+/// between them does not.
 #[test]
 fn an_underside_is_held_by_its_corners() {
     let s =
@@ -200,7 +205,8 @@ fn an_underside_is_held_by_its_corners() {
     assert_eq!(answer.contacts.len(), 2);
     // Both corners push down.
     assert!(answer.contacts.iter().all(|c| c.normal[1] < 0.0));
-    // Without friction T is the same before and after, and the corner is pressed by T times the turn.
+    // Without friction T is the same before and after, and the corner is pressed by T times the
+    // turn.
     for c in &answer.contacts {
         let [t, u] = [c.tension_before_n, c.tension_after_n];
         assert!((t - u).abs() <= 1e-5 * t, "{t} {u}");
@@ -271,8 +277,9 @@ fn below(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     })
 }
 
-/// A cable with too much length for its way hangs in a narrow fold beside its end, through the ground: nearest to its deepest
-/// point is the kink of a valley, which no edge's own stretch lies above.
+/// A cable with too much length for its way hangs in a narrow fold beside its end, through the
+/// ground: nearest to its deepest point is the kink of a valley, which no edge's own stretch lies
+/// above.
 #[test]
 fn a_fold_does_not_rest_inside_the_ground_below_a_valley() {
     let heap =
@@ -291,8 +298,8 @@ fn a_fold_does_not_rest_inside_the_ground_below_a_valley() {
     }
 }
 
-/// A stiff cable so taut that its weight turns it by no more than 1e-6 along an edge comes to lie on a beam from its near corner to
-/// its far one, in one step and from whichever direction.
+/// A stiff cable so taut that its weight turns it by no more than 1e-6 along an edge comes to lie
+/// on a beam from its near corner to its far one, in one step and from whichever direction.
 #[test]
 fn a_taut_stiff_cable_comes_to_lie_on_an_edge_from_corner_to_corner() {
     for friction in [0.0, 0.2] {
@@ -312,8 +319,8 @@ fn a_taut_stiff_cable_comes_to_lie_on_an_edge_from_corner_to_corner() {
     }
 }
 
-/// Over the nose of an overhang and back in below it: two corners hold it, a half turn and no more, e^{μθ} from end to end once
-/// it has been drawn along.
+/// Over the nose of an overhang and back in below it: two corners hold it, a half turn and no more,
+/// e^{μθ} from end to end once it has been drawn along.
 #[test]
 fn a_cable_bends_round_the_nose_of_an_overhang() {
     let friction = 0.15;
@@ -339,8 +346,8 @@ fn a_cable_bends_round_the_nose_of_an_overhang() {
     }
 }
 
-/// Under a keel of three corners: each bends it up, without friction all tensions are one, and the hull pushes it down by what the
-/// ends pull it up.
+/// Under a keel of three corners: each bends it up, without friction all tensions are one, and the
+/// hull pushes it down by what the ends pull it up.
 #[test]
 fn a_keel_is_held_from_below_by_all_its_corners() {
     let keel = Shape::Polygon { points_m: vec![[2.0, 3.0], [2.0, 2.0], [4.0, 1.4], [6.0, 2.0], [6.0, 3.0]] };

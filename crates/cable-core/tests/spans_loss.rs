@@ -1,5 +1,5 @@
-//! Where a cable loses its tension `spans` says so, of what kind, and not before: each kind beside a judge that knows nothing of
-//! the solver, and so for what it must still take on the way there.
+//! Where a cable loses its tension `spans` says so, of what kind, and not before: each kind beside
+//! a judge that knows nothing of the solver, and so for what it must still take on the way there.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -56,9 +56,10 @@ fn until_lost(m: &mut SpansModel, support: usize, (from, step, most): (Vec2, Vec
     panic!("tension is never lost");
 }
 
-/// An end that lies on a floor without tension is drawn along it by d and pushed back. Drawn it slides over x with T = μwx at the end,
-/// which lengthens it by d = T²/2EAμw. Pushed back every tension falls by twice what friction takes, and is gone at the end half
-/// way back, T − 2μwy = 0 with y = x/2 and d' = Ty/2EA = d/2: no step before that may be refused, none behind it taken.
+/// An end that lies on a floor without tension is drawn along it by d and pushed back. Drawn it
+/// slides over x with T = μwx at the end, which lengthens it by d = T²/2EAμw. Pushed back every
+/// tension falls by twice what friction takes, and is gone at the end half way back, T − 2μwy = 0
+/// with y = x/2 and d' = Ty/2EA = d/2: no step before that may be refused, none behind it taken.
 #[test]
 fn a_lay_goes_slack_where_its_end_has_been_pushed_half_way_back() {
     let (friction, stiffness) = (0.5, 1e5);
@@ -79,8 +80,8 @@ fn a_lay_goes_slack_where_its_end_has_been_pushed_half_way_back() {
     assert!(at < 0.1, "{at} m along it");
 }
 
-/// Lying on a rough floor and drawn up to an end that comes back over the lay: the span stands straight up where the material is
-/// just what lies and what hangs, x = L − h, and folds beyond.
+/// Lying on a rough floor and drawn up to an end that comes back over the lay: the span stands
+/// straight up where the material is just what lies and what hangs, x = L − h, and folds beyond.
 #[test]
 fn an_end_span_folds_where_its_support_stands_over_its_touchdown() {
     let height = 2.0;
@@ -96,9 +97,10 @@ fn an_end_span_folds_where_its_support_stands_over_its_touchdown() {
     assert!(m.solution().nodes.iter().all(|n| n.tension_n >= 0.0));
 }
 
-/// Between a pulley and its touchdown on a rough floor: the pulley is carried over the touchdown together with the end before it. Straight
-/// up its span has T = wh at the pulley, and so has the span before, whose length one catenary tells: with it the place of the
-/// pulley is where all material is used up.
+/// Between a pulley and its touchdown on a rough floor: the pulley is carried over the touchdown
+/// together with the end before it. Straight up its span has T = wh at the pulley, and so has the
+/// span before, whose length one catenary tells: with it the place of the pulley is where all
+/// material is used up.
 #[test]
 fn a_span_between_contacts_goes_slack_where_its_pulley_stands_over_its_touchdown() {
     let (height, length, stiffness) = (4.0, 16.1, 1e8);

@@ -1,10 +1,12 @@
-//! Whatever a hand does to a cable over rough ground, beams and posts: every step that `spans` takes is sound, every step it
-//! does not take is refused with a typed reason, and nothing is ever inside an obstacle.
+//! Whatever a hand does to a cable over rough ground, beams and posts: every step that `spans`
+//! takes is sound, every step it does not take is refused with a typed reason, and nothing is ever
+//! inside an obstacle.
 //!
-//! The whole family, scene by number: ground of 5 to 200 corners, 0 to 8 beams and posts that the cable goes over or under,
-//! friction 0 to 1, EA 1e4 to 1e8 N, a length of 1.0001 to 2 times the taut way, drawn either way, an end (or both) moved 1 cm
-//! to 1 m at a time. `SPANS_CASES=1000 cargo test -p cable-core --test spans_robust -- --nocapture` prints what came of
-//! more of them; `SPANS_FIRST` says from which, `SPANS_FAILURES=1` names each that failed.
+//! The whole family, scene by number: ground of 5 to 200 corners, 0 to 8 beams and posts that the
+//! cable goes over or under, friction 0 to 1, EA 1e4 to 1e8 N, a length of 1.0001 to 2 times the
+//! taut way, drawn either way, an end (or both) moved 1 cm to 1 m at a time.
+//! `SPANS_CASES=1000 cargo test -p cable-core --test spans_robust -- --nocapture` prints what came
+//! of more of them; `SPANS_FIRST` says from which, `SPANS_FAILURES=1` names each that failed.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -36,8 +38,9 @@ struct Case {
 /// How low and how high the taut string may pass at an x.
 type Gate = (f64, f64, f64);
 
-/// The shortest way from a to b through gates in order of x (the funnel of D. T. Lee and F. P. Preparata, "Euclidean
-/// shortest paths in the presence of rectilinear barriers", Networks 14, 1984).
+/// The shortest way from a to b through gates in order of x (the funnel of D. T. Lee and F. P.
+/// Preparata, "Euclidean shortest paths in the presence of rectilinear barriers", Networks 14,
+/// 1984).
 fn taut(a: Vec2, b: Vec2, gates: &[Gate]) -> f64 {
     let mut gates = gates.to_vec();
     gates.push((b.x, b.y, b.y));
@@ -72,7 +75,8 @@ fn taut(a: Vec2, b: Vec2, gates: &[Gate]) -> f64 {
     way
 }
 
-/// Beams and posts, each in its own slot of the ground's width: shapes, the waypoints past them, the gates they leave.
+/// Beams and posts, each in its own slot of the ground's width: shapes, the waypoints past them,
+/// the gates they leave.
 fn bodies(dice: &mut Dice, width: f64) -> (Vec<Shape>, Vec<Vec2>, Vec<Gate>) {
     let count = (dice.unit() * 9.0) as usize;
     let slot = width / count.max(1) as f64;
@@ -170,7 +174,8 @@ fn case(number: u64) -> Case {
     Case { scene, moves }
 }
 
-/// The same with dead loads on the cable, each of 1 % to 30 % of its weight, which come down on what is below them.
+/// The same with dead loads on the cable, each of 1 % to 30 % of its weight, which come down on
+/// what is below them.
 fn loaded(number: u64) -> Case {
     let mut case = case(number);
     let dice = &mut Dice(number.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
@@ -249,14 +254,15 @@ fn sound(number: u64, model: &SpansModel, problem: &Problem) {
     assert!((length - problem.length).abs() <= 1e-12 * problem.length);
 }
 
-/// The widest a span hangs in which the force across the load is 5e-3 of its load, as part of its material: 2·5e-3·asinh 200.
+/// The widest a span hangs in which the force across the load is 5e-3 of its load, as part of its
+/// material: 2·5e-3·asinh 200.
 const HAIRPIN: f64 = 0.06;
 /// Tension of a lay that is lost, of the greatest.
 const FADED: f64 = 0.05;
 
-/// Whether the last answer before a loss shows, by its shape alone, what the error says: a span that folds or goes slack has
-/// its ends above each other (the first or the last span folds, one between contacts goes slack), a lay that goes slack has
-/// hardly any tension left.
+/// Whether the last answer before a loss shows, by its shape alone, what the error says: a span
+/// that folds or goes slack has its ends above each other (the first or the last span folds, one
+/// between contacts goes slack), a lay that goes slack has hardly any tension left.
 fn shows(answer: &CableSolution, loss: TensionLoss, s: f64) -> Result<(), String> {
     let length = answer.nodes.last().unwrap().arc_length_m;
     let mut contacts: Vec<[f64; 2]> = answer.contacts.iter().map(|c| [c.begins_m, c.ends_m]).collect();
@@ -382,9 +388,10 @@ fn random_moves_with_loads_on_the_cable() {
     assert!(100 * refused <= steps, "{refused} steps refused of {steps}");
 }
 
-/// Scenes whose first rest was not found once: laid deep into the ground, whose nearest feature there is a kink; on the wrong side
-/// of a thin beam; on both sides of a post; short of the far corner of a beam; too slack along a string that bends too often; as far as
-/// the far corner of a beam, where the near one is the last (11051, 11155).
+/// Scenes whose first rest was not found once: laid deep into the ground, whose nearest feature
+/// there is a kink; on the wrong side of a thin beam; on both sides of a post; short of the far
+/// corner of a beam; too slack along a string that bends too often; as far as the far corner of a
+/// beam, where the near one is the last (11051, 11155).
 const HARD_RESTS: [u64; 11] = [389, 399, 739, 774, 885, 1011, 10_226, 11_051, 11_155, 11_267, 11_275];
 
 #[test]
@@ -397,8 +404,9 @@ fn rests_that_were_not_found_once_are() {
     }
 }
 
-/// Scenes of which steps were refused once: a stiff cable whose span comes to run along an edge (10040, 10103, 10181), lays beside
-/// slack in a kink that slid back and were taken to slide on, for the load made the tension behind the greater (10139, 10152).
+/// Scenes of which steps were refused once: a stiff cable whose span comes to run along an edge
+/// (10040, 10103, 10181), lays beside slack in a kink that slid back and were taken to slide on,
+/// for the load made the tension behind the greater (10139, 10152).
 const HARD_STEPS: [u64; 5] = [10_040, 10_103, 10_139, 10_152, 10_181];
 
 #[test]
@@ -410,7 +418,8 @@ fn steps_that_were_refused_once_are_taken() {
     }
 }
 
-/// A cable led under a post or once to twice and a half round it, from taut to a third longer than its way.
+/// A cable led under a post or once to twice and a half round it, from taut to a third longer than
+/// its way.
 fn below_a_post(number: u64) -> Scene {
     let dice = &mut Dice(number.wrapping_mul(0x2545_f491_4f6c_dd1d) | 1);
     let (radius_m, center_m) = (dice.log(0.05, 1.0), [5.0, 0.0]);
@@ -447,8 +456,9 @@ fn below_a_post(number: u64) -> Scene {
     scene
 }
 
-/// The worst that a post would have to draw the cable to itself, of the greatest tension: each piece between two nodes is balanced by
-/// what its ends feel, its weight and the post, which pushes away from its centre alone.
+/// The worst that a post would have to draw the cable to itself, of the greatest tension: each
+/// piece between two nodes is balanced by what its ends feel, its weight and the post, which pushes
+/// away from its centre alone.
 fn drawn_to_the_post(scene: &Scene, answer: &CableSolution) -> f64 {
     let Shape::Circle { center_m, .. } = scene.obstacles[0].shape else { panic!("a post") };
     let weight = scene.cables[0].linear_density_kg_per_m * scene.environment.gravity_m_per_s2;

@@ -1,9 +1,11 @@
-//! Stiff cables on posts, corners and floors against the elastica by multiple shooting, which shares nothing with the program: its own
-//! Runge–Kutta steps, its own geometry, dense Newton with differences. Scenes are drawn at random.
+//! Stiff cables on posts, corners and floors against the elastica by multiple shooting, which
+//! shares nothing with the program: its own Runge–Kutta steps, its own geometry, dense Newton with
+//! differences. Scenes are drawn at random.
 //!
-//! A guess is read off the answer, and with it which contacts are a point; the shooting then finds the root of its own equations near it,
-//! and it is asked that its contacts push. That the root is the only one, that a point contact is less bent than its round and that nothing
-//! lies inside is not asked here.
+//! A guess is read off the answer, and with it which contacts are a point; the shooting then finds
+//! the root of its own equations near it, and it is asked that its contacts push. That the root is
+//! the only one, that a point contact is less bent than its round and that nothing lies inside is
+//! not asked here.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -164,7 +166,8 @@ impl Shooting<'_> {
         [tension, angle, pressed]
     }
 
-    /// All that has to be zero, and what the root says: the forces at both ends, the normal force of each contact.
+    /// All that has to be zero, and what the root says: the forces at both ends, the normal force
+    /// of each contact.
     fn residual(&self, y: &[f64]) -> (Vec<f64>, Vec<V>, Vec<f64>) {
         let (case, mut k) = (self.case, 0);
         let mut take = |n: usize| {
@@ -599,7 +602,8 @@ fn solve(case: &Case) -> Result<CableSolution, String> {
     Ok(simulation.solution().cables.remove(0))
 }
 
-/// The worst of the forces at both ends and of the contacts, in parts of the greatest; what is said of it.
+/// The worst of the forces at both ends and of the contacts, in parts of the greatest; what is said
+/// of it.
 fn error(case: &Case) -> Result<(f64, f64), String> {
     let cable = solve(case)?;
     let Some(said) = cable.error_estimate else { return Err("no estimate".to_owned()) };
@@ -658,9 +662,9 @@ fn floors_are_right() {
     campaign(3, 30, to_a_floor);
 }
 
-/// Weightless and straight far from a frictionless round, T + M²/2EI is the same all along: in contact the tension is T − EI/2ρ², the cable
-/// lies on what its layers leave of the turn, θ − 2 acos(1 − EI/2Tρ²), and touches in a point where that is nothing; there
-/// 1 − cos ½θ = M²/2EIT.
+/// Weightless and straight far from a frictionless round, T + M²/2EI is the same all along: in
+/// contact the tension is T − EI/2ρ², the cable lies on what its layers leave of the turn, θ − 2
+/// acos(1 − EI/2Tρ²), and touches in a point where that is nothing; there 1 − cos ½θ = M²/2EIT.
 #[test]
 fn a_weightless_cable_over_a_post_keeps_its_first_integral() {
     let (radius, turn, pull) = (0.5f64, 1.6f64, 100.0f64);
@@ -700,7 +704,8 @@ fn a_weightless_cable_over_a_post_keeps_its_first_integral() {
         let (_, _, bend) = at(&cable, contact.arc_length_m);
         println!("{part}: {contact:?}");
         if part < 1.0 {
-            // The direction of the cable at A is not that of the load exactly: A's end is where the flexible cable would be.
+            // The direction of the cable at A is not that of the load exactly: A's end is where the
+            // flexible cable would be.
             let tension = cable.nodes[cable.nodes.len() / 2].tension_n;
             let lies = contact.turn_deg.to_radians().abs();
             assert!(
@@ -719,7 +724,8 @@ fn a_weightless_cable_over_a_post_keeps_its_first_integral() {
 
 #[test]
 fn what_a_sliding_node_leaves_out_of_a_stiff_bend_is_said_in_every_step() {
-    // Over a small post the cable bends as an elastica would, not as a string: a sliding node there carries no moment.
+    // Over a small post the cable bends as an elastica would, not as a string: a sliding node there
+    // carries no moment.
     let scene = |stiffness: f64| {
         let text = format!(
             r#"

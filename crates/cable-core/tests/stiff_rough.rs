@@ -1,7 +1,8 @@
-//! Stiff cables at rest on rough ground, with boxes, posts, friction and slack, drawn at random: every scene has an answer that is sound.
+//! Stiff cables at rest on rough ground, with boxes, posts, friction and slack, drawn at random:
+//! every scene has an answer that is sound.
 //!
-//! Whether it is sound the checker says of every answer before it is handed out; here it is asked that there is one,
-//! and that it says how accurate it is.
+//! Whether it is sound the checker says of every answer before it is handed out; here it is asked
+//! that there is one, and that it says how accurate it is.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -91,11 +92,13 @@ fn stiff_cables_on_rough_ground_have_a_sound_answer() {
     }
     // 2 % of many; of 40 that is at most one.
     assert!(refused.len() <= 1, "{refused:#?}");
-    // A chain of bars answers where contacts are too many for the elastica: it is good to some per cent.
+    // A chain of bars answers where contacts are too many for the elastica: it is good to some per
+    // cent.
     assert!(coarse <= 8, "{coarse} of {scenes} answers are off by more than 1 %");
 }
 
-/// Length, density, EA, EI, height of the support, its angle where it is clamped (°), the load at the other end (N).
+/// Length, density, EA, EI, height of the support, its angle where it is clamped (°), the load at
+/// the other end (N).
 type Leaning = ([f64; 5], Option<f64>, Option<[f64; 2]>);
 
 /// They would hang into the floor.

@@ -1,9 +1,12 @@
-//! Stiff cables that rub on posts, boxes and floors, seen in a mirror, counted from their other end, or both: the same rest each time.
+//! Stiff cables that rub on posts, boxes and floors, seen in a mirror, counted from their other
+//! end, or both: the same rest each time.
 //!
-//! A mirror changes nothing, so what two readings differ by is an error, and each says how large its own may be. Counting from the other end
-//! changes nothing that a resting place is asked for either: the way along which the cable is laid is the same, and of the rests that friction allows
-//! the one with the least sliding is asked for. `SYMMETRY_CASES=300 cargo test --locked -p cable-core --test stiff_symmetry -- --nocapture`
-//! asks more scenes; `SYMMETRY_FIRST` says from which, `SYMMETRY_SHOW=folder` writes those that differ.
+//! A mirror changes nothing, so what two readings differ by is an error, and each says how large
+//! its own may be. Counting from the other end changes nothing that a resting place is asked for
+//! either: the way along which the cable is laid is the same, and of the rests that friction allows
+//! the one with the least sliding is asked for.
+//! `SYMMETRY_CASES=300 cargo test --locked -p cable-core --test stiff_symmetry -- --nocapture` asks
+//! more scenes; `SYMMETRY_FIRST` says from which, `SYMMETRY_SHOW=folder` writes those that differ.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -34,7 +37,8 @@ struct Case {
     scene: Scene,
 }
 
-/// A cable along a way over something that rubs, its end held or drawn by a dead load, some times clamped.
+/// A cable along a way over something that rubs, its end held or drawn by a dead load, some times
+/// clamped.
 fn case(number: u64) -> Case {
     let mut dice = Dice(0x57_1ff0 + 7919 * number);
     let (a, b) = ([0.0, dice.within(-2.0, 0.0)], [10.0, dice.within(-2.0, 0.0)]);
@@ -151,8 +155,9 @@ fn rest(scene: &Scene) -> Result<CableSolution, String> {
     Ok(sim.solution().cables[0].clone())
 }
 
-/// How far from the cable the line through its nodes is read at most, m: half of what a line through every second node leaves, which is sixteen times
-/// as much of a curve of the fourth order and four times as much where the bend has a kink.
+/// How far from the cable the line through its nodes is read at most, m: half of what a line
+/// through every second node leaves, which is sixteen times as much of a curve of the fourth order
+/// and four times as much where the bend has a kink.
 fn reading(cable: &CableSolution) -> f64 {
     let coarse: Vec<_> = cable.nodes.iter().step_by(2).copied().collect();
     let off = |n: &Node| place(&coarse, n.arc_length_m).map_or(0.0, |at| (at - n.at()).norm());
@@ -229,8 +234,8 @@ fn campaign(name: &str, scenes: impl Fn(u64) -> Case, (most, also): (u64, &[u64]
     came
 }
 
-/// Scenes beyond those always asked that once differed: chains thrown about by friction (70, 115), a greatest tension between two nodes (133), posts that
-/// were sprung through (117, 159).
+/// Scenes beyond those always asked that once differed: chains thrown about by friction (70, 115),
+/// a greatest tension between two nodes (133), posts that were sprung through (117, 159).
 const ALSO: [u64; 5] = [70, 115, 117, 133, 159];
 
 #[test]

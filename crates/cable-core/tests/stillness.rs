@@ -63,7 +63,8 @@ fn a_cable_on_the_ground_is_at_rest_five_seconds_after_it_was_drawn() {
     }
 }
 
-/// The tank as it is at rest, and played: its rest in motion has straight bars where that without inertia had them, too.
+/// The tank as it is at rest, and played: its rest in motion has straight bars where that without
+/// inertia had them, too.
 #[test]
 fn the_tank_at_rest_does_not_ripple() {
     for model in [Model::Auto, Model::Fem] {

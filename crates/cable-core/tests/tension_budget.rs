@@ -33,7 +33,7 @@ fn terms_add_up_in_every_scene_with_every_model_from_both_ends() {
                 [StartEnd::Start, StartEnd::End, StartEnd::Slacker].into_iter().cycle().take(12).enumerate()
             {
                 let s = length * k as f64 / 11.0;
-                let o = tension_budget(&scene, &answer, (0, s), from).unwrap();
+                let o = tension_budget(&scene, &answer, 0, s, from).unwrap();
                 let contributions: f64 = o.contributions.iter().map(|t| t.tension_n).sum();
                 assert!((contributions - tension(&answer, s)).abs() <= 1e-6 * most, "{id} {model} at {s}: {o:?}");
             }
@@ -50,7 +50,7 @@ fn nothing_is_left_over_where_answers_are_exact() {
             let most = answer.max_tension().tension_n;
             for from in [StartEnd::Start, StartEnd::End] {
                 let end = if from == StartEnd::Start { scene.cables[0].length_m } else { 0.0 };
-                let o = tension_budget(&scene, &answer, (0, end), from).unwrap();
+                let o = tension_budget(&scene, &answer, 0, end, from).unwrap();
                 let rest = sum(&o, |c| c == Cause::Rest);
                 assert!(rest.abs() <= 1e-6 * most, "{id} {model}: {rest} N of {most} N left\n{o:?}");
                 seen += 1;
@@ -67,7 +67,7 @@ fn friction_of_a_contact_is_what_the_model_says_of_it() {
     for (id, scene) in catalog::all() {
         let Some(answer) = settle(&scene, Model::Spans) else { continue };
         let (solved, most) = (&answer.cables[0], answer.max_tension().tension_n);
-        let o = tension_budget(&scene, &answer, (0, scene.cables[0].length_m), StartEnd::Start).unwrap();
+        let o = tension_budget(&scene, &answer, 0, scene.cables[0].length_m, StartEnd::Start).unwrap();
         for (k, c) in solved.contacts.iter().enumerate() {
             let term = sum(&o, |cause| cause == Cause::Contact(k));
             assert!((term + c.friction_n).abs() <= 2e-6 * most, "{id}: {term} N against {c:?}");
@@ -83,7 +83,7 @@ fn a_wrap_multiplies_by_the_capstan_factor() {
     let answer = settle(&scene, Model::Spans).expect("an answer");
     let slips = answer.cables[0].contacts.iter().enumerate().find(|(_, c)| c.turn_deg.abs() > 90.0);
     let (k, c) = slips.expect("a wrap");
-    let o = tension_budget(&scene, &answer, (0, scene.cables[0].length_m), StartEnd::Start).unwrap();
+    let o = tension_budget(&scene, &answer, 0, scene.cables[0].length_m, StartEnd::Start).unwrap();
     let term = o.contributions.iter().find(|t| t.cause == Cause::Contact(k)).unwrap();
     let factor = c.tension_after_n / c.tension_before_n;
     assert!((term.factor.unwrap() / factor - 1.0).abs() < 1e-6, "{term:?} {factor}");
@@ -100,7 +100,7 @@ fn below_a_hanging_end_there_is_only_weight() {
     (end.kind, end.at_m) = (cable_core::scene::SupportKind::Free, None);
     let (w, length) = (cable.linear_density_kg_per_m * scene.environment.gravity_m_per_s2, cable.length_m);
     let answer = settle(&scene, Model::Catenary).expect("an answer");
-    let o = tension_budget(&scene, &answer, (0, 0.25 * length), StartEnd::Slacker).unwrap();
+    let o = tension_budget(&scene, &answer, 0, 0.25 * length, StartEnd::Slacker).unwrap();
     assert!((o.from_m - length).abs() < 1e-12, "the sum begins at the free end");
     let weight = sum(&o, |c| c == Cause::Weight);
     assert!((weight - 0.75 * w * length).abs() < 1e-9 * w * length, "{o:?}");
@@ -131,7 +131,8 @@ fn parts_of_a_contact_fill_it_and_change_at_fronts() {
     assert!(fronts > 0, "no slip front anywhere");
 }
 
-/// The sign of a turn is that of the shape, whichever model says it: a cable over a post to the right turns clockwise.
+/// The sign of a turn is that of the shape, whichever model says it: a cable over a post to the
+/// right turns clockwise.
 #[test]
 fn turns_are_positive_anticlockwise_in_every_model() {
     let scene = catalog::draped_slipping();

@@ -9,7 +9,8 @@ use cable_core::state::State;
 use cable_core::timeline::{Instant, Timeline};
 use cable_core::{Model, Settings, Simulation};
 
-/// Half a second of a scene shown every `every_s` (s): the states at its whole tenths, and the greatest tensions of all inner steps.
+/// Half a second of a scene shown every `every_s` (s): the states at its whole tenths, and the
+/// greatest tensions of all inner steps.
 fn shown(scene: &Scene, (model, inertia): (Model, Inertia), every_s: f64) -> (Vec<Vec<State>>, TensionPeaks) {
     let mut sim = Simulation::with_settings(scene.clone(), model, Settings::default()).unwrap();
     sim.settle().unwrap();
@@ -64,7 +65,8 @@ fn without_inertia_too() {
     assert!(first == shown(&scene, asked, 0.016_666_66));
 }
 
-/// A drop on rubble pulls with some 200 to 400 N on any mesh: at 1 kN it is sound, between what its runs have the verdict is open.
+/// A drop on rubble pulls with some 200 to 400 N on any mesh: at 1 kN it is sound, between what its
+/// runs have the verdict is open.
 #[test]
 fn a_cable_may_break_where_runs_do_not_agree_that_it_holds() {
     let open = |breaking_n: f64| {
@@ -87,8 +89,8 @@ fn a_cable_may_break_where_runs_do_not_agree_that_it_holds() {
     assert!(said && held, "up to {to} N");
 }
 
-/// What hangs and swings has one greatest tension; where what falls on rubble is pulled hardest depends on which nodes strike which corners, and the
-/// answer says so.
+/// What hangs and swings has one greatest tension; where what falls on rubble is pulled hardest
+/// depends on which nodes strike which corners, and the answer says so.
 #[test]
 fn a_greatest_tension_that_depends_on_small_differences_says_so() {
     let depends = |scene: Scene| {

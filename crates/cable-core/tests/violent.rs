@@ -1,9 +1,12 @@
-//! Violent motion: cables thrown about over random ground, beams and posts, dropped, let go at an end, and torn. Which laws are broken is counted in every
-//! output step. Asked: no figure that is no number, nothing inside anything, no energy said to come from nowhere, less than one step in a thousand that stops, and less than one in two hundred with friction
-//! beyond its cone (338 of 287 760: slack cables that hang on the far side of a round). Torn cables are counted by themselves.
+//! Violent motion: cables thrown about over random ground, beams and posts, dropped, let go at an
+//! end, and torn. Which laws are broken is counted in every output step. Asked: no figure that is
+//! no number, nothing inside anything, no energy said to come from nowhere, less than one step in a
+//! thousand that stops, and less than one in two hundred with friction beyond its cone (338 of 287
+//! 760: slack cables that hang on the far side of a round). Torn cables are counted by themselves.
 //!
-//! All 600 scenes: `cargo test --locked -p cable-core --test violent -- --ignored --nocapture` (five minutes); `FROM=100 TO=200` takes some of them,
-//! `TELL=friction NODES=1` tells what was found of a law.
+//! All 600 scenes: `cargo test --locked -p cable-core --test violent -- --ignored --nocapture`
+//! (five minutes); `FROM=100 TO=200` takes some of them, `TELL=friction NODES=1` tells what was
+//! found of a law.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod dice;
@@ -17,7 +20,8 @@ use cable_core::{Model, Settings, Simulation};
 
 use self::dice::Dice;
 
-/// Rough ground, up to two beams and two posts in the air, a cable above them: held at both ends, let go at one or both, or thrown about by an end.
+/// Rough ground, up to two beams and two posts in the air, a cable above them: held at both ends,
+/// let go at one or both, or thrown about by an end.
 fn scene(number: u64) -> Scene {
     let mut dice = Dice(number.wrapping_mul(0x1000_0001) + 7);
     let mut scene = catalog::hanging_span();
@@ -207,8 +211,8 @@ fn ten_violent_scenes_obey_the_laws() {
     assert!(found.no_rest.len() <= 1 && found.grown.is_empty(), "{found:?}");
 }
 
-/// A gap had come below the rounding of its coordinates, and the step was taken for balanced with 2e11 N of contact that nothing held: 28 steps of a contact's
-/// impulse of up to 5e8 N s.
+/// A gap had come below the rounding of its coordinates, and the step was taken for balanced with
+/// 2e11 N of contact that nothing held: 28 steps of a contact's impulse of up to 5e8 N s.
 #[test]
 fn no_step_is_balanced_by_a_gap_lost_in_rounding() {
     let mut found = Found::default();

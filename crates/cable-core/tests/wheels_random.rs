@@ -1,9 +1,11 @@
-//! Cables over wheels that rub, moved slowly to and fro: the friction of `fem` beside that of `spans`, which has no mesh.
+//! Cables over wheels that rub, moved slowly to and fro: the friction of `fem` beside that of
+//! `spans`, which has no mesh.
 //!
-//! One to four pulleys, most of them wheels, friction 0 to 1, EA 3e3 to 1e8 N, ends held or drawn by a dead load, supports and loads
-//! that go and come back, taut to a tenth longer than the taut way. `WHEELS_CASES=300 cargo test --locked -p cable-core --test
-//! wheels_random -- --nocapture` prints what came of more of them; `WHEELS_FIRST` says from which, `WHEELS_SHOW=1` writes the scenes
-//! that differ.
+//! One to four pulleys, most of them wheels, friction 0 to 1, EA 3e3 to 1e8 N, ends held or drawn
+//! by a dead load, supports and loads that go and come back, taut to a tenth longer than the taut
+//! way. `WHEELS_CASES=300 cargo test --locked -p cable-core --test wheels_random -- --nocapture`
+//! prints what came of more of them; `WHEELS_FIRST` says from which, `WHEELS_SHOW=1` writes the
+//! scenes that differ.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -246,8 +248,10 @@ fn fem_is_within_what_it_says_of_spans() {
     assert!(came.refused.len() * 50 <= came.compared, "{:?}", came.refused);
 }
 
-/// The same for many more scenes: `cargo test --locked -p cable-core --test wheels_random -- --ignored --nocapture`. What remains (5 of 285: four by
-/// 1.3e-7 at most, one by 1.4e-2 for a cause that was not found) is less than 2 %.
+/// The same for many more scenes:
+/// `cargo test --locked -p cable-core --test wheels_random -- --ignored --nocapture`. What remains
+/// (5 of 285: four by 1.3e-7 at most, one by 1.4e-2 for a cause that was not found) is less than 2
+/// %.
 #[test]
 #[ignore = "300 histories, some seconds"]
 fn fem_is_within_what_it_says_of_spans_in_300_scenes() {
@@ -256,8 +260,9 @@ fn fem_is_within_what_it_says_of_spans_in_300_scenes() {
     assert!(came.refused.len() * 50 <= came.compared, "{:?}", came.refused);
 }
 
-/// A cable with a dead load on one end goes over a wheel that rubs and is drawn at the other, with looks every 1/60 s: where the cable
-/// meets the wheel wandered, that was taken for sliding, and friction came out the other way round in every other step (29.0 N at B).
+/// A cable with a dead load on one end goes over a wheel that rubs and is drawn at the other, with
+/// looks every 1/60 s: where the cable meets the wheel wandered, that was taken for sliding, and
+/// friction came out the other way round in every other step (29.0 N at B).
 #[test]
 fn friction_of_a_wheel_stays_on_its_side() {
     let mut scene = catalog::hanging_span();

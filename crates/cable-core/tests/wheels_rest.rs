@@ -1,10 +1,12 @@
-//! Random cables over wheels and eyes at rest: each has a resting place, most must be found, and what is found does not depend on which
-//! way the scene is seen or the cable counted.
+//! Random cables over wheels and eyes at rest: each has a resting place, most must be found, and
+//! what is found does not depend on which way the scene is seen or the cable counted.
 //!
-//! One to four pulleys of radius 0 to 0.5 m on either side of the cable, friction 0 to 1; ends held, drawn by a dead load or hanging
-//! with a weight; ground below or none; strained by 0.3 % to half as long again as the taut way; EA 1e4 to 1e8 N; heavy or without weight.
-//! `WHEELS_CASES=1000 cargo test --locked -p cable-core --test wheels_rest -- --nocapture` prints what came of more of them, sorted by
-//! cause; `WHEELS_FIRST` says from which, `WHEELS_SHOW=DIR` writes the scenes that failed.
+//! One to four pulleys of radius 0 to 0.5 m on either side of the cable, friction 0 to 1; ends
+//! held, drawn by a dead load or hanging with a weight; ground below or none; strained by 0.3 % to
+//! half as long again as the taut way; EA 1e4 to 1e8 N; heavy or without weight.
+//! `WHEELS_CASES=1000 cargo test --locked -p cable-core --test wheels_rest -- --nocapture` prints
+//! what came of more of them, sorted by cause; `WHEELS_FIRST` says from which, `WHEELS_SHOW=DIR`
+//! writes the scenes that failed.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -66,8 +68,8 @@ fn taut(corners: &[Corner]) -> (f64, Vec<[f64; 2]>, Vec<f64>) {
     (length, route, turns)
 }
 
-/// Corners that a taut string bends round by at least a little: one to four pulleys between two ends, the last of which may hang
-/// below its pulley.
+/// Corners that a taut string bends round by at least a little: one to four pulleys between two
+/// ends, the last of which may hang below its pulley.
 fn corners(dice: &mut Dice, hangs: bool) -> Vec<Corner> {
     loop {
         let count = 1 + (dice.unit() * 4.0) as usize;
@@ -235,8 +237,8 @@ fn rest(scene: &Scene, model: Model) -> Result<CableSolution, String> {
     Ok(sim.solution().cables[0].clone())
 }
 
-/// Greatest difference of a force on a support, one by one of the same name, in parts of the greatest tension; `mirror`: −1 where x of one
-/// is −x of the other.
+/// Greatest difference of a force on a support, one by one of the same name, in parts of the
+/// greatest tension; `mirror`: −1 where x of one is −x of the other.
 fn difference(a: &CableSolution, b: &CableSolution, mirror: f64) -> f64 {
     let most = a.nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max);
     let off = a.supports.iter().map(|s| {
@@ -256,8 +258,9 @@ fn named(scene: &Scene, why: &str) -> Option<usize> {
     })
 }
 
-/// Whether a cable has no rest on its wheels: without the wheel that it is said to lift off, or any where none is named, it hangs clear of
-/// that wheel, on the side on which it was to run, so that it would have to be drawn to it.
+/// Whether a cable has no rest on its wheels: without the wheel that it is said to lift off, or any
+/// where none is named, it hangs clear of that wheel, on the side on which it was to run, so that
+/// it would have to be drawn to it.
 fn hangs_clear(scene: &Scene, why: &str) -> bool {
     let wheels = 0..scene.cables[0].supports.len();
     let round = |k: &usize| scene.cables[0].supports[*k].radius_m.is_some_and(|r| r > 0.0);
@@ -303,7 +306,8 @@ fn show(number: u64, how: &str, scene: &Scene) {
     }
 }
 
-/// At most 2 % of what has a resting place may be refused; `auto` asks `fem` for what `spans` refuses, which takes its time.
+/// At most 2 % of what has a resting place may be refused; `auto` asks `fem` for what `spans`
+/// refuses, which takes its time.
 #[test]
 fn nearly_all_that_rest_are_found() {
     for (model, most) in [(Model::Spans, 200), (Model::Auto, 60)] {
@@ -334,8 +338,9 @@ fn nearly_all_that_rest_are_found() {
     }
 }
 
-/// A scene seen from behind, counted from its other end, or both, has the same rest: within rounding, and what the closed form of a wrap
-/// leaves out, which is of the order of the square of the strain (`law.rs`).
+/// A scene seen from behind, counted from its other end, or both, has the same rest: within
+/// rounding, and what the closed form of a wrap leaves out, which is of the order of the square of
+/// the strain (`law.rs`).
 #[test]
 fn what_is_found_does_not_depend_on_how_it_is_seen() {
     let (first, count) = (self::number("WHEELS_FIRST", 0), self::number("WHEELS_CASES", 200));
@@ -375,8 +380,9 @@ fn what_is_found_does_not_depend_on_how_it_is_seen() {
     assert!(wrong.is_empty() && compared > 2 * count, "{wrong:?}");
 }
 
-/// A cable over two wheels, past the first of which the taut string goes without a bend: it lies on it by its weight. Where it is laid down there was
-/// read where the string arrives, another place seen from the other end, and friction held the difference (1e-3 of the tension).
+/// A cable over two wheels, past the first of which the taut string goes without a bend: it lies on
+/// it by its weight. Where it is laid down there was read where the string arrives, another place
+/// seen from the other end, and friction held the difference (1e-3 of the tension).
 #[test]
 fn a_wheel_that_the_taut_string_passes_is_laid_alike_from_either_end() {
     let mut scene = case(0).scene;

@@ -1,10 +1,11 @@
 //! This analysis answers one question with less and with more friction, since nobody knows a
 //! friction coefficient well.
 //!
-//! Coulomb's coefficient of a cable on rubble is known to a third at best, and enters tensions as e^{μφ}. So the scene is
-//! answered as it stands and with all its coefficients scaled down and up; between the least and the greatest of the three
-//! tensions at each place lies the ribbon. Tension does not always grow with friction (what a floor holds, a hitch need not
-//! pull), so the ribbon is least to greatest, not low to high.
+//! Coulomb's coefficient of a cable on rubble is known to a third at best, and enters tensions as
+//! e^{μφ}. So the scene is answered as it stands and with all its coefficients scaled down and up;
+//! between the least and the greatest of the three tensions at each place lies the ribbon. Tension
+//! does not always grow with friction (what a floor holds, a hitch need not pull), so the ribbon is
+//! least to greatest, not low to high.
 
 use std::ops::ControlFlow;
 
@@ -16,7 +17,8 @@ use crate::scene::Scene;
 use crate::simulation::Simulation;
 use crate::solution::{CableSolution, Solution};
 
-/// Places along a cable at which answers are compared. Fewer: the jump at a corner is drawn as a slope that can be seen.
+/// Places along a cable at which answers are compared. Fewer: the jump at a corner is drawn as a
+/// slope that can be seen.
 const SAMPLES_ALONG: usize = 401;
 
 /// Longest step, s: that of a frame, so that the ribbon is of the run on screen.

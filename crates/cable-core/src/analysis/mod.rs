@@ -1,4 +1,5 @@
-//! Analyses ask a scene more than one question and compare the answers; all of them run through [`Simulation`](crate::Simulation).
+//! Analyses ask a scene more than one question and compare the answers; all of them run through
+//! [`Simulation`](crate::Simulation).
 //!
 //! | room | question |
 //! |---|---|

@@ -1,17 +1,18 @@
 //! A tension budget tells where a tension comes from: it sums what adds tension between an end of
 //! the cable and a place on it.
 //!
-//! Along a cable at rest dT/ds = −q·t − r, with the weight and wind q per metre of arc length, the tangent t and what friction
-//! takes, r. With dx = (1 + ε) θ t ds, θ = 1 + αΔT, the weight on a piece Δx adds −q·Δx / ((1 + ε) θ): for an inextensible
-//! cable the well-known w Δy. So
+//! Along a cable at rest dT/ds = −q·t − r, with the weight and wind q per metre of arc length, the
+//! tangent t and what friction takes, r. With dx = (1 + ε) θ t ds, θ = 1 + αΔT, the weight on a
+//! piece Δx adds −q·Δx / ((1 + ε) θ): for an inextensible cable the well-known w Δy. So
 //!
 //! ```text
 //! T(place) = T(end) + Σ −q·Δx / ((1 + ε) θ) + what is left of each piece
 //! ```
 //!
-//! and what is left belongs to the contact, pulley, grip or load the piece lies on. What lies on none of them is said as rest:
-//! inertia, shear of a stiff cable, the floor of a plan view, the mesh. The terms add up to the tension by construction; that
-//! each is what it is called is tested against the contacts of an answer.
+//! and what is left belongs to the contact, pulley, grip or load the piece lies on. What lies on
+//! none of them is said as rest: inertia, shear of a stiff cable, the floor of a plan view, the
+//! mesh. The terms add up to the tension by construction; that each is what it is called is tested
+//! against the contacts of an answer.
 
 use crate::math::Vec2;
 use crate::problem::Series;
@@ -59,12 +60,13 @@ pub struct Contribution {
     pub cause: Cause,
     /// What it adds, N; below 0 it takes away.
     pub tension_n: f64,
-    /// Tension beyond over tension before, on the way from the end: the wrap's factor e^{±μφ} for a contact. None where there is
-    /// no such place, or no tension before it.
+    /// Tension beyond over tension before, on the way from the end: the wrap's factor e^{±μφ} for a
+    /// contact. None where there is no such place, or no tension before it.
     pub factor: Option<f64>,
 }
 
-/// A tension and its contributions, in the order they are met on the way from the end; weight, wind and rest follow.
+/// A tension and its contributions, in the order they are met on the way from the end; weight, wind
+/// and rest follow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TensionBudget {
     /// Where, m of arc length.
@@ -98,12 +100,14 @@ struct DistributedLoad {
     thermal_stretch: f64,
 }
 
-/// Where the tension of a cable (by index) at an arc length (m) comes from. None without an answer there.
+/// Where the tension of a cable (by index) at an arc length (m) comes from. None without an answer
+/// there.
 #[must_use]
 pub fn tension_budget(
     scene: &Scene,
     solution: &Solution,
-    (cable, arc_length_m): (usize, f64),
+    cable: usize,
+    arc_length_m: f64,
     from: StartEnd,
 ) -> Option<TensionBudget> {
     let solved = solution.cables.get(cable)?;
@@ -203,8 +207,8 @@ fn sources(scene: &Scene, cable: usize, solved: &CableSolution) -> Vec<LocalSour
     out
 }
 
-/// The source that a piece between two arc lengths lies on: the one it shares most of its length with, of several it only touches
-/// the one that changes the tension most.
+/// The source that a piece between two arc lengths lies on: the one it shares most of its length
+/// with, of several it only touches the one that changes the tension most.
 fn source_under(sources: &mut [LocalSource], piece: [f64; 2], near: f64) -> Option<&mut LocalSource> {
     let [low, high] = if piece[0] <= piece[1] { piece } else { [piece[1], piece[0]] };
     let shared = |s: &LocalSource| high.min(s.extent[1]) - low.max(s.extent[0]);

@@ -11,8 +11,8 @@ use crate::solution::CableSolution;
 
 use super::BreakableCable;
 
-/// Way of an end, of the cable's length. Less: what is held in the middle of a long cable is never reached; more: a cable that is nearly taut is torn
-/// rather than drawn, and it takes longer.
+/// Way of an end, of the cable's length. Less: what is held in the middle of a long cable is never
+/// reached; more: a cable that is nearly taut is torn rather than drawn, and it takes longer.
 const END_TRAVEL_FRACTION: f64 = 0.01;
 
 /// Time in which an end moves, s: none that counts for what else moves.
@@ -26,7 +26,8 @@ struct HistoryResult {
 }
 
 impl BreakableCable {
-    /// What other histories would have left in the cable, in words; `sound` judges each as if it were the answer.
+    /// What other histories would have left in the cable, in words; `sound` judges each as if it
+    /// were the answer.
     pub(crate) fn histories(&self, sound: impl Fn(&CableSolution) -> bool) -> Option<String> {
         let laid = self.answer();
         let way = END_TRAVEL_FRACTION * self.problem().length;

@@ -24,7 +24,7 @@ use std::sync::Arc;
 
 use partition::{CablePart, Cut};
 
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported};
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::gauge::{Limit, TensionGauge};
@@ -35,36 +35,40 @@ use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Cost, MomentumAccount, TensionPeak, TensionPeaks};
 use crate::state::State;
 
-/// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the place of the break is blurred; shorter:
-/// more steps for each break. It is the inner step of `fem`.
+/// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the
+/// place of the break is blurred; shorter: more steps for each break. It is the inner step of
+/// `fem`.
 const BREAK_SEARCH_STEP_S: f64 = 1.0 / 240.0;
 
-/// Looks in a step without inertia that ends beyond the breaking tension. The moment of the break is interpolated between
-/// two of them: with 16 the end of a cable pulled from slack to taut in one step is found to 1e-2 of the step.
+/// Looks in a step without inertia that ends beyond the breaking tension. The moment of the break
+/// is interpolated between two of them: with 16 the end of a cable pulled from slack to taut in one
+/// step is found to 1e-2 of the step.
 const QUASI_STATIC_SUBSTEPS: f64 = 16.0;
 
-/// Steps after a break in which a piece is not watched: the models start with a first-order step, and the free end is met
-/// by a wave of its own. Fewer: false breaks beside the first; more: true ones are late. In motion it is also not watched
-/// until that wave, at c = √(EA/ρ), has crossed it there and back (once is too short: a mesh blurs its front): where the break is not felt yet, a cable of exactly even strength that
-/// was pulled evenly would break everywhere at once, which no cable does.
+/// Steps after a break in which a piece is not watched: the models start with a first-order step,
+/// and the free end is met by a wave of its own. Fewer: false breaks beside the first; more: true
+/// ones are late. In motion it is also not watched until that wave, at c = √(EA/ρ), has crossed it
+/// there and back (once is too short: a mesh blurs its front): where the break is not felt yet, a
+/// cable of exactly even strength that was pulled evenly would break everywhere at once, which no
+/// cable does.
 const UNWATCHED_STEPS: u32 = 2;
 
-/// A rest of a step shorter than this part of it is left out: at a millionth of a step the forces of inertia are rounding.
+/// A rest of a step shorter than this part of it is left out: at a millionth of a step the forces
+/// of inertia are rounding.
 const MIN_STEP_REMAINDER: f64 = 0.1;
 
 /// Most pieces of one cable. More are no longer a cable that breaks but a step that fails.
 const MAX_PIECES: usize = 32;
 
-/// A pulley is off the cable when a new end is this near, in elements. Smaller: the end runs into the pulley, where there is
-/// no element left on one side; larger: it drops off visibly early. 2 leaves a moving node beside the pulley.
+/// A pulley is off the cable when a new end is this near, in elements. Smaller: the end runs into
+/// the pulley, where there is no element left on one side; larger: it drops off visibly early. 2
+/// leaves a moving node beside the pulley.
 const PULLEY_RELEASE_ELEMENTS: f64 = 2.0;
 
-/// Fastest motion of a support that is followed while masses move, m/s. Slower: motions are refused that every model follows; faster:
-/// `mass-spring` cuts velocities, and air, which no model has, would rule.
+/// Fastest motion of a support that is followed while masses move, m/s. Slower: motions are refused
+/// that every model follows; faster: `mass-spring` cuts velocities, and air, which no model has,
+/// would rule.
 const MAX_SUPPORT_SPEED: f64 = 300.0;
-
-/// A velocity that changes nothing, m/s, and tells a model that a piece which broke at rest is not at rest any more.
-const WAKE_VELOCITY: f64 = 1e-100;
 
 /// A break.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,8 +102,8 @@ pub(crate) struct BreakableCable {
     peaks: Option<TensionPeaks>,
     /// When that was, s.
     since_s: f64,
-    /// A motion that is too fast for masses that move, in words.
-    too_fast: Option<String>,
+    /// A motion that is too fast for masses that move.
+    too_fast: Option<Unsupported>,
 }
 
 /// A part of the cable that holds together.
@@ -117,11 +121,20 @@ struct Piece {
     account: Option<MomentumAccount>,
 }
 
+/// Where a piece breaks.
+struct BreakPoint {
+    /// When, s.
+    time_s: f64,
+    /// Where the piece then is.
+    state: State,
+    /// Where on it.
+    at: rupture::Rupture,
+}
+
 /// What became of a piece in a step.
 enum StepOutcome {
     Intact,
-    /// When (s), and where it then is.
-    Broke(Box<(f64, State, rupture::Rupture)>),
+    Broke(Box<BreakPoint>),
 }
 
 impl BreakableCable {
@@ -209,15 +222,17 @@ impl BreakableCable {
         Ok(sum)
     }
 
-    /// A new step of the caller begins: the greatest tensions and the account of momentum are those of it from now on.
+    /// A new step of the caller begins: the greatest tensions and the account of momentum are those
+    /// of it from now on.
     pub(crate) fn forget_peaks(&mut self) {
         self.peaks = None;
         self.since_s = self.time_s();
         self.pieces.iter_mut().for_each(|p| p.account = None);
     }
 
-    /// Advances time by exactly `dt_s`, breaking on the way where it must. Without inertia it stops where something turns
-    /// back: one step from before a reversal to after it would be another history.
+    /// Advances time by exactly `dt_s`, breaking on the way where it must. Without inertia it stops
+    /// where something turns back: one step from before a reversal to after it would be another
+    /// history.
     pub fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
         if let (Inertia::Dynamic, Some(feature)) = (inertia, &self.too_fast) {
             return Err(SolveError::Unsupported { model: self.model(), feature: feature.clone() });
@@ -241,7 +256,7 @@ impl BreakableCable {
         let breaking_n = self.problem.cable.breaking_tension_n;
         let mut k = 0;
         while k < self.pieces.len() {
-            let may_break = self.pieces.len() < MAX_PIECES;
+            let may_break = self.settings.breaks && self.pieces.len() < MAX_PIECES;
             let Some(piece) = self.pieces.get_mut(k) else { break };
             // A whole cable takes the very step it was asked for.
             let rest_s = if self.breaks.is_empty() { dt_s } else { end_s - piece.mechanics.time_s() };
@@ -263,12 +278,8 @@ impl BreakableCable {
     }
 
     /// Replaces a piece by those it breaks into.
-    fn split(
-        &mut self,
-        k: usize,
-        (time_s, state, at): &(f64, State, rupture::Rupture),
-        inertia: Inertia,
-    ) -> Result<(), SolveError> {
+    fn split(&mut self, k: usize, point: &BreakPoint, inertia: Inertia) -> Result<(), SolveError> {
+        let BreakPoint { time_s, state, at } = point;
         let support_arc_lengths = self.support_arc_lengths();
         let Some(piece) = self.pieces.get(k) else { return Ok(()) };
         let nodes = &piece.answer.nodes;
@@ -295,9 +306,8 @@ impl BreakableCable {
         let mut new_pieces = Vec::with_capacity(2);
         for part in parts {
             let mut own = rupture::section(state, part.from - from, part.to - from);
-            if inertia == Inertia::Dynamic {
-                mark_moving(&mut own);
-            }
+            // A piece that broke at rest is not at rest any more.
+            own.in_motion = inertia == Inertia::Dynamic;
             let there_and_back_s =
                 2.0 * part.length() * (self.problem.linear_density / self.problem.axial_stiffness).sqrt();
             let mut new_piece = self.build(part, &own)?;
@@ -339,9 +349,7 @@ impl BreakableCable {
                 && let Some(support) = piece.pulley_at_new_end(&self.problem)
             {
                 let mut state = piece.mechanics.state();
-                if inertia == Inertia::Dynamic {
-                    mark_moving(&mut state);
-                }
+                state.in_motion = inertia == Inertia::Dynamic;
                 let next = self.build(piece.part.without(support), &state)?;
                 if let Some(piece) = self.pieces.get_mut(k) {
                     *piece = next;
@@ -353,15 +361,15 @@ impl BreakableCable {
 
     /// From now on a support follows what leads it.
     pub fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        self.draw_support(support, (target_m, false));
+        self.draw_support(support, target_m, false);
     }
 
     /// From now on a hand holds a support by a spring.
     pub fn pull_support(&mut self, support: usize, hand_m: Vec2) {
-        self.draw_support(support, (hand_m, true));
+        self.draw_support(support, hand_m, true);
     }
 
-    fn draw_support(&mut self, support: usize, (to, by_spring): (Vec2, bool)) {
+    fn draw_support(&mut self, support: usize, to: Vec2, by_spring: bool) {
         if !to.iter().all(|c| c.is_finite()) {
             return;
         }
@@ -386,7 +394,8 @@ impl BreakableCable {
         }
     }
 
-    /// Gives the whole cable to the next model: see [`Mechanics::fall_back`](crate::model::Mechanics::fall_back).
+    /// Gives the whole cable to the next model: see
+    /// [`Mechanics::fall_back`](crate::model::Mechanics::fall_back).
     pub(crate) fn fall_back(&mut self, why: &str) -> bool {
         match self.pieces.as_mut_slice() {
             [whole] if self.breaks.is_empty() => whole.mechanics.fall_back(why),
@@ -394,7 +403,8 @@ impl BreakableCable {
         }
     }
 
-    /// What the cable does to the outline of the robot, all pieces together; None where no model knows of it.
+    /// What the cable does to the outline of the robot, all pieces together; None where no model
+    /// knows of it.
     pub(crate) fn robot_contact(&self) -> Option<RobotContact> {
         self.pieces
             .iter()
@@ -442,7 +452,7 @@ impl BreakableCable {
             }
             pieces => {
                 let model = pieces.first().map_or(Model::Auto, |p| p.mechanics.model());
-                let feature = "the state of a whole cable for one that broke (reset first)".to_owned();
+                let feature = Unsupported::StateOfWholeCable;
                 Err(SolveError::Unsupported { model, feature })
             }
         }
@@ -465,7 +475,7 @@ impl BreakableCable {
             || self.problem.length != old.problem.length
             || self.problem.loads.len() != old.problem.loads.len()
         {
-            let feature = "another length, other supports or loads for a cable that broke (reset first)".to_owned();
+            let feature = Unsupported::EditOfBrokenCable;
             return Err(SolveError::Unsupported { model, feature });
         }
         self.dragged.clone_from(&old.dragged);
@@ -523,8 +533,8 @@ impl Piece {
         }
     }
 
-    /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which that happens is taken again in
-    /// parts, to have the cable where it breaks.
+    /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which
+    /// that happens is taken again in parts, to have the cable where it breaks.
     fn advance_dynamic(&mut self, dt_s: f64, breaking_n: f64, sum: &mut StepReport) -> Result<StepOutcome, SolveError> {
         let looks = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
         if looks > 1.0 && self.unwatched_steps == 0 {
@@ -559,7 +569,7 @@ impl Piece {
                     rupture::Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
                 let state =
                     if 1.0 - fraction < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, fraction) };
-                return Ok(StepOutcome::Broke(Box::new((reached.time_s, state, at))));
+                return Ok(StepOutcome::Broke(Box::new(BreakPoint { time_s: reached.time_s, state, at })));
             }
         }
         Ok(StepOutcome::Intact)
@@ -615,13 +625,14 @@ impl Piece {
                 let time_s = state.time_s + (now.time_s - state.time_s) * at.fraction;
                 let rest = 1.0 - at.fraction;
                 let state = if rest < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, at.fraction) };
-                return Ok(StepOutcome::Broke(Box::new((time_s, state, at))));
+                return Ok(StepOutcome::Broke(Box::new(BreakPoint { time_s, state, at })));
             }
         }
         Ok(StepOutcome::Intact)
     }
 
-    /// The arc lengths (its own, m) between which it may break: not at an end that is free since a break.
+    /// The arc lengths (its own, m) between which it may break: not at an end that is free since a
+    /// break.
     fn may_break_within(&self) -> [f64; 2] {
         let least = 0.5 * self.element();
         let new = |end: Option<&Option<usize>>| end == Some(&None);
@@ -630,7 +641,8 @@ impl Piece {
         [low, high]
     }
 
-    /// The greatest tensions of the last advance, with the nodes at its end where it did not break, in arc lengths of the whole cable.
+    /// The greatest tensions of the last advance, with the nodes at its end where it did not break,
+    /// in arc lengths of the whole cable.
     fn peaks(&self) -> Option<TensionPeaks> {
         let mut peaks = self.gauge.peaks()?;
         if self.gauge.reached().is_none() {
@@ -661,22 +673,14 @@ impl Piece {
 }
 
 /// What is to be said of a motion that is too fast.
-fn too_fast(support: &SupportPoint) -> Option<String> {
-    let (speed, time_s) = support.motion.as_ref()?.fastest();
-    (speed > MAX_SUPPORT_SPEED).then(|| {
-        format!(
-            "the motion of support `{}`, which reaches {speed:.1} m/s at {time_s:.4} s: with inertia one is followed up to {MAX_SUPPORT_SPEED} m/s",
-            support.name
-        )
+fn too_fast(support: &SupportPoint) -> Option<Unsupported> {
+    let (speed_m_per_s, time_s) = support.motion.as_ref()?.fastest();
+    (speed_m_per_s > MAX_SUPPORT_SPEED).then(|| Unsupported::MotionTooFast {
+        support: support.name.clone(),
+        speed_m_per_s,
+        time_s,
+        limit_m_per_s: MAX_SUPPORT_SPEED,
     })
-}
-
-fn mark_moving(state: &mut State) {
-    if state.velocity_m_per_s.iter().all(|v| v.norm() == 0.0)
-        && let Some(v) = state.velocity_m_per_s.first_mut()
-    {
-        v.x = WAKE_VELOCITY;
-    }
 }
 
 fn add(sum: &mut StepReport, more: StepReport) {

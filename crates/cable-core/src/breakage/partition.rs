@@ -12,7 +12,8 @@ pub(super) struct CablePart {
     pub from: f64,
     /// Arc length of the whole cable at its end, m.
     pub to: f64,
-    /// Supports in order along it, as indices in the scene; the first and last are its ends, None where it broke.
+    /// Supports in order along it, as indices in the scene; the first and last are its ends, None
+    /// where it broke.
     pub supports: Vec<Option<usize>>,
     /// Indices of the point loads on it.
     pub loads: Vec<usize>,
@@ -109,8 +110,8 @@ impl CablePart {
         part
     }
 
-    /// The piece as a problem of its own: arc lengths from its start, its first route where it lies in `state` (whose arc
-    /// lengths are the piece's own), as many elements as it had.
+    /// The piece as a problem of its own: arc lengths from its start, its first route where it lies
+    /// in `state` (whose arc lengths are the piece's own), as many elements as it had.
     pub fn problem(&self, whole: &Problem, state: &State) -> Problem {
         let length = self.length();
         let elements = state.arc_length_m.len().saturating_sub(1).max(MIN_ELEMENTS);
@@ -209,7 +210,8 @@ mod tests {
         assert_eq!((end.supports[2], &end.loads[..]), (None, &[0, 1, 2][..]));
     }
 
-    /// τ = 2ζ/ω₁ with ω₁ = πc/L: a part of the cable has a faster first mode of its own, and the same τ and ζ.
+    /// τ = 2ζ/ω₁ with ω₁ = πc/L: a part of the cable has a faster first mode of its own, and the
+    /// same τ and ζ.
     #[test]
     fn a_piece_is_of_the_same_material() {
         let p = loaded();
@@ -218,6 +220,7 @@ mod tests {
             position_m: vec![Vec2::zeros(), Vec2::x(), Vec2::x() * 2.0],
             velocity_m_per_s: vec![Vec2::zeros(); 3],
             time_s: 0.0,
+            in_motion: false,
         };
         let piece = &cut(&p, 2.0, true)[0];
         let own = piece.problem(&p, &state);

@@ -1,7 +1,8 @@
 //! A rupture is the place and the instant at which the tension first reaches the breaking tension.
 //!
-//! Tension is taken as linear in time between the instants and linear along the cable between nodes: the first place to
-//! reach the breaking tension T_b is then a node, at the fraction f = (T_b − T₀)/(T₁ − T₀) of the step.
+//! Tension is taken as linear in time between the instants and linear along the cable between
+//! nodes: the first place to reach the breaking tension T_b is then a node, at the fraction f =
+//! (T_b − T₀)/(T₁ − T₀) of the step.
 
 use crate::math::Vec2;
 use crate::solution::Node;
@@ -16,8 +17,9 @@ pub(super) struct Rupture {
     pub fraction: f64,
 }
 
-/// The first rupture between two instants, if there is one. Nodes that `watched` refuses are left out; of nodes that
-/// reach the limit at the same time the one that goes furthest beyond it breaks, of equals the first.
+/// The first rupture between two instants, if there is one. Nodes that `watched` refuses are left
+/// out; of nodes that reach the limit at the same time the one that goes furthest beyond it breaks,
+/// of equals the first.
 pub(super) fn first(
     before: &[Node],
     after: &[Node],
@@ -63,8 +65,8 @@ fn tension_at(nodes: &[Node], s: f64) -> f64 {
     }
 }
 
-/// The state at a fraction of the way between two instants. On different meshes it is the later one: resampled, chords
-/// would cut corners, and a stiff cable would feel it as slack.
+/// The state at a fraction of the way between two instants. On different meshes it is the later
+/// one: resampled, chords would cut corners, and a stiff cable would feel it as slack.
 pub(super) fn between(before: &State, after: &State, fraction: f64) -> State {
     let mut state = after.clone();
     state.time_s = before.time_s + (after.time_s - before.time_s) * fraction;
@@ -110,6 +112,7 @@ mod tests {
             arc_length_m: vec![0.0, 1.0],
             position_m: vec![Vec2::zeros(), Vec2::x() * x],
             velocity_m_per_s: vec![Vec2::zeros(), Vec2::y() * x],
+            in_motion: false,
         };
         let mid = between(&at(1.0, 2.0), &at(3.0, 6.0), 0.25);
         assert_eq!(mid, at(1.5, 3.0));

@@ -65,9 +65,9 @@ fn mass_and_momentum(states: &[State], density: f64) -> (f64, Vec2) {
     (mass, momentum)
 }
 
-/// Pulled so slowly that tension is EA (d/L − 1) everywhere: it reaches the breaking tension when d = L (1 + T/EA) = 11 m. The end
-/// moves by the quintic d = 10 + 2 (10u³ − 15u⁴ + 6u⁵), which is half way at half time. The mean of what rises evenly lags by half of the
-/// time it is taken over.
+/// Pulled so slowly that tension is EA (d/L − 1) everywhere: it reaches the breaking tension when
+/// d = L (1 + T/EA) = 11 m. The end moves by the quintic d = 10 + 2 (10u³ − 15u⁴ + 6u⁵), which is
+/// half way at half time. The mean of what rises evenly lags by half of the time it is taken over.
 #[test]
 fn a_cable_pulled_evenly_breaks_when_its_strain_says() {
     for (model, inertia, over_s) in [
@@ -107,7 +107,8 @@ fn a_cable_pulled_evenly_breaks_when_its_strain_says() {
     }
 }
 
-/// In one step without inertia from slack to broken: d = 10 + 2.5 (10u³ − 15u⁴ + 6u⁵) passes 11 m at u = 0.446.
+/// In one step without inertia from slack to broken: d = 10 + 2.5 (10u³ − 15u⁴ + 6u⁵) passes 11 m
+/// at u = 0.446.
 #[test]
 fn a_break_within_one_long_slow_step_is_found_to_a_hundredth_of_it() {
     let quintic = |u: f64| u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
@@ -127,9 +128,9 @@ fn a_break_within_one_long_slow_step_is_found_to_a_hundredth_of_it() {
     }
 }
 
-/// A hanging cable is pulled hardest at its top: T = w L + F. With the load growing as F = 12 kN/s t, it breaks at the top
-/// at t = (T − wL)/12 kN/s, later by at most what a wave needs for its way there and back, and all of it falls. The load stays below what breaks
-/// the cable beside it.
+/// A hanging cable is pulled hardest at its top: T = w L + F. With the load growing as F = 12 kN/s
+/// t, it breaks at the top at t = (T − wL)/12 kN/s, later by at most what a wave needs for its way
+/// there and back, and all of it falls. The load stays below what breaks the cable beside it.
 #[test]
 fn a_loaded_cable_breaks_at_its_top_and_falls_freely() {
     for model in MOVING {
@@ -159,7 +160,8 @@ fn a_loaded_cable_breaks_at_its_top_and_falls_freely() {
     }
 }
 
-/// A pulse of a force at the lower end of a hanging cable: up and down again within 3 ms, or held for 12 ms.
+/// A pulse of a force at the lower end of a hanging cable: up and down again within 3 ms, or held
+/// for 12 ms.
 fn struck(held_s: f64) -> Scene {
     let mut scene = span(9.81, [0.0, 0.0]);
     let c = &mut scene.cables[0];
@@ -170,7 +172,8 @@ fn struck(held_s: f64) -> Scene {
     scene
 }
 
-/// What lasts shorter than the breaking time does not break, however high it is, and is told whichever instants are looked at.
+/// What lasts shorter than the breaking time does not break, however high it is, and is told
+/// whichever instants are looked at.
 #[test]
 fn a_jerk_between_two_looks_is_told_and_breaks_what_it_holds() {
     for step_s in [1.0 / 60.0, 1.0 / 30.0, 1.0 / 240.0] {
@@ -219,7 +222,8 @@ fn the_inner_steps_of_fem_are_told() {
     assert_eq!(sim.answers()[0].peaks, None);
 }
 
-/// A mass hangs on a slack cable and is thrown: the side that snaps taut breaks beside it, and it flies on with the rest.
+/// A mass hangs on a slack cable and is thrown: the side that snaps taut breaks beside it, and it
+/// flies on with the rest.
 #[test]
 fn a_mass_on_a_cable_breaks_it_into_two_pieces_that_go_on() {
     for model in MOVING {
@@ -245,7 +249,8 @@ fn a_mass_on_a_cable_breaks_it_into_two_pieces_that_go_on() {
     }
 }
 
-/// Cut at any node while it moves: two pieces have the mass and the momentum of the whole, and are where it was.
+/// Cut at any node while it moves: two pieces have the mass and the momentum of the whole, and are
+/// where it was.
 #[test]
 fn two_pieces_have_the_mass_and_the_momentum_of_the_whole() {
     for model in MOVING {
@@ -256,7 +261,8 @@ fn two_pieces_have_the_mass_and_the_momentum_of_the_whole() {
             let strand = &mut sim.cables_mut()[0];
             let whole = strand.pieces[0].mechanics.state();
             let at = super::rupture::Rupture { node, fraction: 1.0 };
-            strand.split(0, &(whole.time_s, whole.clone(), at), Inertia::Dynamic).unwrap();
+            let point = super::BreakPoint { time_s: whole.time_s, state: whole.clone(), at };
+            strand.split(0, &point, Inertia::Dynamic).unwrap();
             let now: Vec<State> = strand.pieces.iter().map(|p| p.mechanics.state()).collect();
             assert_eq!(now.len(), 2);
             let (m0, p0) = mass_and_momentum(std::slice::from_ref(&whole), 1.0);
@@ -313,7 +319,8 @@ fn an_edit_keeps_the_pieces_and_reset_mends_them() {
     assert_eq!(sim.solution().cables, rest.cables);
 }
 
-/// Over a pulley between two tight spans: where it breaks, the part with the pulley slips off it and falls.
+/// Over a pulley between two tight spans: where it breaks, the part with the pulley slips off it
+/// and falls.
 #[test]
 fn a_broken_cable_runs_off_its_pulleys() {
     let mut scene = span(9.81, [8.0, 0.0]);
@@ -332,7 +339,8 @@ fn a_broken_cable_runs_off_its_pulleys() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Jerked and let go at random over a floor, whatever breaks: finite, nothing lost, the same again bit for bit.
+    /// Jerked and let go at random over a floor, whatever breaks: finite, nothing lost, the same
+    /// again bit for bit.
     #[test]
     fn random_jerks_break_cables_cleanly(
         x in 3.0..9.0f64, y in -1.0..3.0f64, dx in -2.0..8.0f64, dy in -2.0..6.0f64,
@@ -380,8 +388,9 @@ proptest! {
     }
 }
 
-/// A line on a floor drawn out, let back and drawn out again: one step over all of it ends where 450 small ones do, in every
-/// model that remembers friction. Closed form: 62.681 N at its end; without the way between, 85.6 N.
+/// A line on a floor drawn out, let back and drawn out again: one step over all of it ends where
+/// 450 small ones do, in every model that remembers friction. Closed form: 62.681 N at its end;
+/// without the way between, 85.6 N.
 #[test]
 fn a_long_step_passes_no_reversal() {
     let mut scene = span(9.80665, [20.0, 0.005]);

@@ -1,10 +1,11 @@
 //! A chain is a cable between two points with dead loads on it: its catenaries in a row are still
 //! one convex problem.
 //!
-//! Between loads the force is that of a catenary, at a load it jumps by it: F(s) = F_a − b s − Σ P_k [s > s_k].
-//! The complementary energy of the whole is a function of F_a alone, two unknowns however many loads there are.
+//! Between loads the force is that of a catenary, at a load it jumps by it: F(s) = F_a − b s − Σ
+//! P_k [s > s_k]. The complementary energy of the whole is a function of F_a alone, two unknowns
+//! however many loads there are.
 
-use super::kernel::{self, ChainPiece, DualEnergy};
+use super::kernel::{self, ChainPiece, DualEnergy, HorizontalForce};
 use super::{Catenary, Frame, Span, SpanError};
 use crate::math::{Mat2, Vec2};
 
@@ -50,8 +51,8 @@ pub struct ChainForce {
 }
 
 impl<'a> Chain<'a> {
-    /// Catenaries between the loads, each with the load that follows it; none has length zero but by a load
-    /// that sits on another.
+    /// Catenaries between the loads, each with the load that follows it; none has length zero but
+    /// by a load that sits on another.
     fn pieces(&self) -> impl Iterator<Item = (f64, f64, Vec2)> + 'a {
         let (from, to) = (self.from, self.to);
         let inside = self.loads.iter().copied().filter(move |l| l.arc_length > from && l.arc_length < to);
@@ -77,8 +78,8 @@ impl<'a> Chain<'a> {
         self.pieces().fold(self.weight * (self.to - self.from), |sum, (_, _, p)| sum + p)
     }
 
-    /// The catenaries of this chain for a start force (N): material point of the start, position there (m),
-    /// and the span.
+    /// The catenaries of this chain for a start force (N): material point of the start, position
+    /// there (m), and the span.
     pub fn spans(&self, start_force: Vec2, start: Vec2) -> impl Iterator<Item = (f64, Vec2, Catenary)> + '_ {
         self.pieces().scan((start_force, start), move |(force, at), (a, b, load)| {
             let span = Span {
@@ -104,14 +105,15 @@ impl<'a> Chain<'a> {
         self.energy(frame, h, v).phi
     }
 
-    /// From its start to its end for a start force (N): the way, m, and its derivative by the force, m/N.
+    /// From its start to its end for a start force (N): the way, m, and its derivative by the
+    /// force, m/N.
     #[must_use]
     pub fn reach(&self, start_force: Vec2) -> (Vec2, Mat2) {
         let frame = Frame::new(self.weight, start_force);
         let (h, v) = frame.split(start_force);
         let e = self.energy(frame, h, v);
         let turn = Mat2::from_columns(&[frame.across, frame.up]);
-        (frame.join((e.x, e.z)), turn * Mat2::new(e.k11, e.k12, e.k12, e.k22) * turn.transpose())
+        (frame.join(e.x, e.z), turn * Mat2::new(e.k11, e.k12, e.k12, e.k22) * turn.transpose())
     }
 
     fn energy(&self, frame: Frame, h: f64, v: f64) -> DualEnergy {
@@ -133,8 +135,8 @@ impl<'a> Chain<'a> {
         sum
     }
 
-    /// The force at its start that brings its end to `chord` (m) from its start. `near` is a start for
-    /// Newton, N.
+    /// The force at its start that brings its end to `chord` (m) from its start. `near` is a start
+    /// for Newton, N.
     ///
     /// # Errors
     /// See [`SpanError`].
@@ -148,15 +150,16 @@ impl<'a> Chain<'a> {
             Some(f) => f,
             None => self.guess(chord, length)?,
         };
-        let d = frame.split(chord);
-        let lengths = length + d.0.abs() + d.1.abs();
-        let start = frame.split(start);
-        let m = kernel::minimise(|h, v| self.energy(frame, h, v), d, start, lengths, false);
+        let (x, z) = frame.split(chord);
+        let lengths = length + x.abs() + z.abs();
+        let (h, v) = frame.split(start);
+        let energy = |h, v| self.energy(frame, h, v);
+        let m = kernel::minimise(energy, [x, z], [h, v], lengths, HorizontalForce::Any);
         if !m.converged {
             return Err(SpanError::NotConverged { iterations: m.iterations, closure_m: m.closure });
         }
         let e = self.energy(frame, m.h, m.v);
-        let start = frame.join((m.h, m.v));
+        let start = frame.join(m.h, m.v);
         let turn = Mat2::from_columns(&[frame.across, frame.up]);
         Ok(ChainForce {
             start,
@@ -180,7 +183,7 @@ impl<'a> Chain<'a> {
         }
         let frame = Frame::new(load, chord).facing(chord);
         let (x, z) = frame.split(chord / length);
-        let (h, v) = kernel::guess((x, z), total / self.axial_stiffness);
-        Ok(frame.join((h * total, v * total)))
+        let (h, v) = kernel::guess([x, z], total / self.axial_stiffness);
+        Ok(frame.join(h * total, v * total))
     }
 }

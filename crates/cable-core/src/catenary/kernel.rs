@@ -1,8 +1,8 @@
 //! The kernel computes one piece of cable under a uniform load as a function of the force at its
 //! start.
 //!
-//! In the frame whose second axis points against the load (load per length w ≥ 0) the force along the piece is
-//! F(s) = (h, v + w s), s from 0 to l, T = |F|. With ε = 1/EA:
+//! In the frame whose second axis points against the load (load per length w ≥ 0) the force along
+//! the piece is F(s) = (h, v + w s), s from 0 to l, T = |F|. With ε = 1/EA:
 //!
 //! ```text
 //! energy  φ  = ∫ T + ε T²/2 ds                                   (complementary, convex in (h, v))
@@ -12,8 +12,8 @@
 //!         c  = (v_b/T_b − v_a/T_a)/w,  k = −h l σ/(T_a T_b)
 //! ```
 //!
-//! Each is written in the form that keeps its digits, from T_b − T_a = w l σ. With r = w l/(T_a + T_b), which says how far
-//! the piece is from taut (r → 0) or folded (r → 1),
+//! Each is written in the form that keeps its digits, from T_b − T_a = w l σ. With r = w l/(T_a +
+//! T_b), which says how far the piece is from taut (r → 0) or folded (r → 1),
 //!
 //! ```text
 //! asinh(v_b/h) − asinh(v_a/h) = 2 atanh r
@@ -24,12 +24,14 @@
 //!
 //! Nothing divides by w, so a weightless piece needs no case of its own.
 
-/// Above this r the area tangent loses digits to 1 − r and logarithms are used. At 0.3 the logarithms would
-/// lose as many to their difference; anything between 0.5 and 0.9 gives the same results to 2e-16.
+/// Above this r the area tangent loses digits to 1 − r and logarithms are used. At 0.3 the
+/// logarithms would lose as many to their difference; anything between 0.5 and 0.9 gives the same
+/// results to 2e-16.
 const LOG_FORM_FROM: f64 = 0.7;
 /// Below this r the series of atanh(r)/r to r¹⁴ is exact to round-off: the next term is r¹⁶/17.
 const SERIES_FORM_BELOW: f64 = 0.1;
-/// Smallest force taken apart from zero (relative to the caller's unit): keeps logarithms finite at a fold.
+/// Smallest force taken apart from zero (relative to the caller's unit): keeps logarithms finite at
+/// a fold.
 const MIN_FORCE: f64 = 1e-300;
 
 /// The piece: load per length, length, 1/EA, in any consistent units.
@@ -95,7 +97,8 @@ impl ChainPiece {
         } else if r <= LOG_FORM_FROM {
             (2.0 * r / (1.0 - r)).ln_1p() / self.w - first
         } else {
-            // r > 0.7 leaves |v_a| + |v_b| < 1.43 w l: at most one of the sums below is small, never both.
+            // r > 0.7 leaves |v_a| + |v_b| < 1.43 w l: at most one of the sums below is small,
+            // never both.
             let a = if h.abs() < MIN_FORCE { MIN_FORCE } else { h.abs() };
             let log = if va >= 0.0 {
                 ((tb + vb) / (ta + va)).ln()
@@ -141,7 +144,8 @@ impl ChainPiece {
         let el = self.eps * self.l;
         let Pulled { va, vb, ta, tb, sigma, .. } = p;
         let both = self.l / (ta * tb);
-        // T_a − v_a σ, all of its terms positive: with T − |v| = h²/(T + |v|) where the signs are equal.
+        // T_a − v_a σ, all of its terms positive: with T − |v| = h²/(T + |v|) where the signs are
+        // equal.
         let level = if va >= 0.0 {
             let (a, b) = (1.0 / (ta + va), 1.0 / (tb + vb));
             h * h * (a + va * (a + b) / (ta + tb))
@@ -171,10 +175,12 @@ const MAX_ITERATIONS: usize = 60;
 const MAX_HALVINGS: usize = 40;
 /// Sufficient decrease (Armijo 1966): any small value serves a convex function.
 const ARMIJO: f64 = 1e-4;
-/// Below this part of the energy a predicted decrease drowns in round-off, and a smaller gradient is taken as
-/// progress instead. Too small: the search stalls a few digits short. Too large: a step that climbs may pass.
+/// Below this part of the energy a predicted decrease drowns in round-off, and a smaller gradient
+/// is taken as progress instead. Too small: the search stalls a few digits short. Too large: a step
+/// that climbs may pass.
 const ENERGY_NOISE: f64 = 1e-10;
-/// A step may take a force that must stay positive down to this part of itself. Smaller is no faster.
+/// A step may take a force that must stay positive down to this part of itself. Smaller is no
+/// faster.
 const MIN_FORCE_RATIO: f64 = 0.1;
 /// Closure wanted, in units of round-off of the lengths involved.
 const CLOSURE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
@@ -196,19 +202,28 @@ pub(super) struct Minimum {
     pub converged: bool,
 }
 
-/// Minimises φ(h, v) − (h, v)·d by Newton with Armijo's line search.
+/// Whether a horizontal force is known to be positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum HorizontalForce {
+    /// It may have either sign.
+    Any,
+    /// It is positive: a single span whose ends are apart sideways.
+    Positive,
+}
+
+/// Minimises φ(h, v) − (h, v)·`chord` by Newton with Armijo's line search.
 ///
-/// `lengths` says how large lengths are (for round-off), `positive` keeps h > 0 (a single span, X > 0).
+/// `lengths` says how large lengths are (for round-off).
 pub(super) fn minimise(
     energy: impl Fn(f64, f64) -> DualEnergy,
-    d: (f64, f64),
-    start: (f64, f64),
+    chord: [f64; 2],
+    start: [f64; 2],
     lengths: f64,
-    positive: bool,
+    sign: HorizontalForce,
 ) -> Minimum {
-    let (mut h, mut v) = start;
+    let [mut h, mut v] = start;
     let mut e = energy(h, v);
-    let (mut gx, mut gz) = (e.x - d.0, e.z - d.1);
+    let (mut gx, mut gz) = (e.x - chord[0], e.z - chord[1]);
     let mut iterations = 0;
     loop {
         let closure = gx.abs() + gz.abs();
@@ -223,17 +238,17 @@ pub(super) fn minimise(
         }
         iterations += 1;
         let slope = gx * ph + gz * pv;
-        let value = e.phi - h * d.0 - v * d.1;
+        let value = e.phi - h * chord[0] - v * chord[1];
         let mut alpha = 1.0;
-        if positive && h + ph < MIN_FORCE_RATIO * h {
+        if sign == HorizontalForce::Positive && h + ph < MIN_FORCE_RATIO * h {
             alpha = (1.0 - MIN_FORCE_RATIO) * h / -ph;
         }
         let mut accepted = false;
         for _ in 0..MAX_HALVINGS {
             let (hn, vn) = (h + alpha * ph, v + alpha * pv);
             let en = energy(hn, vn);
-            let (gxn, gzn) = (en.x - d.0, en.z - d.1);
-            let decrease = en.phi - hn * d.0 - vn * d.1 - value;
+            let (gxn, gzn) = (en.x - chord[0], en.z - chord[1]);
+            let decrease = en.phi - hn * chord[0] - vn * chord[1] - value;
             let in_noise = -slope * alpha <= ENERGY_NOISE * (e.phi.abs() + value.abs());
             if decrease <= ARMIJO * alpha * slope || (in_noise && gxn.abs() + gzn.abs() < closure) {
                 (h, v, e, gx, gz) = (hn, vn, en, gxn, gzn);
@@ -252,9 +267,8 @@ pub(super) fn minimise(
     }
 }
 
-/// A start for a single piece of unit weight and unit length (w = l = 1): `d` its chord, d.0 ≥ 0.
-pub(super) fn guess(d: (f64, f64), eps: f64) -> (f64, f64) {
-    let (dx, dz) = d;
+/// A start for a single piece of unit weight and unit length (w = l = 1) with a chord of dx ≥ 0.
+pub(super) fn guess([dx, dz]: [f64; 2], eps: f64) -> (f64, f64) {
     let chord = (dx * dx + dz * dz).sqrt();
     // Nearly taut: elastic stretch + the excess of a flat parabola make up the difference,
     // εT = (c − 1) + p²/24T², p the load across the chord. One positive root; Newton from above.
@@ -279,8 +293,8 @@ pub(super) fn guess(d: (f64, f64), eps: f64) -> (f64, f64) {
     if t > PARABOLA_ABOVE {
         return (t * dx / chord, t * dz / chord - 0.5);
     }
-    // Slack: the inextensible catenary of the length the hanging cable has, √(l² − z²) = 2a sinh(x/2a),
-    // λ = x/2a from sinh λ/λ = y.
+    // Slack: the inextensible catenary of the length the hanging cable has, √(l² − z²) = 2a
+    // sinh(x/2a), λ = x/2a from sinh λ/λ = y.
     let l = 1.0 + SLACK_GUESS_STRAIN * eps;
     let z = dz / l;
     if dx <= f64::MIN_POSITIVE || z.abs() >= 1.0 {
@@ -296,8 +310,8 @@ pub(super) fn guess(d: (f64, f64), eps: f64) -> (f64, f64) {
     (0.5 * dx / (lambda + 0.5 * eps * dx), 0.5 * (z / lambda.tanh() - 1.0))
 }
 
-/// Above this tension (in units of the weight) a span is guessed as a flat parabola. Between 0.3 and 2 the
-/// mean number of iterations over the grid changes by less than one.
+/// Above this tension (in units of the weight) a span is guessed as a flat parabola. Between 0.3
+/// and 2 the mean number of iterations over the grid changes by less than one.
 const PARABOLA_ABOVE: f64 = 0.6;
 /// Mean tension of a slack span in units of its weight, for its stretched length.
 const SLACK_GUESS_STRAIN: f64 = 0.3;

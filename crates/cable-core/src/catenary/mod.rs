@@ -6,27 +6,29 @@
 //! | `kernel.rs` | the formulas and the Newton iteration of one piece |
 //! | `chain.rs` | several pieces with dead loads between them |
 //!
-//! H. M. Irvine, *Cable Structures*, MIT Press, 1981, gives the elastic catenary in terms of the end force;
-//! M. Ahmadi-Kashani and A. J. Bell, "The analysis of cables subject to uniformly distributed loads",
-//! *Engineering Structures* 10 (1988) 174–184, discuss its solution. Here the end force is the minimum of the
-//! convex complementary energy ∫ |F| + |F|²/2EA ds − F·d, so that one Newton with a line search finds it from any
-//! start: slack, taut, folded, vertical. See `kernel` for the formulas.
+//! H. M. Irvine, *Cable Structures*, MIT Press, 1981, gives the elastic catenary in terms of the
+//! end force; M. Ahmadi-Kashani and A. J. Bell, "The analysis of cables subject to uniformly
+//! distributed loads", *Engineering Structures* 10 (1988) 174–184, discuss its solution. Here the
+//! end force is the minimum of the convex complementary energy ∫ |F| + |F|²/2EA ds − F·d, so that
+//! one Newton with a line search finds it from any start: slack, taut, folded, vertical. See
+//! `kernel` for the formulas.
 //!
-//! Material is measured by its unstretched length s at rest temperature. Warmth lengthens it by 1 + αΔT and
-//! keeps total load and EA, so the span is solved with length (1 + αΔT)L and the same total load.
+//! Material is measured by its unstretched length s at rest temperature. Warmth lengthens it by 1 +
+//! αΔT and keeps total load and EA, so the span is solved with length (1 + αΔT)L and the same total
+//! load.
 
 mod chain;
 mod kernel;
 
 pub use chain::{Chain, ChainForce, PointForce};
 
-use kernel::ChainPiece;
+use kernel::{ChainPiece, HorizontalForce};
 
-use crate::error::SolveError;
+use crate::error::{NoEquilibrium, SolveError};
 use crate::math::{Vec2, bounded, perp};
 
-/// Below this ratio of load to EA the load cannot be told from none on a stretched cable (its square would
-/// leave the range of f64), and the span is a straight bar.
+/// Below this ratio of load to EA the load cannot be told from none on a stretched cable (its
+/// square would leave the range of f64), and the span is a straight bar.
 const MIN_LOAD_RATIO: f64 = 1e-120;
 
 /// A cable between two points.
@@ -78,7 +80,7 @@ pub enum SpanError {
 
 impl From<SpanError> for SolveError {
     fn from(e: SpanError) -> Self {
-        Self::NoRestingPlace { why: e.to_string() }
+        Self::NoRestingPlace { why: NoEquilibrium::Span { reason: e.to_string() } }
     }
 }
 
@@ -112,7 +114,7 @@ impl Frame {
         (v.dot(&self.across), v.dot(&self.up))
     }
 
-    fn join(&self, (x, z): (f64, f64)) -> Vec2 {
+    fn join(&self, x: f64, z: f64) -> Vec2 {
         self.across * x + self.up * z
     }
 }
@@ -180,12 +182,15 @@ impl Catenary {
         // In units of the load and the length.
         let frame = Frame::new(span.weight, span.chord).facing(span.chord);
         let (x, z) = frame.split(span.chord);
-        let d = (x / length, z / length);
+        let chord = [x / length, z / length];
         let piece = ChainPiece { w: 1.0, l: 1.0, eps };
-        let (h, v, iterations) = if d.0 < f64::MIN_POSITIVE {
-            (0.0, kernel::vertical(d.1, eps), 0)
+        let (h, v, iterations) = if chord[0] < f64::MIN_POSITIVE {
+            (0.0, kernel::vertical(chord[1], eps), 0)
         } else {
-            let m = kernel::minimise(|h, v| piece.energy(h, v), d, kernel::guess(d, eps), 1.0 + d.0 + d.1.abs(), true);
+            let (h, v) = kernel::guess(chord, eps);
+            let lengths = 1.0 + chord[0] + chord[1].abs();
+            let energy = |h, v| piece.energy(h, v);
+            let m = kernel::minimise(energy, chord, [h, v], lengths, HorizontalForce::Positive);
             if !m.converged {
                 return Err(SpanError::NotConverged { iterations: m.iterations, closure_m: m.closure * length });
             }
@@ -204,8 +209,8 @@ impl Catenary {
         Ok(Self { span: straight, frame, h: span.axial_stiffness * (chord / length - 1.0), va: 0.0, iterations: 0 })
     }
 
-    /// A cable whose start force (N, pulling along growing arc length) is known, and with it where it ends:
-    /// a hanging tail, for instance. `span.chord` is not read.
+    /// A cable whose start force (N, pulling along growing arc length) is known, and with it where
+    /// it ends: a hanging tail, for instance. `span.chord` is not read.
     #[must_use]
     pub fn from_start_force(span: &Span, force: Vec2) -> Self {
         let frame = Frame::new(span.weight, force).facing(force);
@@ -232,10 +237,11 @@ impl Catenary {
         self.va + self.span.weight.norm() * s
     }
 
-    /// Force the rest of the cable exerts on the part before s, N: along the tangent of growing arc length.
+    /// Force the rest of the cable exerts on the part before s, N: along the tangent of growing arc
+    /// length.
     #[must_use]
     pub(crate) fn force_at(&self, s: f64) -> Vec2 {
-        self.frame.join((self.h, self.v(s)))
+        self.frame.join(self.h, self.v(s))
     }
 
     /// Force at the start, N: what the cable does to what holds its start.
@@ -266,7 +272,8 @@ impl Catenary {
     /// Position at s from the start, m.
     #[must_use]
     pub fn position_at(&self, s: f64) -> Vec2 {
-        self.frame.join(self.span.piece(s).displacement(self.h, self.va))
+        let (x, z) = self.span.piece(s).displacement(self.h, self.va);
+        self.frame.join(x, z)
     }
 
     /// Stretched length up to s, m.
@@ -275,7 +282,8 @@ impl Catenary {
         self.span.piece(s).stretched(self.h, self.va)
     }
 
-    /// Arc length of the point farthest along the load (the lowest point under weight), m: inside or at an end.
+    /// Arc length of the point farthest along the load (the lowest point under weight), m: inside
+    /// or at an end.
     #[must_use]
     pub fn lowest_s(&self) -> f64 {
         let w = self.span.weight.norm();
@@ -294,8 +302,8 @@ impl Catenary {
         self.position_at(self.lowest_s())
     }
 
-    /// Arc length where the cable is farthest below its chord along the load: V/H = Z/X, m. In a vertical fold
-    /// the lowest point.
+    /// Arc length where the cable is farthest below its chord along the load: V/H = Z/X, m. In a
+    /// vertical fold the lowest point.
     #[must_use]
     pub(crate) fn sag_s(&self) -> f64 {
         let w = self.span.weight.norm();
@@ -307,8 +315,8 @@ impl Catenary {
         }
     }
 
-    /// Greatest distance below the chord, measured along the load, m (below the lower end where the chord has
-    /// no extent across the load).
+    /// Greatest distance below the chord, measured along the load, m (below the lower end where the
+    /// chord has no extent across the load).
     #[must_use]
     pub fn sag(&self) -> f64 {
         let (x, z) = self.frame.split(self.span.chord);

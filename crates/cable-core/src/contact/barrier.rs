@@ -1,7 +1,7 @@
 //! A logarithmic barrier keeps gaps open.
 //!
-//! With u = g/d̂, for 0 < u < 1 (Li, Ferguson, Schneider et al., "Incremental Potential Contact", ACM TOG 2020;
-//! here made dimensionless, so that the stiffness κ is a force):
+//! With u = g/d̂, for 0 < u < 1 (Li, Ferguson, Schneider et al., "Incremental Potential Contact",
+//! ACM TOG 2020; here made dimensionless, so that the stiffness κ is a force):
 //! ```text
 //! B(g)  = κ d̂ φ(u),     φ(u)  = −(u − 1)² ln u
 //! B'(g) = κ φ'(u),      φ'(u) = −2(u − 1) ln u − (u − 1)²/u           ≤ 0, −B' is the normal force
@@ -48,8 +48,9 @@ impl Barrier {
         }
     }
 
-    /// How much less the normal force at a gap (m) is where the gap is wider by `by` (m), N. The curvature times that is more, as the barrier is convex, and many
-    /// times as much where the gap is less than `by`.
+    /// How much less the normal force at a gap (m) is where the gap is wider by `by` (m), N. The
+    /// curvature times that is more, as the barrier is convex, and many times as much where the gap
+    /// is less than `by`.
     #[must_use]
     pub(crate) fn relief(&self, gap: f64, by: f64) -> f64 {
         let closed = self.at(gap).slope;

@@ -3,12 +3,14 @@
 
 use crate::math::{Vec2, cross};
 
-/// Position (0 to 1) along the segment `a`–`b` of the point nearest to `p`; 0 for a segment of no length.
+/// Position (0 to 1) along the segment `a`–`b` of the point nearest to `p`; 0 for a segment of no
+/// length.
 #[must_use]
 pub(crate) fn nearest_fraction(p: Vec2, a: Vec2, b: Vec2) -> f64 {
     let d = b - a;
     let dd = d.norm_squared();
-    // The test is written so that a segment of no length (0/0) lands on `a`, while NaN input propagates.
+    // The test is written so that a segment of no length (0/0) lands on `a`, while NaN input
+    // propagates.
     if dd == 0.0 { 0.0 } else { ((p - a).dot(&d) / dd).clamp(0.0, 1.0) }
 }
 
@@ -24,7 +26,8 @@ pub(crate) fn point_segment(p: Vec2, a: Vec2, b: Vec2) -> f64 {
     from_segment(p, a, b).norm()
 }
 
-/// The shortest way to the segment `a`–`b` from the segment `p`–`q`, m; none when they cross or touch.
+/// The shortest way to the segment `a`–`b` from the segment `p`–`q`, m; none when they cross or
+/// touch.
 #[must_use]
 pub(crate) fn between_segments(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> Vec2 {
     if cross_properly(a, b, p, q) {

@@ -1,8 +1,9 @@
 //! Coulomb friction is a potential here, measured from a stored anchor.
 //!
-//! With y the sliding since the anchor, R = μN the largest friction force and ε the sliding at which it is
-//! reached (the smoothing of Li et al., "Incremental Potential Contact", ACM TOG 2020, but in displacement from
-//! a stored anchor instead of displacement in the step: a held contact then does not creep):
+//! With y the sliding since the anchor, R = μN the largest friction force and ε the sliding at
+//! which it is reached (the smoothing of Li et al., "Incremental Potential Contact", ACM TOG 2020,
+//! but in displacement from a stored anchor instead of displacement in the step: a held contact
+//! then does not creep):
 //! ```text
 //! |y| < ε:  D = R (y²/ε − |y|³/3ε²),   D' = R (2y/ε − y|y|/ε²),   D'' = R (2/ε)(1 − |y|/ε)
 //! |y| ≥ ε:  D = R (|y| − ε/3),         D' = R sign(y),             D'' = 0
@@ -26,7 +27,8 @@ pub fn at(y: f64, limit_force: f64, epsilon: f64) -> (f64, f64, f64) {
     }
 }
 
-/// Which branch of the law a contact is taken to be on, wherever it slides to while that is being found out.
+/// Which branch of the law a contact is taken to be on, wherever it slides to while that is being
+/// found out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Branch {
     /// It holds.
@@ -48,9 +50,10 @@ impl Branch {
         }
     }
 
-    /// The branch to try next where this one led from one sliding y to another. From sliding to sliding the other way leads through holding,
-    /// and so does the way from one side of holding beyond the other, where the law is nearly flat: else a contact that holds is thrown from
-    /// one side to the other for ever, each time by its whole force.
+    /// The branch to try next where this one led from one sliding y to another. From sliding to
+    /// sliding the other way leads through holding, and so does the way from one side of holding
+    /// beyond the other, where the law is nearly flat: else a contact that holds is thrown from one
+    /// side to the other for ever, each time by its whole force.
     #[must_use]
     pub fn next(self, [from, to]: [f64; 2], epsilon: f64) -> Self {
         let across = from.abs() < epsilon && from * to < 0.0;
@@ -61,7 +64,8 @@ impl Branch {
         }
     }
 
-    /// D' (N) and D'' (N/m) of this branch, carried on beyond its end: a holding contact by a spring of R/ε.
+    /// D' (N) and D'' (N/m) of this branch, carried on beyond its end: a holding contact by a
+    /// spring of R/ε.
     #[must_use]
     pub fn force(self, y: f64, limit_force: f64, epsilon: f64) -> (f64, f64) {
         match self {
@@ -153,7 +157,8 @@ mod tests {
         assert!(Branch::Stick.force(f64::NAN, limit, epsilon).0.is_nan());
     }
 
-    /// A spring k that draws a contact to f/k: Newton on the law itself is thrown from side to side.
+    /// A spring k that draws a contact to f/k: Newton on the law itself is thrown from side to
+    /// side.
     #[test]
     fn one_contact_on_a_spring_is_found_in_a_few_iterations() {
         let (limit, epsilon) = (3.0, 1e-5);

@@ -1,13 +1,15 @@
 //! The geometry holds the features of all obstacles in search trees; no other file imports parry2d.
 //!
-//! parry2d's own contact calls are two-sided for polylines, so only its bounding volume tree is used, for
-//! candidates; distances and signs are worked out here. A *body* is one obstacle, a *feature* one of its
-//! edges, corners or circles. Polygons are wound so that the solid lies right of travel, as with terrain
-//! drawn left to right; the outward normal is then always left of an edge.
+//! parry2d's own contact calls are two-sided for polylines, so only its bounding volume tree is
+//! used, for candidates; distances and signs are worked out here. A *body* is one obstacle,
+//! a *feature* one of its edges, corners or circles. Polygons are wound so that the solid lies
+//! right of travel, as with terrain drawn left to right; the outward normal is then always left of
+//! an edge.
 //!
-//! The sign of a distance follows from the nearest feature: left or right of an edge; at a corner, outside
-//! if the corner is convex and inside if it is not. (The angle-weighted pseudo-normal of Bærentzen and Aanæs,
-//! "Signed distance computation using the angle weighted pseudonormal", IEEE TVCG 2005, says the same in 2D.)
+//! The sign of a distance follows from the nearest feature: left or right of an edge; at a corner,
+//! outside if the corner is convex and inside if it is not. (The angle-weighted pseudo-normal of
+//! Bærentzen and Aanæs, "Signed distance computation using the angle weighted pseudonormal", IEEE
+//! TVCG 2005, says the same in 2D.)
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -79,7 +81,8 @@ pub struct Corner {
     pub after: Option<Vec2>,
 }
 
-/// A piece of an obstacle that something can be near to: an edge (with the corners it answers for) or a circle.
+/// A piece of an obstacle that something can be near to: an edge (with the corners it answers for)
+/// or a circle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part {
     /// Index of the body.
@@ -98,13 +101,15 @@ impl Corner {
         }
     }
 
-    /// Direction outwards: the sum of the normals that meet here (not a unit vector; 0 at the tip of a spike).
+    /// Direction outwards: the sum of the normals that meet here (not a unit vector; 0 at the tip
+    /// of a spike).
     #[must_use]
     pub(crate) fn outward(&self) -> Vec2 {
         perp(self.before.unwrap_or_default() + self.after.unwrap_or_default())
     }
 
-    /// How many of the edges that meet here have this corner as their nearest point to `p`, and how many meet.
+    /// How many of the edges that meet here have this corner as their nearest point to `p`, and how
+    /// many meet.
     #[must_use]
     pub fn clamped(&self, p: Vec2) -> (usize, usize) {
         let d = p - self.at;
@@ -143,8 +148,8 @@ impl Body {
         self.candidates_where(move |n, x| n.x <= high.x && n.y <= high.y && x.x >= low.x && x.y >= low.y)
     }
 
-    /// Edge indices whose boxes, from a lowest to a highest point, meet what is asked; `meets` holds for every box around
-    /// one for which it holds.
+    /// Edge indices whose boxes, from a lowest to a highest point, meet what is asked; `meets`
+    /// holds for every box around one for which it holds.
     pub(crate) fn candidates_where(&self, meets: impl Fn(Vec2, Vec2) -> bool + Copy) -> impl Iterator<Item = usize> {
         let listed = self.bvh.iter().flat_map(move |bvh| {
             bvh.leaves(move |node| {
@@ -172,7 +177,8 @@ impl Body {
         Some(Corner { at, feature: self.first + 2 * k + 1, before, after })
     }
 
-    /// Corners that a candidate edge answers for: its start, and the end of an open line's last edge.
+    /// Corners that a candidate edge answers for: its start, and the end of an open line's last
+    /// edge.
     pub(crate) fn corners_of(&self, k: usize) -> impl Iterator<Item = Corner> {
         let last = (k + 1 == self.edges.len() && !self.closed).then_some(k + 1);
         std::iter::once(k).chain(last).filter_map(|k| self.corner(k))
@@ -198,7 +204,8 @@ impl Body {
         self.solid && !self.closed && self.center.is_none()
     }
 
-    /// Whether contact at a corner can be felt by a straight segment: not where a solid recedes from it.
+    /// Whether contact at a corner can be felt by a straight segment: not where a solid recedes
+    /// from it.
     #[must_use]
     pub(crate) fn juts_out(&self, corner: &Corner) -> bool {
         !self.solid || corner.is_convex()
@@ -244,7 +251,8 @@ impl Body {
             Some(_) => -1.0,
             None => (p - e.p).dot(&e.normal()).signum(),
         };
-        // Beside an edge it is the edge's own: at a point on the edge p − at is what rounding left of it.
+        // Beside an edge it is the edge's own: at a point on the edge p − at is what rounding left
+        // of it.
         let normal = match corner {
             Some(_) => unit_or((p - at) * side, e.normal()),
             None if self.solid || (p - e.p).dot(&e.normal()) >= 0.0 => e.normal(),
@@ -335,7 +343,8 @@ impl Geometry {
         Self { bodies }
     }
 
-    /// Adds an outline that can be moved, for a cable of this radius (m); it is the body with the number `obstacle`.
+    /// Adds an outline that can be moved, for a cable of this radius (m); it is the body with the
+    /// number `obstacle`.
     pub(crate) fn add_outline(&mut self, outline: &Outline, obstacle: usize, cable_radius: f64) {
         self.bodies.push(Body {
             obstacle,
@@ -371,7 +380,8 @@ impl Geometry {
         &self.bodies
     }
 
-    /// All parts that a cable inside the box from `low` to `high` can come nearer than `reach` to (m), and some more.
+    /// All parts that a cable inside the box from `low` to `high` can come nearer than `reach` to
+    /// (m), and some more.
     pub fn parts(&self, low: Vec2, high: Vec2, reach: f64) -> impl Iterator<Item = Part> {
         self.bodies.iter().enumerate().flat_map(move |(body, b)| {
             let r = Vec2::repeat(reach + b.offset);
@@ -444,7 +454,8 @@ fn left_to_right(mut points: Vec<Vec2>) -> Vec<Vec2> {
 }
 
 fn clockwise(mut points: Vec<Vec2>) -> Vec<Vec2> {
-    // Twice the area about the first corner, so that a polygon far from the origin keeps its digits.
+    // Twice the area about the first corner, so that a polygon far from the origin keeps its
+    // digits.
     let Some(&o) = points.first() else { return points };
     let area: f64 = points.windows(2).map(|w| cross(w[0] - o, w[1] - o)).sum();
     if area > 0.0 {

@@ -1,4 +1,4 @@
-//! The contact module tells all models where obstacles are, how far away, and how rough.
+//! The contact module gives all models the place, distance and friction of obstacles.
 //!
 //! | room | content |
 //! |---|---|
@@ -10,9 +10,10 @@
 //! | `outline.rs` | the moving outline of a robot |
 //! | `nearest_corner.rs`, `swept_corners.rs` | the body that a cable wraps; corners that it has passed through |
 //!
-//! [`World`] compiles a scene's obstacles once. Gaps are measured from the cable's *surface*: the distance of
-//! the centre line from the obstacle less the cable radius (and half the thickness of a thin polyline).
-//! Terrain is solid below, polygons inside, circles inside; thin polylines have two sides.
+//! [`World`] compiles a scene's obstacles once. Gaps are measured from the cable's *surface*: the
+//! distance of the centre line from the obstacle less the cable radius (and half the thickness of a
+//! thin polyline). Terrain is solid below, polygons inside, circles inside; thin polylines have two
+//! sides.
 
 pub(crate) mod barrier;
 pub mod distance;
@@ -35,7 +36,8 @@ use crate::scene::Obstacle;
 /// One obstacle feature and where the cable is nearest to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
-    /// Distance between cable surface and obstacle surface, m; negative = penetration where a sign exists.
+    /// Distance between cable surface and obstacle surface, m; negative = penetration where a sign
+    /// exists.
     pub gap_m: f64,
     /// Unit normal, from the obstacle to the cable.
     pub normal: Vec2,
@@ -58,7 +60,8 @@ pub struct World {
 }
 
 impl World {
-    /// Compiles obstacles for a cable of the given friction and radius (m). Degenerate edges are dropped.
+    /// Compiles obstacles for a cable of the given friction and radius (m). Degenerate edges are
+    /// dropped.
     #[must_use]
     pub fn new(obstacles: &[Obstacle], cable_friction: f64, cable_radius: f64) -> Self {
         Self { geometry: geometry::Geometry::new(obstacles, cable_friction, cable_radius) }
@@ -84,21 +87,24 @@ impl World {
         self.geometry.is_empty()
     }
 
-    /// Signed gap of the cable's centre-line point `p` to the nearest obstacle within `reach` (m), solid
-    /// sides counted as negative. A point more than `reach` plus the cable radius inside a solid is not found.
+    /// Signed gap of the cable's centre-line point `p` to the nearest obstacle within `reach` (m),
+    /// solid sides counted as negative. A point more than `reach` plus the cable radius inside a
+    /// solid is not found.
     #[must_use]
     pub fn signed_gap(&self, p: Vec2, reach: f64) -> Option<Gap> {
         self.geometry.signed_gap(p, reach)
     }
 
-    /// Every feature within `reach` (m) of the centre-line segment `a`–`b`, unsigned, appended to `out`: edges and
-    /// corners seen from its ends (`fraction` exactly 0 or 1), corners and circles seen from its inside.
+    /// Every feature within `reach` (m) of the centre-line segment `a`–`b`, unsigned, appended to
+    /// `out`: edges and corners seen from its ends (`fraction` exactly 0 or 1), corners and circles
+    /// seen from its inside.
     pub fn segment_gaps(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<Gap>) {
         self.geometry.segment_gaps(a, b, reach, out);
     }
 
-    /// The largest fraction of the move `a0→a1, b0→b1` a centre-line segment can make and keep at least
-    /// `keep` (0 to 1) of each gap it had. 1 = free. Conservative: never lets the segment cross.
+    /// The largest fraction of the move `a0→a1, b0→b1` a centre-line segment can make and keep at
+    /// least `keep` (0 to 1) of each gap it had. 1 = free. Conservative: never lets the segment
+    /// cross.
     #[must_use]
     pub fn free_fraction(&self, from: [Vec2; 2], to: [Vec2; 2], keep: f64) -> f64 {
         self.geometry.free_fraction(from, to, keep)

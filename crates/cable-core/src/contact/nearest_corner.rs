@@ -5,7 +5,8 @@ use super::geometry::{Body, Geometry};
 use crate::math::{Vec2, smaller};
 
 impl Geometry {
-    /// The body whose convex corner or circle is nearest to a chain of nodes; None where the gap is not below `reach` (m).
+    /// The body whose convex corner or circle is nearest to a chain of nodes; None where the gap is
+    /// not below `reach` (m).
     #[must_use]
     pub(crate) fn nearest_wrap_body(&self, chain: &[Vec2], reach: f64) -> Option<&Body> {
         let first = *chain.first()?;

@@ -1,13 +1,14 @@
 //! A neighbour list (Verlet list) remembers what a segment of a chain can come near to while the
 //! chain stays about where it was.
 //!
-//! A search of the trees for every segment, in every iteration of a step, costs more than the step's equations. So each
-//! segment keeps a list: all parts within R of the box of its ends a₀, b₀. A segment (a, b) whose query reaches r is
-//! answered by the list as long as
+//! A search of the trees for every segment, in every iteration of a step, costs more than the
+//! step's equations. So each segment keeps a list: all parts within R of the box of its ends a₀,
+//! b₀. A segment (a, b) whose query reaches r is answered by the list as long as
 //! ```text
 //! max(|a − a₀|, |b − b₀|) + r ≤ R
 //! ```
-//! since every point of it is then within R − r of the box. Else the trees are asked: the list never decides what is found.
+//! since every point of it is then within R − r of the box. Else the trees are asked: the list
+//! never decides what is found.
 
 use super::geometry::{Geometry, Part};
 use crate::math::Vec2;
@@ -53,7 +54,8 @@ impl NeighbourLists {
         self.parts.extend(geometry.parts(a.inf(&b), a.sup(&b), within));
     }
 
-    /// The list of segment `e` if it holds all that its ends, at each of the places `at` (m), can be within `reach` (m) of.
+    /// The list of segment `e` if it holds all that its ends, at each of the places `at` (m), can
+    /// be within `reach` (m) of.
     #[must_use]
     pub fn of<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[Part]> {
         let entry = self.entries.get(e)?;
@@ -89,7 +91,8 @@ mod tests {
     }
 
     proptest! {
-        /// Whatever a list answers is what the trees answer: pairs of nodes and segments, and free ways.
+        /// Whatever a list answers is what the trees answer: pairs of nodes and segments, and free
+        /// ways.
         #[test]
         fn lists_find_what_the_trees_find(
             at in (0.0f64..9.0, 0.5f64..4.0), length in (-0.6f64..0.6, -0.6f64..0.6),

@@ -23,7 +23,7 @@ pub struct Outline {
 impl Outline {
     /// An outline by its corners and its hitch in its own axes, m; None if they enclose nothing.
     #[must_use]
-    pub fn new((corners, hitch): (&[Vec2], Vec2), placement: RigidPose, friction: f64, name: String) -> Option<Self> {
+    pub fn new(corners: &[Vec2], hitch: Vec2, placement: RigidPose, friction: f64, name: String) -> Option<Self> {
         let mut kept: Vec<Vec2> = Vec::with_capacity(corners.len());
         for c in corners.iter().filter(|c| c.iter().all(|v| v.is_finite())) {
             if kept.last() != Some(c) {
@@ -50,7 +50,8 @@ impl Outline {
         (0..n).map(move |k| [self.corners[k], self.corners[(k + 1) % n]].map(|p| placement.place(p)))
     }
 
-    /// Whether a chain of points (m) stays farther away than `least` (m) from the outline at a placement.
+    /// Whether a chain of points (m) stays farther away than `least` (m) from the outline at a
+    /// placement.
     #[must_use]
     pub(crate) fn is_clear(&self, placement: RigidPose, chain: impl Iterator<Item = Vec2>, least: f64) -> bool {
         let far = self.corners.iter().map(|c| c.norm()).fold(0.0, larger) + least;
@@ -80,7 +81,7 @@ mod tests {
     #[test]
     fn what_encloses_nothing_is_no_outline() {
         let line = [Vec2::zeros(), Vec2::x(), Vec2::x() * 2.0];
-        assert_eq!(Outline::new((&line, Vec2::zeros()), RigidPose::default(), 0.5, String::new()), None);
-        assert_eq!(Outline::new((&[], Vec2::zeros()), RigidPose::default(), 0.5, String::new()), None);
+        assert_eq!(Outline::new(&line, Vec2::zeros(), RigidPose::default(), 0.5, String::new()), None);
+        assert_eq!(Outline::new(&[], Vec2::zeros(), RigidPose::default(), 0.5, String::new()), None);
     }
 }

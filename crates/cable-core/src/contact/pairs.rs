@@ -1,22 +1,24 @@
 //! Contact pairs join a chain of cable segments with the obstacles and are smooth in the chain's
 //! position.
 //!
-//! Two families, each complete for one kind of touch, as in Li et al., "Incremental Potential Contact",
-//! ACM TOG 2020: cable node against boundary edges, and boundary corner (or circle) against cable segments.
-//! Where two edges meet, both have the corner as nearest point of a node there; counted plainly a node
-//! passing a flat joint would feel a bump. So corners enter by inclusion and exclusion (Li, Ferguson, Schneider
-//! et al., "Convergent incremental potential contact", 2023):
+//! Two families, each complete for one kind of touch, as in Li et al., "Incremental Potential
+//! Contact", ACM TOG 2020: cable node against boundary edges, and boundary corner (or circle)
+//! against cable segments. Where two edges meet, both have the corner as nearest point of a node
+//! there; counted plainly a node passing a flat joint would feel a bump. So corners enter by
+//! inclusion and exclusion (Li, Ferguson, Schneider et al., "Convergent incremental potential
+//! contact", 2023):
 //!
 //!   Σ over edges b(d(p, edge)) − Σ over inner corners b(d(p, corner)),
 //!
-//! which leaves b once on a flat or convex boundary and is continuous across a concave one. Terms that
-//! cancel are not emitted; what remains has weight +1 or, at a shallow concave corner, −1.
+//! which leaves b once on a flat or convex boundary and is continuous across a concave one. Terms
+//! that cancel are not emitted; what remains has weight +1 or, at a shallow concave corner, −1.
 
 use super::Gap;
 use super::geometry::{Body, Geometry, Part};
 use crate::math::Vec2;
 
-/// What is passed over because it is too far is this many times too far: no rounding decides what touches.
+/// What is passed over because it is too far is this many times too far: no rounding decides what
+/// touches.
 const CULLING_MARGIN: f64 = 1.0 + 1e-9;
 
 /// A contact pair with its sign.
@@ -29,8 +31,9 @@ pub struct Pair {
 }
 
 impl Geometry {
-    /// Pairs of one node: against edges and corners within `reach`, and against the corners that lie in the
-    /// wedge between its two segments. `before` and `after` are its neighbours in the chain.
+    /// Pairs of one node: against edges and corners within `reach`, and against the corners that
+    /// lie in the wedge between its two segments. `before` and `after` are its neighbours in the
+    /// chain.
     pub(crate) fn node_pairs(
         &self,
         before: Option<Vec2>,
@@ -42,7 +45,8 @@ impl Geometry {
         self.node_pairs_among(self.parts(p, p, reach), [before, Some(p), after], reach, out);
     }
 
-    /// The same among `parts`, which hold all that are within reach. The chain is the node between its neighbours.
+    /// The same among `parts`, which hold all that are within reach. The chain is the node between
+    /// its neighbours.
     pub(crate) fn node_pairs_among(
         &self,
         parts: impl Iterator<Item = Part>,
@@ -154,7 +158,8 @@ fn push_corner(body: &Body, corner: &super::geometry::Corner, p: Vec2, reach: f6
     push_point(body, corner.feature, [p, corner.at], weight, reach, out);
 }
 
-/// Corner or circle against a node, seen from it: what inclusion and exclusion over the node's segments leave.
+/// Corner or circle against a node, seen from it: what inclusion and exclusion over the node's
+/// segments leave.
 fn push_wedge(body: &Body, feature: usize, v: Vec2, chain: [Option<Vec2>; 3], reach: f64, out: &mut impl FnMut(Pair)) {
     let [before, Some(p), after] = chain else { return };
     let beyond = |other: Option<Vec2>| other.map(|o| (v - p).dot(&(o - p)) <= 0.0);

@@ -1,18 +1,20 @@
 //! Self-contact pairs the nodes of a cable with its own segments.
 //!
-//! A line in the plane can only cross itself where a node passes a segment, so pairs of nodes and segments are all
-//! that is needed. As with obstacles, nodes where two segments meet enter by inclusion and exclusion (see `pairs`),
-//! so that the sum is once the barrier along a straight stretch and continuous round a bend.
+//! A line in the plane can only cross itself where a node passes a segment, so pairs of nodes and
+//! segments are all that is needed. As with obstacles, nodes where two segments meet enter by
+//! inclusion and exclusion (see `pairs`), so that the sum is once the barrier along a straight
+//! stretch and continuous round a bend.
 //!
-//! Gaps are distances of centre lines less one diameter. What lies nearer along the cable than the cable can be bent back
-//! is no contact: two legs of a bend of the diameter d touch after π d/2 of arc length.
+//! Gaps are distances of centre lines less one diameter. What lies nearer along the cable than the
+//! cable can be bent back is no contact: two legs of a bend of the diameter d touch after π d/2 of
+//! arc length.
 
 use super::distance::{from_segment, nearest_fraction};
 use super::sweep::advance;
 use crate::math::Vec2;
 
-/// Arc length (diameters) along the cable within which it cannot touch itself: a half-turn of the radius d/2 takes 1.57, and
-/// segments need some room beside that.
+/// Arc length (diameters) along the cable within which it cannot touch itself: a half-turn of the
+/// radius d/2 takes 1.57, and segments need some room beside that.
 const MIN_ARC_DIAMETERS: f64 = 2.4;
 
 /// Distances are trusted to this many units in the last place of the coordinates.
@@ -82,6 +84,15 @@ impl SortedNodes {
     }
 }
 
+/// A node, and the place of a segment that is nearest to it.
+#[derive(Clone, Copy)]
+struct Pairing {
+    node: usize,
+    segment: usize,
+    fraction: f64,
+    weight: f64,
+}
+
 impl SelfContact {
     /// Whether the cable meets itself at all.
     #[must_use]
@@ -95,8 +106,9 @@ impl SelfContact {
         between >= MIN_ARC_DIAMETERS * self.diameter
     }
 
-    /// All pairs nearer than `reach` (m) at positions `x` with arc lengths `arc` (m), in a fixed order.
-    pub fn pairs(&self, (x, arc): (&[Vec2], &[f64]), reach: f64, order: &mut SortedNodes, out: &mut Vec<SelfPair>) {
+    /// All pairs nearer than `reach` (m) at positions `x` with arc lengths `arc` (m), in a fixed
+    /// order.
+    pub fn pairs(&self, x: &[Vec2], arc: &[f64], reach: f64, order: &mut SortedNodes, out: &mut Vec<SelfPair>) {
         out.clear();
         if !self.is_on() || x.len() < 3 {
             return;
@@ -112,21 +124,23 @@ impl SelfContact {
                 }
                 let fraction = nearest_fraction(x[p], x[e], x[e + 1]);
                 if fraction > 0.0 && fraction < 1.0 {
-                    self.push(x, (p, e, fraction, 1.0), reach, out);
+                    self.push(x, Pairing { node: p, segment: e, fraction, weight: 1.0 }, reach, out);
                 }
                 // Each segment answers for the joint at its end, the first one for its start too.
                 let joints = [(e == 0).then_some(0), Some(e + 1)];
                 for v in joints.into_iter().flatten() {
                     let weight = self.joint_weight(x, arc, p, v);
                     if weight != 0.0 {
-                        self.push(x, (p, e, if v == e { 0.0 } else { 1.0 }, weight), reach, out);
+                        let fraction = if v == e { 0.0 } else { 1.0 };
+                        self.push(x, Pairing { node: p, segment: e, fraction, weight }, reach, out);
                     }
                 }
-                // A joint whose later segment alone is far enough along the cable has nobody else to answer for it.
+                // A joint whose later segment alone is far enough along the cable has nobody else
+                // to answer for it.
                 if e > 0 && !self.apart(arc, p, e - 1) {
                     let weight = self.joint_weight(x, arc, p, e);
                     if weight != 0.0 {
-                        self.push(x, (p, e, 0.0, weight), reach, out);
+                        self.push(x, Pairing { node: p, segment: e, fraction: 0.0, weight }, reach, out);
                     }
                 }
             }
@@ -145,13 +159,8 @@ impl SelfContact {
         if before.is_some() && after.is_some() { count - 1.0 } else { count }
     }
 
-    fn push(
-        &self,
-        x: &[Vec2],
-        (node, segment, fraction, weight): (usize, usize, f64, f64),
-        reach: f64,
-        out: &mut Vec<SelfPair>,
-    ) {
+    fn push(&self, x: &[Vec2], pairing: Pairing, reach: f64, out: &mut Vec<SelfPair>) {
+        let Pairing { node, segment, fraction, weight } = pairing;
         let away = x[node] - (x[segment] * (1.0 - fraction) + x[segment + 1] * fraction);
         let distance = away.norm();
         if distance > 0.0 && distance - self.diameter < reach {
@@ -160,11 +169,12 @@ impl SelfContact {
         }
     }
 
-    /// The largest part (at most `limit`) of the move from `x` to `x` + `step` (m) that leaves `keep` of every gap, or `most` (m) where
-    /// that is less.
+    /// The largest part (at most `limit`) of the move from `x` to `x` + `step` (m) that leaves
+    /// `keep` of every gap, or `most` (m) where that is less.
     pub fn free_fraction(
         &self,
-        (x, arc): (&[Vec2], &[f64]),
+        x: &[Vec2],
+        arc: &[f64],
         step: &dyn Fn(usize) -> Vec2,
         [keep, most, limit]: [f64; 3],
         order: &mut SortedNodes,
@@ -184,7 +194,8 @@ impl SelfContact {
         for e in 0..x.len() - 1 {
             let [a, b] = [step(e), step(e + 1)];
             let (low, high) = (x[e].inf(&x[e + 1]), x[e].sup(&x[e + 1]));
-            // Nothing farther than this can come too near: both may move the widest step, and keep its part of the gap.
+            // Nothing farther than this can come too near: both may move the widest step, and keep
+            // its part of the gap.
             let near = self.diameter + 2.0 * widest * limit / (1.0 - keep) + noise;
             for p in order.between(x, low.x - near, high.x + near) {
                 if x[p].y < low.y - near || x[p].y > high.y + near || !self.apart(arc, p, e) {
@@ -194,16 +205,17 @@ impl SelfContact {
                 let c = step(p);
                 let moving = [(x[e] - x[p], a - c), (x[e + 1] - x[p], b - c)];
                 let way = |[a, b]: [Vec2; 2]| -from_segment(Vec2::zeros(), a, b);
-                free = advance(moving, (way, [Vec2::zeros(); 2]), self.diameter, [keep, most, noise], free);
+                free = advance(moving, way, [Vec2::zeros(); 2], self.diameter, [keep, most, noise], free);
             }
         }
         free
     }
 
-    /// The smallest gap (m) and the node that has it, searched within `within` (m); None if nothing is so near.
+    /// The smallest gap (m) and the node that has it, searched within `within` (m); None if nothing
+    /// is so near.
     pub fn smallest_gap(&self, x: &[Vec2], arc: &[f64], within: f64) -> Option<(f64, usize)> {
         let mut pairs = Vec::new();
-        self.pairs((x, arc), within, &mut SortedNodes::default(), &mut pairs);
+        self.pairs(x, arc, within, &mut SortedNodes::default(), &mut pairs);
         pairs.iter().filter(|p| p.weight > 0.0).map(|p| (p.gap_m, p.node)).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 }
@@ -225,8 +237,9 @@ mod tests {
     /// Barrier energy of the last node, J.
     fn energy(shape: SelfContact, barrier: &Barrier, x: &[Vec2], s: &[f64]) -> f64 {
         let mut pairs = Vec::new();
-        shape.pairs((x, s), barrier.reach, &mut SortedNodes::default(), &mut pairs);
-        // Seen from the last node: what the nodes it passes feel of it comes on top where it is over one of them.
+        shape.pairs(x, s, barrier.reach, &mut SortedNodes::default(), &mut pairs);
+        // Seen from the last node: what the nodes it passes feel of it comes on top where it is
+        // over one of them.
         pairs.iter().filter(|p| p.node + 1 == x.len()).map(|p| p.weight * barrier.at(p.gap_m).value).sum()
     }
 
@@ -257,7 +270,7 @@ mod tests {
         let x: Vec<Vec2> = (0..50).map(|k| Vec2::new(0.005 * f64::from(k), 0.0)).collect();
         assert_eq!(shape.smallest_gap(&x, &arc(&x), 0.1).map(|g| g.0 > 0.02), Some(true));
         let mut pairs = Vec::new();
-        shape.pairs((&x, &arc(&x)), 0.01, &mut SortedNodes::default(), &mut pairs);
+        shape.pairs(&x, &arc(&x), 0.01, &mut SortedNodes::default(), &mut pairs);
         assert!(pairs.is_empty());
         assert!(!SelfContact::default().is_on());
     }
@@ -268,7 +281,7 @@ mod tests {
         let x = bight(0.02 + 1e-6, 1.0);
         let s = arc(&x);
         let free = |step: &dyn Fn(usize) -> Vec2| {
-            shape.free_fraction((&x, &s), step, [0.5, 5e-7, 1.0], &mut SortedNodes::default())
+            shape.free_fraction(&x, &s, step, [0.5, 5e-7, 1.0], &mut SortedNodes::default())
         };
         assert_eq!(free(&|_| Vec2::new(0.3, -0.4)), 1.0);
         // The strand below slides along.
@@ -289,7 +302,7 @@ mod tests {
             let before = shape.smallest_gap(&x, &s, 1.0).map_or(1.0, |g| g.0);
             prop_assume!(before > 1e-6);
             let step = |k: usize| Vec2::new(moves[k].0, moves[k].1);
-            let free = shape.free_fraction((&x, &s), &step, [0.2, f64::INFINITY, 1.0], &mut SortedNodes::default());
+            let free = shape.free_fraction(&x, &s, &step, [0.2, f64::INFINITY, 1.0], &mut SortedNodes::default());
             prop_assert!((0.0..=1.0).contains(&free));
             for part in 1..=20 {
                 let t = free * f64::from(part) / 20.0;

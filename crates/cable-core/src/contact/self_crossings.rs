@@ -1,7 +1,7 @@
 //! This search finds every crossing of a line with itself, in order.
 //!
-//! Boxes of ever longer runs of segments form a binary tree; two runs whose boxes lie apart cannot cross. A line that does
-//! not fill the plane is searched in O(n log n + crossings).
+//! Boxes of ever longer runs of segments form a binary tree; two runs whose boxes lie apart cannot
+//! cross. A line that does not fill the plane is searched in O(n log n + crossings).
 
 use crate::math::{Vec2, cross};
 
@@ -24,8 +24,8 @@ pub(crate) struct SelfCrossing {
 /// Least and greatest corner of what a run of segments covers.
 type BoundingBox = [Vec2; 2];
 
-/// All crossings of the segments `points[k]`–`points[k + 1]`, by first and second segment. `joined(k)` says whether segment
-/// k is one (a break of the line is none).
+/// All crossings of the segments `points[k]`–`points[k + 1]`, by first and second segment.
+/// `joined(k)` says whether segment k is one (a break of the line is none).
 pub(crate) fn crossings(points: &[Vec2], joined: impl Fn(usize) -> bool) -> Vec<SelfCrossing> {
     let segments = points.len().saturating_sub(1);
     // What goes on and on in one direction does not come back.

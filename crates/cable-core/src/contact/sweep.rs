@@ -1,32 +1,35 @@
 //! Conservative advancement bounds how far a moving segment can go without crossing anything.
 //!
-//! Let n be the unit vector along the shortest way from a feature F to the moving segment (a, b) at t. Both are convex, so for
-//! every later t′
+//! Let n be the unit vector along the shortest way from a feature F to the moving segment (a, b) at
+//! t. Both are convex, so for every later t′
 //! ```text
 //! D(t′) ≥ min(n·a(t′), n·b(t′)) − max over F of n·x,      with equality at t′ = t
 //! ```
-//! and the right side is linear in t′: t may grow to where it passes D_keep, again and again from there (Mirtich, "Impulse-based
-//! dynamic simulation of rigid body systems", 1996, with the directed bound of Zhang, Lee, Kim, "Interactive continuous
-//! collision detection for non-convex polyhedra", The Visual Computer 22, 2006; D_keep as in Li et al., "Codimensional
-//! incremental potential contact", ACM TOG 2021). What slides along an edge is not stopped by it, however near it is.
+//! and the right side is linear in t′: t may grow to where it passes D_keep, again and again from
+//! there (Mirtich, "Impulse-based dynamic simulation of rigid body systems", 1996, with the
+//! directed bound of Zhang, Lee, Kim, "Interactive continuous collision detection for non-convex
+//! polyhedra", The Visual Computer 22, 2006; D_keep as in Li et al., "Codimensional incremental
+//! potential contact", ACM TOG 2021). What slides along an edge is not stopped by it, however near
+//! it is.
 
 use super::distance::{between_segments, from_segment, point_segment, segment_segment};
 use super::geometry::{Geometry, Part};
 use crate::math::{Vec2, cross, larger, smaller};
 
-/// Steps of advancement per feature. Fewer return a shorter free way at glancing approach (still safe); the
-/// distance left shrinks geometrically, and 1e5 random sweeps never used more than 40.
+/// Steps of advancement per feature. Fewer return a shorter free way at glancing approach (still
+/// safe); the distance left shrinks geometrically, and 1e5 random sweeps never used more than 40.
 const MAX_ADVANCES: usize = 48;
 
-/// Advancement ends when what is left to advance is this part of the gap: smaller costs steps, larger gives away free way.
+/// Advancement ends when what is left to advance is this part of the gap: smaller costs steps,
+/// larger gives away free way.
 const CONVERGED_FRACTION: f64 = 0.02;
 
 /// Distances are trusted to this many units in the last place of the coordinates.
 const ROUNDING_ULPS: f64 = 16.0;
 
-/// A gap below this (m) counts as touching: only the centre line is then kept from crossing. Supports are drawn
-/// right on the ground, with a gap of a rounding error; keeping a part of that would hold them for ever. The
-/// barrier never lets a free node come so near.
+/// A gap below this (m) counts as touching: only the centre line is then kept from crossing.
+/// Supports are drawn right on the ground, with a gap of a rounding error; keeping a part of that
+/// would hold them for ever. The barrier never lets a free node come so near.
 const TOUCHING_GAP: f64 = 1e-9;
 
 /// Largest part of a gap that can be asked to stay.
@@ -39,8 +42,8 @@ impl Geometry {
         self.free_fraction_round(&Sweep::new(from, to, keep), [None, None])
     }
 
-    /// As [`Self::free_fraction`] for a segment that ends tangent to the rounds of the corners or circles `round`,
-    /// at one or both ends: near these only its other end can come too close.
+    /// As [`Self::free_fraction`] for a segment that ends tangent to the rounds of the corners or
+    /// circles `round`, at one or both ends: near these only its other end can come too close.
     #[must_use]
     pub(crate) fn free_fraction_round(&self, sweep: &Sweep, round: [Option<usize>; 2]) -> f64 {
         self.free_fraction_among(self.parts(sweep.low, sweep.high, sweep.margin), sweep, round)
@@ -74,15 +77,16 @@ impl Geometry {
                 [true, true] => continue,
             };
             match (part.edge.and_then(|k| body.edges.get(k)), body.center) {
-                // Both ends on one side of its line and far enough from that: the edge cannot be met.
+                // Both ends on one side of its line and far enough from that: the edge cannot be
+                // met.
                 (Some(e), _) if way_off([a, b], e.p, e.normal()) - body.offset > sweep.clear(free) => {}
                 (Some(e), _) => {
                     let way = |[a, b]: [Vec2; 2]| between_segments(a, b, e.p, e.q);
-                    free = advance(moving, (way, [e.p, e.q]), body.offset, how, free);
+                    free = advance(moving, way, [e.p, e.q], body.offset, how, free);
                 }
                 (None, Some(c)) => {
                     let way = |[a, b]: [Vec2; 2]| -from_segment(c, a, b);
-                    free = advance(moving, (way, [c; 2]), body.offset, how, free);
+                    free = advance(moving, way, [c; 2], body.offset, how, free);
                 }
                 (None, None) => {}
             }
@@ -163,7 +167,8 @@ fn way_off([a, b]: [Vec2; 2], p: Vec2, n: Vec2) -> f64 {
 }
 
 impl Geometry {
-    /// Whether every gap of a segment is above `least` (m); `round` as in [`Self::free_fraction_round`].
+    /// Whether every gap of a segment is above `least` (m); `round` as in
+    /// [`Self::free_fraction_round`].
     #[must_use]
     pub(crate) fn is_clear(&self, [a, b]: [Vec2; 2], least: f64, round: [Option<usize>; 2]) -> bool {
         let (low, high) = (a.inf(&b), a.sup(&b));
@@ -191,11 +196,13 @@ impl Geometry {
     }
 }
 
-/// The free way up to `limit` of a segment whose ends are given with how far they go, against the feature between two points: `way`
-/// is the shortest from the feature to where the ends are. The part `keep` of the gap is left, or `most` (m) where that is less.
+/// The free way up to `limit` of a segment whose ends are given with how far they go, against the
+/// feature between two points: `way` is the shortest from the feature to where the ends are. The
+/// part `keep` of the gap is left, or `most` (m) where that is less.
 pub(super) fn advance(
     moving: [(Vec2, Vec2); 2],
-    (way, feature): (impl Fn([Vec2; 2]) -> Vec2, [Vec2; 2]),
+    way: impl Fn([Vec2; 2]) -> Vec2,
+    feature: [Vec2; 2],
     offset: f64,
     [keep, most, noise]: [f64; 3],
     limit: f64,
@@ -204,8 +211,9 @@ pub(super) fn advance(
     let at = |t: f64| moving.map(|(p, go)| p + go * t);
     let mut away = way(at(0.0));
     let mut d = away.norm();
-    // A cable already overlapping (not this model's doing) still must not be crossed by its centre line; a centre
-    // line already across cannot be crossed again, and holding it there would trap it.
+    // A cable already overlapping (not this model's doing) still must not be crossed by its centre
+    // line; a centre line already across cannot be crossed again, and holding it there would trap
+    // it.
     if d <= 0.0 {
         return limit;
     }
@@ -249,13 +257,16 @@ pub(super) fn advance(
     t
 }
 
-/// Until when (from `t` on, at most `limit`) the line through two moving points keeps a feature on one side, at least `least` (m) away.
+/// Until when (from `t` on, at most `limit`) the line through two moving points keeps a feature on
+/// one side, at least `least` (m) away.
 ///
-/// With e = b − a, r = p − a for a point p of the feature and τ = t′ − t, the line is at least K from p while
+/// With e = b − a, r = p − a for a point p of the feature and τ = t′ − t, the line is at least K
+/// from p while
 /// ```text
 /// ± e(τ) × r(τ) ≥ K |e(τ)|,      |e(τ)| ≤ L + Λ τ  up to the limit, as |e| is convex
 /// ```
-/// which is quadratic. A segment that turns about a corner it is near to is free by the root of its gap here, by a part of it above.
+/// which is quadratic. A segment that turns about a corner it is near to is free by the root of its
+/// gap here, by a part of it above.
 fn beside_line([(a, da), (b, db)]: [(Vec2, Vec2); 2], feature: [Vec2; 2], least: f64, [t, limit]: [f64; 2]) -> f64 {
     let from = a + da * t;
     let (e, turn, left) = (b + db * t - from, db - da, limit - t);

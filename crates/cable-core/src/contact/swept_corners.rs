@@ -1,7 +1,7 @@
 //! This test tells whether a cable has passed through something between two shapes.
 //!
-//! The old shape and back along the new one is a closed way; what it goes round was passed through. Corners and posts
-//! are looked at: nothing thinner is an obstacle.
+//! The old shape and back along the new one is a closed way; what it goes round was passed through.
+//! Corners and posts are looked at: nothing thinner is an obstacle.
 
 use super::World;
 use crate::math::{Vec2, cross};
@@ -30,9 +30,11 @@ pub fn corners(world: &World) -> Vec<Corner> {
     out
 }
 
-/// A corner that lies between the old shape and the new one, the farthest from the new one. `corners`: in order of x; `turns`: memory.
+/// A corner that lies between the old shape and the new one, the farthest from the new one.
+/// `corners`: in order of x; `turns`: memory.
 ///
-/// How often the closed way goes round a corner is how often it passes above it to the right, less to the left.
+/// How often the closed way goes round a corner is how often it passes above it to the right, less
+/// to the left.
 pub fn through(corners: &[Corner], old: &[Vec2], new: &[Vec2], turns: &mut Vec<i32>) -> Option<Corner> {
     let (low, high) = old.iter().chain(new).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
         (if p.x < low { p.x } else { low }, if p.x > high { p.x } else { high })

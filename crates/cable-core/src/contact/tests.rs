@@ -30,7 +30,8 @@ fn terrain(points: &[Point]) -> Shape {
     Shape::Terrain { points_m: points.to_vec() }
 }
 
-/// A rugged ground, a beam, a star with reflex corners, a post and a thin zigzag, all shifted by `o`.
+/// A rugged ground, a beam, a star with reflex corners, a post and a thin zigzag, all shifted by
+/// `o`.
 fn yard(o: f64) -> Vec<Obstacle> {
     let at = |p: [f64; 2]| [p[0] + o, p[1] + o];
     let mut dice = Dice(7);
@@ -104,7 +105,8 @@ fn signed_gaps_agree_with_brute_force_near_and_far() {
         for _ in 0..50_000 {
             let p = dice.point(9.5, offset);
             let g = world.signed_gap(p, 30.0).unwrap();
-            // Beyond a terrain's end "below" has no meaning for the brute force; the yard's ends are at ±10.
+            // Beyond a terrain's end "below" has no meaning for the brute force; the yard's ends
+            // are at ±10.
             let expected = brute(p, &obstacles);
             assert!((g.gap_m - expected).abs() <= tolerance, "{p} {g:?} {expected}");
             assert!((g.normal.norm() - 1.0).abs() < 1e-12);
@@ -162,7 +164,8 @@ fn corners_that_do_not_turn_are_not_felt() {
     assert_eq!(out.iter().map(|g| g.fraction).collect::<Vec<_>>(), [0.0, 1.0]);
 }
 
-/// Smallest distance of a segment from everything, less the offset, and the smallest over its reported pairs.
+/// Smallest distance of a segment from everything, less the offset, and the smallest over its
+/// reported pairs.
 #[test]
 fn the_nearest_pair_is_the_gap_of_the_segment() {
     let obstacles = yard(0.0);
@@ -193,7 +196,8 @@ fn the_nearest_pair_is_the_gap_of_the_segment() {
     assert!(met > 3000, "{met}");
 }
 
-/// The barrier's view: the weighted sum of a smooth function of the pairs' gaps is continuous as a bent chain moves.
+/// The barrier's view: the weighted sum of a smooth function of the pairs' gaps is continuous as a
+/// bent chain moves.
 #[test]
 fn pair_sums_have_no_jump() {
     let world = World::new(&yard(0.0), 0.5, RADIUS);
@@ -222,12 +226,13 @@ fn pair_sums_have_no_jump() {
             worst = worst.max((w[1] - w[0]).abs());
         }
     }
-    // One step moves a point by at most 0.07/400 m, which changes one term by 2·(reach + RADIUS)·that = 8e-5.
+    // One step moves a point by at most 0.07/400 m, which changes one term by 2·(reach +
+    // RADIUS)·that = 8e-5.
     assert!(worst < 8.0 * 8e-5, "{worst}");
 }
 
-/// First time in (0, 1) at which the moving segment touches an edge: an end reaches the edge, or an end of the
-/// edge reaches the segment. Exact roots, no search.
+/// First time in (0, 1) at which the moving segment touches an edge: an end reaches the edge, or an
+/// end of the edge reaches the segment. Exact roots, no search.
 fn first_crossing(from: [Vec2; 2], to: [Vec2; 2], p: Vec2, q: Vec2) -> Option<f64> {
     let (da, db) = (to[0] - from[0], to[1] - from[1]);
     let mut best: Option<f64> = None;
@@ -308,7 +313,8 @@ fn advancement_gives_most_of_the_free_way() {
     // Up or along: free. No move: free.
     assert_eq!(world.free_fraction([a, b], [a - down, b - down], 0.2), 1.0);
     assert_eq!(world.free_fraction([a, b], [a, b], 0.2), 1.0);
-    // A micrometre above the ground as well; and where it comes down on the way, as far as that allows.
+    // A micrometre above the ground as well; and where it comes down on the way, as far as that
+    // allows.
     let low = |p: Vec2| Vec2::new(p.x, RADIUS + 1e-6);
     let along = Vec2::new(3.0, 0.0);
     assert_eq!(world.free_fraction([low(a), low(b)], [low(a) + along, low(b) + along], 0.2), 1.0);
@@ -351,8 +357,9 @@ fn ten_metres_in_a_step_do_not_pass_a_beam_or_a_thin_line() {
     }
 }
 
-/// A sweep bounded by the speed of the bar's ends ends long before: by far the most of the gap was left after 48 advances, and a
-/// cable that a hand draws round a corner went a hundredth of its way in each iteration.
+/// A sweep bounded by the speed of the bar's ends ends long before: by far the most of the gap was
+/// left after 48 advances, and a cable that a hand draws round a corner went a hundredth of its way
+/// in each iteration.
 #[test]
 fn a_bar_that_slides_and_turns_about_a_post_is_free_until_its_gap_is_half() {
     let shape = Shape::Circle { center_m: [0.0, 0.0], radius_m: 0.05 };
@@ -363,7 +370,8 @@ fn a_bar_that_slides_and_turns_about_a_post_is_free_until_its_gap_is_half() {
         let gap = 10f64.powf(-6.0 + 3.0 * dice.unit());
         let y = 0.05 + RADIUS + gap;
         let from = [Vec2::new(-0.02 - 0.2 * dice.unit(), y), Vec2::new(0.02 + 0.2 * dice.unit(), y)];
-        // Along itself, turning, and a little up: what a taut cable does that slides round a corner.
+        // Along itself, turning, and a little up: what a taut cable does that slides round a
+        // corner.
         let along = Vec2::new(0.03 * (dice.unit() - 0.5), gap * dice.unit());
         let turn = 0.02 * (dice.unit() - 0.5);
         let go = [along - Vec2::y() * turn * from[0].x.abs(), along + Vec2::y() * turn * from[1].x.abs()];
@@ -372,7 +380,8 @@ fn a_bar_that_slides_and_turns_about_a_post_is_free_until_its_gap_is_half() {
             |t: f64| distance::point_segment(Vec2::zeros(), from[0] + go[0] * t, from[1] + go[1] * t) - 0.05 - RADIUS;
         let first = (0..=20_000).map(|k| f64::from(k) / 20_000.0).find(|&t| gap_at(t) < 0.5 * gap).unwrap_or(1.0);
         assert!(free <= first + 1e-12 && gap_at(free) >= 0.5 * gap - 1e-12, "{free} {first}");
-        // Two hundredths of the gap may be given away, and where it closes with the square of the way one hundredth of that.
+        // Two hundredths of the gap may be given away, and where it closes with the square of the
+        // way one hundredth of that.
         assert!(free > 0.97 * first - 1e-4, "{free} of {first}, gap {gap:e}");
         cut += usize::from(first < 1.0);
     }

@@ -1,14 +1,16 @@
 //! The axial energy is that of stretching a straight bar.
 //!
-//! A bar of unstretched length `l₀` and stiffness EA between `x₀` and `x₁`, with d = x₁ − x₀, l = |d|, t = d/l:
+//! A bar of unstretched length `l₀` and stiffness EA between `x₀` and `x₁`, with d = x₁ − x₀,
+//! l = |d|, t = d/l:
 //! ```text
 //! E      = EA (l − l₀)² / 2 l₀
 //! T      = EA (l/l₀ − 1)                       tension
 //! ∂E/∂d  = T t
 //! ∂²E/∂d² = (EA/l₀) t tᵀ + (T/l)(I − t tᵀ)     material + geometric stiffness
 //! ```
-//! A bar in compression has a negative geometric stiffness, which buckles it sideways. A cable has none:
-//! [`Curvature::Clipped`] sets it to zero there (reducing it is not enough, the tangent stays indefinite).
+//! A bar in compression has a negative geometric stiffness, which buckles it sideways. A cable has
+//! none: [`Curvature::Clipped`] sets it to zero there (reducing it is not enough, the tangent stays
+//! indefinite).
 
 use super::{Blocks, Curvature, Energy};
 use crate::math::{Mat2, Vec2};
@@ -34,7 +36,8 @@ impl Bar {
     pub(crate) fn stiffness_block(&self, d: Vec2, curvature: Curvature) -> Mat2 {
         let length = d.norm();
         if !(length > 0.0) {
-            // Both nodes in one place: no direction. The limit over all directions of the material part.
+            // Both nodes in one place: no direction. The limit over all directions of the material
+            // part.
             return Mat2::identity() * (0.5 * self.stiffness / self.rest_length);
         }
         let t = d / length;

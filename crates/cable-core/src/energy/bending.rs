@@ -1,16 +1,17 @@
 //! The bending energy is that of the turn between two bars, or of the turn out of a clamp.
 //!
-//! The turn at a node between the vectors `a` (into it) and `b` (out of it) is ψ = angle(b) − angle(a). With the
-//! length l̄ that belongs to the node the curvature is κ = ψ/l̄ (d(angle)/d(unstretched length)), the moment EI κ:
+//! The turn at a node between the vectors `a` (into it) and `b` (out of it) is ψ = angle(b) −
+//! angle(a). With the length l̄ that belongs to the node the curvature is κ = ψ/l̄
+//! (d(angle)/d(unstretched length)), the moment EI κ:
 //! ```text
 //! E = EI ψ² / 2 l̄,       ∇E = (EI/l̄) ψ ∇ψ,       ∇²E = (EI/l̄)(∇ψ ∇ψᵀ + ψ ∇²ψ)
 //! angle(v) = atan2(v_y, v_x):   ∇ = (−v_y, v_x)/v²,
 //!                               ∇² = [[2 v_x v_y, v_y² − v_x²], [v_y² − v_x², −2 v_x v_y]] / v⁴
 //! ```
-//! Inside the cable l̄ is half the sum of both rest lengths. At a clamp the angle of the clamp takes the place of
-//! angle(a), and the stretch that bends is from the clamp to the middle of the first bar: **l̄ = l₀/2**; taking
-//! l₀ instead puts the clamp half a bar away and costs 1 % of the clamp moment at any usual mesh.
-//! [`Curvature::Clipped`] leaves the term with ψ out.
+//! Inside the cable l̄ is half the sum of both rest lengths. At a clamp the angle of the clamp
+//! takes the place of angle(a), and the stretch that bends is from the clamp to the middle of the
+//! first bar: **l̄ = l₀/2**; taking l₀ instead puts the clamp half a bar away and costs 1 % of the
+//! clamp moment at any usual mesh. [`Curvature::Clipped`] leaves the term with ψ out.
 
 use super::{Blocks, Curvature, Energy};
 use crate::math::{Mat2, Vec2, cross};
@@ -166,7 +167,8 @@ mod tests {
 
     #[test]
     fn a_circle_of_bars_has_its_curvature() {
-        // n bars inscribed in a circle of radius R: Σ E = EI/2 · (2π/n)²/l · n with l = 2R sin(π/n).
+        // n bars inscribed in a circle of radius R: Σ E = EI/2 · (2π/n)²/l · n with l = 2R
+        // sin(π/n).
         let (radius, n) = (0.5, 64);
         let points: Vec<Vec2> =
             (0..n + 2).map(|k| polar(radius, std::f64::consts::TAU * f64::from(k) / f64::from(n))).collect();

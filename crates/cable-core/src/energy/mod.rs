@@ -1,9 +1,9 @@
 //! The energies of a cable's nodes come as value (J), gradient (N) and Hessian (N/m): `axial.rs`
 //! and `bending.rs`.
 //!
-//! Every energy is a function of the positions of `N` neighbouring nodes. The force on a node is minus the
-//! gradient. Each comes with its derivation above the code and finite-difference tests on random and
-//! degenerate input.
+//! Every energy is a function of the positions of `N` neighbouring nodes. The force on a node is
+//! minus the gradient. Each comes with its derivation above the code and finite-difference tests on
+//! random and degenerate input.
 
 pub mod axial;
 pub mod bending;
@@ -15,7 +15,8 @@ use crate::math::{Mat2, Vec2};
 pub enum Curvature {
     /// As it is: needed to judge stability and for quadratic convergence.
     Exact,
-    /// Clipped so that the element's Hessian has no negative eigenvalue: a Newton step then descends.
+    /// Clipped so that the element's Hessian has no negative eigenvalue: a Newton step then
+    /// descends.
     Clipped,
 }
 

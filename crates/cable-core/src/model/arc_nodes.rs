@@ -1,24 +1,28 @@
 //! An answer has so many nodes on an arc that the straight lines between them can be taken for the
 //! cable.
 //!
-//! A chord of an arc of radius r and turn φ comes inside it by its sagitta, r(1 − cos(φ/2)). With a the greatest one allowed,
-//! φ ≤ 2 acos(1 − a/r) = 4 asin √(a/2r): the second form keeps its digits where a ≪ r.
+//! A chord of an arc of radius r and turn φ comes inside it by its sagitta, r(1 − cos(φ/2)). With a
+//! the greatest one allowed, φ ≤ 2 acos(1 − a/r) = 4 asin √(a/2r): the second form keeps its digits
+//! where a ≪ r.
 
 use crate::math::smaller;
 
-/// Greatest sagitta, m, and as a part of the cable's diameter. An answer promises 1 mm and 2 %; the rest is for how far the
-/// ends of an arc themselves are off, and for circles that are themselves drawn. Larger: a reader of the nodes finds the cable
-/// inside a post. Smaller: nodes grow as the root of it, and show nothing more.
+/// Greatest sagitta, m, and as a part of the cable's diameter. An answer promises 1 mm and 2 %; the
+/// rest is for how far the ends of an arc themselves are off, and for circles that are themselves
+/// drawn. Larger: a reader of the nodes finds the cable inside a post. Smaller: nodes grow as the
+/// root of it, and show nothing more.
 const SAGITTA_M: f64 = 0.8e-3;
 const SAGITTA_DIAMETERS: f64 = 0.016;
-/// Greatest turn between two nodes, rad: tension that grows as e^{μφ} leaves a straight line by (μφ)²/8 of itself, 2e-3 at
-/// μ = 1. Larger: tension read between nodes is off by more; smaller: small corners fill the answer.
+/// Greatest turn between two nodes, rad: tension that grows as e^{μφ} leaves a straight line by
+/// (μφ)²/8 of itself, 2e-3 at μ = 1. Larger: tension read between nodes is off by more; smaller:
+/// small corners fill the answer.
 const TURN: f64 = 0.13;
-/// Parts of one arc at most. More: a thin cable on a drum of kilometres fills the memory; fewer: chords of such a drum cut it by
-/// more than is promised.
+/// Parts of one arc at most. More: a thin cable on a drum of kilometres fills the memory; fewer:
+/// chords of such a drum cut it by more than is promised.
 const MOST_PARTS: f64 = 8192.0;
 
-/// Parts that an arc of the centre line with a radius (m) and a turn (rad) is cut into, for a cable of a radius (m).
+/// Parts that an arc of the centre line with a radius (m) and a turn (rad) is cut into, for a cable
+/// of a radius (m).
 pub(in crate::model) fn parts(radius: f64, turn: f64, cable_radius: f64) -> usize {
     let sagitta = smaller(SAGITTA_M, 2.0 * SAGITTA_DIAMETERS * cable_radius);
     let most = if radius > sagitta { smaller(TURN, 4.0 * (0.5 * sagitta / radius).sqrt().asin()) } else { TURN };
@@ -33,8 +37,9 @@ pub(in crate::model) fn parts(radius: f64, turn: f64, cable_radius: f64) -> usiz
     }
 }
 
-/// The parts of the material of an arc that lie before each of its nodes but the first, from 0 to 1, for a strain along it: the more
-/// the cable is strained the less material there is, ds ~ dφ/(1 + ε). Simpson's rule for each part.
+/// The parts of the material of an arc that lie before each of its nodes but the first, from 0 to
+/// 1, for a strain along it: the more the cable is strained the less material there is, ds ~
+/// dφ/(1 + ε). Simpson's rule for each part.
 pub(in crate::model) fn material(parts: usize, strain: impl Fn(f64) -> f64) -> Vec<f64> {
     let rate = |f: f64| 1.0 / (1.0 + strain(f));
     let step = 1.0 / parts as f64;

@@ -39,14 +39,16 @@ pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
     } else if runs_free(problem) {
         (Model::Spans, "an end hangs over pulleys: contacts as intervals find where it stops running".to_owned())
     } else if problem.supports.iter().any(|s| s.wheel_radius > 0.0 && s.friction > 0.0) {
-        // `catenary` keeps the friction of a whole wheel as one number: it finds some motions slowly and some not at all.
+        // `catenary` keeps the friction of a whole wheel as one number: it finds some motions
+        // slowly and some not at all.
         (Model::Spans, "the cable rubs on wheels: contacts as intervals have no discretisation error".to_owned())
     } else {
         (Model::Catenary, "supports only: the elastic catenary has no discretisation error".to_owned())
     }
 }
 
-/// The model for all cables of a scene, the one that takes on most of those chosen, and the reason in one sentence.
+/// The model for all cables of a scene, the one that takes on most of those chosen, and the reason
+/// in one sentence.
 #[must_use]
 pub(crate) fn choose_for_all(problems: &[Arc<Problem>], question: Question) -> (Model, String) {
     let chosen = problems.iter().map(|p| choose(p, question));

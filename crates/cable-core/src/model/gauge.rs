@@ -1,20 +1,23 @@
 //! The gauge reads the tension of a moving cable after every inner step of a model.
 //!
-//! A jerk passes between two looks at a cable: the inner steps see it. And an instant of it breaks nothing: fracture under a pulse takes
-//! its time, and happens when the mean over that time reaches the strength (the incubation time criterion: Yu. V. Petrov,
-//! N. F. Morozov, "On the modeling of fracture of brittle solids", Journal of Applied Mechanics 61(3), 1994),
+//! A jerk can pass between two frames; the inner steps resolve it. A single instant of it does not
+//! break a cable: fracture under a pulse takes time, and happens when the mean over that time
+//! reaches the strength (the incubation time criterion: Yu. V. Petrov, N. F. Morozov, "On the
+//! modeling of fracture of brittle solids", Journal of Applied Mechanics 61(3), 1994),
 //! ```text
 //! 1/τ ∫ T(s, t') dt' over t − τ … t  ≥  T_b
 //! ```
-//! at a material point s. Meshes change, so means are taken at points of the cable that stay: the nodes of the first mesh that was
-//! gauged. Between two inner steps tension is linear in time, between two nodes linear along the cable.
+//! at a material point s. Meshes change, so means are taken at points of the cable that stay: the
+//! nodes of the first mesh that was gauged. Between two inner steps tension is linear in time,
+//! between two nodes linear along the cable.
 
 use crate::math::larger;
 use crate::solution::{TensionPeak, TensionPeaks};
 
-/// Looks at the mean in the time it is taken over. Of a triangular jerk as long as that, the greatest mean is missed by 1/(4·4²) of its
-/// height at most, 1.6 %; with 8 looks by 0.4 %, and a step of `fem`, which is as long as that time, costs 3 % more.
-const LOOKS: usize = 4;
+/// Looks at the mean in the time it is taken over. Of a triangular jerk as long as that, the
+/// greatest mean is missed by 1/(4·4²) of its height at most, 1.6 %; with 8 looks by 0.4 %, and a
+/// step of `fem`, which is as long as that time, costs 3 % more.
+const LOOKS_PER_MEAN: usize = 4;
 
 /// Two times (s) that differ by less are the same: sums of steps round.
 const SAME_TIME_S: f64 = 1e-9;
@@ -54,7 +57,7 @@ pub struct TensionGauge {
     /// What was noted of a step that may still be discarded.
     next_s: f64,
     next: Vec<f64>,
-    /// Time of the last look at the mean, in parts of `over_s / LOOKS`.
+    /// Time of the last look at the mean, in parts of `over_s / LOOKS_PER_MEAN`.
     look: f64,
     /// ∫T dt since the history began, N s.
     sum: Vec<f64>,
@@ -125,7 +128,7 @@ impl TensionGauge {
     pub fn peaks(&self) -> Option<TensionPeaks> {
         let greatest = self.greatest?;
         // In a step between two looks the mean is what it was.
-        let held = self.held.or_else(|| higher(None, (&self.points, &self.mean), most_of(&self.mean), self.time_s));
+        let held = self.held.or_else(|| higher(None, &self.points, &self.mean, most_of(&self.mean), self.time_s));
         Some(TensionPeaks { greatest, held: held.unwrap_or(greatest), over_s: self.over_s })
     }
 
@@ -154,8 +157,8 @@ impl TensionGauge {
         self.on && !((self.time_s - time_s * self.scale[1]).abs() <= SAME_TIME_S)
     }
 
-    /// Begins a history at a time (s): with the present tension as long as one likes where the cable was `at_rest`, else with none
-    /// before. Arc lengths of nodes in m, tensions in N.
+    /// Begins a history at a time (s): with the present tension as long as one likes where the
+    /// cable was `at_rest`, else with none before. Arc lengths of nodes in m, tensions in N.
     pub fn begin(&mut self, time_s: f64, at_rest: bool, arcs: &[f64], tension: impl Fn(usize) -> f64) {
         if !self.on {
             return;
@@ -168,14 +171,14 @@ impl TensionGauge {
         self.note(time_s, arcs, tension);
         self.time_s = self.next_s;
         std::mem::swap(&mut self.now, &mut self.next);
-        let (count, part_s) = (self.now.len(), self.over_s / LOOKS as f64);
+        let (count, part_s) = (self.now.len(), self.over_s / LOOKS_PER_MEAN as f64);
         self.look = if self.over_s > 0.0 { (self.time_s / part_s).floor() } else { 0.0 };
         let (past, mean) = (&self.now, if at_rest { 1.0 } else { 0.0 });
         self.mean.clear();
         self.mean.extend(past.iter().map(|t| t * mean));
         self.sums.clear();
-        for k in 0..LOOKS {
-            let before_s = self.time_s - (self.look - (LOOKS - 1 - k) as f64) * part_s;
+        for k in 0..LOOKS_PER_MEAN {
+            let before_s = self.time_s - (self.look - (LOOKS_PER_MEAN - 1 - k) as f64) * part_s;
             self.sums.extend(past.iter().map(|t| -t * mean * before_s));
         }
         self.sum.clear();
@@ -184,8 +187,8 @@ impl TensionGauge {
         self.oldest = 0;
     }
 
-    /// Notes the tension (N) at nodes of arc lengths (m, in order) after an inner step to a time (s). It counts once it is kept: the
-    /// step may still be discarded.
+    /// Notes the tension (N) at nodes of arc lengths (m, in order) after an inner step to a time
+    /// (s). It counts once it is kept: the step may still be discarded.
     pub fn note(&mut self, time_s: f64, arcs: &[f64], tension: impl Fn(usize) -> f64) {
         if !self.on {
             return;
@@ -217,7 +220,8 @@ impl TensionGauge {
         self.on && arcs.len() == self.points.len() && arcs.iter().zip(&self.points).all(|(s, p)| s * by == *p)
     }
 
-    /// Room for the tensions (N) at a time (s) of a mesh that it [knows](Self::knows): as [`Self::note`].
+    /// Room for the tensions (N) at a time (s) of a mesh that it [knows](Self::knows): as
+    /// [`Self::note`].
     pub fn room(&mut self, time_s: f64) -> &mut [f64] {
         self.next_s = time_s * self.scale[1];
         &mut self.next
@@ -233,18 +237,18 @@ impl TensionGauge {
         if self.over_s > 0.0 {
             self.take_means(from_s, to_s);
         } else {
-            let found = (self.held, self.reached);
-            (self.held, self.reached) =
-                look_at((&self.points, &self.limit), [from_s, to_s], [&self.now, &self.next], found);
+            let before = Found { held: self.held, reached: self.reached };
+            Found { held: self.held, reached: self.reached } =
+                look_at(&self.points, &self.limit, [from_s, to_s], [&self.now, &self.next], before);
         }
         let end_s = self.reached.map_or(to_s, |r| r.time_s);
         if end_s >= to_s {
-            self.greatest = higher(self.greatest, (&self.points, &self.next), most_of(&self.next), to_s);
+            self.greatest = higher(self.greatest, &self.points, &self.next, most_of(&self.next), to_s);
         } else if end_s > from_s {
             // A cable that broke in this step was not pulled on to its end.
             let part = (end_s - from_s) / h;
             self.now.iter_mut().zip(&self.next).for_each(|(a, b)| *a += (b - *a) * part);
-            self.greatest = higher(self.greatest, (&self.points, &self.now), most_of(&self.now), end_s);
+            self.greatest = higher(self.greatest, &self.points, &self.now, most_of(&self.now), end_s);
         }
         std::mem::swap(&mut self.now, &mut self.next);
         self.time_s = to_s;
@@ -259,9 +263,9 @@ impl TensionGauge {
 
     /// Looks at the means between two times (s).
     fn take_means(&mut self, from_s: f64, to_s: f64) {
-        let (part_s, per_s) = (self.over_s / LOOKS as f64, (to_s - from_s).recip());
+        let (part_s, per_s) = (self.over_s / LOOKS_PER_MEAN as f64, (to_s - from_s).recip());
         let (count, per_window) = (self.points.len().max(1), self.over_s.recip());
-        let (sum, ends) = (&mut self.sum, (&self.now, &self.next));
+        let (sum, now, next) = (&mut self.sum, &self.now, &self.next);
         let mut at_s = from_s;
         loop {
             let (before_s, mut until_s) = (self.look * part_s, (self.look + 1.0) * part_s);
@@ -269,12 +273,12 @@ impl TensionGauge {
                 break;
             }
             let last = (to_s / part_s).floor();
-            if at_s - from_s >= self.over_s && last - self.look > LOOKS as f64 {
+            if at_s - from_s >= self.over_s && last - self.look > LOOKS_PER_MEAN as f64 {
                 // In a step this long the mean goes on evenly from here to its end.
-                (self.look, self.oldest) = (last - LOOKS as f64, 0);
+                (self.look, self.oldest) = (last - LOOKS_PER_MEAN as f64, 0);
                 for slot in self.sums.chunks_exact_mut(count) {
                     until_s = self.look * part_s;
-                    add(sum, ends, [at_s, until_s].map(|t| (t - from_s) * per_s), until_s - at_s);
+                    add(sum, now, next, [at_s, until_s].map(|t| (t - from_s) * per_s), until_s - at_s);
                     slot.copy_from_slice(sum);
                     (self.look, at_s) = (self.look + 1.0, until_s);
                 }
@@ -282,7 +286,7 @@ impl TensionGauge {
             } else {
                 self.look += 1.0;
             }
-            add(sum, ends, [at_s, until_s].map(|t| (t - from_s) * per_s), until_s - at_s);
+            add(sum, now, next, [at_s, until_s].map(|t| (t - from_s) * per_s), until_s - at_s);
             at_s = until_s;
             self.spare.resize(self.points.len(), 0.0);
             if let Some(slot) = self.sums.chunks_exact_mut(count).nth(self.oldest) {
@@ -291,18 +295,18 @@ impl TensionGauge {
                     *slot = *sum;
                 }
             }
-            self.oldest = (self.oldest + 1) % LOOKS;
+            self.oldest = (self.oldest + 1) % LOOKS_PER_MEAN;
             std::mem::swap(&mut self.mean, &mut self.spare);
-            let found = (self.held, self.reached);
-            (self.held, self.reached) =
-                look_at((&self.points, &self.limit), [before_s, until_s], [&self.spare, &self.mean], found);
+            let before = Found { held: self.held, reached: self.reached };
+            Found { held: self.held, reached: self.reached } =
+                look_at(&self.points, &self.limit, [before_s, until_s], [&self.spare, &self.mean], before);
         }
-        add(sum, ends, [at_s, to_s].map(|t| (t - from_s) * per_s), to_s - at_s);
+        add(sum, now, next, [at_s, to_s].map(|t| (t - from_s) * per_s), to_s - at_s);
     }
 }
 
 /// Adds the integral of tensions over a time (s) between two parts of a step, N s.
-fn add(sum: &mut [f64], (now, next): (&Vec<f64>, &Vec<f64>), [from, to]: [f64; 2], time_s: f64) {
+fn add(sum: &mut [f64], now: &Vec<f64>, next: &Vec<f64>, [from, to]: [f64; 2], time_s: f64) {
     let middle = 0.5 * (from + to);
     let (low, high) = ((1.0 - middle) * time_s, middle * time_s);
     for ((sum, a), b) in sum.iter_mut().zip(now).zip(next) {
@@ -311,17 +315,17 @@ fn add(sum: &mut [f64], (now, next): (&Vec<f64>, &Vec<f64>), [from, to]: [f64; 2
 }
 
 /// The highest mean, and where the limit was first reached.
-type Found = (Option<TensionPeak>, Option<TensionPeak>);
+#[derive(Clone, Copy)]
+struct Found {
+    held: Option<TensionPeak>,
+    reached: Option<TensionPeak>,
+}
 
 /// Looks at means (N) between two times (s) at which they are known.
-fn look_at(
-    (points, limit): (&[f64], &Limit),
-    [from_s, to_s]: [f64; 2],
-    [was, is]: [&[f64]; 2],
-    (held, reached): Found,
-) -> Found {
-    if reached.is_some() {
-        return (held, reached);
+fn look_at(points: &[f64], limit: &Limit, [from_s, to_s]: [f64; 2], [was, is]: [&[f64]; 2], before: Found) -> Found {
+    let held = before.held;
+    if before.reached.is_some() {
+        return before;
     }
     let most = most_of(is);
     if most >= limit.tension_n && to_s >= limit.from_s {
@@ -339,13 +343,15 @@ fn look_at(
             }
         }
         if let Some((first, _)) = first {
-            return (held.filter(|h| h.tension_n >= first.tension_n).or(Some(first)), Some(first));
+            let held = held.filter(|h| h.tension_n >= first.tension_n).or(Some(first));
+            return Found { held, reached: Some(first) };
         }
     }
-    (higher(held, (points, is), most, to_s), None)
+    Found { held: higher(held, points, is, most, to_s), reached: None }
 }
 
-/// The greatest of some figures, 0 of none. In lanes: one after the other each waits for the one before.
+/// The greatest of some figures, 0 of none. In lanes: one after the other each waits for the one
+/// before.
 fn most_of(figures: &[f64]) -> f64 {
     let mut lanes = [0.0; 4];
     let fours = figures.chunks_exact(4);
@@ -363,7 +369,8 @@ fn most_of(figures: &[f64]) -> f64 {
 /// A peak, or the greatest of some tensions (N) at points (m) at a time (s) where that is more.
 fn higher(
     before: Option<TensionPeak>,
-    (points, tensions): (&[f64], &[f64]),
+    points: &[f64],
+    tensions: &[f64],
     most: f64,
     time_s: f64,
 ) -> Option<TensionPeak> {

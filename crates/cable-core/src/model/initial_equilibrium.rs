@@ -12,10 +12,11 @@ use crate::problem::{Problem, SupportPoint};
 use crate::solution::{CableSolution, Node, Warning, WarningKind};
 use crate::state::State;
 
-/// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes it unseen.
+/// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes
+/// it unseen.
 const ROBOT_CLEARANCE_M: f64 = 0.02;
-/// An answer of `spans` at rest that is this deep in an obstacle is none, m. Less: chords across round things are; more: a slack
-/// cable that hangs in the ground is shown.
+/// An answer of `spans` at rest that is this deep in an obstacle is none, m. Less: chords across
+/// round things are; more: a slack cable that hangs in the ground is shown.
 const MAX_BURIAL_M: f64 = 0.02;
 /// How deep is looked, m: what is deeper came in somewhere.
 const BURIAL_SEARCH_M: f64 = 0.5;
@@ -31,15 +32,16 @@ pub struct InitialEquilibrium {
     pub spans: Box<SpansModel>,
 }
 
-/// Where the cable comes to lie with the least sliding, supports `dragged` (m) and the robot led to where it is; None where `spans`
-/// does not know.
+/// Where the cable comes to lie with the least sliding, supports `dragged` (m) and the robot led to
+/// where it is; None where `spans` does not know.
 ///
 /// # Errors
 /// That it slides from where it is laid.
 pub fn initial_equilibrium(
     problem: &Arc<Problem>,
     settings: Settings,
-    (dragged, robot_pose): (&[Option<Vec2>], Option<RigidPose>),
+    dragged: &[Option<Vec2>],
+    robot_pose: Option<RigidPose>,
 ) -> Result<Option<InitialEquilibrium>, SolveError> {
     let Ok(mut spans) = SpansModel::new(as_flexible(problem), settings) else { return Ok(None) };
     for (k, at) in dragged.iter().enumerate() {
@@ -72,17 +74,18 @@ fn of_flexible(warning: &mut Warning) {
     );
 }
 
-/// Whether a flexible cable that slid from where it was laid slides on from where it is said to rest: that was no rest then.
+/// Whether a flexible cable that slid from where it was laid slides on from where it is said to
+/// rest: that was no rest then.
 #[must_use]
 pub(crate) fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &CableSolution) -> bool {
     let route = answer.nodes.iter().map(Node::at).collect();
     let there = Arc::new(Problem { route, ..Problem::clone(&Problem::without_outline(problem.clone())) });
-    let slides = initial_equilibrium(&there, settings, (&[], None));
+    let slides = initial_equilibrium(&there, settings, &[], None);
     problem.bending_stiffness == 0.0 && matches!(slides, Err(SolveError::NoRestingPlace { .. }))
 }
 
-/// Work of the weight and the dead loads of a cable on its way from one shape to another, J. What slides away to where it rests comes
-/// down: friction only takes.
+/// Work of the weight and the dead loads of a cable on its way from one shape to another, J. What
+/// slides away to where it rests comes down: friction only takes.
 #[must_use]
 pub fn work(problem: &Problem, from: &State, to: &CableSolution, time_s: f64) -> f64 {
     let moved = |n: &Node| from.position_at(n.arc_length_m).map_or_else(Vec2::zeros, |before| n.at() - before);
@@ -108,8 +111,8 @@ pub(crate) fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
     Warning::new(WarningKind::Stabilised, &problem.cable.name, 0.0, [0.0; 2], message)
 }
 
-/// The cable as `spans` can lay it: without the robot, which moves; a stiff one as a flexible one, it bends from there; and supports that
-/// let go later hold it.
+/// The cable as `spans` can lay it: without the robot, which moves; a stiff one as a flexible one,
+/// it bends from there; and supports that let go later hold it.
 fn as_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
     let plain = Problem::without_outline(problem.clone());
     let lets_go = |s: &SupportPoint| s.release.is_some_and(|t| t > 0.0);

@@ -1,46 +1,52 @@
 //! A dragged support follows a filtered target: a point of limited speed behind three lags. A hand
 //! holds a support by a spring whose free end is such a target; a robot leads its hitch exactly.
 //!
-//! The target comes 60 times a second and jumps. Fed straight into a stiff cable it shakes it: piecewise linear
-//! input costs 52–330 % of tension error where a C² curve of the same input costs 1e-4. So the target is
-//! followed by a point of limited speed and that through three equal lags, p = (τ d/dt + 1)⁻³ q: position,
-//! velocity and acceleration are then continuous whatever the target does.
+//! The target comes 60 times a second and jumps. Fed straight into a stiff cable it shakes it:
+//! piecewise linear input costs 52–330 % of tension error where a C² curve of the same input costs
+//! 1e-4. So the target is followed by a point of limited speed and that through three equal lags,
+//! p = (τ d/dt + 1)⁻³ q: position, velocity and acceleration are then continuous whatever the
+//! target does.
 //!
 //! A hand at h holds a support at x by a linear spring with a damper beside it,
 //! ```text
 //! F = k (h − x) + c (ḣ − ẋ)
 //! ```
-//! so the support is where this and the cable's pull balance: what is beyond the cable's length is pulled harder and harder, not reached. The support is a
-//! node of the cable like any other. With both velocities those of the step, the changes over its time, F = κ (p − x) is a spring again, of stiffness κ = k + c/Δt
-//! to a place p, so it is one more term of the energy that a step minimises, convex, and needs no exchange of forces and no limit of the step ([`Hand::pull`]).
+//! so the support is where this and the cable's pull balance: what is beyond the cable's length is
+//! pulled harder and harder, not reached. The support is a node of the cable like any other. With
+//! both velocities those of the step, the changes over its time, F = κ (p − x) is a spring again,
+//! of stiffness κ = k + c/Δt to a place p, so it is one more term of the energy that a step
+//! minimises, convex, and needs no exchange of forces and no limit of the step ([`Hand::pull`]).
 
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{HandReport, Warning, WarningKind};
 
-/// Time constant of each lag, s. Smaller: the cable feels the steps of the hand; larger: the support trails the
-/// hand by 3τ. Chosen so that the trailing (45 ms) is under three frames.
+/// Time constant of each lag, s. Smaller: the cable feels the steps of the hand; larger: the
+/// support trails the hand by 3τ. Chosen so that the trailing (45 ms) is under three frames.
 const LAG_S: f64 = 0.015;
 
 /// How long a support trails a target that moves evenly, s.
 #[cfg(test)]
 const TRAILING_S: f64 = 3.0 * LAG_S;
 
-/// Fastest a hand draws a support unless asked otherwise, m/s: that of an arm. Faster: a flick of the mouse over metres of scene, which no
-/// hand could do there, breaks the cable; slower: the support trails a hand that means it.
+/// Fastest a hand draws a support unless asked otherwise, m/s: that of an arm. Faster: a flick of
+/// the mouse over metres of scene, which no hand could do there, breaks the cable; slower: the
+/// support trails a hand that means it.
 pub(crate) const HAND_SPEED: f64 = 2.0;
 
-/// The fastest a hand may be asked to be, and a support catches up with its motion after something held it, m/s.
-/// Uncapped, a jump of 10 m in a frame loses 77 to 734 steps.
+/// The fastest a hand may be asked to be, and a support catches up with its motion after something
+/// held it, m/s. Uncapped, a jump of 10 m in a frame loses 77 to 734 steps.
 pub const MAX_SPEED: f64 = 20.0;
 
-/// Part of the cable's length that a hand is ahead of a support where it carries the whole cable, unless its stiffness is asked for. Smaller: a hand that is
-/// put a little beyond the cable's length breaks it at once; larger: what is drawn hangs far below the pointer.
+/// Part of the cable's length that a hand is ahead of a support where it carries the whole cable,
+/// unless its stiffness is asked for. Smaller: a hand that is put a little beyond the cable's
+/// length breaks it at once; larger: what is drawn hangs far below the pointer.
 const HAND_GIVE_FRACTION: f64 = 0.01;
 
-/// Damping ratio of the whole cable on a hand's spring; of half of it, which a hand carries, it is 0.35. Less: a cable that was lifted goes on bobbing; more: a hand
-/// that starts at its greatest speed pushes the cable by more than that weighs.
+/// Damping ratio of the whole cable on a hand's spring; of half of it, which a hand carries, it is
+/// 0.35. Less: a cable that was lifted goes on bobbing; more: a hand that starts at its greatest
+/// speed pushes the cable by more than that weighs.
 const HAND_DAMPING_RATIO: f64 = 0.25;
 
 /// Stiffnesses a hand may have, N/m. Below: it moves nothing; above: its force is rounding.
@@ -61,7 +67,8 @@ pub(crate) fn held_warning(
     problem: &Problem,
     support: usize,
     arc_length_m: f64,
-    (f, fastest): (&SmoothedTarget, f64),
+    f: &SmoothedTarget,
+    fastest: f64,
 ) -> Warning {
     let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
     let behind = f.behind_m();
@@ -71,8 +78,9 @@ pub(crate) fn held_warning(
     Warning::new(WarningKind::SupportHeld, &problem.cable.name, arc_length_m, speeds, message)
 }
 
-/// Stiffness of a hand's spring unless asked otherwise, N/m: with the whole load on a cable (weight, wind, loads, what a floor rubs) it is a hundredth of the
-/// cable's length ahead, whatever the cable.
+/// Stiffness of a hand's spring unless asked otherwise, N/m: with the whole load on a cable
+/// (weight, wind, loads, what a floor rubs) it is a hundredth of the cable's length ahead, whatever
+/// the cable.
 #[must_use]
 pub fn default_hand_stiffness(problem: &Problem) -> f64 {
     let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal * problem.length);
@@ -91,10 +99,10 @@ pub struct Hand {
 }
 
 impl Hand {
-    /// Takes hold of a support at `at` (m) with the force (N, on the cable) that has held it so far, so nothing jerks; `stiffness` N/m, by default that of
-    /// [`default_hand_stiffness`].
+    /// Takes hold of a support at `at` (m) with the force (N, on the cable) that has held it so
+    /// far, so nothing jerks; `stiffness` N/m, by default that of [`default_hand_stiffness`].
     #[must_use]
-    pub fn grip(problem: &Problem, stiffness: Option<f64>, (at, force): (Vec2, Vec2)) -> Self {
+    pub fn grip(problem: &Problem, stiffness: Option<f64>, at: Vec2, force: Vec2) -> Self {
         let stiffness = stiffness.unwrap_or_else(|| default_hand_stiffness(problem));
         let mass = problem.linear_density * problem.length + problem.supports.iter().map(|s| s.mass).sum::<f64>();
         let damping = 2.0 * HAND_DAMPING_RATIO * (stiffness * mass).sqrt();
@@ -118,8 +126,8 @@ impl Hand {
         self.stiffness
     }
 
-    /// Its force on the cable at the end of a step of `dt_s` that its free end has made, as that of a spring without a damper: stiffness (N/m) and place (m); the
-    /// support comes from `from` (m).
+    /// Its force on the cable at the end of a step of `dt_s` that its free end has made, as that of
+    /// a spring without a damper: stiffness (N/m) and place (m); the support comes from `from` (m).
     #[must_use]
     pub fn pull(&self, dt_s: f64, from: Vec2) -> (f64, Vec2) {
         let rate = self.damping / dt_s;
@@ -128,20 +136,23 @@ impl Hand {
         (stiffness, (self.end.position() * self.stiffness + gone * rate) / stiffness)
     }
 
-    /// What an answer tells of it, with its force on the cable, N.
+    /// The report of it in a solution, with its force on the cable, N.
     #[must_use]
     pub fn report(&self, force: Vec2) -> HandReport {
         let end = self.end.position();
         HandReport { x_m: end.x, y_m: end.y, stiffness_n_per_m: self.stiffness, force_x_n: force.x, force_y_n: force.y }
     }
 
-    /// What is to be said where the hand is behind its target, or the support, at `at` (m), behind the hand by more than a hundredth of the cable; `force`
-    /// on the cable in N, `fastest` in m/s.
+    /// What is to be said where the hand is behind its target, or the support, at `at` (m), behind
+    /// the hand by more than a hundredth of the cable; `force` on the cable in N, `fastest` in m/s.
     #[must_use]
     pub fn warning(
         &self,
-        (problem, support, arc_length_m): (&Problem, usize, f64),
-        (at, force): (Vec2, Vec2),
+        problem: &Problem,
+        support: usize,
+        arc_length_m: f64,
+        at: Vec2,
+        force: Vec2,
         fastest: f64,
     ) -> Option<Warning> {
         let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
@@ -202,7 +213,8 @@ impl SmoothedTarget {
         self.velocity
     }
 
-    /// How far from its target the last step left it because it may be no faster, m; 0 where it was fast enough.
+    /// How far from its target the last step left it because it may be no faster, m; 0 where it was
+    /// fast enough.
     #[must_use]
     pub(crate) fn behind_m(&self) -> f64 {
         self.behind_m

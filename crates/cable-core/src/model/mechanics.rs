@@ -40,7 +40,8 @@ pub struct RobotContact {
     pub left_m: f64,
 }
 
-/// What a model has for itself alone: the memory it works in, and its obstacles, among which it moves the outline of the robot.
+/// What a model has for itself alone: the memory it works in, and its obstacles, among which it
+/// moves the outline of the robot.
 #[derive(Debug)]
 pub struct OwnedResources {
     /// Its working memory, of a type that it alone knows.
@@ -64,23 +65,25 @@ pub trait Mechanics: Send {
         None
     }
 
-    /// Finds the resting place at the present time from the present state (after `new`: from the route)
-    /// and sets velocities to zero.
+    /// Finds the resting place at the present time from the present state (after `new`: from the
+    /// route) and sets velocities to zero.
     ///
     /// # Errors
     /// A typed reason when there is none, or none was found.
     fn settle(&mut self) -> Result<StepReport, SolveError>;
 
-    /// Advances time by exactly `dt_s` (sub-stepping inside as the model needs). On an error the state is
-    /// the last good one, its time says how far it came.
+    /// Advances time by exactly `dt_s` (sub-stepping inside as the model needs). On an error the
+    /// state is the last good one, its time says how far it came.
     ///
     /// # Errors
-    /// `TimeStep` for a step that is zero, negative, not finite or too large; `StepFailed` otherwise.
+    /// `TimeStep` for a step that is zero, negative, not finite or too large; `StepFailed`
+    /// otherwise.
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
         self.advance_gauged(dt_s, inertia, &mut TensionGauge::off())
     }
 
-    /// The same; every inner step with inertia tells `gauge` the tension along the cable.
+    /// As [`Self::advance`]; every inner step with inertia passes the tension along the cable to
+    /// `gauge`.
     ///
     /// # Errors
     /// As [`Self::advance`].
@@ -99,14 +102,16 @@ pub trait Mechanics: Send {
         self.state().time_s
     }
 
-    /// Takes over a state of the same cable, resampled on this model's mesh (after an edit, or from another model).
+    /// Takes over a state of the same cable, resampled on this model's mesh (after an edit, or from
+    /// another model).
     ///
     /// # Errors
-    /// When a number is not finite or the state does not fit the cable; `Buried` when the model cannot go on from inside an obstacle.
+    /// When a number is not finite or the state does not fit the cable; `Buried` when the model
+    /// cannot go on from inside an obstacle.
     fn set_state(&mut self, state: &State) -> Result<(), SolveError>;
 
-    /// Goes on from an answer of the same cable, by this model or another: as [`Self::set_state`], and where the model can,
-    /// what friction held is still held.
+    /// Goes on from an answer of the same cable, by this model or another: as [`Self::set_state`],
+    /// and where the model can, what friction held is still held.
     ///
     /// # Errors
     /// As [`Self::set_state`].
@@ -114,27 +119,33 @@ pub trait Mechanics: Send {
         self.set_state(&State::of_nodes(&answer.nodes, time_s))
     }
 
-    /// From now on a support follows `target_m` (smoothly and no faster than [`super::Settings::hand_speed_m_per_s`] in `Dynamic` steps; at the
-    /// next `settle` or quasi-static step it is there) instead of its `motion`. One of a robot goes there evenly in the next step, whatever that takes.
+    /// From now on a support follows `target_m` (smoothly and no faster than
+    /// [`super::Settings::hand_speed_m_per_s`] in `Dynamic` steps; at the next `settle` or
+    /// quasi-static step it is there) instead of its `motion`. One of a robot goes there evenly in
+    /// the next step, whatever that takes.
     fn drag_support(&mut self, support: usize, target_m: Vec2);
 
-    /// From now on a hand at `hand_m` (m) holds a support by a spring ([`super::input_filter::Hand`]) in `Dynamic` steps, its free end no faster than
-    /// [`super::Settings::hand_speed_m_per_s`]; else as [`Self::drag_support`], which ends it. A support without a node of its own (a pulley), and one of a robot, is dragged.
+    /// From now on a hand at `hand_m` (m) holds a support by a spring
+    /// ([`super::input_filter::Hand`]) in `Dynamic` steps, its free end no faster than
+    /// [`super::Settings::hand_speed_m_per_s`]; else as [`Self::drag_support`], which ends it. A
+    /// support without a node of its own (a pulley), and one of a robot, is dragged.
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {
         self.drag_support(support, hand_m);
     }
 
-    /// The outline of the robot goes there in the next advance; what is put somewhere ([`Self::set_state`]) finds it there at once.
-    /// Models that know nothing of it leave it out.
+    /// The outline of the robot goes there in the next advance; what is put somewhere
+    /// ([`Self::set_state`]) finds it there at once. Models that know nothing of it leave it out.
     fn set_robot_pose(&mut self, _to: RigidPose) {}
 
-    /// What the cable does to the outline of the robot; None where the model leaves it out, or there is none.
+    /// What the cable does to the outline of the robot; None where the model leaves it out, or
+    /// there is none.
     fn robot_contact(&self) -> Option<RobotContact> {
         None
     }
 
-    /// Gives the cable to the next model, where there is one behind this one, because of what the laws say of its answer; the next
-    /// [`Self::settle`] is that model's. Returns whether there was one.
+    /// Gives the cable to the next model, where there is one behind this one, because of what the
+    /// laws say of its answer; the next [`Self::settle`] is that model's. Returns whether there was
+    /// one.
     fn fall_back(&mut self, _why: &str) -> bool {
         false
     }
@@ -145,7 +156,8 @@ pub trait Mechanics: Send {
     /// The problem it solves.
     fn problem(&self) -> &Arc<Problem>;
 
-    /// Longest inner step that the next step with inertia is made of, s; infinite where there is none to speak of.
+    /// Longest inner step that the next step with inertia is made of, s; infinite where there is
+    /// none to speak of.
     fn inner_step_s(&self) -> f64 {
         f64::INFINITY
     }
@@ -160,7 +172,8 @@ pub trait Mechanics: Send {
         None
     }
 
-    /// A copy that was kept goes on with what the model that it was copied from has lent, or with its own.
+    /// A copy that was kept goes on with what the model that it was copied from has lent, or with
+    /// its own.
     fn borrow(&mut self, _own: Option<OwnedResources>) {}
 
     /// A copy with all its history, for reset and compare.

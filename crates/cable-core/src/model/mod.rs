@@ -1,4 +1,5 @@
-//! The models compute one cable of a scene (a [`Problem`](crate::problem::Problem)) behind one trait, [`Mechanics`].
+//! The models compute one cable of a scene (a [`Problem`](crate::problem::Problem)) behind one
+//! trait, [`Mechanics`].
 //!
 //! | room | content |
 //! |---|---|
@@ -8,8 +9,9 @@
 //! | `initial_equilibrium.rs`, `input_filter.rs`, `similar.rs`, `arc_nodes.rs` | what several models share |
 //! | `catenary/`, `spans/`, `fem/`, `mass_spring/` | the models |
 //!
-//! A model answers two kinds of question: where does the cable rest ([`Mechanics::settle`]), and what happens next
-//! ([`Mechanics::advance`]). A model that cannot answer returns a typed error, never a guess.
+//! A model answers two kinds of question: where does the cable rest ([`Mechanics::settle`]), and
+//! what happens next ([`Mechanics::advance`]). A model that cannot answer returns a typed error,
+//! never a guess.
 
 mod arc_nodes;
 pub mod auto;

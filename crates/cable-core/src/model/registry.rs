@@ -1,5 +1,5 @@
-//! The registry has one entry for each model: its name, what it can do, and how it is built. Nothing outside this folder asks which
-//! model it has, only what that one can do.
+//! The registry has one entry for each model: its name, what it can do, and how it is built.
+//! Nothing outside this folder asks which model it has, only what that one can do.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use super::mechanics::Mechanics;
 use super::settings::Settings;
 use super::switching::SwitchingModel;
 use super::{catenary, fem, mass_spring, similar, spans};
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported};
 use crate::model_id::Model;
 use crate::problem::Problem;
 
@@ -18,6 +18,8 @@ use crate::problem::Problem;
 pub struct Capabilities {
     /// Its masses can accelerate.
     pub inertia: bool,
+    /// It meets obstacles.
+    pub contact: bool,
     /// It meets the outline of the robot; another model is given the cable without it.
     pub robot_contact: bool,
     /// It answers friction that is fully mobilised towards one end.
@@ -28,15 +30,18 @@ pub struct Capabilities {
     pub explores_histories: bool,
     /// Its rests can take long: an editor may show a draft on a coarse mesh meanwhile.
     pub long_rests: bool,
-    /// Its steps can take longer than a display frame: an editor may show a copy on a coarse mesh instead.
+    /// Its steps can take longer than a display frame: an editor may show a copy on a coarse mesh
+    /// instead.
     pub long_steps: bool,
-    /// It is a second opinion on a coarse mesh: laws that its answers break are told, and the answers not refused.
+    /// It is a second opinion on a coarse mesh: a solution that breaks a law is reported with its
+    /// findings and not refused.
     pub findings_are_told: bool,
 }
 
 /// No ability at all; each entry names those it has.
 const NO_CAPABILITIES: Capabilities = Capabilities {
     inertia: false,
+    contact: false,
     robot_contact: false,
     mobilised_friction: false,
     nodes_catch: false,
@@ -58,8 +63,8 @@ pub struct ModelInfo {
     pub summary: &'static str,
     /// What it can do.
     pub capabilities: Capabilities,
-    /// Relative accuracy of its shape, which the mesh limits, and of its equilibrium, by which the iteration stops: what
-    /// [`crate::conformance`] asks of it.
+    /// Relative accuracy of its shape, which the mesh limits, and of its equilibrium, by which the
+    /// iteration stops: what [`crate::conformance`] asks of it.
     pub accuracy: [f64; 2],
     construct: fn(Arc<Problem>, Settings) -> Built,
 }
@@ -76,7 +81,7 @@ const SOLVERS: [ModelInfo; 4] = [
     ModelInfo {
         model: Model::Spans,
         summary: "exact catenaries between contacts that are intervals of a boundary: friction without a mesh, no motion",
-        capabilities: Capabilities { mobilised_friction: true, long_rests: true, ..NO_CAPABILITIES },
+        capabilities: Capabilities { contact: true, mobilised_friction: true, long_rests: true, ..NO_CAPABILITIES },
         accuracy: [1e-9, 1e-9],
         construct: |problem, settings| Ok(Box::new(spans::SpansModel::new(problem, settings)?)),
     },
@@ -85,6 +90,7 @@ const SOLVERS: [ModelInfo; 4] = [
         summary: "finite elements with contact, friction, bending and dynamics",
         capabilities: Capabilities {
             inertia: true,
+            contact: true,
             robot_contact: true,
             nodes_catch: true,
             explores_histories: true,
@@ -98,7 +104,7 @@ const SOLVERS: [ModelInfo; 4] = [
     ModelInfo {
         model: Model::MassSpring,
         summary: "lumped masses and springs, explicit in time",
-        capabilities: Capabilities { inertia: true, findings_are_told: true, ..NO_CAPABILITIES },
+        capabilities: Capabilities { inertia: true, contact: true, findings_are_told: true, ..NO_CAPABILITIES },
         accuracy: [1e-3, 2e-5],
         construct: |problem, settings| Ok(Box::new(mass_spring::MassSpringModel::new(problem, settings)?)),
     },
@@ -108,7 +114,13 @@ const SOLVERS: [ModelInfo; 4] = [
 const AUTO: ModelInfo = ModelInfo {
     model: Model::Auto,
     summary: "the cheapest model that can answer",
-    capabilities: Capabilities { inertia: true, robot_contact: true, mobilised_friction: true, ..NO_CAPABILITIES },
+    capabilities: Capabilities {
+        inertia: true,
+        contact: true,
+        robot_contact: true,
+        mobilised_friction: true,
+        ..NO_CAPABILITIES
+    },
     accuracy: [1e-5, 1e-6],
     construct: |problem, settings| match auto::choose(&problem, Question::Rest).0 {
         Model::Spans => Ok(Box::new(SwitchingModel::new(problem, settings)?)),
@@ -120,10 +132,10 @@ const AUTO: ModelInfo = ModelInfo {
 const EXTERNAL: ModelInfo = ModelInfo {
     model: Model::External,
     summary: "a model that the program brings along",
-    capabilities: Capabilities { inertia: true, ..NO_CAPABILITIES },
+    capabilities: Capabilities { inertia: true, contact: true, ..NO_CAPABILITIES },
     accuracy: [1e-5, 1e-6],
     construct: |_, _| {
-        let feature = "it is built by the program that brings it along".to_owned();
+        let feature = Unsupported::ExternalModel;
         Err(SolveError::Unsupported { model: Model::External, feature })
     },
 };
@@ -201,16 +213,16 @@ pub(super) fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), So
     if mobilised.is_default() || model.capabilities().mobilised_friction {
         return Ok(());
     }
-    let feature =
-        format!("friction mobilised {} (only spans answers that, of a flexible cable at rest)", mobilised.name());
+    let feature = Unsupported::MobilisedFriction { towards: mobilised.name() };
     Err(SolveError::Unsupported { model, feature })
 }
 
-/// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it chooses `spans`, `fem`
-/// stands behind it (`switching.rs`).
+/// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it
+/// chooses `spans`, `fem` stands behind it (`switching.rs`).
 ///
 /// # Errors
-/// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene needs.
+/// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene
+/// needs.
 pub fn build(model: Model, problem: Arc<Problem>, settings: Settings) -> Result<Box<dyn Mechanics>, SolveError> {
     settings.validate()?;
     at_natural_scale(problem, settings, &|problem, settings| construct(model, problem, settings))

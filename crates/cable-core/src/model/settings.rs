@@ -8,26 +8,34 @@ use crate::error::SolveError;
 /// How finely and how exactly a model works.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
-    /// Relative accuracy asked of the tension; models choose their mesh by it where the scene does not.
+    /// Relative accuracy asked of the tension; models choose their mesh by it where the scene does
+    /// not.
     pub tolerance: f64,
     /// Elements per cable; overrides the scene's `segments`.
     pub segments: Option<usize>,
     /// How `mass-spring` takes dynamic steps.
     #[serde(default)]
     pub stepping: Stepping,
-    /// Longest inner step of `fem` with inertia, s, 1e-9 to 1, of the cable at the scale at which it is solved; None = 1/240 s.
+    /// Longest inner step of `fem` with inertia, s, 1e-9 to 1, of the cable at the scale at which
+    /// it is solved; None = 1/240 s.
     #[serde(default)]
     pub inner_step_s: Option<f64>,
     /// Fastest a support follows the hand that drags it while masses move, m/s.
     #[serde(default = "hand_speed")]
     pub hand_speed_m_per_s: f64,
-    /// Stiffness of the spring by which a hand holds a support while masses move, N/m; None: that of [`input_filter::default_hand_stiffness`].
+    /// Stiffness of the spring by which a hand holds a support while masses move, N/m; None: that
+    /// of [`input_filter::default_hand_stiffness`].
     #[serde(default)]
     pub hand_stiffness_n_per_m: Option<f64>,
-    /// Whether a rest that friction makes one of many is told with what other histories would have left in it: `spans` lays the cable anew for
-    /// each, which takes some times as long as the rest. No figure of the answer hangs on it.
+    /// Whether a rest that friction makes one of many is told with what other histories would have
+    /// left in it: `spans` lays the cable anew for each, which takes some times as long as the
+    /// rest. No figure of the answer hangs on it.
     #[serde(default = "yes")]
     pub histories: bool,
+    /// Whether a cable breaks where its tension reaches its breaking tension; a whole one is only
+    /// warned of else.
+    #[serde(default = "yes")]
+    pub breaks: bool,
 }
 
 fn yes() -> bool {
@@ -48,17 +56,20 @@ impl Default for Settings {
             hand_speed_m_per_s: hand_speed(),
             hand_stiffness_n_per_m: None,
             histories: true,
+            breaks: true,
         }
     }
 }
 
-/// Least tolerance that makes sense: below, rounding is more than is asked for. From 1 on nothing is asked, which a test of one mesh may want.
+/// Least tolerance that makes sense: below, rounding is more than is asked for. From 1 on nothing
+/// is asked, which a test of one mesh may want.
 pub(crate) const MIN_TOLERANCE: f64 = 1e-14;
 /// Slowest hand, m/s: slower is none that means to move anything.
 const MIN_HAND_SPEED: f64 = 0.01;
 /// Segments, as a scene's own.
 const SEGMENT_RANGE: (usize, usize) = (1, 100_000);
-/// Inner steps, s: below, a second of motion takes longer than anyone waits; above, nothing that moves is seen.
+/// Inner steps, s: below, a second of motion takes longer than anyone waits; above, nothing that
+/// moves is seen.
 const INNER_STEP_RANGE_S: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
 
 impl Settings {

@@ -1,8 +1,8 @@
 //! A similar copy brings a cable to the scale that models are made for ([`Similarity`]); this
 //! wrapper scales the answers back.
 //!
-//! Barriers, slips and gaps are lengths that solvers need as numbers, and were found on cables of 1 to 100 m. Instead of making each
-//! of them a part of something, the whole scene is brought there.
+//! Barriers, slips and gaps are lengths that solvers need as numbers, and were found on cables of 1
+//! to 100 m. Instead of making each of them a part of something, the whole scene is brought there.
 
 use std::sync::Arc;
 
@@ -79,9 +79,12 @@ impl Similar {
             SolveError::TensionLost { model, loss, arc_length_m, at_m } => {
                 SolveError::TensionLost { model, loss, arc_length_m: arc_length_m / l, at_m: self.at_back(at_m) }
             }
-            SolveError::NoRestingPlace { why } => SolveError::NoRestingPlace { why: self.told(why) },
+            SolveError::NoRestingPlace { why } => {
+                SolveError::NoRestingPlace { why: why.with_places(|s| s / l, |at| self.at_back(at)) }
+            }
             SolveError::Unsupported { model, feature } => {
-                SolveError::Unsupported { model, feature: self.told(feature) }
+                let feature = feature.with_places(|s| s / l, |at| self.at_back(at));
+                SolveError::Unsupported { model, feature }
             }
             SolveError::NonFinite { quantity, arc_length_m, time_s } => {
                 SolveError::NonFinite { quantity, arc_length_m: arc_length_m / l, time_s: time_s / t }
@@ -100,7 +103,7 @@ impl Similar {
                 dt_s: dt_s / t,
                 residual_n,
                 place: self.place_back(&place),
-                cause: self.told(cause),
+                cause: cause.with_speed(|v| v * t / l),
             },
             SolveError::Neither { told, other } => {
                 SolveError::Neither { told: Box::new(self.error(*told)), other: Box::new(self.error(*other)) }
@@ -135,6 +138,7 @@ impl Similar {
             arc_length_m: state.arc_length_m.iter().map(|s| s * self.by.length).collect(),
             position_m: state.position_m.iter().map(|p| self.by.place(*p)).collect(),
             velocity_m_per_s: state.velocity_m_per_s.iter().map(|v| v * speed).collect(),
+            in_motion: state.in_motion,
         }
     }
 
@@ -145,11 +149,13 @@ impl Similar {
             arc_length_m: state.arc_length_m.iter().map(|s| s / self.by.length).collect(),
             position_m: state.position_m.iter().map(|p| self.by.place_back(*p)).collect(),
             velocity_m_per_s: state.velocity_m_per_s.iter().map(|v| v * speed).collect(),
+            in_motion: state.in_motion,
         }
     }
 }
 
-/// An answer with its lengths by `l`, its times by `t`, and its places by `place`. Forces and what has no unit stay.
+/// An answer with its lengths by `l`, its times by `t`, and its places by `place`. Forces and what
+/// has no unit stay.
 fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) -> CableSolution {
     let put = |x: &mut f64, y: &mut f64| {
         let at = place(Vec2::new(*x, *y));

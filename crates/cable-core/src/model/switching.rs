@@ -20,7 +20,8 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, Node};
 use crate::state::State;
 
-/// Greatest move of the cable when it is handed back, m, or part of its length, whichever is more: not seen.
+/// Greatest move of the cable when it is handed back, m, or part of its length, whichever is more:
+/// not seen.
 const MAX_MOVE: (f64, f64) = (1e-3, 1e-4);
 /// Greatest change of tension when it is handed back, of the greatest tension.
 const MAX_TENSION_CHANGE: f64 = 1e-2;
@@ -310,7 +311,7 @@ impl Mechanics for SwitchingModel {
 
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         self.spans.set_state(state)?;
-        let moves = state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0);
+        let moves = state.moves();
         self.adopted = Some(state.clone());
         self.fem = None;
         self.reason = None;
@@ -366,7 +367,8 @@ impl Mechanics for SwitchingModel {
     }
 
     fn fall_back(&mut self, why: &str) -> bool {
-        // Refused as it is, the answer is no place to go on from: the cable is laid anew where it was, or where it was put.
+        // Refused as it is, the answer is no place to go on from: the cable is laid anew where it
+        // was, or where it was put.
         self.fem.is_none() && {
             let time_s = self.spans.time_s();
             let fresh = if time_s > 0.0 { self.handed_over() } else { self.new_fem_with_hands() };

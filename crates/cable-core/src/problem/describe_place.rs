@@ -6,7 +6,8 @@ use crate::error::Place;
 use crate::math::Vec2;
 
 impl Problem {
-    /// The place `arc_length` (m) along the cable, which lies at `at` (m), and the support or obstacle nearest to it.
+    /// The place `arc_length` (m) along the cable, which lies at `at` (m), and the support or
+    /// obstacle nearest to it.
     #[must_use]
     pub fn place(&self, arc_length: f64, at: Vec2, time_s: f64) -> Box<Place> {
         let finite = at.iter().all(|c| c.is_finite());

@@ -1,8 +1,9 @@
 //! A route that leads through the ground is lifted onto it.
 //!
-//! Ground is solid below its line, and of its line there is one outside only. A part of a route that is inside says that the cable
-//! lies on the ground there: it is led along the surface from where it goes in to where it comes out. Beams and posts have two
-//! sides; what leads through them is refused ([`super::route_check`]).
+//! Ground is solid below its line, and of its line there is one outside only. A part of a route
+//! that is inside says that the cable lies on the ground there: it is led along the surface from
+//! where it goes in to where it comes out. Beams and posts have two sides; what leads through them
+//! is refused ([`super::route_check`]).
 
 use super::Problem;
 use super::route_check::allowed_depth;
@@ -10,17 +11,20 @@ use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross};
 use crate::solution::{Warning, WarningKind};
 
-/// Bodies of ground that a route is lifted over one after the other: each lift may lead into the next.
+/// Bodies of ground that a route is lifted over one after the other: each lift may lead into the
+/// next.
 const MAX_GROUNDS: usize = 100;
 
-/// A place where a leg of the route crosses the surface: part of the leg, and coordinate of the surface (edge + part of it).
+/// A place where a leg of the route crosses the surface: part of the leg, and coordinate of the
+/// surface (edge + part of it).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct SurfaceCrossing {
     part: f64,
     along: f64,
 }
 
-/// A stretch of the route inside a ground: the leg and part of it where it begins and ends, and where on the surface.
+/// A stretch of the route inside a ground: the leg and part of it where it begins and ends, and
+/// where on the surface.
 #[derive(Clone, Copy, Debug)]
 struct BuriedStretch {
     from: (usize, SurfaceCrossing),

@@ -8,8 +8,9 @@
 //! | `robot_outline.rs` | the robot as an obstacle |
 //! | `describe_place.rs`, `rounding_error.rs` | places in words; what rounding leaves of an answer |
 //!
-//! Arc lengths are unstretched at rest temperature; temperature enters as the factor `thermal_stretch` on
-//! unstretched lengths: strain = length/(thermal_stretch·ds) − 1. Weight and wind are per metre of arc length.
+//! Arc lengths are unstretched at rest temperature; temperature enters as the factor
+//! `thermal_stretch` on unstretched lengths: strain = length/(thermal_stretch·ds) − 1. Weight and
+//! wind are per metre of arc length.
 
 mod describe_place;
 pub(crate) mod ground_route;
@@ -37,7 +38,8 @@ pub struct Problem {
     pub cable_index: usize,
     /// Unstretched length at rest temperature, m.
     pub length: f64,
-    /// Length of the whole cable, m, of whose first axial mode the damping ratio is where loss is viscous.
+    /// Length of the whole cable, m, of whose first axial mode the damping ratio is where loss is
+    /// viscous.
     pub damped_length: f64,
     /// Times of this problem in parts of those of the scene (see `similar`).
     pub time_scale: f64,
@@ -65,15 +67,19 @@ pub struct Problem {
     pub outline: Option<Arc<Outline>>,
     /// Plan view: friction coefficient with the floor and normal force per metre, N/m.
     pub floor_friction: Option<(f64, f64)>,
-    /// The way it is first laid, m (empty: straight from support to support, lifted over what is in the way).
+    /// The way it is first laid, m (empty: straight from support to support, lifted over what is in
+    /// the way).
     pub route: Vec<Vec2>,
-    /// What of the scene was put elsewhere than it says: supports on a surface, routes below the ground.
+    /// What of the scene was put elsewhere than it says: supports on a surface, routes below the
+    /// ground.
     pub notes: Vec<Warning>,
-    /// The same cable at the scale solvers are made for, where this one is much shorter, longer or farther away.
+    /// The same cable at the scale solvers are made for, where this one is much shorter, longer or
+    /// farther away.
     pub similar: Option<(Similarity, Arc<Problem>)>,
 }
 
-/// Times nearer than this are the same, s: sums of steps come as near to a time as rounding lets them.
+/// Times nearer than this are the same, s: sums of steps come as near to a time as rounding lets
+/// them.
 const TIME_TOLERANCE_S: f64 = 1e-9;
 
 /// A support, resolved.
@@ -183,7 +189,8 @@ impl Series {
     }
 }
 
-/// The first of `times` between two others (s, not either of them) at which what goes through `values` turns back or stops.
+/// The first of `times` between two others (s, not either of them) at which what goes through
+/// `values` turns back or stops.
 fn turn_between<V>(times: &[f64], values: &[V], from: f64, to: f64, of: impl Fn(&V) -> Vec2) -> Option<f64> {
     let first = times.partition_point(|&t| t <= from + TIME_TOLERANCE_S);
     let last = times.partition_point(|&t| t < to - TIME_TOLERANCE_S);
@@ -194,8 +201,8 @@ fn turn_between<V>(times: &[f64], values: &[V], from: f64, to: f64, of: impl Fn(
 }
 
 impl Problem {
-    /// The first time after `from` and before `to` (s) at which a support, a load or the wind turns back or stops. Friction
-    /// remembers it, so a step may not pass it.
+    /// The first time after `from` and before `to` (s) at which a support, a load or the wind turns
+    /// back or stops. Friction remembers it, so a step may not pass it.
     #[must_use]
     pub fn turn_between(&self, from: f64, to: f64) -> Option<f64> {
         let series = |s: &Series| turn_between(&s.times, &s.values, from, to, |v| *v);
@@ -209,7 +216,8 @@ impl Problem {
     }
 }
 
-/// Checks a scene as [`crate::Simulation::new`] does, without a model: what is put elsewhere than the scene says is handed back.
+/// Checks a scene as [`crate::Simulation::new`] does, without a model: what is put elsewhere than
+/// the scene says is handed back.
 ///
 /// # Errors
 /// The first thing wrong with the scene.
@@ -232,7 +240,8 @@ pub fn problems(scene: &Scene) -> Result<Vec<Arc<Problem>>, SceneError> {
     Ok(out)
 }
 
-/// A cable with its supports and route clear of what is solid, and its similar copy where it needs one.
+/// A cable with its supports and route clear of what is solid, and its similar copy where it needs
+/// one.
 fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneError> {
     let mut this = problem(scene, index, cable)?;
     support_clearance::clear_supports(&mut this)?;
@@ -357,7 +366,8 @@ impl Problem {
         self.weight + self.wind.at(time_s)
     }
 
-    /// Whether friction takes part in where an answer of this cable rests, and the scene does not say how much of it.
+    /// Whether friction takes part in where an answer of this cable rests, and the scene does not
+    /// say how much of it.
     #[must_use]
     pub fn rubs(&self, answer: &CableSolution) -> bool {
         let bodies = self.world.geometry().bodies();
@@ -370,8 +380,9 @@ impl Problem {
                 || answer.contacts.iter().any(|c| touches(&c.obstacle)))
     }
 
-    /// What hangs on a free support at a time, N: its load, the weight of its lump, point loads at the same place. At rest the
-    /// tension just inside a free end is the size of it, and the cable pulls at it with the opposite of it.
+    /// What hangs on a free support at a time, N: its load, the weight of its lump, point loads at
+    /// the same place. At rest the tension just inside a free end is the size of it, and the cable
+    /// pulls at it with the opposite of it.
     #[must_use]
     pub fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
         let Some(s) = self.supports.get(support) else { return Vec2::zeros() };
@@ -381,7 +392,8 @@ impl Problem {
         s.force.at(time_s) + gravity * s.mass + points
     }
 
-    /// A force that says how large forces are here, N: the whole distributed load, point loads and the weight of lumps, or EA·1e-6 without one.
+    /// A force that says how large forces are here, N: the whole distributed load, point loads and
+    /// the weight of lumps, or EA·1e-6 without one.
     #[must_use]
     pub fn force_scale(&self) -> f64 {
         let loads: f64 = self.loads.iter().map(|l| l.force.at(0.0).norm()).sum::<f64>()

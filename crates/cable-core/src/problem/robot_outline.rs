@@ -7,14 +7,15 @@ use crate::scene::robot::Pose;
 use crate::scene::{Scene, View};
 
 impl Scene {
-    /// The outline of the robot that a cable of this friction meets; None where there is no robot, and in a plan view.
+    /// The outline of the robot that a cable of this friction meets; None where there is no robot,
+    /// and in a plan view.
     #[must_use]
     pub fn robot_outline(&self, cable_friction: f64) -> Option<Outline> {
         let (robot, pose) = (self.robot.as_ref()?, self.robot_pose()?);
         let preset = robot_preset(&robot.preset)?;
         let corners = preset.meets_cable_m(robot.heading);
         let hitch = vec2(Pose { heading: robot.heading, ..Pose::default() }.hitch_m(preset));
-        let outline = Outline::new((&corners, hitch), pose.placement(), cable_friction, "robot".to_owned());
+        let outline = Outline::new(&corners, hitch, pose.placement(), cable_friction, "robot".to_owned());
         outline.filter(|_| self.view == View::Elevation)
     }
 }

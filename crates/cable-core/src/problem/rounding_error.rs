@@ -6,17 +6,20 @@ use crate::math::{Mat2, larger};
 use crate::solution::error_estimates::{ErrorEstimates, greatest};
 use crate::solution::{CableSolution, Node};
 
-/// Relative rounding of a length that is added up from many pieces, in units in the last place. Measured against the closed form: up to 5,
-/// of two answers. Less: rounding shows as an error that nobody told of; more: stiff taut cables seem worse than they are.
+/// Relative rounding of a length that is added up from many pieces, in units in the last place.
+/// Measured against the closed form: up to 5, of two answers. Less: rounding shows as an error that
+/// nobody told of; more: stiff taut cables seem worse than they are.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl ErrorEstimates {
-    /// What rounding leaves of an answer that has no error of a mesh: a length is off by units in the last place, and forces by the
-    /// stiffness of the stiffest stretch between two supports or contacts times that,
+    /// What rounding leaves of an answer that has no error of a mesh: a length is off by units in
+    /// the last place, and forces by the stiffness of the stiffest stretch between two supports or
+    /// contacts times that,
     /// ```text
     /// δF = C⁻¹ δL,     C = ∫ (t tᵀ/EA + (I − t tᵀ)/T) ds
     /// ```
-    /// C being how far its end moves under a force (H. M. Irvine, *Cable Structures*, MIT Press 1981, for shallow ones).
+    /// C being how far its end moves under a force (H. M. Irvine, *Cable Structures*, MIT Press
+    /// 1981, for shallow ones).
     #[must_use]
     pub fn rounding(answer: &CableSolution, problem: &Problem) -> Self {
         let far = answer.nodes.iter().map(|n| n.at().amax()).fold(problem.length, larger);
@@ -49,7 +52,8 @@ fn between_stops<'a>(nodes: &'a [Node], stops: &[f64]) -> &'a [Node] {
     nodes.get(first..last).unwrap_or(&[])
 }
 
-/// Greatest force by which an end of a stretch answers a unit of displacement, N/m; None where it has no length.
+/// Greatest force by which an end of a stretch answers a unit of displacement, N/m; None where it
+/// has no length.
 fn stiffness(nodes: &[Node], problem: &Problem) -> Option<f64> {
     let mut compliance = Mat2::zeros();
     for w in nodes.windows(2) {

@@ -5,18 +5,23 @@ use super::Problem;
 use crate::error::{SceneError, SceneFault};
 use crate::scene::read::path::Path;
 
-/// How deep a route may cut into a beam besides the cable's diameter, m: drawn along a surface by a few points it cuts corners
-/// off. Smaller: such routes are refused. Larger: more of those that lead through something are not noticed.
+/// How deep a route may cut into a beam besides the cable's diameter, m: drawn along a surface by a
+/// few points it cuts corners off. Smaller: such routes are refused. Larger: more of those that
+/// lead through something are not noticed.
 const MAX_CUT: f64 = 0.05;
-/// The same of small scenes, of the cable's length: where a metre of cable is drawn, routes cut a centimetre.
+/// The same of small scenes, of the cable's length: where a metre of cable is drawn, routes cut a
+/// centimetre.
 const MAX_CUT_FRACTION: f64 = 0.01;
-/// Part of the radius of a post that a route may cut into it: drawn round it as a polygon of four points it cuts in 0.3.
+/// Part of the radius of a post that a route may cut into it: drawn round it as a polygon of four
+/// points it cuts in 0.3.
 const MAX_POST_CUT_FRACTION: f64 = 0.5;
-/// Distance of the points of a route that are looked at, m, and how many at most: of longer ones they are farther apart.
+/// Distance of the points of a route that are looked at, m, and how many at most: of longer ones
+/// they are farther apart.
 const SAMPLE_SPACING: f64 = 0.05;
 const MAX_SAMPLES: f64 = 20_000.0;
 
-/// How deep a route may cut into something before that is not its coarseness, m: at small scenes a part of the cable.
+/// How deep a route may cut into something before that is not its coarseness, m: at small scenes a
+/// part of the cable.
 pub(super) fn allowed_depth(problem: &Problem) -> f64 {
     let cut = MAX_CUT_FRACTION * problem.length;
     (if cut < MAX_CUT { cut } else { MAX_CUT }) + 2.0 * problem.radius
@@ -85,7 +90,8 @@ mod tests {
     fn a_route_through_something_solid_is_refused_where_it_is_deep() {
         let past = [[0.0, 1.0], [5.0, 2.2], [9.0, 2.0], [12.0, 2.0], [14.4, 2.5], [15.6, 2.5], [18.0, 1.0]];
         assert!(problems(&along(&past)).is_ok());
-        // Through the hill: there is one side of it. A beam's corner cut off by 4 cm, a post gone round by four points.
+        // Through the hill: there is one side of it. A beam's corner cut off by 4 cm, a post gone
+        // round by four points.
         let near =
             [[0.0, 0.5], [9.96, 1.5], [10.04, 1.46], [12.0, 2.0], [14.5, 2.0], [15.0, 2.5], [15.5, 2.0], [18.0, 1.0]];
         assert!(problems(&along(&near)).is_ok());

@@ -1,9 +1,10 @@
 //! A support that a scene puts onto a surface holds the centre line one radius off it; a support
 //! inside something solid is refused.
 //!
-//! The centre line runs one cable radius off every obstacle. A point on the surface of one, or up to a radius above it, is where a
-//! cable that lies there touches it: the centre line at that support is a radius off. A point further in is a slip of the scene, as
-//! nobody can tell on which side of the obstacle the cable was meant to be.
+//! The centre line runs one cable radius off every obstacle. A point on the surface of one, or up
+//! to a radius above it, is where a cable that lies there touches it: the centre line at that
+//! support is a radius off. A point further in is a slip of the scene, as nobody can tell on which
+//! side of the obstacle the cable was meant to be.
 
 use super::Problem;
 use crate::error::{SceneError, SceneFault};
@@ -12,13 +13,15 @@ use crate::scene::SupportKind;
 use crate::scene::read::path::Path;
 use crate::solution::{Warning, WarningKind};
 
-/// How far inside a surface a point that was meant to be on it may be, of the radius: rounding of coordinates and slopes.
+/// How far inside a surface a point that was meant to be on it may be, of the radius: rounding of
+/// coordinates and slopes.
 const ON_SURFACE_FRACTION: f64 = 1e-3;
 /// The same in parts of the coordinates, for cables much thinner than their scene.
 const COORDINATE_ROUNDING: f64 = 1e-9;
 /// The same of a place that is clear: some roundings.
 const CLEAR_ROUNDING: f64 = 1e-14;
-/// Times a support is pushed out of one obstacle and into the next; in a corner of 30° twenty leave a millionth of the way.
+/// Times a support is pushed out of one obstacle and into the next; in a corner of 30° twenty leave
+/// a millionth of the way.
 const MAX_PUSHES: usize = 40;
 
 /// Puts the supports of a cable where their surfaces let them be, and says so.
@@ -84,8 +87,8 @@ pub(super) fn clear_supports(problem: &mut Problem) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// How far a point is inside the surface of the obstacle that it is deepest in (m, negative outside but nearer than the cable's
-/// radius), and that obstacle; none where the centre line has room.
+/// How far a point is inside the surface of the obstacle that it is deepest in (m, negative outside
+/// but nearer than the cable's radius), and that obstacle; none where the centre line has room.
 fn depth(problem: &Problem, at: Vec2) -> Option<(f64, String)> {
     let gap = problem.world.signed_gap(at, f64::INFINITY).filter(|g| g.gap_m < 0.0)?;
     Some((-gap.gap_m - problem.radius, problem.world.obstacle_name(gap.obstacle).to_owned()))

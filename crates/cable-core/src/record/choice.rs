@@ -133,12 +133,14 @@ impl Default for NodeChoice {
     }
 }
 
-/// An output that comes before the beginning of an interval by less than this part of it is at its beginning: times of outputs are
-/// sums that round. Less than 1e-9 is round-off of long runs; at 0.1 and more, outputs of the interval before would count.
+/// An output that comes before the beginning of an interval by less than this part of it is at its
+/// beginning: times of outputs are sums that round. Less than 1e-9 is round-off of long runs; at
+/// 0.1 and more, outputs of the interval before would count.
 const TIME_TOLERANCE_FRACTION: f64 = 1e-6;
 
 impl NodeChoice {
-    /// Whether nodes are written at a time, s: then the interval that this time is in. `last` is the one of the nodes before.
+    /// Whether nodes are written at a time, s: then the interval that this time is in. `last` is
+    /// the one of the nodes before.
     pub(super) fn due(&self, time_s: f64, last: Option<f64>) -> Option<f64> {
         match self.interval {
             NodeInterval::EveryOutput => Some(time_s),

@@ -1,7 +1,8 @@
 //! The energy of a cable is computed from its nodes, whichever model gave them.
 //!
-//! Everything is linear between two nodes, so that products are integrated exactly: ∫ a b ds = ds (2 a₀b₀ + a₀b₁ + a₁b₀ + 2 a₁b₁)/6.
-//! A sagging bar drawn straight is second order. Lumps, pulleys and loads are left out.
+//! Everything is linear between two nodes, so that products are integrated exactly: ∫ a b ds = ds
+//! (2 a₀b₀ + a₀b₁ + a₁b₀ + 2 a₁b₁)/6. A sagging bar drawn straight is second order. Lumps, pulleys
+//! and loads are left out.
 
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Energy, Node};
@@ -38,7 +39,8 @@ fn element(problem: &Problem, a: &Node, b: &Node) -> Energy {
     let ds = b.arc_length_m - a.arc_length_m;
     let speed = squared(a.vx_m_per_s, b.vx_m_per_s, ds) + squared(a.vy_m_per_s, b.vy_m_per_s, ds);
     let stretch = squared(a.tension_n, b.tension_n, ds) / problem.axial_stiffness;
-    // Of a spring T ε with ε = T/EA. Relaxation branches pull beside it, and what they hold is at most their pull times the strain.
+    // Of a spring T ε with ε = T/EA. Relaxation branches pull beside it, and what they hold is at
+    // most their pull times the strain.
     let beside = [a, b].map(|n| n.tension_n / problem.axial_stiffness - n.strain);
     let relaxed = product([a.tension_n, b.tension_n], beside, ds);
     let height = 0.5 * ds * (a.y_m + b.y_m);

@@ -2,8 +2,9 @@
 
 use crate::solution::{Node, Solution};
 
-/// A 64-bit hash of every number of the answers it was shown, or of bytes (FNV-1a, after G. Fowler, L. C. Noll and K.-P. Vo, 1991): two runs
-/// with the same one are the same, but for one chance in 1.8e19.
+/// A 64-bit hash of every number of the answers it was shown, or of bytes (FNV-1a, after G. Fowler,
+/// L. C. Noll and K.-P. Vo, 1991): two runs with the same one are the same, but for one chance in
+/// 1.8e19.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fingerprint(pub u64);
 

@@ -4,8 +4,9 @@ use crate::solution::{CableSolution, ContactReport, Node, Solution, SupportReact
 
 /// Solutions by time, oldest thinned out when a memory budget is reached.
 ///
-/// Thinning halves the rate of the older three quarters where it is highest, so the recent past keeps its full rate and the
-/// distant past an even, ever coarser one; the first and the last entry are always kept.
+/// Thinning halves the rate of the older three quarters where it is highest, so the recent past
+/// keeps its full rate and the distant past an even, ever coarser one; the first and the last entry
+/// are always kept.
 #[derive(Clone, Debug)]
 pub struct History {
     entries: Vec<Solution>,
@@ -14,13 +15,15 @@ pub struct History {
 }
 
 impl History {
-    /// An empty history that holds at most `budget_bytes` of memory (two entries are kept whatever their size).
+    /// An empty history that holds at most `budget_bytes` of memory (two entries are kept whatever
+    /// their size).
     #[must_use]
     pub fn new(budget_bytes: usize) -> Self {
         Self { entries: Vec::new(), bytes: 0, budget_bytes }
     }
 
-    /// Appends a solution. Entries at its time or later are dropped first: a run that was wound back goes on from there.
+    /// Appends a solution. Entries at its time or later are dropped first: a run that was wound
+    /// back goes on from there.
     pub fn push(&mut self, solution: Solution) {
         self.truncate_from(solution.time_s);
         self.bytes += size_of_solution(&solution);
@@ -37,7 +40,8 @@ impl History {
         self.entries.truncate(keep);
     }
 
-    /// Halves the rate where it is highest among the older three quarters: the far past becomes evenly coarser.
+    /// Halves the rate where it is highest among the older three quarters: the far past becomes
+    /// evenly coarser.
     fn thin(&mut self) {
         let older = (self.entries.len() * 3 / 4).max(2);
         let gaps = self.entries.windows(2).take(older - 1).filter_map(|w| Some(w.last()?.time_s - w.first()?.time_s));

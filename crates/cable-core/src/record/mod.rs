@@ -1,7 +1,7 @@
 //! The record is what a run leaves behind: a history in memory, and tables in CSV.
 //!
-//! A run folder holds `scene.toml`, `run.toml` ([`Manifest`]: what was asked, and whether the run is complete) and three tables,
-//! every number in SI units that its column's name ends in:
+//! A run folder holds `scene.toml`, `run.toml` ([`Manifest`]: what was asked, and whether the run
+//! is complete) and three tables, every number in SI units that its column's name ends in:
 //!
 //! | table | a row per | columns |
 //! |---|---|---|
@@ -9,11 +9,12 @@
 //! | `nodes.csv` | node and time | `time_s`, `cable`, then the fields of [`crate::solution::Node`], or those chosen ([`NodeChoice`]) |
 //! | `events.csv` | event | `time_s`, `kind`, `cable`, `arc_length_m`, `value`, `limit`, `message` |
 //!
-//! Numbers are written with the fewest digits that read back to the same bits (in a file some times have zeros after them, so that no row
-//! lies on two pages of it). [`RunWriter`] writes the tables to any
-//! [`std::io::Write`] in whole instants, `history.csv` last; `read_run` reads them again, up to the last instant that is whole in
-//! all of them, wherever they were cut off. [`read_history`], [`read_nodes`] and [`read_events`] read one of them. Folders are made
-//! and read in [`crate::files`].
+//! Numbers are written with the fewest digits that read back to the same bits (in a file some times
+//! have zeros after them, so that no row lies on two pages of it). [`RunWriter`] writes the tables
+//! to any [`std::io::Write`] in whole instants, `history.csv` last; `read_run` reads them again, up
+//! to the last instant that is whole in all of them, wherever they were cut off. [`read_history`],
+//! [`read_nodes`] and [`read_events`] read one of them. Folders are made and read in
+//! [`crate::files`].
 
 mod choice;
 mod energy;

@@ -1,12 +1,14 @@
 //! Pages lay out rows so that none crosses the border between two pages of a file.
 //!
-//! A system copies what is written into its memory page by page, and a process that is killed may stop between two: of 200 killed runs
-//! one to five ended within a line. A row that lies on one page is written whole or not at all. So the last row that fits on
-//! a page is made to end with it, by zeros after the digits of its time, which change no number and no reader's mind.
+//! A system copies what is written into its memory page by page, and a process that is killed may
+//! stop between two: of 200 killed runs one to five ended within a line. A row that lies on one
+//! page is written whole or not at all. So the last row that fits on a page is made to end with it,
+//! by zeros after the digits of its time, which change no number and no reader's mind.
 
 use super::whole::record_ends;
 
-/// Bytes of a page: 4096 or a multiple everywhere. Smaller numbers would cost more zeros, larger ones leave rows on two pages.
+/// Bytes of a page: 4096 or a multiple everywhere. Smaller numbers would cost more zeros, larger
+/// ones leave rows on two pages.
 const PAGE_BYTES: usize = 4096;
 
 /// Most bytes of a number and the comma after it: `-2.2250738585072014e-308,`.
@@ -22,8 +24,8 @@ pub(crate) struct Pages {
 }
 
 impl Pages {
-    /// The rows as they are to be written next, in parts of which each is written at once. A row longer than a page, and one after
-    /// a header that fills a page nearly, lies on two still.
+    /// The rows as they are to be written next, in parts of which each is written at once. A row
+    /// longer than a page, and one after a header that fills a page nearly, lies on two still.
     pub(crate) fn lay_out(&mut self, rows: &[u8]) -> Vec<Vec<u8>> {
         let mut parts = vec![Vec::new()];
         let (mut from, mut row_start) = (0, 0);

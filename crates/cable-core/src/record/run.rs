@@ -15,7 +15,8 @@ use crate::record::Event;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RunStatus {
-    /// Not to its end, or not yet: every run is partial until it is complete, so that a run that ends without a word is marked.
+    /// Not to its end, or not yet: every run is partial until it is complete, so that a run that
+    /// ends without a word is marked.
     Partial,
     /// To its end.
     Complete,
@@ -72,7 +73,8 @@ pub struct FileRecord {
     pub name: String,
     /// Its length, bytes.
     pub bytes: u64,
-    /// FNV-1a hash of its bytes, hexadecimal. It tells a file that somebody changed from the run's own.
+    /// FNV-1a hash of its bytes, hexadecimal. It tells a file that somebody changed from the run's
+    /// own.
     pub fnv1a: String,
 }
 
@@ -198,8 +200,9 @@ impl fmt::Display for LeftOut {
     }
 }
 
-/// Reads the tables of a run together, wherever they were cut off. Of tables that are still written to, `history` must have been
-/// opened and read first: what has a row there is in the others already.
+/// Reads the tables of a run together, wherever they were cut off. Of tables that are still written
+/// to, `history` must have been opened and read first: what has a row there is in the others
+/// already.
 ///
 /// # Errors
 /// Where one is not such a table.

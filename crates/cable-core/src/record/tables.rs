@@ -21,7 +21,8 @@ pub enum WriteError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// The answer has other supports, or another robot, than the table; nothing of this time was written.
+    /// The answer has other supports, or another robot, than the table; nothing of this time was
+    /// written.
     #[error("{table}: the answer at {time_s} s has other columns than the table")]
     Columns {
         /// Which table.
@@ -64,8 +65,8 @@ pub enum ReadError {
     },
 }
 
-/// Most rows read of a table: 1e7 node rows are 1 GB of memory. Fewer would refuse an hour at 60 Hz of 40 nodes;
-/// more would let a hostile file exhaust the machine.
+/// Most rows read of a table: 1e7 node rows are 1 GB of memory. Fewer would refuse an hour at 60 Hz
+/// of 40 nodes; more would let a hostile file exhaust the machine.
 const MAX_ROWS: usize = 10_000_000;
 
 pub(super) const HISTORY: &str = "history.csv";
@@ -137,9 +138,9 @@ pub struct SupportColumn {
     pub reaction_y_n: Vec<f64>,
 }
 
-/// Writes a run's tables as it goes, in whole instants: the rows of an instant go out as one write a table, `history.csv` last.
-/// So an instant with a row there is whole in the other tables too, and what was cut off anywhere is whole up to the last such
-/// row (`super::read_run`).
+/// Writes a run's tables as it goes, in whole instants: the rows of an instant go out as one write
+/// a table, `history.csv` last. So an instant with a row there is whole in the other tables too,
+/// and what was cut off anywhere is whole up to the last such row (`super::read_run`).
 pub struct RunWriter<W: Write> {
     history: W,
     nodes: W,
@@ -175,11 +176,12 @@ impl<W: Write> RunWriter<W> {
         Self { node_choice, ..self }
     }
 
-    /// Appends one time. A warning becomes an event when it begins, with the time it began at, not again while it lasts.
+    /// Appends one time. A warning becomes an event when it begins, with the time it began at, not
+    /// again while it lasts.
     ///
     /// # Errors
-    /// When a number is not finite (nothing is written) or the place refuses. A place that takes back what it was given of this
-    /// time can be written on.
+    /// When a number is not finite (nothing is written) or the place refuses. A place that takes
+    /// back what it was given of this time can be written on.
     pub fn push(&mut self, solution: &Solution) -> Result<(), WriteError> {
         let due = self.node_choice.due(solution.time_s, self.node_interval);
         self.append(solution, due.is_some())?;
@@ -187,7 +189,8 @@ impl<W: Write> RunWriter<W> {
         Ok(())
     }
 
-    /// As [`Self::push`], for the last time of a run: its nodes are written whatever the interval, unless they never are.
+    /// As [`Self::push`], for the last time of a run: its nodes are written whatever the interval,
+    /// unless they never are.
     ///
     /// # Errors
     /// As [`Self::push`].
@@ -195,8 +198,8 @@ impl<W: Write> RunWriter<W> {
         self.append(solution, self.node_choice.interval != NodeInterval::Never)
     }
 
-    /// Writes the headers alone, so that a run which ends before its first instant has tables: of a scene, whose robot is reported or
-    /// not.
+    /// Writes the headers alone, so that a run which ends before its first instant has tables: of a
+    /// scene, whose robot is reported or not.
     ///
     /// # Errors
     /// When the place refuses.
@@ -232,7 +235,8 @@ impl<W: Write> RunWriter<W> {
             node_rows(nodes, solution, self.node_choice.columns)?;
         }
         for w in began(solution, &self.active) {
-            // What began later than its own instant did so by round-off: that instant's time is a multiple of an interval.
+            // What began later than its own instant did so by round-off: that instant's time is a
+            // multiple of an interval.
             event_row(events, w.since_s.map_or(solution.time_s, |t| t.min(solution.time_s)), w)?;
         }
         self.write(rows)?;
@@ -380,8 +384,8 @@ const HISTORY_COLUMNS: [&str; 3] = ["time_s", "max_tension_n", "max_tension_arc_
 
 /// Columns of `history.csv` that are of no support.
 const ENERGY_COLUMNS: [&str; 4] = ["kinetic_energy_j", "gravity_energy_j", "stretch_energy_j", "bending_energy_j"];
-/// The greatest tension of any inner step since the row before, and the greatest mean over the breaking time; at rest and without inertia
-/// that of the instant.
+/// The greatest tension of any inner step since the row before, and the greatest mean over the
+/// breaking time; at rest and without inertia that of the instant.
 const PEAK_COLUMNS: [&str; 2] = ["peak_tension_n", "held_tension_n"];
 const ROBOT_COLUMNS: [&str; 5] = ["robot_x_m", "robot_y_m", "robot_pitch_deg", "robot_speed_m_per_s", "robot_thrust_n"];
 
@@ -472,7 +476,8 @@ fn rows<R: Read>(
     Ok(())
 }
 
-/// Whether the columns begin with those expected; false where nothing was written yet, not even a header.
+/// Whether the columns begin with those expected; false where nothing was written yet, not even a
+/// header.
 fn expect_columns<R: Read>(
     table: &'static str,
     from: &mut csv::Reader<R>,
@@ -488,7 +493,8 @@ fn expect_columns<R: Read>(
     }
 }
 
-/// Reads `nodes.csv` up to its last whole row. Values whose columns were not chosen ([`NodeChoice`]) are NaN.
+/// Reads `nodes.csv` up to its last whole row. Values whose columns were not chosen
+/// ([`NodeChoice`]) are NaN.
 ///
 /// # Errors
 /// Where it is not such a table.
@@ -561,7 +567,8 @@ pub fn read_history(from: impl Read) -> Result<HistoryTable, ReadError> {
         return Ok(table);
     }
     let header = from.headers().map_err(|e| row_error(HISTORY, 1, e))?.clone();
-    // Reactions come in pairs of columns: x, y of each support. Then the extras, which older tables lack.
+    // Reactions come in pairs of columns: x, y of each support. Then the extras, which older tables
+    // lack.
     let mut k = 3;
     while k < header.len() {
         let name = header.get(k).unwrap_or_default();

@@ -154,7 +154,8 @@ impl Write for Journalled {
     }
 }
 
-/// Whatever byte is the last that reaches the disk, the tables read back, up to the last instant that is whole in all of them.
+/// Whatever byte is the last that reaches the disk, the tables read back, up to the last instant
+/// that is whole in all of them.
 #[test]
 fn a_run_cut_at_any_byte_is_read_up_to_its_last_whole_instant() {
     let journal = Journal::default();

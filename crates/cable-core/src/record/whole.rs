@@ -2,8 +2,8 @@
 
 use std::io::{self, Read};
 
-/// Longest record of a table, bytes: a row of a run is below 1 kB, a warning's words below 10 kB. A longer limit would hold more of a
-/// hostile file without line ends in memory.
+/// Longest record of a table, bytes: a row of a run is below 1 kB, a warning's words below 10 kB. A
+/// longer limit would hold more of a hostile file without line ends in memory.
 const MAX_RECORD_BYTES: usize = 1 << 20;
 
 /// Bytes read at once.
@@ -19,8 +19,8 @@ pub(crate) fn record_ends(text: &[u8]) -> impl Iterator<Item = usize> {
     })
 }
 
-/// Passes on the whole records of a CSV text and holds back what follows the last end of a record, since nobody can know whether
-/// its last number is all there.
+/// Passes on the whole records of a CSV text and holds back what follows the last end of a record,
+/// since nobody can know whether its last number is all there.
 pub struct WholeRecords<R> {
     from: R,
     /// Bytes read; whole records of them are passed on.

@@ -8,12 +8,14 @@
 //! |F| ≤ P (1 − |v|/v₀)                    the drive: its pull P at a stand, none at its top speed v₀
 //! |F| ≤ μ N                               the tracks: beyond, they slip
 //! ```
-//! with t along the ground to the right. The governor asks for the F that reaches the commanded speed u. So on even ground the
-//! speed is the lesser of u and v₀ (1 − R/P), R = c N − S sign u; with R > P it stalls, with R > μN it slips. A drive that
-//! stalls holds what its tracks can hold: hydraulic track motors have brakes. The pull that falls linearly with speed is the
-//! common picture of such a drive; makers publish no curves.
+//! with t along the ground to the right. The governor asks for the F that reaches the commanded
+//! speed u. So on even ground the speed is the lesser of u and v₀ (1 − R/P), R = c N − S sign u;
+//! with R > P it stalls, with R > μN it slips. A drive that stalls holds what its tracks can hold:
+//! hydraulic track motors have brakes. The pull that falls linearly with speed is the common
+//! picture of such a drive; makers publish no curves.
 //!
-//! A step of h goes from v to v' so that the change of motion is the work of the forces, each times the way of the step:
+//! A step of h goes from v to v' so that the change of motion is the work of the forces, each times
+//! the way of the step:
 //! ```text
 //! m (v' − v)/h = F + R + S̄,   way = h (v + v')/2
 //! ```
@@ -25,10 +27,11 @@
 //! does to the outline is that of the end of the step.
 //!
 //! What the ground does where it tips the vehicle over a corner takes nothing from its speed: on
-//! such ground its weight and the hitch do work that is not along the way, and [`RobotWork::ground_j`]
-//! is that.
+//! such ground its weight and the hitch do work that is not along the way, and
+//! [`RobotWork::ground_j`] is that.
 //!
-//! Robot and cable are one system: how their steps are brought together stands in `simulation/coupling.rs`.
+//! Robot and cable are one system: how their steps are brought together stands in
+//! `simulation/coupling.rs`.
 
 use std::sync::Arc;
 
@@ -49,19 +52,22 @@ const MAX_SLOPE: f64 = 35.0 * std::f64::consts::PI / 180.0;
 /// A leg of its path is driven when it is this near to its end, m.
 const ARRIVAL_DISTANCE_M: f64 = 1e-3;
 
-/// Near the end of a leg it brakes with half of [`MAX_ACCELERATION`], and over the last centimetres its speed is the way left over this
-/// time, s: shorter stops with a jerk, longer creeps.
+/// Near the end of a leg it brakes with half of [`MAX_ACCELERATION`], and over the last centimetres
+/// its speed is the way left over this time, s: shorter stops with a jerk, longer creeps.
 const APPROACH_S: f64 = 0.3;
 
-/// Greatest change of speed the governor asks for, m/s²: more, and the tracks slip at every start; less feels dead by hand.
+/// Greatest change of speed the governor asks for, m/s²: more, and the tracks slip at every start;
+/// less feels dead by hand.
 const MAX_ACCELERATION: f64 = 1.0;
 
-/// Fastest it tips over an edge, rad/s: a machine of a metre's length that falls by a hand's breadth takes a fifth of a second.
-/// Faster: its hitch draws the cable along where the ground has a corner; slower: it hangs in the air behind its middle.
+/// Fastest it tips over an edge, rad/s: a machine of a metre's length that falls by a hand's
+/// breadth takes a fifth of a second. Faster: its hitch draws the cable along where the ground has
+/// a corner; slower: it hangs in the air behind its middle.
 const MAX_TIP_RAD_PER_S: f64 = 1.0;
 
-/// Greatest change of that, rad/s²: the end of a machine of two metres' length that falls freely. More: its
-/// hitch jerks the cable at every corner, by 1.3 kN where it tips at once; less: it tips late.
+/// Greatest change of that, rad/s²: the end of a machine of two metres' length that falls freely.
+/// More: its hitch jerks the cable at every corner, by 1.3 kN where it tips at once; less: it tips
+/// late.
 const MAX_TIP_RAD_PER_S2: f64 = 10.0;
 
 /// Part of the forces on vehicle and cable by which a trial of a step may be off. The speed is that
@@ -102,7 +108,8 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
-    /// That of a scene, standing; None where there is none, in a plan view, and where there is no ground.
+    /// That of a scene, standing; None where there is none, in a plan view, and where there is no
+    /// ground.
     #[must_use]
     pub fn of(scene: &Scene) -> Option<Self> {
         let robot = scene.robot.as_ref()?;
@@ -132,7 +139,7 @@ impl Vehicle {
         };
         let (sin, cos) = pose.pitch.sin_cos();
         let forces = Forces { normal: vehicle.weight * cos, thrust: vehicle.weight * sin };
-        vehicle.tell([Vec2::zeros(); 2], forces, (0.0, Going::Standing));
+        vehicle.tell([Vec2::zeros(); 2], forces, 0.0, Going::Standing);
         Some(vehicle)
     }
 
@@ -154,7 +161,7 @@ impl Vehicle {
             let forces = Forces { normal: old.report.normal_n, thrust: old.report.thrust_n };
             let hitch = Vec2::new(old.report.hitch_x_n, old.report.hitch_y_n);
             let push = Vec2::new(old.report.push_x_n, old.report.push_y_n);
-            self.tell([hitch, push], forces, (old.report.commanded_m_per_s, old.report.going));
+            self.tell([hitch, push], forces, old.report.commanded_m_per_s, old.report.going);
         }
     }
 
@@ -167,11 +174,12 @@ impl Vehicle {
             let forces = Forces { normal: then.normal_n, thrust: then.thrust_n };
             let hitch = Vec2::new(then.hitch_x_n, then.hitch_y_n);
             let push = Vec2::new(then.push_x_n, then.push_y_n);
-            self.tell([hitch, push], forces, (then.commanded_m_per_s, then.going));
+            self.tell([hitch, push], forces, then.commanded_m_per_s, then.going);
         }
     }
 
-    /// Puts it with its tracks' middle at `x_m`, standing; where its hitch is then, m. None where it cannot stand.
+    /// Puts it with its tracks' middle at `x_m`, standing; where its hitch is then, m. None where
+    /// it cannot stand.
     pub fn put(&mut self, x_m: f64) -> Option<Vec2> {
         self.pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
         (self.speed, self.tipping, self.rate) = (0.0, 0.0, Vec2::zeros());
@@ -226,14 +234,16 @@ impl Vehicle {
         Drive { wanted: self.wanted(h), h }
     }
 
-    /// The speed that it would have at the end of a step if the pull on its hitch went on changing as it did, m/s.
+    /// The speed that it would have at the end of a step if the pull on its hitch went on changing
+    /// as it did, m/s.
     #[must_use]
     pub fn foreseen(&self, drive: Drive) -> f64 {
         let pulls = Pulls { hitch: self.pulls.hitch + self.rate * drive.h, ..self.pulls };
         self.balance(drive, pulls).speed
     }
 
-    /// Where it is at the end of a step in which it comes to this speed (m/s); None where it cannot stand there.
+    /// Where it is at the end of a step in which it comes to this speed (m/s); None where it cannot
+    /// stand there.
     #[must_use]
     pub(crate) fn come_to(&self, drive: Drive, speed: f64) -> Option<Pose> {
         let way = 0.5 * drive.h * (self.speed + speed);
@@ -248,7 +258,8 @@ impl Vehicle {
     fn tipped(&self, x_m: f64, h: f64) -> Option<Pose> {
         let pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
         let left = pose.pitch - self.pose.pitch;
-        // It comes to rest on the ground: no faster than it can still be slowed down, and than it is there.
+        // It comes to rest on the ground: no faster than it can still be slowed down, and than it
+        // is there.
         let most = [(2.0 * MAX_TIP_RAD_PER_S2 * left.abs()).sqrt(), left.abs() / h]
             .into_iter()
             .fold(MAX_TIP_RAD_PER_S, smaller);
@@ -275,14 +286,9 @@ impl Vehicle {
         (self.pulls.hitch + pulls.hitch) * 0.5
     }
 
-    /// Ends a step at a place with a speed (m/s) that a balance gave, or that it was given beside one.
-    pub(crate) fn arrive(
-        &mut self,
-        drive: Drive,
-        (to, led): (Pose, f64),
-        (balance, speed): (SpeedBalance, f64),
-        pulls: Pulls,
-    ) {
+    /// Ends a step at a place with a speed (m/s) that a balance gave, or that it was given beside
+    /// one.
+    pub(crate) fn arrive(&mut self, drive: Drive, to: Pose, led: f64, balance: SpeedBalance, speed: f64, pulls: Pulls) {
         let way = 0.5 * drive.h * (self.speed + led);
         let SpeedBalance { tracks, rolling, pull, weight, slips, .. } = balance;
         let along = Vec2::new(self.pose.pitch.cos(), self.pose.pitch.sin());
@@ -301,7 +307,7 @@ impl Vehicle {
         self.rate = (pulls.hitch - self.pulls.hitch) / drive.h;
         self.pulls = pulls;
         let forces = Forces { normal: balance.normal, thrust: tracks };
-        self.tell([pulls.hitch, pulls.outline], forces, (drive.wanted, balance.going));
+        self.tell([pulls.hitch, pulls.outline], forces, drive.wanted, balance.going);
     }
 
     /// It cannot go on: it stays where it is.
@@ -309,7 +315,7 @@ impl Vehicle {
         let balance = self.balance(drive, pulls);
         self.report.work.impact_j -= self.kinetic_j();
         self.speed = 0.0;
-        self.arrive(drive, (self.pose, 0.0), (SpeedBalance { going, ..balance }, 0.0), pulls);
+        self.arrive(drive, self.pose, 0.0, SpeedBalance { going, ..balance }, 0.0, pulls);
     }
 
     /// Unbalanced impulse over time (N) that counts as none beside forces of the cable.
@@ -368,15 +374,17 @@ impl Vehicle {
                 (slid, if tracks < 0.0 { -grip.hold } else { grip.hold }, rolls, true)
             }
         };
-        let going = grip.going((v, speed), slips);
+        let going = grip.going(v, speed, slips);
         let [speed, tracks, rolling, asked] = [speed, tracks, rolling, grip.asked].map(|x| x * sense);
         SpeedBalance { speed, tracks, rolling, asked, slips, going, ..SpeedBalance::default() }
     }
 
-    /// What tracks and rolling resistance can do in a step, in the `sense` in which it is asked to go.
+    /// What tracks and rolling resistance can do in a step, in the `sense` in which it is asked to
+    /// go.
     fn grip(&self, drive: Drive, normal: f64, sense: f64) -> TrackGrip {
         let (v, set, wanted) = (self.speed * sense, self.set * sense, drive.wanted * sense);
-        // The governor goes on from the speed that it has given; dragged by its cable the vehicle has none of that.
+        // The governor goes on from the speed that it has given; dragged by its cable the vehicle
+        // has none of that.
         let given = if set * v > 0.0 { v.signum() * smaller(set.abs(), v.abs()) } else { 0.0 };
         let goes = larger(v, 0.0);
         let (most, top) = (self.preset.drive_pull_n.value, self.preset.speed_m_per_s.value);
@@ -396,7 +404,8 @@ impl Vehicle {
         if let Some(speed) = self.by_hand {
             return speed.clamp(-top, top);
         }
-        // At most once round the path: one of nothing but legs that are done must not go on for ever.
+        // At most once round the path: one of nothing but legs that are done must not go on for
+        // ever.
         for _ in 0..=self.robot.path.len() {
             if self.leg >= self.robot.path.len() && self.robot.repeat {
                 self.leg = 0;
@@ -424,7 +433,7 @@ impl Vehicle {
         0.0
     }
 
-    fn tell(&mut self, [hitch, push]: [Vec2; 2], forces: Forces, (commanded, going): (f64, Going)) {
+    fn tell(&mut self, [hitch, push]: [Vec2; 2], forces: Forces, commanded: f64, going: Going) {
         self.report = RobotReport {
             x_m: self.pose.at_m[0],
             y_m: self.pose.at_m[1],
@@ -498,7 +507,8 @@ struct TrackGrip {
     hold: f64,
     /// Rolling resistance, N.
     rolling: f64,
-    /// Pull of the drive in the mean of the step at a last speed of 0, N, and how much it falls by that speed, N s/m.
+    /// Pull of the drive in the mean of the step at a last speed of 0, N, and how much it falls by
+    /// that speed, N s/m.
     drive: f64,
     falls: f64,
 }
@@ -533,14 +543,15 @@ impl TrackGrip {
         self.tracks(q, above) + self.rolls(q, above)
     }
 
-    /// What the tracks give of a `total` (N) at a speed where forces jump: rolling resistance is against the drive.
+    /// What the tracks give of a `total` (N) at a speed where forces jump: rolling resistance is
+    /// against the drive.
     fn share(&self, q: f64, total: f64) -> f64 {
         let own = if q == 0.0 && !self.drives { total } else { total - self.rolls(q, true) };
         bounded(own, self.tracks(q, true), self.tracks(q, false))
     }
 
     /// Why it comes from one speed to another, m/s.
-    fn going(&self, (from, to): (f64, f64), slips: bool) -> Going {
+    fn going(&self, from: f64, to: f64, slips: bool) -> Going {
         let against = if self.drives { -to } else { to.abs() };
         match (self.drives, slips) {
             (_, true) if against > STANDSTILL_M_PER_S => Going::Dragged,

@@ -27,7 +27,7 @@ fn step(v: &mut Vehicle, hitch: Vec2) {
     match v.come_to(drive, speed) {
         Some(to) => {
             let balance = v.balance(drive, pulls);
-            v.arrive(drive, (to, speed), (balance, balance.speed), pulls);
+            v.arrive(drive, to, speed, balance, balance.speed, pulls);
         }
         None => v.stop(drive, pulls, Going::Blocked),
     }
@@ -248,7 +248,7 @@ fn a_spring_throws_it_back_with_what_it_brought() {
             let pulls = Pulls { hitch: Vec2::new(-stiffness * to.at_m[0], 0.0), ..Pulls::default() };
             let balance = v.balance(drive, pulls);
             if (balance.speed - speed).abs() < 1e-13 {
-                v.arrive(drive, (to, speed), (balance, balance.speed), pulls);
+                v.arrive(drive, to, speed, balance, balance.speed, pulls);
                 break;
             }
             speed = balance.speed;

@@ -28,10 +28,13 @@ pub struct Cable {
     pub diameter_m: f64,
     /// Material damping in stretching, fraction of critical: half of the loss factor.
     ///
-    /// `fem` has it at every frequency from 0.1 Hz to the highest of its bars where the cable can touch nothing and slides over nothing. A constant loss
-    /// stiffens with frequency: the axial stiffness is that of slow motion, and grows by three times this ratio from decade to decade beyond 0.1 Hz.
-    /// What is asked beyond 0.1, `fem` where something can be touched, and `mass_spring` have a viscous loss, which is of this ratio at the first axial mode
-    /// of the cable and in proportion to the frequency; a `fem` cable that can touch something has a time constant of at least 1 ms.
+    /// `fem` has it at every frequency from 0.1 Hz to the highest of its bars where the cable can
+    /// touch nothing and slides over nothing. A constant loss stiffens with frequency: the axial
+    /// stiffness is that of slow motion, and grows by three times this ratio from decade to decade
+    /// beyond 0.1 Hz. What is asked beyond 0.1, `fem` where something can be touched, and
+    /// `mass_spring` have a viscous loss, which is of this ratio at the first axial mode of the
+    /// cable and in proportion to the frequency; a `fem` cable that can touch something has a time
+    /// constant of at least 1 ms.
     #[serde(default)]
     pub damping_ratio: f64,
     /// Thermal expansion, 1/K.
@@ -41,20 +44,22 @@ pub struct Cable {
     pub service_tension_n: f64,
     /// Tension at which it breaks, N.
     pub breaking_tension_n: f64,
-    /// Time over which the mean tension of a moving cable has to reach the breaking tension before it breaks, s; 0 = each instant counts.
-    /// Without inertia it breaks at once.
+    /// Time over which the mean tension of a moving cable has to reach the breaking tension before
+    /// it breaks, s; 0 = each instant counts. Without inertia it breaks at once.
     #[serde(default = "default_breaking_time_s")]
     pub breaking_time_s: f64,
     /// Smallest allowed bend radius, m; 0 = none stated.
     #[serde(default)]
     pub min_bend_radius_m: f64,
-    /// Greatest normal force per metre it stands where it is led round something, N/m; left out, none is stated.
+    /// Greatest normal force per metre it stands where it is led round something, N/m; left out,
+    /// none is stated.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sidewall_limit_n_per_m: Option<f64>,
     /// Coulomb friction with what does not say otherwise.
     #[serde(default)]
     pub friction: f64,
-    /// Which of the many balances that friction allows is asked for; left out, that of the least sliding.
+    /// Which of the many balances that friction allows is asked for; left out, that of the least
+    /// sliding.
     #[serde(default, skip_serializing_if = "FrictionMobilised::is_default")]
     pub friction_mobilised: FrictionMobilised,
     /// Elements; left out, the model chooses.
@@ -63,16 +68,19 @@ pub struct Cable {
     /// Whether the cable is an obstacle to itself.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub self_contact: bool,
-    /// The way it is first laid, m; empty = straight from support to support, lifted over what is in the way.
+    /// The way it is first laid, m; empty = straight from support to support, lifted over what is
+    /// in the way.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub route_m: Vec<Point>,
     /// Supports in order along the cable; the first is its start, the last its end.
     pub supports: Vec<Support>,
 }
 
-/// Breaking time of a cable of which none is stated, s. No measurement of cables stands behind it (incubation times of metals are
-/// microseconds): it is the time over which means of tension agree between meshes, 4 % in a drop on rubble, whose instants differ by 30 %.
-/// Shorter: whether the cable breaks in a jerk hangs on the mesh; longer: what is seen of a jerk is less than what the cable feels.
+/// Breaking time of a cable of which none is stated, s. No measurement of cables stands behind it
+/// (incubation times of metals are microseconds): it is the time over which means of tension agree
+/// between meshes, 4 % in a drop on rubble, whose instants differ by 30 %. Shorter: whether the
+/// cable breaks in a jerk hangs on the mesh; longer: what is seen of a jerk is less than what the
+/// cable feels.
 pub(crate) const BREAKING_TIME_S: f64 = 4e-3;
 
 fn default_breaking_time_s() -> f64 {
@@ -88,7 +96,8 @@ pub enum FrictionMobilised {
     LeastSliding,
     /// All of it, against a cable that is drawn towards its start.
     TowardsStart,
-    /// All of it, against a cable that is drawn towards its end, as mooring tools assume of the end at the vessel.
+    /// All of it, against a cable that is drawn towards its end, as mooring tools assume of the end
+    /// at the vessel.
     TowardsEnd,
 }
 
@@ -136,8 +145,9 @@ impl Cable {
         std::f64::consts::FRAC_PI_4 * self.diameter_m * self.diameter_m
     }
 
-    /// The bending stiffness by which bends at sharp corners are judged, N·m²: its own, of a cable taken as perfectly flexible that
-    /// which its preset is likely to have, 0 where neither is known.
+    /// The bending stiffness by which bends at sharp corners are judged, N·m²: its own, of a cable
+    /// taken as perfectly flexible that which its preset is likely to have, 0 where neither is
+    /// known.
     #[must_use]
     pub fn likely_bending_stiffness_n_m2(&self) -> f64 {
         if self.bending_stiffness_n_m2 > 0.0 {

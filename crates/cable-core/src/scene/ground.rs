@@ -10,7 +10,8 @@ pub struct Ground {
     columns: Columns,
 }
 
-/// Which stretches lie over which part of x, so that one place asks a few of them and not a million.
+/// Which stretches lie over which part of x, so that one place asks a few of them and not a
+/// million.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Columns {
     /// Left end, m, and how wide each is, m.
@@ -22,8 +23,8 @@ struct Columns {
     items: Vec<usize>,
 }
 
-/// Most columns for each stretch that a list may hold over all: ground that folds back over itself many times would fill
-/// the memory with fine ones.
+/// Most columns for each stretch that a list may hold over all: ground that folds back over itself
+/// many times would fill the memory with fine ones.
 const MAX_STACK: usize = 4;
 
 impl Columns {
@@ -128,10 +129,12 @@ impl Ground {
         heights.reduce(f64::max)
     }
 
-    /// How a rigid track with its middle at `x` that reaches `half` to both sides (both m, measured level) rests.
+    /// How a rigid track with its middle at `x` that reaches `half` to both sides (both m, measured
+    /// level) rests.
     ///
-    /// A rod on bumps touches two of them, one on each side of its centre of mass, and nothing is above it: it lies on the
-    /// edge of the upper convex hull of the ground below it that spans its middle. None where the ground ends below it.
+    /// A rod on bumps touches two of them, one on each side of its centre of mass, and nothing is
+    /// above it: it lies on the edge of the upper convex hull of the ground below it that spans its
+    /// middle. None where the ground ends below it.
     #[must_use]
     pub fn stand(&self, x: f64, half: f64) -> Option<Stand> {
         let (low, high) = (x - half, x + half);
@@ -147,8 +150,8 @@ impl Ground {
     }
 }
 
-/// Corners of the upper convex hull of points in order of x (A. M. Andrew, "Another efficient algorithm for convex hulls in
-/// two dimensions", Information Processing Letters 9(5), 1979).
+/// Corners of the upper convex hull of points in order of x (A. M. Andrew, "Another efficient
+/// algorithm for convex hulls in two dimensions", Information Processing Letters 9(5), 1979).
 fn upper_hull(points: &[Point]) -> Vec<Point> {
     let mut hull: Vec<Point> = Vec::with_capacity(points.len());
     for &p in points {
@@ -187,7 +190,8 @@ mod tests {
 
     #[test]
     fn it_rests_on_a_bump_and_on_the_ground_behind_its_middle() {
-        // A bump of 0.2 m half a metre ahead of the middle: the rod leans on it and on its own rear end.
+        // A bump of 0.2 m half a metre ahead of the middle: the rod leans on it and on its own rear
+        // end.
         let g = ground(&[[-5.0, 0.0], [0.45, 0.0], [0.5, 0.2], [0.55, 0.0], [5.0, 0.0]]);
         let s = g.stand(0.0, 0.6).unwrap();
         assert!((s.pitch - f64::atan(0.2 / 1.1)).abs() < 1e-12, "{s:?}");

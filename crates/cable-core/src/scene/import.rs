@@ -1,7 +1,8 @@
 //! An import turns tables of x and y, and SVG paths, into lines for terrain and beams.
 //!
-//! A table has two numbers a line, between them a tab, a semicolon, a comma or spaces. Where something else stands between them
-//! a comma is a decimal mark: `1,5;2,25`. Lines without numbers before the first point are headings.
+//! A table has two numbers a line, between them a tab, a semicolon, a comma or spaces. Where
+//! something else stands between them a comma is a decimal mark: `1,5;2,25`. Lines without numbers
+//! before the first point are headings.
 
 use crate::error::SceneFault;
 use crate::math::Point;
@@ -10,7 +11,8 @@ use crate::math::Point;
 const MAX_POINTS: usize = 1_000_000;
 /// Points nearer than this to the one before are one, m: ten thousand times finer than any survey.
 const POINT_TOLERANCE_M: f64 = 1e-6;
-/// Straight pieces a curve of an SVG path is drawn with: a quarter circle of 1 m is then off by 0.3 mm.
+/// Straight pieces a curve of an SVG path is drawn with: a quarter circle of 1 m is then off by 0.3
+/// mm.
 const CURVE_PIECES: u32 = 16;
 
 /// A line that was read.

@@ -1,4 +1,5 @@
-//! A scene says what there is: cables, supports, obstacles, loads, environment, robot, in the words of a scene file.
+//! A scene says what there is: cables, supports, obstacles, loads, environment, robot, in the words
+//! of a scene file.
 //!
 //! | room | content |
 //! |---|---|
@@ -8,8 +9,9 @@
 //! | `library/` | named scenes and presets |
 //! | `import.rs`, `scaled.rs` | lines from tables and drawings; a similar copy at another scale |
 //!
-//! A [`Scene`] is a plain document: every field is public, so that an editor can hold a half-typed one.
-//! [`Scene::validate`] says whether it can be solved; [`crate::Simulation::new`] refuses one that cannot.
+//! A [`Scene`] is a plain document: every field is public, so that an editor can hold a half-typed
+//! one. [`Scene::validate`] says whether it can be solved; [`crate::Simulation::new`] refuses one
+//! that cannot.
 
 pub mod cable;
 pub mod environment;

@@ -1,26 +1,28 @@
 //! A motion moves a support: knots in time, followed by a C² curve.
 //!
-//! A piecewise quintic with zero acceleration at every knot. In Bernstein form its derivative on an interval
-//! of length h from p₀ to p₁ with end velocities v₀, v₁ has the control values
-//! (v₀, v₀, 5Δ − 2(v₀ + v₁), v₁, v₁), Δ = (p₁ − p₀)/h, whose mean is Δ. All of one sign make the curve monotone
-//! between the knots: |v₀ + v₁| ≤ 5/2 |Δ|, after W. Heß and J. W. Schmidt, "Positive quartic, monotone quintic
-//! C²-spline interpolation in one and two dimensions", J. Comput. Appl. Math. 55 (1994).
-//! Knot velocities are the weighted harmonic mean of the slopes at both sides (F. N. Fritsch and J. Butland,
-//! "A method for constructing local monotone piecewise cubic interpolants", SIAM J. Sci. Stat. Comput. 5, 1984),
-//! cut to 5/4 of the smaller slope so that the condition holds on both sides without a global solve.
-//! Two knots give p₀ + (p₁ − p₀)(10u³ − 15u⁴ + 6u⁵).
+//! A piecewise quintic with zero acceleration at every knot. In Bernstein form its derivative on an
+//! interval of length h from p₀ to p₁ with end velocities v₀, v₁ has the control values (v₀, v₀, 5Δ
+//! − 2(v₀ + v₁), v₁, v₁), Δ = (p₁ − p₀)/h, whose mean is Δ. All of one sign make the curve monotone
+//! between the knots: |v₀ + v₁| ≤ 5/2 |Δ|, after W. Heß and J. W. Schmidt, "Positive quartic,
+//! monotone quintic C²-spline interpolation in one and two dimensions", J. Comput. Appl. Math. 55
+//! (1994). Knot velocities are the weighted harmonic mean of the slopes at both sides (F. N.
+//! Fritsch and J. Butland, "A method for constructing local monotone piecewise cubic interpolants",
+//! SIAM J. Sci. Stat. Comput. 5, 1984), cut to 5/4 of the smaller slope so that the condition holds
+//! on both sides without a global solve. Two knots give p₀ + (p₁ − p₀)(10u³ − 15u⁴ + 6u⁵).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::math::{Point, Vec2, vec2};
 
-/// Largest knot velocity as a multiple of the smaller neighbouring slope. Half of the 5/2 that two ends of an
-/// interval may share; larger lets the curve overshoot a knot, smaller makes it slow down at each.
+/// Largest knot velocity as a multiple of the smaller neighbouring slope. Half of the 5/2 that two
+/// ends of an interval may share; larger lets the curve overshoot a knot, smaller makes it slow
+/// down at each.
 const KNOT_VELOCITY_LIMIT: f64 = 1.25;
 
-/// A path through points at times, followed smoothly (C²): between two knots each coordinate never leaves
-/// their interval; it is at rest at a knot where it turns, before the first and after the last one.
+/// A path through points at times, followed smoothly (C²): between two knots each coordinate never
+/// leaves their interval; it is at rest at a knot where it turns, before the first and after the
+/// last one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
@@ -31,7 +33,8 @@ pub struct Motion {
 }
 
 impl Motion {
-    /// Position (m) and velocity (m/s) at a time (s). Knots without a partner in the other list are ignored.
+    /// Position (m) and velocity (m/s) at a time (s). Knots without a partner in the other list are
+    /// ignored.
     #[must_use]
     pub fn at(&self, time_s: f64) -> (Vec2, Vec2) {
         let n = self.times_s.len().min(self.points_m.len());
@@ -56,12 +59,13 @@ impl Motion {
     /// The greatest speed, m/s, and when, s.
     #[must_use]
     pub fn fastest(&self) -> (f64, f64) {
-        /// Looks between two knots: the speed, a quartic in each coordinate, is missed by 1e-3 of it at most.
-        const LOOKS: u32 = 64;
+        /// Looks between two knots: the speed, a quartic in each coordinate, is missed by 1e-3 of
+        /// it at most.
+        const SPEED_SAMPLES: u32 = 64;
         let mut most = (0.0, 0.0);
         for pair in self.times_s.windows(2) {
-            for k in 0..LOOKS {
-                let time_s = pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(LOOKS);
+            for k in 0..SPEED_SAMPLES {
+                let time_s = pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(SPEED_SAMPLES);
                 let speed = self.at(time_s).1.norm();
                 if speed > most.0 {
                     most = (speed, time_s);
@@ -124,7 +128,8 @@ impl Motion {
     }
 }
 
-/// De Casteljau's algorithm: repeated convex combinations, so the value stays among the control values.
+/// De Casteljau's algorithm: repeated convex combinations, so the value stays among the control
+/// values.
 fn bezier<const N: usize>(mut c: [f64; N], u: f64) -> f64 {
     for level in (1..N).rev() {
         for i in 0..level {

@@ -51,8 +51,8 @@ pub enum Shape {
     },
 }
 
-/// The keys of an obstacle as they stand in a file: flat, so that a fault keeps its place and an unknown key is
-/// refused (serde's flattening loses both).
+/// The keys of an obstacle as they stand in a file: flat, so that a fault keeps its place and an
+/// unknown key is refused (serde's flattening loses both).
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ObstacleKeys {

@@ -14,8 +14,8 @@ use crate::math::{Point, RigidPose, Vec2, vec2};
 pub struct Robot {
     /// Preset its numbers come from.
     pub preset: String,
-    /// Where its tracks' middle touches the ground, m. In a side view it stands on the highest terrain at this x; the
-    /// height counts where there is none.
+    /// Where its tracks' middle touches the ground, m. In a side view it stands on the highest
+    /// terrain at this x; the height counts where there is none.
     pub at_m: Point,
     /// Which way it looks.
     #[serde(default)]
@@ -34,11 +34,13 @@ pub struct Robot {
     pub path: Vec<RobotTask>,
 }
 
-/// Friction of tracks where a scene does not say: the middle of 0.3 (wet, smooth) to 0.6 (rough), estimated.
+/// Friction of tracks where a scene does not say: the middle of 0.3 (wet, smooth) to 0.6 (rough),
+/// estimated.
 pub const TRACK_FRICTION: f64 = 0.45;
 
-/// Rolling resistance of tracks where a scene does not say. Books on terramechanics have 0.03 on concrete to 0.1 on soft
-/// ground (after J. Y. Wong, "Theory of Ground Vehicles", Wiley, 4th ed. 2008; remembered, to be taken as estimated).
+/// Rolling resistance of tracks where a scene does not say. Books on terramechanics have 0.03 on
+/// concrete to 0.1 on soft ground (after J. Y. Wong, "Theory of Ground Vehicles", Wiley, 4th ed.
+/// 2008; remembered, to be taken as estimated).
 pub const ROLLING_RESISTANCE: f64 = 0.06;
 
 /// Which way a robot looks.
@@ -93,8 +95,8 @@ impl TryFrom<TaskKeys> for RobotTask {
 }
 
 impl Robot {
-    /// Where the cable hangs on it on level ground, m; None for an unknown preset. See [`Scene::robot_pose`] for the
-    /// ground of a scene.
+    /// Where the cable hangs on it on level ground, m; None for an unknown preset. See
+    /// [`Scene::robot_pose`] for the ground of a scene.
     #[must_use]
     pub fn hitch_m(&self) -> Option<Point> {
         Some(Pose { at_m: self.at_m, pitch: 0.0, heading: self.heading }.hitch_m(robot_preset(&self.preset)?))
@@ -120,7 +122,8 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// From the vehicle's own axes (looking right, from the middle of its tracks on the ground) to the plane, m.
+    /// From the vehicle's own axes (looking right, from the middle of its tracks on the ground) to
+    /// the plane, m.
     #[must_use]
     pub fn place(&self, p: Point) -> Point {
         let x = if self.heading == Heading::Left { -p[0] } else { p[0] };
@@ -136,12 +139,14 @@ impl Pose {
     }
 }
 
-/// How far in front of its hitch the outline of a robot begins that a cable meets, m: the arm that the cable hangs on. Less: the
-/// cable bends round the edge of its own robot at the first element; more: it hangs through what is drawn.
+/// How far in front of its hitch the outline of a robot begins that a cable meets, m: the arm that
+/// the cable hangs on. Less: the cable bends round the edge of its own robot at the first element;
+/// more: it hangs through what is drawn.
 const HITCH_ROOM_M: f64 = 0.1;
 
-/// How far below its tracks the outline of a robot reaches, m. Less: a cable gets under an end of it that lifts, and is squeezed
-/// there; more: what lies in a ditch that it bridges is pushed along.
+/// How far below its tracks the outline of a robot reaches, m. Less: a cable gets under an end of
+/// it that lifts, and is squeezed there; more: what lies in a ditch that it bridges is pushed
+/// along.
 const BELOW_GROUND_M: f64 = 0.2;
 
 impl Pose {
@@ -155,8 +160,9 @@ impl Pose {
 impl RobotPreset {
     /// Corners of what a cable meets of it, in its own axes, m: the outline as drawn, but
     /// - cut back round the hitch, so that the cable leaves freely;
-    /// - with its tracks as boxes that reach below the ground: a cable that lies there is pushed along and not drawn in under
-    ///   their ramps, nor under an end that lifts where the ground is hollow.
+    /// - with its tracks as boxes that reach below the ground: a cable that lies there is pushed
+    ///   along and not drawn in under their ramps, nor under an end that lifts where the ground is
+    ///   hollow.
     #[must_use]
     pub fn meets_cable_m(&self, heading: Heading) -> Vec<Vec2> {
         let rear = HITCH_ROOM_M - self.hitch_back_m.value;
@@ -174,7 +180,8 @@ impl RobotPreset {
 }
 
 impl Scene {
-    /// How the robot stands at the start: on the ground in a side view, as it was put where there is none and in a plan view.
+    /// How the robot stands at the start: on the ground in a side view, as it was put where there
+    /// is none and in a plan view.
     #[must_use]
     pub fn robot_pose(&self) -> Option<Pose> {
         let robot = self.robot.as_ref()?;

@@ -1,8 +1,9 @@
 //! A similar copy is a scene at another scale.
 //!
-//! Froude similarity (W. Froude, 1868): lengths by λ, times by √λ, forces and gravity as they are. Masses then stay, mass per metre,
-//! weight and wind per metre go by 1/λ, EI by λ², EA stays; strain, angle and friction have no unit. A cable and its copy do the same
-//! at every instant, so a solver whose tolerances were found at one scale answers at all of them.
+//! Froude similarity (W. Froude, 1868): lengths by λ, times by √λ, forces and gravity as they are.
+//! Masses then stay, mass per metre, weight and wind per metre go by 1/λ, EI by λ², EA stays;
+//! strain, angle and friction have no unit. A cable and its copy do the same at every instant, so a
+//! solver whose tolerances were found at one scale answers at all of them.
 
 use super::{Motion, Scene, Shape};
 use crate::math::{Point, Vec2, vec2};
@@ -18,18 +19,21 @@ pub struct Similarity {
     pub origin: Vec2,
 }
 
-/// Lengths of a cable for which no copy is made, m: what the solvers' tolerances were found on. Wider: the shortest and longest cables
-/// feel lengths that are fixed in the solvers; at 0.1 m by 0.2 % of the tension, at 0.01 m by 0.5 %, at 1 mm by 10 %. Narrower: no
-/// harm but that answers of scenes that were well before change in their last digits.
+/// Lengths of a cable for which no copy is made, m: what the solvers' tolerances were found on.
+/// Wider: the shortest and longest cables feel lengths that are fixed in the solvers; at 0.1 m by
+/// 0.2 % of the tension, at 0.01 m by 0.5 %, at 1 mm by 10 %. Narrower: no harm but that answers of
+/// scenes that were well before change in their last digits.
 const NATURAL_M: [f64; 2] = [2.0, 1000.0];
 /// Length of a copied cable at least, m; at most it is four times that.
 const COPY_M: f64 = 8.0;
-/// Distance of a cable from (0, 0) in its lengths from which its copy is made at (0, 0): there coordinates have lost two digits.
+/// Distance of a cable from (0, 0) in its lengths from which its copy is made at (0, 0): there
+/// coordinates have lost two digits.
 const MAX_ORIGIN_DISTANCE: f64 = 100.0;
 
 impl Similarity {
-    /// The similarity that brings a cable of a length (m), one end of which is near `origin` (m), to the scale that solvers are made
-    /// for; None where it has it. Factors are powers of two: no digit is lost by them.
+    /// The similarity that brings a cable of a length (m), one end of which is near `origin` (m),
+    /// to the scale that solvers are made for; None where it has it. Factors are powers of two: no
+    /// digit is lost by them.
     #[must_use]
     pub fn to_natural(length_m: f64, origin: Vec2) -> Option<Self> {
         let natural = (NATURAL_M[0]..=NATURAL_M[1]).contains(&length_m);

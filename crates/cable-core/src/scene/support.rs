@@ -35,7 +35,8 @@ pub enum PulleySide {
     Under,
 }
 
-/// One support. Which fields apply depends on `kind`; [`crate::Scene::validate`] refuses the others.
+/// One support. Which fields apply depends on `kind`; [`crate::Scene::validate`] refuses the
+/// others.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
@@ -115,7 +116,8 @@ impl Support {
         Self { at_m: Some(at_m), ..Self::new(name, SupportKind::Pulley) }
     }
 
-    /// Moves the support, and the whole of its motion with it, so that both still agree at the start.
+    /// Moves the support, and the whole of its motion with it, so that both still agree at the
+    /// start.
     pub fn move_to(&mut self, at_m: Point) {
         if let (Some(old), Some(motion)) = (self.at_m, self.motion.as_mut()) {
             motion.shift(vec2(at_m) - vec2(old));

@@ -15,7 +15,7 @@
 //! The step is that of the cable where that is shorter: then both see each other at every instant
 //! that either of them knows.
 
-use super::Simulation;
+use super::{Instant, Simulation};
 use crate::breakage::BreakableCable;
 use crate::error::SolveError;
 use crate::math::RigidPose;
@@ -142,7 +142,7 @@ impl Simulation {
         let (mut speed, mut search, mut iterations) = (start.foreseen(drive), Search::new(), 0);
         loop {
             self.cost = Cost::default();
-            let tried = self.try_speed(step, (&start, drive, speed), &mut search);
+            let tried = self.try_speed(step, &start, drive, speed, &mut search);
             iterations += self.cost.iterations;
             match tried {
                 TrialOutcome::Ends(vehicle) => {
@@ -158,7 +158,7 @@ impl Simulation {
                     self.go_back(&kept);
                     let mut vehicle = start;
                     vehicle.stop(drive, begun, going);
-                    self.lead((vehicle.hitch(), vehicle.pose().placement()), step.hitches);
+                    self.lead(vehicle.hitch(), vehicle.pose().placement(), step.hitches);
                     self.vehicle = Some(vehicle);
                     self.for_each_cable(|c| c.advance(step.h, step.inertia))?;
                     return Ok(iterations + self.cost.iterations);
@@ -171,11 +171,13 @@ impl Simulation {
     fn try_speed(
         &mut self,
         step: &CoupledStep<'_>,
-        (start, drive, speed): (&Vehicle, Drive, f64),
+        start: &Vehicle,
+        drive: Drive,
+        speed: f64,
         search: &mut Search,
     ) -> TrialOutcome {
         let Some(to) = start.come_to(drive, speed) else { return TrialOutcome::Stuck(Going::Blocked) };
-        self.lead((start.hitch_at(to), to.placement()), step.hitches);
+        self.lead(start.hitch_at(to), to.placement(), step.hitches);
         let breaks = self.breaks();
         if self.for_each_cable(|c| c.advance(step.h, step.inertia)).is_err() {
             // The cable cannot get out of its way.
@@ -195,7 +197,7 @@ impl Simulation {
         let mut vehicle = start.clone();
         // Where forces jump the robot has the speed at which they do.
         let ends = if even { balance.speed } else { speed };
-        vehicle.arrive(drive, (to, speed), (balance, ends), pulls);
+        vehicle.arrive(drive, to, speed, balance, ends, pulls);
         TrialOutcome::Ends(Box::new(vehicle))
     }
 
@@ -212,7 +214,7 @@ impl Simulation {
     }
 
     /// Tells the cables where the hitch of the robot, and its outline, will be.
-    fn lead(&mut self, (hitch, to): (Vec2, RigidPose), hitches: &[(usize, usize)]) {
+    fn lead(&mut self, hitch: Vec2, to: RigidPose, hitches: &[(usize, usize)]) {
         for &(cable, support) in hitches {
             self.drag_support(cable, support, hitch);
         }
@@ -264,15 +266,15 @@ impl Simulation {
     ///
     /// # Errors
     /// See [`Mechanics::advance`](crate::model::Mechanics::advance).
-    pub(crate) fn lead_robot(&mut self, x_m: f64, (dt_s, inertia): (f64, Inertia)) -> Result<Option<f64>, SolveError> {
+    pub(crate) fn lead_robot(&mut self, x_m: f64, dt_s: f64, inertia: Inertia) -> Result<Option<f64>, SolveError> {
         let Some(vehicle) = &mut self.vehicle else { return Ok(None) };
         let Some(hitch) = vehicle.put(x_m) else { return Ok(None) };
         let to = vehicle.pose().placement();
-        self.lead((hitch, to), &self.hitches());
+        self.lead(hitch, to, &self.hitches());
         self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
         let done = self.for_each_cable(|c| c.advance(dt_s, inertia));
         let left_m = self.hold_vehicle();
-        self.refresh(true);
+        self.refresh(Instant::InMotion);
         done.map(|()| Some(left_m))
     }
 

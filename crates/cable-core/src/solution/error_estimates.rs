@@ -1,15 +1,18 @@
-//! The estimated errors of an answer's figures, and how they are read off a better answer to the same question.
+//! The estimated errors of an answer's figures, and how they are read off a better answer to the
+//! same question.
 
 use serde::{Deserialize, Serialize};
 
 use super::{CableSolution, Node};
 use crate::math::{Vec2, larger, perp};
 
-/// By how much more is said than what two answers differ by: the better one's figures are read at its nodes. Less: one in twenty errors of
-/// cables in the air, known to be small, is 0.1 % more than is said; more: nothing is gained.
+/// By how much more is said than what two answers differ by: the better one's figures are read at
+/// its nodes. Less: one in twenty errors of cables in the air, known to be small, is 0.1 % more
+/// than is said; more: nothing is gained.
 const READING_FACTOR: f64 = 1.01;
 
-/// Estimated errors of an answer for one cable; None = not known, or there is nothing of which it could be.
+/// Estimated errors of an answer for one cable; None = not known, or there is nothing of which it
+/// could be.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ErrorEstimates {
     /// Of the greatest tension, N.
@@ -49,7 +52,8 @@ impl ErrorEstimates {
         Self { max_tension_n: force, support_force_n: force, contact_force_n, position_m: None }
     }
 
-    /// The error of forces, of the greatest tension and of any support, in parts of what the greatest tension is at least.
+    /// The error of forces, of the greatest tension and of any support, in parts of what the
+    /// greatest tension is at least.
     #[must_use]
     pub fn relative(&self, answer: &CableSolution) -> Option<f64> {
         let (force, most) = (larger(self.max_tension_n?, self.support_force_n?), greatest(answer));
@@ -111,15 +115,17 @@ impl CableSolution {
     }
 }
 
-/// Most that the curve between two nodes turns for its place to be read from their curvatures, rad: beyond, it is a corner or a fold.
+/// Most that the curve between two nodes turns for its place to be read from their curvatures, rad:
+/// beyond, it is a corner or a fold.
 const MAX_TURN: f64 = 1.0;
 
-/// Curvatures of two neighbours on one curve differ by no more than this factor. Less: catenaries on few nodes are read as straighter than they
-/// are; more: what leaves a round is bent.
+/// Curvatures of two neighbours on one curve differ by no more than this factor. Less: catenaries
+/// on few nodes are read as straighter than they are; more: what leaves a round is bent.
 const MAX_CURVATURE_RATIO: f64 = 3.0;
 
-/// Where the cable is at an arc length, m: between two nodes on the curve that has their mean curvature and leaves both symmetrically, which
-/// is a circle's to the fourth order in the distance of the nodes; a straight line between them is of the second.
+/// Where the cable is at an arc length, m: between two nodes on the curve that has their mean
+/// curvature and leaves both symmetrically, which is a circle's to the fourth order in the distance
+/// of the nodes; a straight line between them is of the second.
 #[must_use]
 pub fn place(nodes: &[Node], arc_length_m: f64) -> Option<Vec2> {
     let k = nodes.partition_point(|n| n.arc_length_m < arc_length_m);
@@ -143,8 +149,8 @@ pub fn place(nodes: &[Node], arc_length_m: f64) -> Option<Vec2> {
     )
 }
 
-/// Curvature between two nodes, 1/m: their mean; where one lies at the end of a round and has that of the round, the other's, and none where they
-/// bend to different sides.
+/// Curvature between two nodes, 1/m: their mean; where one lies at the end of a round and has that
+/// of the round, the other's, and none where they bend to different sides.
 fn between_curvatures(a: f64, b: f64) -> f64 {
     let (least, most) = if a.abs() < b.abs() { (a, b) } else { (b, a) };
     match least * most > 0.0 {

@@ -38,7 +38,8 @@ pub struct Solution {
     /// Energy of all cables.
     #[serde(default)]
     pub energy: Energy,
-    /// What the laws say of it; None where nobody asked (a model's own answer, a run read from files).
+    /// What the laws say of it; None where nobody asked (a model's own answer, a run read from
+    /// files).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verification: Option<Verification>,
     /// The robot, where the scene has one that can move.
@@ -75,37 +76,42 @@ pub struct CableSolution {
     /// Estimated errors of its figures, each in its own unit.
     #[serde(default)]
     pub errors: ErrorEstimates,
-    /// The sharpest bend of its line: the cable's own curve where it is free, the round it is led by elsewhere; None = nearly straight.
+    /// The sharpest bend of its line: the cable's own curve where it is free, the round it is led
+    /// by elsewhere; None = nearly straight.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tightest_bend: Option<Bend>,
     /// Its sharpest bend where nothing leads it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub free_bend: Option<Bend>,
-    /// Its sharpest bend where something leads it, at a sharp corner as its bending stiffness lets it: what is warned of.
+    /// Its sharpest bend where something leads it, at a sharp corner as its bending stiffness lets
+    /// it: what is warned of.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged_bend: Option<JudgedBend>,
     /// Where it is pressed hardest against what leads it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sidewall_pressure: Option<Pressure>,
-    /// Index of the first node of each further piece, where the cable has broken; empty while it is whole. The last
-    /// node of one piece and the first of the next are the same point of the cable, at two places. 0 and the number of nodes where it tore off
-    /// what held it at its start and at its end.
+    /// Index of the first node of each further piece, where the cable has broken; empty while it is
+    /// whole. The last node of one piece and the first of the next are the same point of the cable,
+    /// at two places. 0 and the number of nodes where it tore off what held it at its start and at
+    /// its end.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub breaks: Vec<usize>,
     /// What the answer took into account.
     #[serde(default)]
     pub assumptions: Assumptions,
-    /// The greatest tensions of the last step, whose inner steps pull harder than its end; None at rest and without inertia.
+    /// The greatest tensions of the last step, whose inner steps pull harder than its end; None at
+    /// rest and without inertia.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peaks: Option<TensionPeaks>,
-    /// Its momentum before and after the last step, and the impulses between; None at rest, without inertia, and where the model keeps no
-    /// account of them.
+    /// Its momentum before and after the last step, and the impulses between; None at rest, without
+    /// inertia, and where the model keeps no account of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub momentum: Option<MomentumAccount>,
 }
 
-/// What became of a cable's momentum in a step: what it had, and what each kind of force gave it, added up over the inner steps from the very
-/// forces that moved it there. Before and impulses add up to after.
+/// What became of a cable's momentum in a step: what it had, and what each kind of force gave it,
+/// added up over the inner steps from the very forces that moved it there. Before and impulses add
+/// up to after.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MomentumAccount {
     /// The time it is of, s.
@@ -173,8 +179,8 @@ impl MomentumAccount {
 pub struct TensionPeaks {
     /// The greatest tension of any inner step, not averaged.
     pub greatest: TensionPeak,
-    /// The greatest mean over `over_s` at a point of the cable, and when that time ended: where it reaches the breaking tension the
-    /// cable breaks.
+    /// The greatest mean over `over_s` at a point of the cable, and when that time ended: where it
+    /// reaches the breaking tension the cable breaks.
     pub held: TensionPeak,
     /// The time that means are taken over, s.
     pub over_s: f64,
@@ -200,7 +206,8 @@ pub struct TensionPeak {
     pub time_s: f64,
 }
 
-/// What an answer took into account of its cable. What it left out is an error of the model, not an unbalanced force.
+/// What an answer took into account of its cable. What it left out is an error of the model, not an
+/// unbalanced force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Assumptions {
     /// Bending stiffness EI, N·m²; 0 = perfectly flexible.
@@ -212,8 +219,8 @@ pub struct Assumptions {
 }
 
 impl CableSolution {
-    /// The greatest tensions of the step that ended at a time (s): of one without inner steps that are gauged, and at rest, the greatest
-    /// of the nodes, which is held.
+    /// The greatest tensions of the step that ended at a time (s): of one without inner steps that
+    /// are gauged, and at rest, the greatest of the nodes, which is held.
     #[must_use]
     pub fn peaks_at(&self, time_s: f64) -> TensionPeaks {
         self.peaks.unwrap_or_else(|| {
@@ -250,8 +257,9 @@ pub struct JudgedBend {
     /// Where and how sharp.
     #[serde(flatten)]
     pub bend: Bend,
-    /// The bending stiffness by which corners are judged, N·m²: the cable's own, of one taken as flexible that which its preset is likely
-    /// to have; 0 = none is known, and corners bend it to the radius of their own arc.
+    /// The bending stiffness by which corners are judged, N·m²: the cable's own, of one taken as
+    /// flexible that which its preset is likely to have; 0 = none is known, and corners bend it to
+    /// the radius of their own arc.
     pub bending_stiffness_n_m2: f64,
 }
 
@@ -289,14 +297,16 @@ pub struct Node {
     pub stress_pa: f64,
     /// d(angle)/d(unstretched length), 1/m.
     pub curvature_per_m: f64,
-    /// Internal force just beyond this node (at the last one just before it), N: what the cable of greater arc length does to the
-    /// cable before it. Its size is the tension of a flexible cable; a stiff one has shear as well.
+    /// Internal force just beyond this node (at the last one just before it), N: what the cable of
+    /// greater arc length does to the cable before it. Its size is the tension of a flexible cable;
+    /// a stiff one has shear as well.
     #[serde(default)]
     pub force_n: [f64; 2],
     /// How far its material is from where it was when the run began, m.
     #[serde(default)]
     pub displacement_m: [f64; 2],
-    /// Mean acceleration of its material over the last step with inertia, m/s²; 0 at rest and without inertia.
+    /// Mean acceleration of its material over the last step with inertia, m/s²; 0 at rest and
+    /// without inertia.
     #[serde(default)]
     pub acceleration_m_per_s2: [f64; 2],
 }
@@ -394,8 +404,9 @@ pub struct ContactReport {
     pub friction_n: f64,
     /// Holds or slides.
     pub state: ContactState,
-    /// Wrap: how far the cable turns on its way along growing arc length, °: positive anticlockwise (to the left), negative
-    /// clockwise, whole turns counted. A cable that goes over a post to the right and down on its far side has about −180.
+    /// Wrap: how far the cable turns on its way along growing arc length, °: positive anticlockwise
+    /// (to the left), negative clockwise, whole turns counted. A cable that goes over a post to the
+    /// right and down on its far side has about −180.
     pub turn_deg: f64,
     /// Tension before the contact (smaller arc length), N.
     pub tension_before_n: f64,
@@ -407,11 +418,12 @@ pub struct ContactReport {
     /// Arc length where it ends, m; its middle for a point.
     #[serde(default)]
     pub ends_m: f64,
-    /// Its stretches where one holds while another has slid, in order: slip fronts are where they meet. Empty where all of it
-    /// does what `state` says, and where the model does not know.
+    /// Its stretches where one holds while another has slid, in order: slip fronts are where they
+    /// meet. Empty where all of it does what `state` says, and where the model does not know.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub parts: Vec<ContactPart>,
-    /// Whole force of the obstacle on the cable, N: normal force and friction. Of a contact of the cable with itself it is nothing.
+    /// Whole force of the obstacle on the cable, N: normal force and friction. Of a contact of the
+    /// cable with itself it is nothing.
     #[serde(default)]
     pub force_n: [f64; 2],
     /// The same along the contact, in order of arc length: it adds up to `force_n`.

@@ -1,4 +1,5 @@
-//! The report of the tracked vehicle in an answer: where it is, what pulls at it, and why it is as fast as it is.
+//! The report of the tracked vehicle in an answer: where it is, what pulls at it, and why it is as
+//! fast as it is.
 
 use serde::{Deserialize, Serialize};
 

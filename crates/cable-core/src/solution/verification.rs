@@ -1,4 +1,5 @@
-//! The verdict of the laws of mechanics on an answer: which were asked, and which it breaks. [`crate::verify`] finds it.
+//! The verdict of the laws of mechanics on an answer: which were asked, and which it breaks.
+//! [`crate::verify`] finds it.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,7 +12,8 @@ pub enum Law {
     Finite,
     /// Arc length grows from 0 to the cable's length.
     Material,
-    /// Supports, contacts, loads and weight add up to nothing, of the whole cable and of every piece, its free ends with it.
+    /// Supports, contacts, loads and weight add up to nothing, of the whole cable and of every
+    /// piece, its free ends with it.
     Balance,
     /// The stiff cable's moments balance its shear.
     Moment,
@@ -33,7 +35,8 @@ pub enum Law {
     Friction,
     /// The cable does not run through itself.
     SelfContact,
-    /// In motion: what a step changes of the momentum is what weight, loads, supports and contacts gave.
+    /// In motion: what a step changes of the momentum is what weight, loads, supports and contacts
+    /// gave.
     Momentum,
 }
 
@@ -136,7 +139,8 @@ pub struct Balance {
     pub loads_n: [f64; 2],
     /// Supports on the cable, N.
     pub supports_n: [f64; 2],
-    /// Obstacles and the floor of a plan view on the cable, N, as the cable's own forces ask for it.
+    /// Obstacles and the floor of a plan view on the cable, N, as the cable's own forces ask for
+    /// it.
     pub contacts_n: [f64; 2],
     /// What is left of the worst piece, N.
     pub residual_n: f64,
@@ -155,7 +159,8 @@ pub struct Verification {
     pub not_checked: Vec<String>,
     /// Forces on all cables.
     pub balance: Balance,
-    /// Material beyond the way of the nodes, m: cable that lies in folds or layers, which a plane cannot show.
+    /// Material beyond the way of the nodes, m: cable that lies in folds or layers, which a plane
+    /// cannot show.
     pub folded_m: f64,
 }
 

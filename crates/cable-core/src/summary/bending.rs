@@ -1,12 +1,15 @@
 //! This file estimates how neglected bending stiffness would change an answer of a flexible cable.
 //!
-//! A scene that says nothing of bending stiffness is answered without it: at rest that is exact to √(EI/T) beside spans and radii, and
-//! much cheaper. Where the preset of the cable says which stiffness is likely, the same scene is answered with it, and what the figures
-//! differ by is the error of having left it out.
+//! A scene that says nothing of bending stiffness is answered without it: at rest that is exact to
+//! √(EI/T) beside spans and radii, and much cheaper. Where the preset of the cable says which
+//! stiffness is likely, the same scene is answered with it, and what the figures differ by is the
+//! error of having left it out.
 //!
-//! Who asks for it gets the answer with the likely stiffness instead ([`settle_with_bending`]), for all such cables or for those of which the answer
-//! without it is not one of a cable: bent tighter than it stands, curled up, or across itself. It is not the rule: of 33 scenes (the catalogue and
-//! `repro`) whose cable has such a preset, four have no sound answer with it, and the tank takes 1.5 s instead of 0.1 s.
+//! Who asks for it gets the answer with the likely stiffness instead ([`settle_with_bending`]), for
+//! all such cables or for those of which the answer without it is not one of a cable: bent tighter
+//! than it stands, curled up, or across itself. It is not the rule: of 33 scenes (the catalogue and
+//! `repro`) whose cable has such a preset, four have no sound answer with it, and the tank takes
+//! 1.5 s instead of 0.1 s.
 
 use serde::{Deserialize, Serialize};
 
@@ -36,8 +39,8 @@ pub struct NeglectedBending {
     pub unknown: Option<String>,
 }
 
-/// What it changes that cables were taken as perfectly flexible, of those whose preset says which stiffness is likely: the scene is laid
-/// and answered once more with that.
+/// What it changes that cables were taken as perfectly flexible, of those whose preset says which
+/// stiffness is likely: the scene is laid and answered once more with that.
 #[must_use]
 pub fn neglected_bending(scene: &Scene, answer: &Solution, settings: Settings) -> Vec<NeglectedBending> {
     let mut stiff = scene.clone();
@@ -89,12 +92,13 @@ pub enum Bending {
     AsWritten,
     /// What their presets are likely to have.
     Likely,
-    /// That, of cables which without it are bent tighter than they stand, curl up, or cross themselves.
+    /// That, of cables which without it are bent tighter than they stand, curl up, or cross
+    /// themselves.
     WhereItMatters,
 }
 
-/// The scene with the likely bending stiffness of some cables that are flexible in it, and what is then to be said; None where nothing is
-/// known of any of them.
+/// The scene with the likely bending stiffness of some cables that are flexible in it, and what is
+/// then to be said; None where nothing is known of any of them.
 fn with_likely(scene: &Scene, counts: impl Fn(&str) -> bool) -> Option<(Scene, String)> {
     let mut stiff = scene.clone();
     let mut said = Vec::new();
@@ -114,14 +118,16 @@ fn matters(kind: WarningKind) -> bool {
     matches!(kind, WarningKind::BendRadius | WarningKind::Kink | WarningKind::Curl | WarningKind::Loop)
 }
 
-/// Where everything rests, with the bending stiffness that is asked for: the scene that was answered, and its answer, whose reason says what
-/// was taken. Where it matters and there is no answer with it, the answer is that without it, and says so.
+/// Where everything rests, with the bending stiffness that is asked for: the scene that was
+/// answered, and its answer, whose reason says what was taken. Where it matters and there is no
+/// answer with it, the answer is that without it, and says so.
 ///
 /// # Errors
 /// As [`Simulation::with_settings`] and [`Simulation::settle`].
 pub fn settle_with_bending(
     scene: &Scene,
-    (model, settings): (Model, Settings),
+    model: Model,
+    settings: Settings,
     bending: Bending,
 ) -> Result<(Scene, Solution), Error> {
     let settle = |scene: &Scene| -> Result<Solution, Error> {

@@ -10,8 +10,9 @@
 //! | `stiffness.rs` | change of force per metre that an end is moved |
 //! | `bending.rs` | what neglected bending stiffness would change |
 //!
-//! Everything is read from a scene and an answer, so that it is the same for every model; command line, JSON and window only
-//! write it down. Accuracy is that of the answer's nodes: of a free span they leave its line by 1e-5 of its length at most.
+//! Everything is read from a scene and an answer, so that it is the same for every model; command
+//! line, JSON and window only write it down. Accuracy is that of the answer's nodes: of a free span
+//! they leave its line by 1e-5 of its length at most.
 
 mod balance;
 mod bending;
@@ -52,8 +53,8 @@ pub struct CableSummary {
     pub suspended_m: f64,
     /// Where it comes down on something or leaves it, in order of arc length.
     pub touchdowns: Vec<Touchdown>,
-    /// Greatest depth below the straight line between neighbouring supports (in a plan view: distance from it); None where no two
-    /// supports stand apart.
+    /// Greatest depth below the straight line between neighbouring supports (in a plan view:
+    /// distance from it); None where no two supports stand apart.
     pub sag: Option<Sag>,
     /// Its lowest point.
     pub lowest: CablePlace,
@@ -61,7 +62,8 @@ pub struct CableSummary {
     pub highest: CablePlace,
     /// The sharpest bend of its line; None = nearly straight.
     pub tightest_bend: Option<Bend>,
-    /// The sharpest bend where something leads it, as its bending stiffness lets it; None = nothing leads it round anything.
+    /// The sharpest bend where something leads it, as its bending stiffness lets it; None = nothing
+    /// leads it round anything.
     pub judged_bend: Option<JudgedBend>,
     /// Where it is pressed hardest against what leads it round.
     pub sidewall_pressure: Option<Pressure>,
@@ -69,7 +71,8 @@ pub struct CableSummary {
     pub utilisation: Utilisation,
     /// How much of the friction of its contacts is called upon; None where nothing rubs.
     pub friction: Option<FrictionUse>,
-    /// Whether all forces on it add up to nothing; None in a plan view with a floor that rubs, whose force no answer holds.
+    /// Whether all forces on it add up to nothing; None in a plan view with a floor that rubs,
+    /// whose force no answer holds.
     pub balance: Option<ForceBalance>,
 }
 
@@ -84,7 +87,8 @@ pub struct EndForce {
     pub horizontal_n: f64,
     /// Vertical part, N: positive upwards.
     pub vertical_n: f64,
-    /// The direction in which the cable leaves the end, °: anticlockwise from the right. None where nothing says it.
+    /// The direction in which the cable leaves the end, °: anticlockwise from the right. None where
+    /// nothing says it.
     pub angle_deg: Option<f64>,
     /// The same above the horizontal, °: from −90, straight down, to 90, straight up.
     pub elevation_deg: Option<f64>,
@@ -160,8 +164,8 @@ pub struct Utilisation {
     pub service_tension_ratio: f64,
     /// Greatest tension over breaking tension.
     pub breaking_tension_ratio: f64,
-    /// Smallest allowed bend radius over that of the sharpest judged bend, or of the sharpest free one if that is sharper; None where
-    /// none is stated.
+    /// Smallest allowed bend radius over that of the sharpest judged bend, or of the sharpest free
+    /// one if that is sharper; None where none is stated.
     pub bend_radius_ratio: Option<f64>,
     /// Sidewall pressure over its limit; None where none is stated.
     pub sidewall_pressure_ratio: Option<f64>,
@@ -200,7 +204,8 @@ pub fn summary(scene: &Scene, cable: &Cable, answer: &CableSolution, time_s: f64
     };
     let tension_n = greatest.tension_n;
     let stated = |limit: f64| (limit > 0.0).then_some(limit);
-    // The sharpest of the line counts where nothing leads the cable: led bends are judged by its stiffness.
+    // The sharpest of the line counts where nothing leads the cable: led bends are judged by its
+    // stiffness.
     let bends = [answer.judged_bend.map(|b| b.bend.radius_m), answer.free_bend.map(|b| b.radius_m)];
     let sharpest = bends.into_iter().flatten().reduce(|a, b| if b < a { b } else { a });
     CableSummary {
@@ -273,8 +278,9 @@ fn ends(cable: &Cable, answer: &CableSolution) -> Vec<EndForce> {
         .collect()
 }
 
-/// The direction in which a stiff cable leaves an end. With the curvature linear between two nodes ds apart, the chord is turned
-/// from the tangent at the first by ds (κ₁/3 + κ₂/6), whichever way arc length grows.
+/// The direction in which a stiff cable leaves an end. With the curvature linear between two nodes
+/// ds apart, the chord is turned from the tangent at the first by ds (κ₁/3 + κ₂/6), whichever way
+/// arc length grows.
 fn leaves([end, next]: [&Node; 2]) -> Option<Vec2> {
     let chord = (next.at() - end.at()).try_normalize(0.0)?;
     let ds = next.arc_length_m - end.arc_length_m;
@@ -282,8 +288,9 @@ fn leaves([end, next]: [&Node; 2]) -> Option<Vec2> {
     Some(Vec2::new(cos * chord.x - sin * chord.y, sin * chord.x + cos * chord.y))
 }
 
-/// Contacts whose normal force is below this part of the greatest are not asked how much of their friction they use: both are rounding.
-/// Larger: light contacts that slide are not seen. Smaller: nothing divided by nothing is the greatest share.
+/// Contacts whose normal force is below this part of the greatest are not asked how much of their
+/// friction they use: both are rounding. Larger: light contacts that slide are not seen. Smaller:
+/// nothing divided by nothing is the greatest share.
 const MIN_NORMAL_FRACTION: f64 = 1e-6;
 
 fn friction(scene: &Scene, cable: &Cable, answer: &CableSolution) -> Option<FrictionUse> {

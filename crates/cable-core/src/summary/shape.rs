@@ -7,8 +7,9 @@ use crate::solution::{CableSolution, ContactReport, Node};
 /// Places nearer than this part of the cable's length are the same.
 const PLACE_TOLERANCE: f64 = 1e-9;
 
-/// Sag: the greatest distance of the cable from the straight line between neighbouring supports that hold it (a dead load hangs: it
-/// holds nothing), downwards in a side view, square to the line in a plan view. None where no two of them are apart.
+/// Sag: the greatest distance of the cable from the straight line between neighbouring supports
+/// that hold it (a dead load hangs: it holds nothing), downwards in a side view, square to the line
+/// in a plan view. None where no two of them are apart.
 #[must_use]
 pub fn sag(cable: &Cable, answer: &CableSolution, view: View) -> Option<Sag> {
     let hangs = |k: usize| {
@@ -27,7 +28,8 @@ pub fn sag(cable: &Cable, answer: &CableSolution, view: View) -> Option<Sag> {
         let between =
             answer.nodes.iter().filter(|n| n.arc_length_m >= a.arc_length_m && n.arc_length_m <= b.arc_length_m);
         for n in between {
-            // Twice the triangle's area over the base: over its horizontal part that is the vertical distance.
+            // Twice the triangle's area over the base: over its horizontal part that is the
+            // vertical distance.
             let cross = dx * (n.y_m - a.y_m) - dy * (n.x_m - a.x_m);
             let sag_m = match view {
                 View::Elevation => -cross * dx.signum() / span,
@@ -41,8 +43,8 @@ pub fn sag(cable: &Cable, answer: &CableSolution, view: View) -> Option<Sag> {
     best
 }
 
-/// Stretched length, m: ∫ (1 + ε) θ ds with θ = 1 + αΔT. The sum of the chords between nodes would be shorter where the cable
-/// is curved, shorter even than the cable.
+/// Stretched length, m: ∫ (1 + ε) θ ds with θ = 1 + αΔT. The sum of the chords between nodes would
+/// be shorter where the cable is curved, shorter even than the cable.
 #[must_use]
 pub fn stretched_length_m(cable: &CableSolution, thermal_stretch: f64) -> f64 {
     let elements = cable.pieces().flat_map(|piece| piece.windows(2));

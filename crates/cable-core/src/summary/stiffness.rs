@@ -1,9 +1,10 @@
 //! The end stiffness of a cable is the change of force per metre that an end is moved.
 //!
-//! Each end is moved a little right and left, up and down, without inertia and from the place of rest that was found, so that friction
-//! remembers: contacts that hold go on holding, and what slides on one of the ways there makes the figure the mean of two. The
-//! derivative is the central difference of the forces, K = −ΔR/2h with R the force of the cable on the support. All else stands
-//! still: motions, robots and loads are taken as they are at time 0.
+//! Each end is moved a little right and left, up and down, without inertia and from the place of
+//! rest that was found, so that friction remembers: contacts that hold go on holding, and what
+//! slides on one of the ways there makes the figure the mean of two. The derivative is the central
+//! difference of the forces, K = −ΔR/2h with R the force of the cable on the support. All else
+//! stands still: motions, robots and loads are taken as they are at time 0.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,11 +16,12 @@ use crate::problem::Series;
 use crate::scene::{Scene, SupportKind};
 use crate::simulation::Simulation;
 
-/// The force changes by this part of the greatest tension on the way. Larger: the difference is no longer the derivative (its error is
-/// the square of this); smaller: what the solver leaves unbalanced, 1e-8 of the tension, is seen.
+/// The force changes by this part of the greatest tension on the way. Larger: the difference is no
+/// longer the derivative (its error is the square of this); smaller: what the solver leaves
+/// unbalanced, 1e-8 of the tension, is seen.
 const FORCE_CHANGE_FRACTION: f64 = 1e-3;
-/// The first move, which tells how far the others go, in lengths of the cable. Larger: taut ropes of steel are overloaded; smaller: the
-/// answers of the mesh do not change.
+/// The first move, which tells how far the others go, in lengths of the cable. Larger: taut ropes
+/// of steel are overloaded; smaller: the answers of the mesh do not change.
 const FIRST_MOVE_FRACTION: f64 = 1e-7;
 /// Longest move, in lengths of the cable: what gives way so easily is not stiff.
 const MAX_MOVE_FRACTION: f64 = 1e-3;
@@ -33,8 +35,9 @@ pub struct EndStiffness {
     pub cable: String,
     /// The support's name.
     pub support: String,
-    /// Change of the force with which the end must be held, right and up, for each metre it is moved: the first row is of the force to
-    /// the right by moves to the right and up, the second that of the force upwards.
+    /// Change of the force with which the end must be held, right and up, for each metre it is
+    /// moved: the first row is of the force to the right by moves to the right and up, the second
+    /// that of the force upwards.
     pub stiffness_n_per_m: [[f64; 2]; 2],
     /// How far it was moved for it, m.
     pub moved_m: f64,

@@ -12,7 +12,8 @@ fn first(scene: &Scene, model: Model) -> CableSummary {
     summaries(scene, &answered(scene, model)).remove(0)
 }
 
-/// An inextensible catenary between two points of one height, for a horizontal pull: y = (H/w) cosh(w x/H).
+/// An inextensible catenary between two points of one height, for a horizontal pull: y = (H/w)
+/// cosh(w x/H).
 struct Catenary {
     pull: f64,
     weight: f64,
@@ -87,15 +88,16 @@ fn a_stretched_and_heated_cable_is_as_long_as_it_is() {
     assert!((s.stretched_length_m / (cable.length_m * thermal * (1.0 + mean)) - 1.0).abs() < 1e-6, "{s:?}");
 }
 
-/// Moved by dd, the pull changes by dH/dd where L(H, d) is constant; moved up, the whole force turns.
+/// Moved by dd, the pull changes by dH/dd where L(H, d) is constant; moved up, the whole force
+/// turns.
 #[test]
 fn end_stiffness_is_that_of_the_catenary() {
     let (scene, exact) = inextensible();
     let (weight, u) = (exact.weight, exact.half());
     // L = 2(H/w) sinh u, u = wd/2H: ∂L/∂d = cosh u, ∂L/∂H = (2/w)(sinh u − u cosh u).
     let along = u.cosh() / (2.0 / weight * (u * u.cosh() - u.sinh()));
-    // With the ends v apart in height L² = v² + (2(H/w) sinh u)² keeps H to the first order in v, and the upper one carries
-    // (w/2)(v coth u + L).
+    // With the ends v apart in height L² = v² + (2(H/w) sinh u)² keeps H to the first order in v,
+    // and the upper one carries (w/2)(v coth u + L).
     let across = 0.5 * weight / u.tanh();
     let all = end_stiffness(&scene, Model::Auto, Settings::default()).unwrap();
     assert_eq!(all.len(), 2);
@@ -118,8 +120,8 @@ fn end_stiffness_is_that_of_the_catenary() {
     }
 }
 
-/// A cable drawn over a post holds its end by friction: what is beyond the post is felt less than without friction, and all models that
-/// know contact say the same.
+/// A cable drawn over a post holds its end by friction: what is beyond the post is felt less than
+/// without friction, and all models that know contact say the same.
 #[test]
 fn end_stiffness_in_contact_is_symmetric_and_the_same_by_all_models() {
     let mut scene = catalog::round_post();
@@ -267,8 +269,9 @@ fn lying_length_is_that_of_the_union_of_all_contacts() {
     assert_eq!(seen, [("c", TouchKind::Ends, 0.4), ("d", TouchKind::Point, 0.6)]);
 }
 
-/// A cable whose preset is known to bend stiffly: what that changes is what the same scene says with the stiffness written down. It is
-/// nothing that anybody knows of a cable without a preset, and nothing was left out of one whose stiffness was used.
+/// A cable whose preset is known to bend stiffly: what that changes is what the same scene says
+/// with the stiffness written down. It is nothing that anybody knows of a cable without a preset,
+/// and nothing was left out of one whose stiffness was used.
 #[test]
 fn what_bending_would_change_is_told_where_it_was_left_out() {
     let scene = catalog::round_post();
@@ -290,11 +293,12 @@ fn what_bending_would_change_is_told_where_it_was_left_out() {
     assert_eq!(neglected_bending(&unknown, &answer, Settings::default()), []);
 }
 
-/// Asked for, the likely stiffness is taken and said: of every cable that has one, or only where the flexible answer is bent too tightly.
+/// Asked for, the likely stiffness is taken and said: of every cable that has one, or only where
+/// the flexible answer is bent too tightly.
 #[test]
 fn the_likely_bending_stiffness_is_taken_where_it_is_asked_for() {
-    let by = (Model::Auto, Settings::default());
-    let answered = |scene: &Scene, bending| settle_with_bending(scene, by, bending).unwrap();
+    let answered =
+        |scene: &Scene, bending| settle_with_bending(scene, Model::Auto, Settings::default(), bending).unwrap();
     let stiffness = |a: &Solution| a.cables[0].assumptions.bending_stiffness_n_m2;
     let span = catalog::hanging_span();
     for (bending, taken) in [(Bending::AsWritten, 0.0), (Bending::Likely, 1.4), (Bending::WhereItMatters, 0.0)] {

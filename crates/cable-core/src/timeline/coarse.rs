@@ -1,10 +1,12 @@
 //! Coarser runs beside a run estimate its errors: the same scene on elements twice and three times
 //! as long, in steps twice and three times as long.
 //!
-//! Bars are of the second order where the cable is free and of the first where it meets things, steps likewise: what two runs differ by, of
-//! which one is twice as fine, is at least what the finer one lacks then (L. F. Richardson and J. A. Gaunt, *The deferred approach to the
-//! limit*, Phil. Trans. R. Soc. A 226, 1927, without the extrapolation). Where a cable is thrown about the three go different ways, and so
-//! would a finer one: what is known is then only what they have in common. They cost a quarter and a ninth of the run.
+//! Bars are of the second order where the cable is free and of the first where it meets things,
+//! steps likewise: what two runs differ by, of which one is twice as fine, is at least what the
+//! finer one lacks then (L. F. Richardson and J. A. Gaunt, *The deferred approach to the limit*,
+//! Phil. Trans. R. Soc. A 226, 1927, without the extrapolation). Where a cable is thrown about the
+//! three go different ways, and so would a finer one: what is known is then only what they have in
+//! common. They cost a quarter and a ninth of the run.
 
 use super::{TensionRanges, advance};
 use crate::math::{larger, smaller};
@@ -19,24 +21,29 @@ const COMMON_STEPS: u64 = 6;
 /// Part of a time by which a sum of steps may be short of it.
 const TENSION_ROUNDING: f64 = 1e-9;
 
-/// A difference is forgotten with this time, s. Less: errors vanish wherever two runs cross; more: what once struck is uncertain long after
-/// it lies still.
+/// A difference is forgotten with this time, s. Less: errors vanish wherever two runs cross; more:
+/// what once struck is uncertain long after it lies still.
 const MEMORY_S: f64 = 0.25;
 
-/// Greatest tensions are compared of one to two times so much time, s: a jerk comes later in one run than in another. Less: jerks of two runs are
-/// apart; more: one that all runs have hides another that they do not agree on.
+/// Greatest tensions are compared of one to two times so much time, s: a jerk comes later in one
+/// run than in another. Less: jerks of two runs are apart; more: one that all runs have hides
+/// another that they do not agree on.
 const WINDOW_S: f64 = 0.05;
-/// A finer run may differ from the finest of three by so many times what that one differs by from the others. Of random motions
-/// (`motion_errors.rs`) some 92 figures in 100 are covered; with 1.5 it is two less.
+/// A finer run may differ from the finest of three by so many times what that one differs by from
+/// the others. Of random motions (`motion_errors.rs`) some 92 figures in 100 are covered; with 1.5
+/// it is two less.
 const ERROR_FACTOR: f64 = 2.0;
-/// Where the finest is so much nearer to the second than to the third they converge, and what it differs by from the second counts alone. With
-/// 0.6 it is 92 in 100, too; without this what swings freely is said to be up to 20 times as wrong as it is.
+/// Where the finest is so much nearer to the second than to the third they converge, and what it
+/// differs by from the second counts alone. With 0.6 it is 92 in 100, too; without this what swings
+/// freely is said to be up to 20 times as wrong as it is.
 const CONVERGENCE_RATIO: f64 = 0.5;
-/// The logarithm of the greatest tension of a window may be so many times as far down and up on finer meshes as it is apart in the three runs. With
-/// [2, 2] 9 in 100 runs on four times as many elements are outside of ranges that call themselves resolved, with these 4.
+/// The logarithm of the greatest tension of a window may be so many times as far down and up on
+/// finer meshes as it is apart in the three runs. With [2, 2] 9 in 100 runs on four times as many
+/// elements are outside of ranges that call themselves resolved, with these 4.
 const PEAK_FACTORS: [f64; 2] = [3.0, 2.5];
-/// It is no further down and up than this where they are far apart, half as much and 3.7 times: the whip of a flexible cable grows with the mesh. With
-/// [0.6, 1.1] the greatest tensions of 6 in 100 runs are outside, and means of 8; with these of 5, with [0.8, 1.5] no fewer.
+/// It is no further down and up than this where they are far apart, half as much and 3.7 times: the
+/// whip of a flexible cable grows with the mesh. With [0.6, 1.1] the greatest tensions of 6 in 100
+/// runs are outside, and means of 8; with these of 5, with [0.8, 1.5] no fewer.
 const UNRESOLVED_FACTORS: [f64; 2] = [0.7, 1.3];
 /// Tensions below this part of the greatest so far are none.
 const MIN_TENSION_FRACTION: f64 = 1e-9;
@@ -89,7 +96,8 @@ struct CoarseRun {
 }
 
 impl CoarseRuns {
-    /// Coarse runs beside one that has settled; None where it has no elements, or too few, or a coarse one does not come to rest.
+    /// Coarse runs beside one that has settled; None where it has no elements, or too few, or a
+    /// coarse one does not come to rest.
     pub fn beside(fine: &Simulation, inertia: Inertia) -> Option<Self> {
         // Without inertia models say their errors by themselves.
         if inertia != Inertia::Dynamic {
@@ -114,7 +122,8 @@ impl CoarseRuns {
         self.runs.iter_mut().for_each(|run| how(&mut run.simulation));
     }
 
-    /// Goes on to the run they are beside, which has made one more step; None where one of them cannot.
+    /// Goes on to the run they are beside, which has made one more step; None where one of them
+    /// cannot.
     pub fn follow(mut self, fine: &Simulation) -> Option<Self> {
         self.count += 1;
         self.own.iter_mut().zip(tops(fine)).for_each(|(own, tops)| own.note(tops));
@@ -153,7 +162,8 @@ impl CoarseRuns {
             others.fold((own, own), |(least, most), n| (if n < least { n } else { least }, larger(most, n)));
         // Of a cable that no run pulls nothing is apart.
         let apart = if own > 0.0 { larger((own / least).ln(), (most / own).ln()) } else { 0.0 };
-        // That they converge is not enough: then the greatest tensions of 6 in 100 runs more are outside.
+        // That they converge is not enough: then the greatest tensions of 6 in 100 runs more are
+        // outside.
         let [down, up] = [0, 1].map(|j| smaller(PEAK_FACTORS[j] * apart, UNRESOLVED_FACTORS[j]));
         let here = [own * (-down).exp(), own * up.exp()];
         [larger(before[0], here[0]), larger(before[1], here[1])]
@@ -175,7 +185,8 @@ fn tops(simulation: &Simulation) -> impl Iterator<Item = [f64; 2]> {
     peaks.map(|p| [p.greatest.tension_n, p.held.tension_n])
 }
 
-/// By how much a finer run may differ from one that differs by so much from a coarser one, and from a still coarser one.
+/// By how much a finer run may differ from one that differs by so much from a coarser one, and from
+/// a still coarser one.
 fn error_bound(finer: f64, coarser: f64) -> f64 {
     match finer <= CONVERGENCE_RATIO * coarser {
         true => ERROR_FACTOR * finer,

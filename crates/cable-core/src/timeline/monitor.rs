@@ -28,8 +28,9 @@ impl RunMonitor {
         Self { coarse: None, peaks, worst_n: Some(0.0) }
     }
 
-    /// The same, with errors in motion: coarser runs go beside one that has settled at its start, for a third of its cost. Where there is
-    /// none (no elements, or no inertia), nothing is added to what the model says.
+    /// The same, with errors in motion: coarser runs go beside one that has settled at its start,
+    /// for a third of its cost. Where there is none (no elements, or no inertia), nothing is added
+    /// to what the model says.
     #[must_use]
     pub fn with_errors(simulation: &mut Simulation, inertia: Inertia) -> Self {
         let coarse = CoarseRuns::beside(simulation, inertia);
@@ -38,7 +39,8 @@ impl RunMonitor {
         monitor
     }
 
-    /// The same is done to the coarser runs as to the run: its ends are dragged, its robot is told to drive.
+    /// The same is done to the coarser runs as to the run: its ends are dragged, its robot is told
+    /// to drive.
     pub fn steer(&mut self, how: impl FnMut(&mut Simulation)) {
         if let Some(coarse) = &mut self.coarse {
             coarse.steer(how);
@@ -57,8 +59,8 @@ impl RunMonitor {
         &self.peaks
     }
 
-    /// The greatest error so far of the greatest tension and of any support's force, in parts of the greatest tension of the run; None where one
-    /// was not known.
+    /// The greatest error so far of the greatest tension and of any support's force, in parts of
+    /// the greatest tension of the run; None where one was not known.
     #[must_use]
     pub fn relative_error(&self) -> Option<f64> {
         let most = self.peaks.iter().map(|run| run.peaks.greatest.tension_n).fold(0.0, larger);

@@ -1,14 +1,15 @@
 //! Each law of mechanics is one function over one cable.
 //!
-//! With F(s) the internal force, b the load per metre and d the force of obstacles on a piece of cable from s₁ to s₂,
-//! F(s₂) − F(s₁) + b (s₂ − s₁) + Σ P + d = 0, with P the point forces on it. So d follows from what the answer says of the cable alone,
-//! and must be nothing in the air, and within the cone about the normals of what touches the piece elsewhere. Beyond its ends
-//! the cable has no internal force.
+//! With F(s) the internal force, b the load per metre and d the force of obstacles on a piece of
+//! cable from s₁ to s₂, F(s₂) − F(s₁) + b (s₂ − s₁) + Σ P + d = 0, with P the point forces on it.
+//! So d follows from what the answer says of the cable alone, and must be nothing in the air, and
+//! within the cone about the normals of what touches the piece elsewhere. Beyond its ends the cable
+//! has no internal force.
 
 use super::supports::{self, Role, SupportHold};
 use super::surroundings::{NearestFeature, Neighbours, Surroundings};
 use super::tolerance::{
-    BALANCE, COMPRESSION, CONE_EXCESS, CONTACT_SHIFT_DIAMETERS, DEPTH_DIAMETERS, DEPTH_M, FOLD_TURN, LENGTH,
+    BALANCE_FRACTION, COMPRESSION, CONE_EXCESS, CONTACT_SHIFT_DIAMETERS, DEPTH_DIAMETERS, DEPTH_M, FOLD_TURN, LENGTH,
     LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE, MIN_STRAIN, MOMENT, MOMENTUM, NORMAL_TOLERANCE, REACH_DIAMETERS, REACH_M,
     REPORTED_BALANCE, TURN,
 };
@@ -58,7 +59,8 @@ struct CheckedBar<'a> {
     forces: [f64; 2],
 }
 
-/// How far the way of a piece is from what it should be, how far it may, and its material beyond its way, m.
+/// How far the way of a piece is from what it should be, how far it may, and its material beyond
+/// its way, m.
 #[derive(Clone, Copy, Debug)]
 struct Lengths {
     value: f64,
@@ -154,7 +156,7 @@ impl CheckedCable<'_> {
         self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m).collect()
     }
 
-    pub fn finding(&self, law: Law, node: usize, (value, limit): (f64, f64)) -> Finding {
+    pub fn finding(&self, law: Law, node: usize, value: f64, limit: f64) -> Finding {
         let n = self.answer.nodes.get(node).or(self.answer.nodes.last()).copied().unwrap_or_default();
         Finding {
             law,
@@ -183,7 +185,7 @@ impl CheckedCable<'_> {
                 && all(&[c.tension_before_n, c.tension_after_n, c.begins_m, c.ends_m])
         };
         let bad = |k: usize, with: &str| {
-            let mut finding = self.finding(Law::Finite, k, (f64::INFINITY, 0.0));
+            let mut finding = self.finding(Law::Finite, k, f64::INFINITY, 0.0);
             with.clone_into(&mut finding.with);
             finding
         };
@@ -200,7 +202,8 @@ impl CheckedCable<'_> {
         a.contacts.iter().find(|c| !contact(c)).map(|c| bad(0, &c.obstacle))
     }
 
-    /// The greatest force on or in the cable, N; of one without any the least that anybody would read.
+    /// The greatest force on or in the cable, N; of one without any the least that anybody would
+    /// read.
     fn forces_scale(&self) -> f64 {
         let square = self.answer.nodes.iter().map(|n| n.force().norm_squared()).fold(0.0, f64::max);
         let loads = self.points.iter().map(|p| p.force.norm()).fold(0.0, larger);
@@ -224,13 +227,13 @@ impl CheckedCable<'_> {
         let last = nodes.last().map_or(f64::NAN, |n| (n.arc_length_m - self.cable.length_m).abs());
         for (node, value) in [(0, first), (nodes.len() - 1, last)] {
             if !(value <= limit) {
-                found.report(self.finding(Law::Material, node, (value, limit)));
+                found.report(self.finding(Law::Material, node, value, limit));
             }
         }
         for (k, pair) in nodes.windows(2).enumerate() {
             let back = pair[0].arc_length_m - pair[1].arc_length_m;
             if !(back <= limit) {
-                found.report(self.finding(Law::Material, k + 1, (back, limit)));
+                found.report(self.finding(Law::Material, k + 1, back, limit));
             }
         }
         found.findings.len() == before
@@ -252,7 +255,8 @@ impl CheckedCable<'_> {
         let radius = 0.5 * self.cable.diameter_m;
         let allowed = (DEPTH_DIAMETERS * self.cable.diameter_m).min(DEPTH_M);
         let nodes = &self.answer.nodes;
-        // Where the scene itself holds the axis on a surface, the cable is as deep there as it is thick.
+        // Where the scene itself holds the axis on a surface, the cable is as deep there as it is
+        // thick.
         let held = self.held_at();
         let on_surface = MATERIAL_TOLERANCE * self.cable.length_m;
         for (k, n) in nodes.iter().enumerate() {
@@ -264,7 +268,7 @@ impl CheckedCable<'_> {
                 if depth <= on_surface && held.contains(&n.at()) {
                     continue;
                 }
-                let mut finding = self.finding(Law::Penetration, k, (depth + radius, allowed));
+                let mut finding = self.finding(Law::Penetration, k, depth + radius, allowed);
                 self.surroundings.name(body).clone_into(&mut finding.with);
                 found.report(finding);
             }
@@ -281,7 +285,7 @@ impl CheckedCable<'_> {
                 let given = if held.contains(&n.at) { radius } else { 0.0 };
                 let limit = allowed + given + if end { 0.0 } else { sagitta };
                 if !(value <= limit) {
-                    let mut finding = self.finding(Law::Penetration, k, (value, limit));
+                    let mut finding = self.finding(Law::Penetration, k, value, limit);
                     self.surroundings.name(n.body).clone_into(&mut finding.with);
                     finding.at_m = n.at.into();
                     found.report(finding);
@@ -299,7 +303,7 @@ impl CheckedCable<'_> {
     fn reported_contacts(&self, found: &mut Verification) {
         found.ask(Law::Push);
         found.ask(Law::Friction);
-        let noise = BALANCE * self.scale;
+        let noise = BALANCE_FRACTION * self.scale;
         for c in &self.answer.contacts {
             let friction = match self.surroundings.find(&c.obstacle) {
                 Some(body) => self.surroundings.friction(body, self.cable.friction),
@@ -308,7 +312,7 @@ impl CheckedCable<'_> {
             let node = self.answer.nodes.partition_point(|n| n.arc_length_m < c.arc_length_m);
             let mut tell = |law: Law, value: f64, limit: f64| {
                 if !(value <= limit) {
-                    let mut finding = self.finding(law, node, (value, limit));
+                    let mut finding = self.finding(law, node, value, limit);
                     finding.with.clone_from(&c.obstacle);
                     found.report(finding);
                 }
@@ -318,8 +322,8 @@ impl CheckedCable<'_> {
         }
     }
 
-    /// The pieces from node to node. What acts at a node belongs to the piece that ends there, as internal forces are those just
-    /// beyond nodes.
+    /// The pieces from node to node. What acts at a node belongs to the piece that ends there, as
+    /// internal forces are those just beyond nodes.
     fn pieces(&self) -> impl Iterator<Item = CheckedPiece> {
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
@@ -330,10 +334,12 @@ impl CheckedCable<'_> {
         let mut known: Vec<_> = self.points.iter().chain(&foreign).map(|p| (node(p.arc_length), p.force)).collect();
         known.sort_by_key(|p| p.0);
         let mut known = known.into_iter().peekable();
-        // Forces of bodies that the scene does not hold still are known to a node's neighbourhood only.
+        // Forces of bodies that the scene does not hold still are known to a node's neighbourhood
+        // only.
         let cut = move |k: usize| {
             let [before, after] = [k - 1, (k + 1).min(last)].map(|k| nodes[k].arc_length_m);
-            // Nodes of one material point are one: where the cable turns round a point, it is not said what it does there.
+            // Nodes of one material point are one: where the cable turns round a point, it is not
+            // said what it does there.
             nodes[k + 1].arc_length_m - nodes[k].arc_length_m > same
                 && foreign.iter().all(|p| !(p.arc_length >= before - same && p.arc_length <= after + same))
         };
@@ -359,7 +365,7 @@ impl CheckedCable<'_> {
 
     fn balance(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Balance);
-        let limit = BALANCE * self.scale;
+        let limit = BALANCE_FRACTION * self.scale;
         let mut sums = Balance { scale_n: larger(found.balance.scale_n, self.scale), ..found.balance };
         let (mut adrift, mut beyond, mut pressed, mut in_air) = (Vec2::zeros(), 0.0, 0.0, 0.0);
         let (mut contacts, mut wheels, mut worst) = (Vec2::zeros(), Vec2::zeros(), (0.0, 0));
@@ -371,7 +377,7 @@ impl CheckedCable<'_> {
                 for square in [adrift.norm_squared(), piece.contact.norm_squared()] {
                     in_air = f64::max(in_air, square);
                     if !(square <= limit * limit) {
-                        found.report(self.finding(Law::Balance, piece.nodes[0], (square.sqrt(), limit)));
+                        found.report(self.finding(Law::Balance, piece.nodes[0], square.sqrt(), limit));
                     }
                 }
                 continue;
@@ -392,15 +398,16 @@ impl CheckedCable<'_> {
         let allowed = limit + CONE_EXCESS * pressed;
         let allowed = if beyond <= allowed { allowed } else { allowed + self.lumped_friction(near) };
         if !(beyond <= allowed) {
-            let mut finding = self.finding(Law::Friction, worst.1, (beyond, allowed));
+            let mut finding = self.finding(Law::Friction, worst.1, beyond, allowed);
             let here = near.of(worst.1).first();
-            self.surroundings.name(here.map_or(usize::MAX, |n| n.body)).clone_into(&mut finding.with);
+            here.map_or("", |n| self.surroundings.name(n.body)).clone_into(&mut finding.with);
             found.report(finding);
         }
         self.sums(found, sums, [contacts, wheels]);
     }
 
-    /// What obstacles and the floor would do to a piece beyond what their friction allows, N; None where nothing touches it.
+    /// What obstacles and the floor would do to a piece beyond what their friction allows, N; None
+    /// where nothing touches it.
     fn excess(&self, near: &Neighbours, piece: &CheckedPiece, rays: &mut Vec<Vec2>) -> Option<f64> {
         let within = |n: &NearestFeature| {
             let pushes = piece.contact.dot(&n.normal);
@@ -418,7 +425,7 @@ impl CheckedCable<'_> {
 
     /// What is reported of contacts and wheels adds up to what the cable asks for.
     fn sums(&self, found: &mut Verification, mut sums: Balance, [contacts, wheels]: [Vec2; 2]) {
-        let limit = BALANCE * self.scale;
+        let limit = BALANCE_FRACTION * self.scale;
         let known_here = |c: &&ContactReport| self.surroundings.find(&c.obstacle).is_some();
         let reported: Vec2 = self.answer.contacts.iter().filter(known_here).map(|c| vec2(c.force_n)).sum::<Vec2>()
             + self.foreign().map(|p| p.force).sum::<Vec2>();
@@ -431,7 +438,7 @@ impl CheckedCable<'_> {
         sums.residual_n = larger(sums.residual_n, off);
         let limit = if self.answer.contacts.is_empty() { limit } else { REPORTED_BALANCE * self.scale };
         if !(off <= limit) {
-            let mut finding = self.finding(Law::Balance, 0, (off, limit));
+            let mut finding = self.finding(Law::Balance, 0, off, limit);
             "the whole cable".clone_into(&mut finding.with);
             found.report(finding);
         }
@@ -453,7 +460,8 @@ impl CheckedCable<'_> {
         self.scene.view == View::Plan && self.cable.friction > 0.0
     }
 
-    /// What may act on each metre of the cable without touching it at a place, N/m: weight and wind, and in plan view the floor's friction.
+    /// What may act on each metre of the cable without touching it at a place, N/m: weight and
+    /// wind, and in plan view the floor's friction.
     fn spread_load(&self) -> f64 {
         if !self.floor_rubs() {
             return self.body.norm();
@@ -470,7 +478,8 @@ impl CheckedCable<'_> {
         let weight = self.cable.linear_density_kg_per_m * self.scene.environment.gravity_m_per_s2;
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
-        // What rubs at a node is of half of both pieces beside it, and at an end of the cable of the half there too.
+        // What rubs at a node is of half of both pieces beside it, and at an end of the cable of
+        // the half there too.
         let [a, b] = piece.nodes.map(|k| nodes[k].arc_length_m);
         let next = nodes[(piece.nodes[1] + 1).min(last)].arc_length_m;
         let half = if piece.nodes[0] == 0 { 0.5 * (b - a) } else { 0.0 };
@@ -482,8 +491,9 @@ impl CheckedCable<'_> {
         self.wheels.iter().any(|&(center, radius, _)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
     }
 
-    /// Friction that the bars' own weight may add or hide where the ground turns, N: a bar carries it to its ends, where it turns the
-    /// cable by weight over tension, and so presses as no edge does.
+    /// Friction that the bars' own weight may add or hide where the ground turns, N: a bar carries
+    /// it to its ends, where it turns the cable by weight over tension, and so presses as no edge
+    /// does.
     fn lumped_friction(&self, near: &Neighbours) -> f64 {
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
@@ -503,8 +513,9 @@ impl CheckedCable<'_> {
         self.scene.obstacles.iter().map(|o| o.friction.unwrap_or(self.cable.friction)).fold(0.0, larger)
     }
 
-    /// Gathers unit vectors that bound the friction cones of all that touches a piece, its neighbours counted in: a force that is
-    /// known at nodes only is known to a node's neighbourhood. Returns whether their normals differ, as at a corner.
+    /// Gathers unit vectors that bound the friction cones of all that touches a piece, its
+    /// neighbours counted in: a force that is known at nodes only is known to a node's
+    /// neighbourhood. Returns whether their normals differ, as at a corner.
     fn rays(&self, near: &Neighbours, piece: &CheckedPiece, out: &mut Vec<Vec2>) -> bool {
         out.clear();
         let (mut first, mut turns, mut before) = (None, false, (Vec2::zeros(), 0.0));
@@ -534,8 +545,8 @@ impl CheckedCable<'_> {
         turns
     }
 
-    /// The laws of a flexible cable from node to node: its tension is the force in it, it pulls along its way, and its way is its
-    /// material.
+    /// The laws of a flexible cable from node to node: its tension is the force in it, it pulls
+    /// along its way, and its way is its material.
     fn flexible(&self, found: &mut Verification, near: &Neighbours) {
         [Law::Length, Law::Tension, Law::Compression].into_iter().for_each(|law| found.ask(law));
         let mut before = None;
@@ -562,8 +573,8 @@ impl CheckedCable<'_> {
         })
     }
 
-    /// The tension of a flexible cable is the size of the force in it: at the node between two bars one of those between just before
-    /// and just beyond it.
+    /// The tension of a flexible cable is the size of the force in it: at the node between two bars
+    /// one of those between just before and just beyond it.
     fn tension(&self, found: &mut Verification, before: Option<CheckedBar<'_>>, bar: &CheckedBar<'_>) {
         let tension = bar.from.tension_n;
         let limit = REPORTED_BALANCE * self.scale;
@@ -571,7 +582,8 @@ impl CheckedCable<'_> {
         if (tension - bar.forces[0]).abs() <= limit {
             return;
         }
-        // `fem` reads it off the middles of the bars beside a node: half of their weight, or of the floor's friction on them, is in between.
+        // `fem` reads it off the middles of the bars beside a node: half of their weight, or of the
+        // floor's friction on them, is in between.
         let beside = bar.length + before.map_or(0.0, |b| b.length);
         let limit = limit + LUMPED_WEIGHT_TURN * self.spread_load() * beside;
         let after = bar.from.force();
@@ -580,7 +592,7 @@ impl CheckedCable<'_> {
         let least = super::surroundings::distance(before, after, Vec2::zeros(), Vec2::zeros());
         let value = larger(tension - most, least - tension);
         if !(value <= limit) {
-            found.report(self.finding(Law::Tension, bar.k, (value, limit)));
+            found.report(self.finding(Law::Tension, bar.k, value, limit));
         }
     }
 
@@ -595,7 +607,7 @@ impl CheckedCable<'_> {
         let value = (after - before - sum).norm();
         let limit = MOMENTUM * largest;
         if !(value <= limit) {
-            found.report(self.finding(Law::Momentum, 0, (value, limit)));
+            found.report(self.finding(Law::Momentum, 0, value, limit));
         }
     }
 
@@ -614,16 +626,18 @@ impl CheckedCable<'_> {
         let pushes = if most < 0.0 { -0.5 * most / bar.way.norm() } else { 0.0 };
         let (value, limit) = (larger(pushes, -least), COMPRESSION * self.scale);
         if !(value <= limit) {
-            found.report(self.finding(Law::Compression, bar.k, (value, limit)));
+            found.report(self.finding(Law::Compression, bar.k, value, limit));
         }
     }
 
-    /// Internal force at the end of a bar, N: as what touches it is spread along it, and as it is all at the end.
+    /// Internal force at the end of a bar, N: as what touches it is spread along it, and as it is
+    /// all at the end.
     fn forces_at_end(&self, bar: &CheckedBar<'_>) -> [Vec2; 2] {
         [bar.to.force(), bar.from.force() - self.body * bar.length]
     }
 
-    /// Internal force just before a node that is not the first, as what touches the bar before it is all at its end, N.
+    /// Internal force just before a node that is not the first, as what touches the bar before it
+    /// is all at its end, N.
     pub(crate) fn force_before(&self, node: usize) -> Vec2 {
         let [a, b] = [&self.answer.nodes[node - 1], &self.answer.nodes[node]];
         a.force() - self.body * (b.arc_length_m - a.arc_length_m)
@@ -633,7 +647,7 @@ impl CheckedCable<'_> {
     fn flexible_length(&self, found: &mut Verification, near: &Neighbours, bar: &CheckedBar<'_>) {
         let touches = self.touches(near, bar.k);
         let [spread, at_end] = self.forces_at_end(bar);
-        let spread = self.strained(bar, (spread, bar.forces[1]), touches);
+        let spread = self.strained(bar, spread, bar.forces[1], touches);
         if spread.is_some_and(|(off, limit)| off.norm_squared() <= limit * limit) {
             return;
         }
@@ -645,7 +659,7 @@ impl CheckedCable<'_> {
         if spread.value <= spread.limit && spread.folded == 0.0 {
             return;
         }
-        let at_end = lengths(self.strained(bar, (at_end, at_end.norm()), touches), at_end.norm());
+        let at_end = lengths(self.strained(bar, at_end, at_end.norm(), touches), at_end.norm());
         let off = |l: &Lengths| l.value / l.limit;
         self.tell_length(found, bar, if off(&at_end) < off(&spread) { at_end } else { spread });
     }
@@ -653,7 +667,7 @@ impl CheckedCable<'_> {
     fn tell_length(&self, found: &mut Verification, bar: &CheckedBar<'_>, lengths: Lengths) {
         found.folded_m += lengths.folded;
         if !(lengths.value <= lengths.limit) {
-            found.report(self.finding(Law::Length, bar.k, (lengths.value, lengths.limit)));
+            found.report(self.finding(Law::Length, bar.k, lengths.value, lengths.limit));
         }
     }
 
@@ -663,15 +677,16 @@ impl CheckedCable<'_> {
         LENGTH * material + MATERIAL_TOLERANCE * self.cable.length_m + aside
     }
 
-    /// How far the way of a bar of a flexible cable, whose internal force is `end` (N) of size `q` (N) at its end, is from what it
-    /// should be, and how far it may, m; None where the force has no direction.
+    /// How far the way of a bar of a flexible cable, whose internal force is `end` (N) of size `q`
+    /// (N) at its end, is from what it should be, and how far it may, m; None where the force has
+    /// no direction.
     #[inline]
-    fn strained(&self, bar: &CheckedBar<'_>, (end, q): (Vec2, f64), touches: bool) -> Option<(Vec2, f64)> {
+    fn strained(&self, bar: &CheckedBar<'_>, end: Vec2, q: f64, touches: bool) -> Option<(Vec2, f64)> {
         let (compliance, start, p) = (1.0 / self.cable.axial_stiffness_n, bar.from.force(), bar.forces[0]);
         let (least, most) = if p < q { (p, q) } else { (q, p) };
         let turn = (end - start).norm_squared() / (least * least);
         // A force no greater than what is let pass unbalanced has no direction, and may be none.
-        if !(turn < FOLD_TURN * FOLD_TURN && least > BALANCE * self.scale) {
+        if !(turn < FOLD_TURN * FOLD_TURN && least > BALANCE_FRACTION * self.scale) {
             return None;
         }
         // Simpson's rule for ∫ F/|F| (1 + |F|/EA) ds with F linear in s.
@@ -686,7 +701,8 @@ impl CheckedCable<'_> {
         Some((bar.way - rates * (material / 6.0), limit))
     }
 
-    /// A bar whose force, of size `q` (N) at its end, has no direction: it is no longer than its material.
+    /// A bar whose force, of size `q` (N) at its end, has no direction: it is no longer than its
+    /// material.
     fn folded(&self, bar: &CheckedBar<'_>, q: f64, touches: bool) -> Lengths {
         let material = self.thermal * bar.length;
         let stretched = material * (1.0 + larger(bar.forces[0], q) / self.cable.axial_stiffness_n);
@@ -713,15 +729,17 @@ impl CheckedCable<'_> {
         (self.answer.nodes[node].at() - center).norm() <= radius + reach
     }
 
-    /// The laws of a stiff cable from node to node: its way is an arc of its material, and with M the bending moment, M' + t × F = 0.
+    /// The laws of a stiff cable from node to node: its way is an arc of its material, and with M
+    /// the bending moment, M' + t × F = 0.
     fn stiff(&self, found: &mut Verification) {
         [Law::Length, Law::Moment].into_iter().for_each(|law| found.ask(law));
         let stiffness = self.answer.assumptions.bending_stiffness_n_m2 / self.thermal;
         let greatest = self.answer.nodes.iter().map(|n| n.curvature_per_m.abs()).fold(0.0, larger) * stiffness;
-        let limit = MOMENT * greatest + BALANCE * self.scale * 0.5 * self.cable.diameter_m;
+        let limit = MOMENT * greatest + BALANCE_FRACTION * self.scale * 0.5 * self.cable.diameter_m;
         for bar in self.bars() {
             self.tell_length(found, &bar, self.stiff_length(&bar));
-            // A bar that is longer than the bend beside a clamp or a contact, √(EI/T), cannot show it.
+            // A bar that is longer than the bend beside a clamp or a contact, √(EI/T), cannot show
+            // it.
             if bar.way.norm_squared() * bar.forces[0] > self.answer.assumptions.bending_stiffness_n_m2 {
                 continue;
             }
@@ -729,7 +747,7 @@ impl CheckedCable<'_> {
             let off = self.forces_at_end(&bar).map(|end| cross(bar.way, (bar.from.force() + end) * 0.5) + change);
             let value = smaller(off[0].abs(), off[1].abs());
             if !(value <= limit) {
-                found.report(self.finding(Law::Moment, bar.k, (value, limit)));
+                found.report(self.finding(Law::Moment, bar.k, value, limit));
             }
         }
     }
@@ -763,7 +781,7 @@ impl CheckedCable<'_> {
                 let ((a, b), (c, d)) = (edge(i), edge(j));
                 let value = thick - super::surroundings::distance(a, b, c, d);
                 if !(value <= limit) {
-                    found.report(self.finding(Law::SelfContact, i, (value, limit)));
+                    found.report(self.finding(Law::SelfContact, i, value, limit));
                 }
             }
         }

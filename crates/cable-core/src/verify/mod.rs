@@ -10,11 +10,13 @@
 //! | `pulleys.rs` | what friction of eyes and wheels allows between the tensions beside them |
 //! | `tolerance.rs` | every tolerance, each with its reason |
 //!
-//! Nothing here is shared with the models or with their contact geometry: a fault there cannot hide itself here. What is asked:
-//! each piece of cable is balanced, whatever acts on it that is neither a support nor a load nor weight comes from an
-//! obstacle that touches it there, pushes, and lies within the friction cone that was given; the way drawn through the nodes is the
-//! material with its strain; a flexible cable does not push; nothing lies inside anything. In motion forces on a piece do not add up to nothing:
-//! there the momentum of each cable must change by the impulses that its account of the step names.
+//! Nothing here is shared with the models or with their contact geometry: a fault there cannot hide
+//! itself here. What is asked: each piece of cable is balanced, whatever acts on it that is neither
+//! a support nor a load nor weight comes from an obstacle that touches it there, pushes, and lies
+//! within the friction cone that was given; the way drawn through the nodes is the material with
+//! its strain; a flexible cable does not push; nothing lies inside anything. In motion forces on a
+//! piece do not add up to nothing: there the momentum of each cable must change by the impulses
+//! that its account of the step names.
 
 mod laws;
 mod pulleys;
@@ -40,7 +42,8 @@ pub enum Depth {
     /// What every answer is asked: obstacles that are within the box of a bar.
     #[default]
     Always,
-    /// On request: the cable against itself as well. Time grows with the square of the number of nodes.
+    /// On request: the cable against itself as well. Time grows with the square of the number of
+    /// nodes.
     Full,
 }
 
@@ -60,14 +63,15 @@ impl Verifier {
     /// Asks every law of an answer of `scene`, the one it was made for.
     #[must_use]
     pub fn check(&self, scene: &Scene, solution: &Solution, depth: Depth) -> Verification {
-        self.check_cables(scene, (&solution.cables, solution.robot.as_ref()), solution.time_s, depth)
+        self.check_cables(scene, &solution.cables, solution.robot.as_ref(), solution.time_s, depth)
     }
 
     /// The same of the answers for its cables and of its robot at a time, s.
     pub(crate) fn check_cables(
         &self,
         scene: &Scene,
-        (answers, robot): (&[CableSolution], Option<&RobotReport>),
+        answers: &[CableSolution],
+        robot: Option<&RobotReport>,
         time_s: f64,
         depth: Depth,
     ) -> Verification {

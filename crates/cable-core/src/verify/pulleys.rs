@@ -1,12 +1,13 @@
 //! The friction of eyes and wheels limits the change of tension beside them: the capstan law.
 //!
-//! With m from −μ to μ, t the way, n out of the wheel and b the load per metre, dT = m T dθ − (b·t + m b·n) ds: from the
-//! tension before a pulley the greatest that friction can make of it follows with m = μ, the least with m = −μ (L. Euler, "Remarques sur
-//! l'effet du frottement dans l'équilibre", Mém. Acad. Berlin 1762, with the weight on the wheel).
+//! With m from −μ to μ, t the way, n out of the wheel and b the load per metre, dT = m T dθ −
+//! (b·t + m b·n) ds: from the tension before a pulley the greatest that friction can make of it
+//! follows with m = μ, the least with m = −μ (L. Euler, "Remarques sur l'effet du frottement dans
+//! l'équilibre", Mém. Acad. Berlin 1762, with the weight on the wheel).
 
 use super::laws::CheckedCable;
 use super::supports::Role;
-use super::tolerance::{BALANCE, CONE_EXCESS, MATERIAL_TOLERANCE, REPORTED_BALANCE};
+use super::tolerance::{BALANCE_FRACTION, CONE_EXCESS, MATERIAL_TOLERANCE, REPORTED_BALANCE};
 use super::{Law, Verification};
 use crate::math::{Vec2, cross, larger};
 use crate::solution::SupportReaction;
@@ -31,7 +32,8 @@ impl CheckedCable<'_> {
         for led in self.led() {
             found.ask(Law::Friction);
             let [first, last] = led.nodes;
-            // A node with no material before it, or none beyond it, is an end of the cable: nothing leads to the pulley.
+            // A node with no material before it, or none beyond it, is an end of the cable: nothing
+            // leads to the pulley.
             if first == 0 || last + 1 >= nodes.len() {
                 continue;
             }
@@ -39,16 +41,17 @@ impl CheckedCable<'_> {
             let after = nodes[last].force();
             let [least, most] = [-led.friction, led.friction].map(|m| self.passed(&led, before, m));
             let value = larger(after.norm() - most, least - after.norm());
-            let limit = CONE_EXCESS * larger(most, after.norm()) + BALANCE * self.scale();
+            let limit = CONE_EXCESS * larger(most, after.norm()) + BALANCE_FRACTION * self.scale();
             let mut tell = |law: Law, value: f64, limit: f64| {
                 if !(value <= limit) {
-                    let mut finding = self.finding(law, first, (value, limit));
+                    let mut finding = self.finding(law, first, value, limit);
                     finding.with.clone_from(&led.reaction.name);
                     found.report(finding);
                 }
             };
             tell(Law::Friction, value, limit);
-            // Nodes just off the wheel count as on it: from there to the wheel the cable carries its weight.
+            // Nodes just off the wheel count as on it: from there to the wheel the cable carries
+            // its weight.
             let on = |k: &usize| led.wheel.is_none_or(|(c, r)| (nodes[*k].at() - c).norm() <= r + WHEEL_TOLERANCE * r);
             let touches = [(first..=last).find(on).unwrap_or(last), (first..=last).rev().find(on).unwrap_or(first)];
             for (told, force, beside) in [

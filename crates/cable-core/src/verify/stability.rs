@@ -1,9 +1,11 @@
 //! The stability law asks whether a stiff cable bears its compression or buckles.
 //!
-//! Turned by η(s), a cable that cannot stretch changes its energy by ½ ∫ (EI η'² + T η²) ds, T the force along it, as long as every
-//! part between two places that are held keeps its chord: two conditions each (R. Levien, "The elastica: a mathematical
-//! history", 2008; J. H. Maddocks, "Stability of nonlinearly elastic rods", Arch. Rational Mech. Anal. 85, 1984). As many directions
-//! as there are conditions may lower the energy without being open to the cable; one more, and it leaves.
+//! Turned by η(s), a cable that cannot stretch changes its energy by ½ ∫ (EI η'² + T η²) ds, T the
+//! force along it, as long as every part between two places that are held keeps its chord: two
+//! conditions each (R. Levien, "The elastica: a mathematical history", 2008; J. H. Maddocks,
+//! "Stability of nonlinearly elastic rods", Arch. Rational Mech. Anal. 85, 1984). As many
+//! directions as there are conditions may lower the energy without being open to the cable; one
+//! more, and it leaves.
 
 use super::laws::CheckedCable;
 use super::supports::Role;
@@ -48,7 +50,7 @@ impl CheckedCable<'_> {
         let ends = [holds.first(), holds.last()].map(|h| h.copied().flatten().is_some());
         let stiffness = self.answer.assumptions.bending_stiffness_n_m2 / self.thermal;
         if let Some((bar, push, most)) = excess(&bars, stiffness, ends) {
-            found.report(self.finding(Law::Stability, first_node[bar], (push, most)));
+            found.report(self.finding(Law::Stability, first_node[bar], push, most));
         }
     }
 }
@@ -68,8 +70,8 @@ pub(super) struct CompressedBar {
     pub clamped: [bool; 2],
 }
 
-/// The push of the bar that pushes most, N, and how much of that the cable can hold at most; None where it holds all. `ends`: whether
-/// the cable's ends are held in their places.
+/// The push of the bar that pushes most, N, and how much of that the cable can hold at most; None
+/// where it holds all. `ends`: whether the cable's ends are held in their places.
 pub(super) fn excess(bars: &[CompressedBar], stiffness: f64, ends: [bool; 2]) -> Option<(usize, f64, f64)> {
     let (worst, most) = bars.iter().enumerate().min_by(|a, b| a.1.pull.total_cmp(&b.1.pull))?;
     if !(most.pull < 0.0) || bars.iter().any(|b| !(b.length > 0.0)) {
@@ -108,7 +110,8 @@ fn conditions(bars: &[CompressedBar], ends: [bool; 2]) -> usize {
     count + if begun && free && ends[1] { 2 } else { 0 }
 }
 
-/// Directions in which the energy falls, with that part of each push: negative pivots of the tridiagonal second variation (Sylvester).
+/// Directions in which the energy falls, with that part of each push: negative pivots of the
+/// tridiagonal second variation (Sylvester).
 fn lowered(bars: &[CompressedBar], stiffness: f64, part: f64) -> usize {
     let (mut count, mut before) = (0, None);
     for (k, bar) in bars.iter().enumerate() {
@@ -150,7 +153,8 @@ mod tests {
     fn what_is_asked_lies_above_eulers_loads_and_far_below_ten_times_them() {
         let (n, length, stiffness) = (200, 3.0, 2.0);
         let euler = std::f64::consts::PI.powi(2) * stiffness / (length * length);
-        // Both ends pinned: π²; clamped: 4π². With two conditions more than needed up to (3π)² may pass.
+        // Both ends pinned: π²; clamped: 4π². With two conditions more than needed up to (3π)² may
+        // pass.
         for (clamped, least, most) in [(false, 1.0, 4.1), (true, 4.0, 9.1)] {
             let passes = |f: f64| excess(&straight(n, length, f * euler, clamped), stiffness, [true; 2]).is_none();
             assert!(passes(0.99 * least) && !passes(most), "{clamped}");

@@ -103,7 +103,7 @@ impl CheckedCable<'_> {
             };
             if !(off <= limit) {
                 let node = nodes.partition_point(|n| n.arc_length_m < hold.arc_length);
-                let mut finding = self.finding(Law::Support, node, (off, limit));
+                let mut finding = self.finding(Law::Support, node, off, limit);
                 finding.with.clone_from(&hold.support.name);
                 found.report(finding);
             }

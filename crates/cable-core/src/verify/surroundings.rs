@@ -1,7 +1,8 @@
 //! The surroundings are obstacles and robot as the checker sees them: edges and rounds, distances
 //! by brute force.
 //!
-//! Edges are sorted by their left end, so that those in a box are found without looking at all; nothing else is clever.
+//! Edges are sorted by their left end, so that those in a box are found without looking at all;
+//! nothing else is clever.
 
 use crate::contact::outline::Outline;
 use crate::math::RigidPose;
@@ -34,7 +35,8 @@ impl SolidEdge {
 #[derive(Clone, Debug)]
 struct Edges {
     sorted: Vec<SolidEdge>,
-    /// Greatest reach of an edge and its thickness along x, m: how far left of a box edges that meet it begin.
+    /// Greatest reach of an edge and its thickness along x, m: how far left of a box edges that
+    /// meet it begin.
     widest: f64,
     /// Lower left and upper right corner of the box about them all, m.
     low: Vec2,
@@ -206,8 +208,8 @@ impl Surroundings<'_> {
         self.bodies.get(body).and_then(|b| b.friction).unwrap_or(cable)
     }
 
-    /// Appends what is within `reach` (m) of the straight line between two points, nearest point by nearest point: for each edge the
-    /// nearest points of both, and those seen from the two ends.
+    /// Appends what is within `reach` (m) of the straight line between two points, nearest point by
+    /// nearest point: for each edge the nearest points of both, and those seen from the two ends.
     pub fn near(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<NearestFeature>) {
         let (low, high) = (a.inf(&b) - Vec2::repeat(reach), a.sup(&b) + Vec2::repeat(reach));
         for e in self.meeting(low, high) {
@@ -233,7 +235,8 @@ impl Surroundings<'_> {
 
     /// The obstacle in whose solid a point lies, and how deep, m.
     pub fn inside(&self, p: Vec2) -> Option<(usize, f64)> {
-        // Each edge above the point counts: where it runs to the right its solid side is below it, where to the left above.
+        // Each edge above the point counts: where it runs to the right its solid side is below it,
+        // where to the left above.
         let mut above: Option<(usize, i32)> = None;
         let mut counts: Vec<(usize, i32)> = Vec::new();
         // Those that are nowhere above it do not count.
@@ -322,7 +325,8 @@ fn nearest(p: Vec2, a: Vec2, b: Vec2) -> Vec2 {
     a + d * f
 }
 
-/// Pairs of nearest points of two lines that do not cross: seen from each end of the first, and from each end of the second.
+/// Pairs of nearest points of two lines that do not cross: seen from each end of the first, and
+/// from each end of the second.
 fn closest(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> [(Vec2, Vec2); 4] {
     [(a, nearest(a, c, d)), (b, nearest(b, c, d)), (nearest(c, a, b), c), (nearest(d, a, b), d)]
 }

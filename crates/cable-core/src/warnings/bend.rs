@@ -1,21 +1,24 @@
 //! A bend is judged by how sharp it is, where, and what leads the cable there.
 //!
-//! The tightest bend of an answer is the greatest curvature anywhere on its line, free or led. Where the cable is led round a wheel
-//! or a post its line has the radius of that, round a sharp corner its own radius (the corner's turn per element says only how
-//! fine a mesh is). Pressure on the round is q = T/R per metre.
+//! The tightest bend of an answer is the greatest curvature anywhere on its line, free or led.
+//! Where the cable is led round a wheel or a post its line has the radius of that, round a sharp
+//! corner its own radius (the corner's turn per element says only how fine a mesh is). Pressure on
+//! the round is q = T/R per metre.
 //!
-//! What bends a cable at a sharp corner is judged by its bending stiffness EI, known or estimated, also where the answer is that
-//! of a flexible line. Weightless beside the corner, with φ the angle to the direction in which it leaves far away and T the tension
-//! there, moments balance by EI φ'' = T sin φ. Times φ' and integrated from far away, where φ = φ' = 0:
+//! What bends a cable at a sharp corner is judged by its bending stiffness EI, known or estimated,
+//! also where the answer is that of a flexible line. Weightless beside the corner, with φ the angle
+//! to the direction in which it leaves far away and T the tension there, moments balance by EI
+//! φ'' = T sin φ. Times φ' and integrated from far away, where φ = φ' = 0:
 //!
 //! ```text
 //! EI φ'²/2 = T (1 − cos φ)    so    κ = φ' = 2 √(T/EI) sin(φ/2)
 //! ```
 //!
-//! and along the line the tension is T cos φ, so that T cos φ + EI κ²/2 = T holds everywhere (the first integral of Euler's elastica;
-//! A. E. H. Love, A Treatise on the Mathematical Theory of Elasticity, 4th ed., 1927, art. 262). A corner that turns the cable by θ
-//! pushes at the point where φ = θ/2 from both sides: there the bend is sharpest, with the radius ρ = ½ √(EI/T) / sin(θ/4). Where ρ
-//! is less than that of the corner's own arc, the cable lies on that arc.
+//! and along the line the tension is T cos φ, so that T cos φ + EI κ²/2 = T holds everywhere (the
+//! first integral of Euler's elastica; A. E. H. Love, A Treatise on the Mathematical Theory of
+//! Elasticity, 4th ed., 1927, art. 262). A corner that turns the cable by θ pushes at the point
+//! where φ = θ/2 from both sides: there the bend is sharpest, with the radius ρ = ½ √(EI/T) /
+//! sin(θ/4). Where ρ is less than that of the corner's own arc, the cable lies on that arc.
 
 use super::tangle::turns;
 use crate::math::{Vec2, larger};
@@ -23,24 +26,27 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{Bend, CableSolution, ContactReport, JudgedBend, Node, Pressure, Warning, WarningKind};
 
-/// Gap (m) within which an obstacle leads the cable. Smaller: a contact that a model holds a barrier's width off is missed;
-/// larger: what passes close by leads it. The models keep up to 1 mm.
+/// Gap (m) within which an obstacle leads the cable. Smaller: a contact that a model holds a
+/// barrier's width off is missed; larger: what passes close by leads it. The models keep up to 1
+/// mm.
 const CONTACT_GAP: f64 = 3e-3;
 
-/// Least turn at a sharp corner that bends a cable of unknown bending stiffness to the corner's radius, rad: 15°. Less is spread by the
-/// stiffness that every cable has; more lets sharp bends pass. Over 15° a cable of diameter d leaves the corner within d/4 of its line.
+/// Least turn at a sharp corner that bends a cable of unknown bending stiffness to the corner's
+/// radius, rad: 15°. Less is spread by the stiffness that every cable has; more lets sharp bends
+/// pass. Over 15° a cable of diameter d leaves the corner within d/4 of its line.
 const CORNER_TURN: f64 = 0.26;
 
-/// A stiff cable whose line has no more than this times the radius of a corner's own arc was given no moment there: its mesh follows
-/// the corner. Closer to 1: rounding passes for a moment; further: bends that are as sharp are judged by the formula, which
-/// says the same.
+/// A stiff cable whose line has no more than this times the radius of a corner's own arc was given
+/// no moment there: its mesh follows the corner. Closer to 1: rounding passes for a moment;
+/// further: bends that are as sharp are judged by the formula, which says the same.
 const CORNER_ARC_RATIO: f64 = 1.05;
 
-/// Least turn between two elements of a flexible cable that is a bend, rad. Less is a radius of a hundred elements.
+/// Least turn between two elements of a flexible cable that is a bend, rad. Less is a radius of a
+/// hundred elements.
 const MIN_TURN: f64 = 0.01;
 
-/// Radius of a free bend that is a kink where the cable states no smallest radius, in diameters: a round cable bent to less
-/// than its own width flattens.
+/// Radius of a free bend that is a kink where the cable states no smallest radius, in diameters: a
+/// round cable bent to less than its own width flattens.
 const KINK_DIAMETERS: f64 = 1.0;
 
 /// What leads the cable at a node.
@@ -83,7 +89,8 @@ impl Bends {
             for (k, n) in piece.iter().enumerate() {
                 let turn = |k: Option<usize>| k.and_then(|k| turns.get(k)).copied().unwrap_or(0.0);
                 let (own, curvature) = (turn(Some(k)), n.curvature_per_m.abs());
-                // What leads a node costs a search: it is asked where the answer can change what was found so far.
+                // What leads a node costs a search: it is asked where the answer can change what
+                // was found so far.
                 let presses = led && curvature * n.tension_n > this.pressure.map_or(0.0, |p| p.pressure_n_per_m);
                 if own.abs() < MIN_TURN && !(curvature > sharpest) && !presses && problem.bending_stiffness == 0.0 {
                     continue;
@@ -175,14 +182,16 @@ impl Bends {
     }
 }
 
-/// Radius (m) of the sharpest bend of a cable with a bending stiffness (N·m²) and a tension (N) at a sharp corner that turns it by
-/// `turn` (rad), see the head of this file: infinite where it is not pulled.
+/// Radius (m) of the sharpest bend of a cable with a bending stiffness (N·m²) and a tension (N) at
+/// a sharp corner that turns it by `turn` (rad), see the head of this file: infinite where it is
+/// not pulled.
 pub(super) fn corner_radius(bending_stiffness: f64, tension: f64, turn: f64) -> f64 {
     let (pull, sine) = (larger(tension, 0.0), (0.25 * turn).sin().abs());
     0.5 * (bending_stiffness / pull).sqrt() / sine
 }
 
-/// How far the nodes beside node `k` turn that are within a quarter of a round of a radius (m), rad.
+/// How far the nodes beside node `k` turn that are within a quarter of a round of a radius (m),
+/// rad.
 fn round(piece: &[Node], turns: &[f64], k: usize, radius: f64) -> f64 {
     let far = std::f64::consts::FRAC_PI_2 * radius;
     let near = |n: &Node| piece.get(k).is_some_and(|at| (n.arc_length_m - at.arc_length_m).abs() <= far);
@@ -228,7 +237,8 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Gu
         .map_or(Guide::Free, |b| if b.center.is_some() { Guide::Round(b.offset) } else { Guide::Corner(b.offset) })
 }
 
-/// Whether the cable lies on the outline of the robot at a node or beside it: that moves, and is not among the obstacles.
+/// Whether the cable lies on the outline of the robot at a node or beside it: that moves, and is
+/// not among the obstacles.
 fn on_outline(problem: &Problem, answer: &CableSolution, node: usize) -> bool {
     let Some(outline) = &problem.outline else { return false };
     let arc = |k: usize| answer.nodes.get(k).or(answer.nodes.last()).map_or(f64::NAN, |n| n.arc_length_m);

@@ -1,7 +1,8 @@
 //! Energy grows from nowhere if a cable gains more of it than what moves the cable can have given.
 //!
-//! With E the kinetic, potential and elastic energy of a cable and W the work of what moves it, friction, impacts and loss only take, so that
-//! E − W never rises. E is read from an answer, and from two of them what W can have been at most between them:
+//! With E the kinetic, potential and elastic energy of a cable and W the work of what moves it,
+//! friction, impacts and loss only take, so that E − W never rises. E is read from an answer, and
+//! from two of them what W can have been at most between them:
 //!
 //! | what moves it | work at most |
 //! |---|---|
@@ -9,9 +10,10 @@
 //! | a load, wind, current | mean force of both ends of the step times the way, and half of how much it changed times the size of that |
 //! | the outline of a robot | its force before and after and the impulse of all contacts, at the greatest speed of the cable |
 //!
-//! So what is led by a support is not told before it has more than the support can have given, and what is led by none at once. An integrator
-//! that is unstable multiplies energy without end, and work only grows with the tension, the root of it: it is told in both. E is a figure of an
-//! answer and not added up over steps, so what it is wrong by does not grow with time either.
+//! So what is led by a support is not told before it has more than the support can have given, and
+//! what is led by none at once. An integrator that is unstable multiplies energy without end, and
+//! work only grows with the tension, the root of it: it is told in both. E is a figure of an answer
+//! and not added up over steps, so what it is wrong by does not grow with time either.
 
 use std::collections::VecDeque;
 
@@ -20,16 +22,20 @@ use crate::math::{Vec2, larger};
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Energy, Warning, WarningKind};
 
-/// EnergyGrowth that is told, of the energy that goes to and fro meanwhile. Smaller: what the nodes of an answer are wrong by is told; larger: an
-/// unstable motion is shown for longer before it is.
+/// Energy growth that is warned of, as a part of the energy exchanged meanwhile. Smaller: errors of
+/// the nodes of a solution cause warnings; larger: an unstable motion is shown for longer before
+/// its warning.
 const GROWTH_LIMIT: f64 = 0.25;
 
-/// EnergyGrowth that is none, of what the cable's weight and loads would give over its length. Bars that sag are drawn straight in E, so that an edit of
-/// the mesh changes it; what violent scenes grow by comes to half of the limit. Smaller: that is told; larger: small motions of long cables may grow unseen.
+/// Energy growth that is ignored, as a part of the work of the cable's weight and loads over its
+/// length. Sagging bars count as straight in E, so that an edit of the mesh changes it; violent
+/// scenes reach half of the limit. Smaller: those cause warnings; larger: small motions of long
+/// cables may grow unseen.
 const MIN_GROWTH_FRACTION: f64 = 3e-4;
 
-/// What is least is the greatest of so long a time, s, and of [`RECENT_INSTANTS`] instants. Shorter: a velocity that an integrator swings beyond its
-/// own for a few steps after an impact and back is growth; longer: growth is told later.
+/// What is least is the greatest of so long a time, s, and of [`RECENT_INSTANTS`] instants.
+/// Shorter: a velocity that an integrator swings beyond its own for a few steps after an impact and
+/// back is growth; longer: growth is told later.
 const RECENT_S: f64 = 0.05;
 
 /// See [`RECENT_S`].
@@ -65,11 +71,13 @@ struct Snapshot {
     time_s: f64,
     energy_j: f64,
     breaks: usize,
-    /// Of each support: place, m; its own speed, m/s; size of what it pulls with, N; whether it holds.
+    /// Of each support: place, m; its own speed, m/s; size of what it pulls with, N; whether it
+    /// holds.
     supports: Vec<(Vec2, f64, f64, bool)>,
     /// Where each load is, those at supports first, m.
     loads: Vec<Vec2>,
-    /// Force times way of wind and current if it were from the origin: the place integrated over the cable, m².
+    /// Force times way of wind and current if it were from the origin: the place integrated over
+    /// the cable, m².
     moment: Vec2,
     /// Size of what the robot's outline pushes with, N.
     pushed: f64,

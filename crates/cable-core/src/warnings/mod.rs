@@ -30,13 +30,14 @@ use snag::SnagDetector;
 
 pub(crate) use bend::Bends;
 
-/// A warning stays for this long (s) after its last cause. Shorter: a cable that swings about its service tension makes the
-/// warning flicker, and `events.csv` long; longer: it stands when all is well again. With it no warning comes and goes more
-/// than once a second.
+/// A warning stays for this long (s) after its last cause. Shorter: a cable that swings about its
+/// service tension makes the warning flicker, and `events.csv` long; longer: it stands when all is
+/// well again. With it no warning comes and goes more than once a second.
 const HOLD_TIME_S: f64 = 1.0;
 
-/// A tension warning that stands is held by tensions above this part of its limit. Closer to 1: noise of the tension ends
-/// and begins it; further: the warning does not believe that the load was lightened. Axial noise of a drag is under 5 %.
+/// A tension warning that stands is held by tensions above this part of its limit. Closer to 1:
+/// noise of the tension ends and begins it; further: the warning does not believe that the load was
+/// lightened. Axial noise of a drag is under 5 %.
 const RELEASE_FRACTION: f64 = 0.95;
 
 /// One cable, what it is said to do now, and where it broke.
@@ -109,7 +110,7 @@ impl WarningMonitor {
             self.hold_tension(cable, observed, time_s);
             for (k, warning) in found.iter().enumerate() {
                 let number = found[..k].iter().filter(|w| w.kind == warning.kind).count();
-                self.raise((cable, number), warning, time_s, since_s);
+                self.raise(cable, number, warning, time_s, since_s);
             }
         }
         let holds =
@@ -119,7 +120,7 @@ impl WarningMonitor {
         self.last_s = Some(time_s);
     }
 
-    fn raise(&mut self, (cable, number): (usize, usize), warning: &Warning, time_s: f64, since_s: Option<f64>) {
+    fn raise(&mut self, cable: usize, number: usize, warning: &Warning, time_s: f64, since_s: Option<f64>) {
         let same = |s: &&mut ActiveWarning| (s.cable, s.number, s.warning.kind) == (cable, number, warning.kind);
         if let Some(active) = self.active.iter_mut().find(same) {
             let since_s = warning.since_s.or(active.warning.since_s);
@@ -131,7 +132,8 @@ impl WarningMonitor {
         }
     }
 
-    /// A tension warning that stands stays while tension is just below its limit; after a break there is no such tension.
+    /// A tension warning that stands stays while tension is just below its limit; after a break
+    /// there is no such tension.
     fn hold_tension(&mut self, cable: usize, observed: &Observed<'_>, time_s: f64) {
         let broke = |s: &ActiveWarning| s.warning.kind == WarningKind::BreakingTension && !observed.breaks.is_empty();
         self.active.retain(|s| s.cable != cable || !broke(s));

@@ -3,21 +3,24 @@
 use super::Observed;
 use crate::solution::{ContactReport, ContactState, Warning, WarningKind};
 
-/// Growth of the ratio of tensions across a contact that is a snag. Smaller: every contact that takes up load is one; larger:
-/// it is named when the cable is already near its limit. Half as much again, because a wrap of a quarter turn at μ = 0.3
-/// comes to a ratio of 1.6 from nothing.
+/// Growth of the ratio of tensions across a contact that is a snag. Smaller: every contact that
+/// takes up load is one; larger: it is named when the cable is already near its limit. Half as much
+/// again, because a wrap of a quarter turn at μ = 0.3 comes to a ratio of 1.6 from nothing.
 const RATIO_GROWTH: f64 = 1.5;
 
-/// Growth of the pull itself that goes with it: a ratio that rises because the slack side empties is no snag.
+/// Growth of the pull itself that goes with it: a ratio that rises because the slack side empties
+/// is no snag.
 const PULL_GROWTH: f64 = 1.2;
 
-/// Time it must have held, s. Shorter: a cable that lands is snagged; longer: the warning comes late.
+/// Time it must have held, s. Shorter: a cable that lands is snagged; longer: the warning comes
+/// late.
 const MIN_STICKING_S: f64 = 0.3;
 
 /// Greatest ratio counted: beyond it the slack side has no tension left to measure.
 const MAX_RATIO: f64 = 1e3;
 
-/// How far (in diameters) the middle of a contact that holds may move along the cable and still be the same.
+/// How far (in diameters) the middle of a contact that holds may move along the cable and still be
+/// the same.
 const MATCH_DIAMETERS: f64 = 10.0;
 
 /// The contacts of a cable that hold, and since when.

@@ -1,7 +1,7 @@
 //! Tangles are loops, curls and wraps, found by the shape of the cable alone.
 //!
-//! In the plane nobody can tell which strand of a crossing lies on top, so a knot cannot be told from a loop: crossings are
-//! named, knots are not.
+//! In the plane nobody can tell which strand of a crossing lies on top, so a knot cannot be told
+//! from a loop: crossings are named, knots are not.
 
 use crate::math::{Vec2, angle};
 use crate::problem::Problem;
@@ -10,8 +10,9 @@ use crate::solution::{CableSolution, Node, Warning, WarningKind};
 use super::bend::{Guide, lead};
 use crate::contact::self_crossings::{SelfCrossing, crossings};
 
-/// Least sine of the angle at which strands cross. Smaller: a cable that lies along itself, out and back, crosses itself in
-/// every element; larger: flat loops are missed. 10° is above what element ends stand out of a straight lay.
+/// Least sine of the angle at which strands cross. Smaller: a cable that lies along itself, out and
+/// back, crosses itself in every element; larger: flat loops are missed. 10° is above what element
+/// ends stand out of a straight lay.
 const CROSSING_SINE: f64 = 0.17;
 
 /// Shortest loop, in diameters of the cable. Shorter ones are folds of single elements, and kinks.
@@ -20,15 +21,16 @@ const LOOP_DIAMETERS: f64 = 4.0;
 /// Most loops named of one cable.
 const MAX_LOOPS: usize = 8;
 
-/// Turn of a free part that makes a curl, rad: 270°. A cable that hangs turns by less than 180°; a loop that is about to
-/// close, and jump into a kink when pulled, by about 270°.
+/// Turn of a free part that makes a curl, rad: 270°. A cable that hangs turns by less than 180°; a
+/// loop that is about to close, and jump into a kink when pulled, by about 270°.
 const CURL_TURN: f64 = 1.5 * std::f64::consts::PI;
 
-/// Greatest mean radius of a curl, in smallest bend radii (or five diameters where none is stated). Larger: a cable laid in
-/// a wide bow on a floor is a curl; smaller: only curls about to kink are.
+/// Greatest mean radius of a curl, in smallest bend radii (or five diameters where none is stated).
+/// Larger: a cable laid in a wide bow on a floor is a curl; smaller: only curls about to kink are.
 const CURL_RADII: f64 = 10.0;
 
-/// Turns round an obstacle from which it is wrapped: one whole turn, when pulling an end cannot free it.
+/// Turns round an obstacle from which it is wrapped: one whole turn, when pulling an end cannot
+/// free it.
 const WRAP_TURNS: f64 = 1.0;
 
 /// Appends loops, the tightest curl and what it is wrapped round.
@@ -55,7 +57,8 @@ fn loops(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     let real = |c: &&SelfCrossing| c.sine >= CROSSING_SINE && spans(c)[1] - spans(c)[0] >= least;
     let mut all: Vec<&SelfCrossing> = found.iter().filter(real).collect();
     let count = all.len();
-    // The tightest first; of loops in or across each other one is named: a heap would be a list of almost the same.
+    // The tightest first; of loops in or across each other one is named: a heap would be a list of
+    // almost the same.
     let length = |c: &SelfCrossing| spans(c)[1] - spans(c)[0];
     all.sort_by(|a, b| length(a).total_cmp(&length(b)));
     let mut named: Vec<[f64; 2]> = Vec::new();
@@ -77,7 +80,8 @@ fn loops(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     }
 }
 
-/// The turn of the cable at each node, rad, 0 at the ends of pieces; nodes on each other turn together at the last.
+/// The turn of the cable at each node, rad, 0 at the ends of pieces; nodes on each other turn
+/// together at the last.
 pub(super) fn turns(nodes: &[Node]) -> Vec<f64> {
     let mut out = vec![0.0; nodes.len()];
     let mut before: Option<Vec2> = None;
@@ -109,7 +113,8 @@ fn curl(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
             let found =
                 shortest(piece, |k| sign * turns[k]).filter(|f| f.0 <= longest && best.is_none_or(|b| f.0 < b.0));
             if let Some((length, i, j)) = found {
-                // Only where nothing leads it: the turns of wheels, posts and corners are not its own.
+                // Only where nothing leads it: the turns of wheels, posts and corners are not its
+                // own.
                 let free = |k: usize| turns[k].abs() < 1e-3 || matches!(lead(problem, answer, start + k), Guide::Free);
                 if (i..=j).all(free) {
                     best = Some((length, start + i, start + j));
@@ -131,8 +136,9 @@ fn curl(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     }
 }
 
-/// The shortest run of nodes whose turns add up to [`CURL_TURN`]: length, first and last node. Starts that a later, lower sum
-/// makes useless are dropped, so each node is looked at twice at most.
+/// The shortest run of nodes whose turns add up to [`CURL_TURN`]: length, first and last node.
+/// Starts that a later, lower sum makes useless are dropped, so each node is looked at twice at
+/// most.
 fn shortest(nodes: &[Node], turn: impl Fn(usize) -> f64) -> Option<(f64, usize, usize)> {
     let mut best: Option<(f64, usize, usize)> = None;
     let mut starts: std::collections::VecDeque<(usize, f64)> = std::collections::VecDeque::new();

@@ -6,24 +6,26 @@ use crate::problem::Problem;
 use crate::scene::Cable;
 use crate::solution::{CableSolution, Node, TensionPeaks, Warning, WarningKind};
 
-/// Below this part of the whole load a point has no tension to speak of. Larger: the low point of a slack span counts;
-/// smaller: friction on the ground leaves enough that nothing is ever slack.
+/// Below this part of the whole load a point has no tension to speak of. Larger: the low point of a
+/// slack span counts; smaller: friction on the ground leaves enough that nothing is ever slack.
 const SLACK_TENSION: f64 = 0.01;
 
-/// Shortest slack part, of the cable's length, that is named. Shorter: every end that lies on the ground is; longer: bights
-/// that a robot can run over are not. The low point of a hanging span, however deep, is slack over 2 % of it at most.
+/// Shortest slack part, of the cable's length, that is named. Shorter: every end that lies on the
+/// ground is; longer: bights that a robot can run over are not. The low point of a hanging span,
+/// however deep, is slack over 2 % of it at most.
 const SLACK_PART: f64 = 0.05;
 
-/// Material between two nodes that lies in folds is longer than their distance by more than this part of itself. Smaller: rounding;
-/// larger: folds spread over much ground are not seen.
+/// Material between two nodes that lies in folds is longer than their distance by more than this
+/// part of itself. Smaller: rounding; larger: folds spread over much ground are not seen.
 const FOLDED_PART: f64 = 1e-3;
 
-/// Material that lies in folds beyond the ground it has, of the cable's length, that is worth a word. Smaller: every lay that was
-/// pushed together a little; larger: 10 m lie on 9.9 m of ground without a word.
+/// Material that lies in folds beyond the ground it has, of the cable's length, that is worth a
+/// word. Smaller: every lay that was pushed together a little; larger: 10 m lie on 9.9 m of ground
+/// without a word.
 const FOLDED_LENGTH: f64 = 5e-3;
 
-/// Appends the tension limit that is exceeded, at the worst place: of a cable in motion by any inner step of the last step, and the
-/// breaking tension by what was held.
+/// Appends the tension limit that is exceeded, at the worst place: of a cable in motion by any
+/// inner step of the last step, and the breaking tension by what was held.
 pub(super) fn limits(cable: &Cable, answer: &CableSolution, out: &mut Vec<Warning>) {
     match answer.peaks {
         Some(peaks) => jerk(cable, answer, &peaks, out),

@@ -28,7 +28,8 @@ fn problem(scene: &Scene) -> Problem {
     (*problems(scene).unwrap()[0]).clone()
 }
 
-/// An answer along points, pulled with `tension_n`, arc length by its own length, curvature from its turns.
+/// An answer along points, pulled with `tension_n`, arc length by its own length, curvature from
+/// its turns.
 fn along(points: &[Point], tension_n: f64) -> CableSolution {
     let mut s = 0.0;
     let mut nodes: Vec<Node> = Vec::new();
@@ -94,7 +95,8 @@ fn loops_in_each_other_are_one_tangle_named_by_its_tightest() {
         let all = found(&p, &along(points, 100.0));
         all.iter().filter(|w| w.kind == WarningKind::Loop).map(|w| w.value).collect()
     };
-    // Out along y = 0, back to and fro across it: three crossings, the nearest by the shortest loop.
+    // Out along y = 0, back to and fro across it: three crossings, the nearest by the shortest
+    // loop.
     let heap = [[0.0, 0.0], [4.0, 0.0], [3.5, 1.0], [3.0, -1.0], [2.0, 1.0], [1.0, -1.0]];
     let one = named(&heap);
     assert_eq!(one.len(), 1, "{one:?}");
@@ -205,8 +207,8 @@ fn free_bends_are_kinks_and_led_ones_are_too_tight_rounds() {
     assert!(!kinds(&problem(&s), &answer).contains(&WarningKind::Kink));
 }
 
-/// EI φ'' = T sin φ from far away, where the cable is straight, to φ = θ/2: κ there by Runge and Kutta's method, and T cos φ + EI κ²/2
-/// on the way.
+/// EI φ'' = T sin φ from far away, where the cable is straight, to φ = θ/2: κ there by Runge and
+/// Kutta's method, and T cos φ + EI κ²/2 on the way.
 #[test]
 fn the_bend_at_a_corner_is_that_of_an_elastica_by_shooting() {
     for (stiffness, tension) in [(1.4, 17.26), (0.05, 3.0), (500.0, 1200.0)] {
@@ -336,7 +338,8 @@ fn toggles(
     out
 }
 
-/// Tension that swings about a level at any rate: the warning begins at once, and comes and goes at most once a second.
+/// Tension that swings about a level at any rate: the warning begins at once, and comes and goes at
+/// most once a second.
 #[test]
 fn tension_warnings_do_not_flicker() {
     let p = problem(&scene());
@@ -391,7 +394,8 @@ fn at_rest_the_past_does_not_count_and_times_are_kept_in_motion() {
     assert_eq!(watch.warnings().count(), 0);
 }
 
-/// Held by a post and pulled from 100 N to 400 N while the other side keeps 80 N: a snag; slipping, or evenly pulled, not.
+/// Held by a post and pulled from 100 N to 400 N while the other side keeps 80 N: a snag; slipping,
+/// or evenly pulled, not.
 #[test]
 fn a_contact_that_holds_against_a_growing_pull_is_a_snag() {
     let p = problem(&scene());
@@ -466,7 +470,8 @@ fn degenerate_lines_have_no_crossings() {
     assert!(crossings(&[Vec2::zeros()], |_| true).is_empty());
     assert!(crossings(&[Vec2::zeros(); 9], |_| true).is_empty());
     assert!(crossings(&[Vec2::repeat(f64::NAN); 9], |_| true).is_empty());
-    // 1e5 segments of a spiral that never crosses: looked at in a moment, where all pairs would be 5e9.
+    // 1e5 segments of a spiral that never crosses: looked at in a moment, where all pairs would be
+    // 5e9.
     let spiral: Vec<Vec2> = (0..100_000)
         .map(|k| {
             let a = 0.01 * f64::from(k);
@@ -476,8 +481,8 @@ fn degenerate_lines_have_no_crossings() {
     assert!(crossings(&spiral, |_| true).is_empty());
 }
 
-/// What is named in the catalogue at rest: slack on floors, the corners in which the cables between the posts and behind the robot were
-/// laid, and nothing else.
+/// What is named in the catalogue at rest: slack on floors, the corners in which the cables between
+/// the posts and behind the robot were laid, and nothing else.
 const NAMED: [(&str, &[WarningKind]); 7] = [
     ("tank", &[WarningKind::Kink]),
     ("slack-to-floor", &[]),
@@ -507,8 +512,9 @@ fn the_catalogue_is_named_for_what_it_shows() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A hanging chain by forward Euler, an integrator that gives an undamped spring energy in every step: what is told of it,
-/// and when, s. Else by symplectic Euler, which is stable up to twice the inverse of the greatest frequency.
+/// A hanging chain by forward Euler, an integrator that gives an undamped spring energy in every
+/// step: what is told of it, and when, s. Else by symplectic Euler, which is stable up to twice the
+/// inverse of the greatest frequency.
 fn explicit(dt_s: f64, forward: bool) -> Option<(Warning, f64)> {
     let mut scene = scene();
     scene.cables[0].supports = vec![Support::fixed("top", [0.0, 0.0]), Support::free("tip")];

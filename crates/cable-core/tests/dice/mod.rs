@@ -2,7 +2,8 @@
 
 #![allow(dead_code)] // no test needs all of it
 
-/// SplitMix64: G. L. Steele, D. Lea and C. H. Flood, "Fast splittable pseudorandom number generators", OOPSLA 2014.
+/// SplitMix64: G. L. Steele, D. Lea and C. H. Flood, "Fast splittable pseudorandom number
+/// generators", OOPSLA 2014.
 pub struct Dice(pub u64);
 
 impl Dice {

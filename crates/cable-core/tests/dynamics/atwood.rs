@@ -1,5 +1,6 @@
-//! Two weights over a frictionless pulley (G. Atwood, 1784), the rope's own weight with it: with l₁, l₂ the hanging
-//! lengths and x what has run over, M ẍ = (m₂ − m₁ + ρ(l₂ − l₁)) g, l₂ − l₁ = d + 2x, M = m₁ + m₂ + ρL, so
+//! Two weights over a frictionless pulley (G. Atwood, 1784), the rope's own weight with it: with
+//! l₁, l₂ the hanging lengths and x what has run over, M ẍ = (m₂ − m₁ + ρ(l₂ − l₁)) g, l₂ − l₁ =
+//! d + 2x, M = m₁ + m₂ + ρL, so
 //! ```text
 //! x = c (cosh kt − 1),   c = (m₂ − m₁ + ρd)/2ρ,   k² = 2ρg/M
 //! ```
@@ -13,8 +14,8 @@ use super::measure::{G, cable, lump, settled};
 const LENGTH: f64 = 10.0;
 const RELEASE: f64 = 0.1;
 
-/// Weights (kg) hung over a pulley of radius `radius` (m, of the cable's centre line), held near the lighter until
-/// `RELEASE`.
+/// Weights (kg) hung over a pulley of radius `radius` (m, of the cable's centre line), held near
+/// the lighter until `RELEASE`.
 fn over_a_pulley([m1, m2]: [f64; 2], density: f64, (radius, friction): (f64, f64), segments: usize) -> Scene {
     let mut scene = cable([LENGTH, density, 1e8], segments, Vec::new());
     let c = &mut scene.cables[0];
@@ -26,7 +27,8 @@ fn over_a_pulley([m1, m2]: [f64; 2], density: f64, (radius, friction): (f64, f64
     scene
 }
 
-/// How far the rope has run over the pulley `time` (s) after it was let go, and what it should be; m.
+/// How far the rope has run over the pulley `time` (s) after it was let go, and what it should be;
+/// m.
 fn run(radius: f64, density: f64, segments: usize, steps: u32) -> [f64; 2] {
     let [m1, m2] = [5.0, 5.5];
     let scene = over_a_pulley([m1, m2], density, (radius, 0.0), segments);

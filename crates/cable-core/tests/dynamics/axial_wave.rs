@@ -1,4 +1,5 @@
-//! Waves along the cable run at c = √(EA/ρ), ρ and length unstretched; it swings at φ c/L, N bars at that to the order 1/N⁴. Its loss takes ζω of the amplitude a second at every frequency.
+//! Waves along the cable run at c = √(EA/ρ), ρ and length unstretched; it swings at φ c/L, N bars
+//! at that to the order 1/N⁴. Its loss takes ζω of the amplitude a second at every frequency.
 
 use cable_core::scene::{Support, SupportKind};
 
@@ -64,7 +65,8 @@ fn its_free_end_swings_at_the_speed_of_its_wave_too() {
     climbs("axial swing of a free end", &errors, 3.5, 1e-3);
 }
 
-/// A mass on the end of a bar that is pulled, or the bar alone between two walls: circular frequency and decay of its free swing, 1/s.
+/// A mass on the end of a bar that is pulled, or the bar alone between two walls: circular
+/// frequency and decay of its free swing, 1/s.
 ///
 /// Steps are a hundredth of the swing, so that they take less than 1e-5 of critical.
 fn rings(ratio: f64, wanted: f64) -> [f64; 2] {
@@ -97,8 +99,8 @@ fn rings(ratio: f64, wanted: f64) -> [f64; 2] {
     [found.omega, found.decay]
 }
 
-/// Loss is the same at every frequency: half of the loss factor is the damping ratio. And as EA is the relaxed stiffness, swings are the
-/// faster for it by (2ζ/π) ln(ω/ω₀) above ω₀ = 0.63 rad/s.
+/// Loss is the same at every frequency: half of the loss factor is the damping ratio. And as EA is
+/// the relaxed stiffness, swings are the faster for it by (2ζ/π) ln(ω/ω₀) above ω₀ = 0.63 rad/s.
 #[test]
 fn it_rings_down_by_its_damping_ratio_at_every_frequency() {
     for ratio in [0.005f64, 0.02] {
@@ -110,13 +112,15 @@ fn it_rings_down_by_its_damping_ratio_at_every_frequency() {
                 "ratio {ratio} at {wanted} rad/s: {found:.3} of it, faster by {faster:.4}, of the law {stiffened:.4}"
             );
             assert!((found - 1.0).abs() < 0.2, "{found} of a damping ratio of {ratio} at {wanted} rad/s");
-            // Where the band begins is not sharp: the lowest branch has a half of its stiffness there.
+            // Where the band begins is not sharp: the lowest branch has a half of its stiffness
+            // there.
             assert!((faster - stiffened).abs() < 1.5 * ratio, "{wanted} rad/s: faster by {faster}, not {stiffened}");
         }
     }
 }
 
-/// What was taken is never given back: of a bar that is let go with more strain than it can keep, and is slack and taut in turn, too.
+/// What was taken is never given back: of a bar that is let go with more strain than it can keep,
+/// and is slack and taut in turn, too.
 #[test]
 fn loss_never_gives_energy() {
     let (length, density, ea, segments) = (10.0f64, 0.1f64, 1e5f64, 16);
@@ -129,7 +133,8 @@ fn loss_never_gives_energy() {
                 p.y -= drawn * s / length;
             }
         });
-        // Motion, height and strain of EA alone: what branches hold beside it is none at first, and is never less than none.
+        // Motion, height and strain of EA alone: what branches hold beside it is none at first, and
+        // is never less than none.
         let start = spread_energy(&scene, &sim.states()[0]);
         let mut most = f64::NEG_INFINITY;
         for _ in 0..2000 {
@@ -142,7 +147,8 @@ fn loss_never_gives_energy() {
     }
 }
 
-/// Of slow motion EA is the stiffness: an end drawn out by a force that grows over 100 s is where statics have it.
+/// Of slow motion EA is the stiffness: an end drawn out by a force that grows over 100 s is where
+/// statics have it.
 #[test]
 fn slow_motion_has_the_stiffness_that_was_asked_for() {
     let (length, ea) = (10.0f64, 1e5f64);
@@ -174,8 +180,9 @@ fn slow_motion_has_the_stiffness_that_was_asked_for() {
 
 #[test]
 fn a_pull_arrives_after_length_over_speed() {
-    // The end is pulled harder within 0.1 s, smoothly, so that bars do not ring: the wall feels twice the change, centred at
-    // L/c + 0.05 s. Without loss, as a constant one would make the wave faster (by 2ζ/π of ln(ω/ω₀)).
+    // The end is pulled harder within 0.1 s, smoothly, so that bars do not ring: the wall feels
+    // twice the change, centred at L/c + 0.05 s. Without loss, as a constant one would make the
+    // wave faster (by 2ζ/π of ln(ω/ω₀)).
     let (rise, parts) = (0.1, 40);
     let smooth = |u: f64| u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
     let at = |k: i32| f64::from(k) / f64::from(parts);

@@ -1,5 +1,6 @@
-//! A pulley that rubs holds two weights as long as W₂/W₁ ≤ q = e^{μπ} (L. Euler 1769, J. A. Eytelwein 1808). Pulled harder
-//! and harder on one side, W₂ + ft, it slips at t* = (qW₁ − W₂)/f, and from there (m₂ + q m₁) ẍ = f (t − t*).
+//! A pulley that rubs holds two weights as long as W₂/W₁ ≤ q = e^{μπ} (L. Euler 1769, J. A.
+//! Eytelwein 1808). Pulled harder and harder on one side, W₂ + ft, it slips at t* = (qW₁ − W₂)/f,
+//! and from there (m₂ + q m₁) ẍ = f (t − t*).
 
 use cable_core::scene::Support;
 use cable_core::{Model, Simulation};

@@ -1,5 +1,6 @@
-//! A mass that falls by h before a cable of length L catches it pulls with T = W(1 + √(1 + 2hEA/(WL))); let go without a
-//! fall, with 2W. (J.-V. Poncelet; S. Timoshenko, "Strength of materials", 1930.)
+//! A mass that falls by h before a cable of length L catches it pulls with T = W(1 + √(1 +
+//! 2hEA/(WL))); let go without a fall, with 2W. (J.-V. Poncelet; S. Timoshenko, "Strength of
+//! materials", 1930.)
 
 use cable_core::scene::Support;
 use cable_core::{Model, Vec2};
@@ -52,7 +53,8 @@ fn it_pulls_as_the_energy_says() {
     }
 }
 
-/// Let go beside its slack cable, which hangs in a fold in the same line, it falls past it and is caught.
+/// Let go beside its slack cable, which hangs in a fold in the same line, it falls past it and is
+/// caught.
 #[test]
 fn it_falls_past_its_slack_cable() {
     let (mass, length, ea) = (10.0, 5.0, 2e4);

@@ -1,5 +1,5 @@
-//! A chain of 10 m let go from the horizontal, against rigid links with their masses in their joints, so many that what they leave out
-//! is no more than 2e-6 m.
+//! A chain of 10 m let go from the horizontal, against rigid links with their masses in their
+//! joints, so many that what they leave out is no more than 2e-6 m.
 
 use cable_core::Vec2;
 use cable_core::scene::{Support, SupportKind};
@@ -57,7 +57,8 @@ fn off(a: &[Vec2], b: &[Vec2]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
 }
 
-/// In step and mesh. Bars lie outside of the curve by h² κ/24, which at the tip is an error of the second order.
+/// In step and mesh. Bars lie outside of the curve by h² κ/24, which at the tip is an error of the
+/// second order.
 #[test]
 fn the_tip_follows_that_of_a_chain() {
     let exact = of_a_chain();

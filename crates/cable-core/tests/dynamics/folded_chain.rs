@@ -1,6 +1,6 @@
-//! A folded chain, one end held and the other let go beside it, falls faster than a stone (M. G. Calkin and R. H. March,
-//! "The dynamics of a falling chain: I", Am. J. Phys. 57, 1989). The energy is kept, all of it in the falling part of
-//! length (L − x)/2 once the end has fallen by x:
+//! A folded chain, one end held and the other let go beside it, falls faster than a stone (M. G.
+//! Calkin and R. H. March, "The dynamics of a falling chain: I", Am. J. Phys. 57, 1989). The energy
+//! is kept, all of it in the falling part of length (L − x)/2 once the end has fallen by x:
 //! ```text
 //! v² = g x (2L − x)/(L − x)
 //! ```
@@ -102,8 +102,9 @@ fn it_falls_faster_than_a_stone() {
     climbs("folded chain", &errors, 0.5, 3.5e-2);
 }
 
-/// Why chains fall later than Calkin and March say: their fold has no width, that of links is a link wide, and whirls. What it
-/// costs falls as (0.235 + 0.166 ln N)/N (fitted to 41 and 161 links: within 7 % from 11 to 161), to nothing.
+/// Why chains fall later than Calkin and March say: their fold has no width, that of links is a
+/// link wide, and whirls. What it costs falls as (0.235 + 0.166 ln N)/N (fitted to 41 and 161
+/// links: within 7 % from 11 to 161), to nothing.
 #[test]
 fn links_come_to_calkin_and_march_as_their_fold_gets_narrow() {
     let exact = fall_time(FALLEN);
@@ -115,8 +116,8 @@ fn links_come_to_calkin_and_march_as_their_fold_gets_narrow() {
     }
 }
 
-/// Springs that only pull rattle in the leg that falls without tension, and what keeps that from growing takes a hundredth of
-/// the energy: a chain of them is late by some thousandths.
+/// Springs that only pull rattle in the leg that falls without tension, and what keeps that from
+/// growing takes a hundredth of the energy: a chain of them is late by some thousandths.
 #[test]
 fn masses_and_springs_fall_nearly_as_rigid_links_do() {
     let links = by_links(21);
@@ -135,8 +136,8 @@ fn masses_and_springs_fall_nearly_as_rigid_links_do() {
     }
 }
 
-/// Bars only pull, as springs do: they rattle in the leg that falls without tension, where links push. Their mass is spread over them,
-/// so that their fold costs less than that of as many links.
+/// Bars only pull, as springs do: they rattle in the leg that falls without tension, where links
+/// push. Their mass is spread over them, so that their fold costs less than that of as many links.
 #[test]
 fn bars_fall_between_links_and_calkin_and_march() {
     let exact = fall_time(FALLEN);

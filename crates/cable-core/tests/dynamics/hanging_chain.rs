@@ -1,12 +1,13 @@
-//! A hanging chain swings at ω_k = (j₀ₖ/2) √(g/L) in the shape J₀(j₀ₖ √(s/L)), s from the free end (D. Bernoulli 1738;
-//! H. Lamb, "Hydrodynamics", 1895).
+//! A hanging chain swings at ω_k = (j₀ₖ/2) √(g/L) in the shape J₀(j₀ₖ √(s/L)), s from the free end
+//! (D. Bernoulli 1738; H. Lamb, "Hydrodynamics", 1895).
 
 use cable_core::scene::{Support, SupportKind};
 
 use super::measure::{G, behind, cable, climbs, masses, ring, sampled, started};
 
-/// Swing of each mode in lengths of the chain. Larger: a pendulum of 1e-2 is slower by 4e-6, and the lowest bars, which only pull, go
-/// slack in the third mode; smaller: what a step leaves unbalanced shows in the first.
+/// Swing of each mode in lengths of the chain. Larger: a pendulum of 1e-2 is slower by 4e-6, and
+/// the lowest bars, which only pull, go slack in the third mode; smaller: what a step leaves
+/// unbalanced shows in the first.
 const SWING: [f64; 3] = [2e-3, 5e-4, 3e-4];
 
 /// Zeros of J₀ (M. Abramowitz, I. Stegun, "Handbook of mathematical functions", 1964, table 9.5).
@@ -22,7 +23,8 @@ pub fn j0(x: f64) -> f64 {
     sum
 }
 
-/// Frequency of mode `k` with `segments` bars, over the closed form; the slowness of the steps taken out.
+/// Frequency of mode `k` with `segments` bars, over the closed form; the slowness of the steps
+/// taken out.
 fn frequency(k: usize, segments: usize) -> f64 {
     let length = 10.0;
     let supports = vec![Support::fixed("top", [0.0, 0.0]), Support::new("end", SupportKind::Free)];

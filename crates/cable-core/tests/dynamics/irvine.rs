@@ -1,11 +1,11 @@
-//! In-plane modes of a shallow suspended cable (H. M. Irvine and T. K. Caughey, "The linear theory of free vibrations of
-//! a suspended cable", Proc. R. Soc. A 341, 1974). Span l, ω̄ = ωl √(m/H):
+//! In-plane modes of a shallow suspended cable (H. M. Irvine and T. K. Caughey, "The linear theory
+//! of free vibrations of a suspended cable", Proc. R. Soc. A 341, 1974). Span l, ω̄ = ωl √(m/H):
 //! ```text
 //! antisymmetric   ω̄ = 2nπ                                     symmetric   tan(ω̄/2) = ω̄/2 − (4/λ²)(ω̄/2)³
 //! λ² = (ml/H · g)² · EA l/(H Lₑ),   Lₑ ≈ l(1 + 8(d/l)²)
 //! ```
-//! At λ² = 4π² the first symmetric mode crosses the first antisymmetric one. The theory is that of a parabola: its own
-//! error is of the order (d/l)².
+//! At λ² = 4π² the first symmetric mode crosses the first antisymmetric one. The theory is that of
+//! a parabola: its own error is of the order (d/l)².
 
 use cable_core::scene::{Scene, Support};
 use cable_core::{Load, Model};
@@ -17,7 +17,8 @@ const SPAN: f64 = 50.0;
 const SAG: f64 = 1.0 / 300.0;
 const DENSITY: f64 = 1.0;
 
-/// Parts of the cable with a load between any two. More: what lies between them has too few bars to tell how they bend.
+/// Parts of the cable with a load between any two. More: what lies between them has too few bars to
+/// tell how they bend.
 const LOADS: usize = 5;
 
 /// H of the parabola, N.
@@ -30,7 +31,8 @@ fn suspended(lambda2: f64, segments: usize) -> Scene {
     let h = pull();
     let longer = 1.0 + 8.0 * SAG * SAG;
     let ea = lambda2 * h * longer / (DENSITY * G * SPAN / h).powi(2);
-    // Arc length of the parabola, less its stretch: ∫T ds/EA = H·Lₑ'/EA with Lₑ' ≈ l(1 + 16/3 (d/l)²).
+    // Arc length of the parabola, less its stretch: ∫T ds/EA = H·Lₑ'/EA with Lₑ' ≈ l(1 + 16/3
+    // (d/l)²).
     let arc = SPAN * (1.0 + 8.0 / 3.0 * SAG * SAG);
     let stretch = h / ea * (1.0 + 8.0 / 3.0 * SAG * SAG);
     let supports = vec![Support::fixed("A", [0.0, 0.0]), Support::fixed("B", [SPAN, 0.0])];
@@ -38,7 +40,8 @@ fn suspended(lambda2: f64, segments: usize) -> Scene {
     cable([arc / (1.0 + stretch), DENSITY * (1.0 + stretch), ea], segments, supports)
 }
 
-/// ω̄ of the first symmetric mode, by halving in (π, 3π) where the equation changes sign without a pole.
+/// ω̄ of the first symmetric mode, by halving in (π, 3π) where the equation changes sign without a
+/// pole.
 fn symmetric(lambda2: f64) -> f64 {
     // sin(z) − (z − 4z³/λ²) cos(z) with z = ω̄/2 has no poles.
     let f = |z: f64| z.sin() - (z - 4.0 * z.powi(3) / lambda2) * z.cos();
@@ -55,7 +58,8 @@ fn symmetric(lambda2: f64) -> f64 {
     a + b
 }
 
-/// Pulls the cable into `shape` by some small loads, lets go in the first step and fits the swing of that shape.
+/// Pulls the cable into `shape` by some small loads, lets go in the first step and fits the swing
+/// of that shape.
 fn frequency(model: Model, lambda2: f64, segments: usize, (bar, shape): (f64, &dyn Fn(f64) -> f64)) -> f64 {
     let mut scene = suspended(lambda2, segments);
     let exact = bar / SPAN * (pull() / DENSITY).sqrt();
@@ -86,7 +90,8 @@ fn frequency(model: Model, lambda2: f64, segments: usize, (bar, shape): (f64, &d
     omega / exact - 1.0
 }
 
-/// Frequencies at ever more bars against Irvine's: of the order of the model, and in the limit off by the theory's own (d/l)².
+/// Frequencies at ever more bars against Irvine's: of the order of the model, and in the limit off
+/// by the theory's own (d/l)².
 fn check(model: Model, name: &str, lambda2: f64, mode: (f64, &dyn Fn(f64) -> f64)) {
     // What is left at 40 bars is as little as the sixth of what the theory leaves out.
     let (order, least, bound) = if model == Model::Fem { (4.0, 1.5, 2e-4) } else { (2.0, 1.75, 2e-2) };

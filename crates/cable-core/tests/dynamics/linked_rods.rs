@@ -1,6 +1,8 @@
-//! An independent chain: rigid massless links with the mass in their joints, angles as unknowns, Runge–Kutta 4.
+//! An independent chain: rigid massless links with the mass in their joints, angles as unknowns,
+//! Runge–Kutta 4.
 //!
-//! With link length a, t_j = (cos θ_j, sin θ_j), T_j the tension of link j, m_j the mass of the joint after it:
+//! With link length a, t_j = (cos θ_j, sin θ_j), T_j the tension of link j, m_j the mass of the
+//! joint after it:
 //! ```text
 //! a_j = g + (T_{j+1} t_{j+1} − T_j t_j)/m_j,    t_j·(a_j − a_{j−1}) = −a θ̇_j²,    a θ̈_j = n_j·(a_j − a_{j−1})
 //! ```

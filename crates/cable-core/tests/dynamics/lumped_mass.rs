@@ -1,5 +1,5 @@
-//! A lump M at the end of a cable swings along it at ω = β c/L with β tan β = ρL/M, c = √(EA/ρ) (Lord Rayleigh, "The
-//! theory of sound", 1877).
+//! A lump M at the end of a cable swings along it at ω = β c/L with β tan β = ρL/M, c = √(EA/ρ)
+//! (Lord Rayleigh, "The theory of sound", 1877).
 
 use cable_core::scene::Support;
 

@@ -1,9 +1,10 @@
 //! The same references for `mass-spring`, stepped explicitly.
 //!
-//! In space a chain of springs swings at the frequencies of as many linear bars: second order. In time the leapfrog
-//! is symplectic: at sub-step h it swings (ωh)²/24 too fast and damps nothing, so what a swing loses is its axial damping
-//! alone, and paths are off by the second power of h; velocities belong to half a sub-step earlier. Sub-steps are bounded by
-//! the stable step, so ladders in time begin below it.
+//! In space a chain of springs swings at the frequencies of as many linear bars: second order. In
+//! time the leapfrog is symplectic: at sub-step h it swings (ωh)²/24 too fast and damps nothing, so
+//! what a swing loses is its axial damping alone, and paths are off by the second power of h;
+//! velocities belong to half a sub-step earlier. Sub-steps are bounded by the stable step, so
+//! ladders in time begin below it.
 
 use cable_core::model::mass_spring::Stepping;
 use cable_core::scene::{Scene, Support, SupportKind};
@@ -93,7 +94,8 @@ fn a_taut_string_swings_at_lagranges_frequencies() {
     }
 }
 
-/// Axial swings of a cable of 20 m, 1 kg/m, EA 1e4 between two walls: c = 100 m/s, ζ of the first is the damping ratio.
+/// Axial swings of a cable of 20 m, 1 kg/m, EA 1e4 between two walls: c = 100 m/s, ζ of the first
+/// is the damping ratio.
 fn axial(ratio: f64, segments: usize) -> [f64; 2] {
     let length = 20.0;
     let supports = vec![Support::fixed("A", [0.0, 0.0]), Support::fixed("B", [1.02 * length, 0.0])];
@@ -200,12 +202,13 @@ fn a_falling_chain_follows_rigid_links() {
         assert!(change.abs() < 1e-3, "{change}");
         off
     });
-    // The sub-step halves from rung to rung.
-    // With a whole kick in the first sub-step the errors were 4.5e-4, 2.2e-4 and 1.1e-4 m, of first order.
+    // The sub-step halves from rung to rung. With a whole kick in the first sub-step the errors
+    // were 4.5e-4, 2.2e-4 and 1.1e-4 m, of first order.
     ladder("mass-spring, falling chain, tip in m", &errors, 2.0, 3.8e-4);
 }
 
-/// A mass that begins to swing falls g t²/2 at first, whatever the sub-step: half a kick in the first one.
+/// A mass that begins to swing falls g t²/2 at first, whatever the sub-step: half a kick in the
+/// first one.
 #[test]
 fn a_motion_begins_with_half_a_kick() {
     let (length, mass) = (1.0, 10.0);

@@ -54,7 +54,8 @@ pub fn started_within(tolerance: f64, scene: &Scene, change: impl FnOnce(&mut St
     sim
 }
 
-/// `probe` before the first and after every `every`-th of the inner steps `h` (s), `count` + 1 values.
+/// `probe` before the first and after every `every`-th of the inner steps `h` (s), `count` + 1
+/// values.
 pub fn sampled(
     sim: &mut Simulation,
     (h, every): (f64, usize),
@@ -87,7 +88,8 @@ pub fn masses(scene: &Scene, state: &State) -> Vec<f64> {
     mass
 }
 
-/// The mass of a cable of `fem` that can touch nothing: of each node, and what couples the nodes of each bar, kg.
+/// The mass of a cable of `fem` that can touch nothing: of each node, and what couples the nodes of
+/// each bar, kg.
 pub struct Mass {
     pub node: Vec<f64>,
     pub coupling: Vec<f64>,
@@ -163,9 +165,9 @@ pub struct Ring {
     pub decay: f64,
 }
 
-/// Frequency and decay of e^{−σt} cos(ωt + φ) + c sampled every `dt` (s), the first sample left out (the first step is
-/// implicit Euler's): differences d of the samples obey
-/// d₊ = a d − b d₋ with a = 2e^{−σdt} cos ωdt, b = e^{−2σdt}, fitted by least squares.
+/// Frequency and decay of e^{−σt} cos(ωt + φ) + c sampled every `dt` (s), the first sample left out
+/// (the first step is implicit Euler's): differences d of the samples obey d₊ = a d − b d₋ with a =
+/// 2e^{−σdt} cos ωdt, b = e^{−2σdt}, fitted by least squares.
 pub fn ring(samples: &[f64], dt: f64) -> Ring {
     let d: Vec<f64> = samples[1..].windows(2).map(|w| w[1] - w[0]).collect();
     let mut m = nalgebra::Matrix2::zeros();
@@ -183,7 +185,8 @@ pub fn ring(samples: &[f64], dt: f64) -> Ring {
 /// Part of BDF3 in even steps of a cable that can touch nothing.
 pub const THIRD: f64 = 0.48;
 
-/// What a ring is a ring of: steps of `h` (s) turn λ into μ with λh = δ(e^{−μh}), δ(z) = (1 − z) + (1 − z)²/2 + β (1 − z)³/3.
+/// What a ring is a ring of: steps of `h` (s) turn λ into μ with λh = δ(e^{−μh}), δ(z) = (1 − z) +
+/// (1 − z)²/2 + β (1 − z)³/3.
 pub fn behind(Ring { omega, decay }: Ring, h: f64) -> Ring {
     let times = |a: [f64; 2], b: [f64; 2]| [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
     let (size, angle) = ((decay * h).exp(), omega * h);
@@ -215,7 +218,8 @@ pub fn climbs(name: &str, errors: &[f64], least: f64, bound: f64) {
     }
 }
 
-/// Errors of ever finer rungs: each below `bound` divided by its refinement, each step of order `order` ± 0.25.
+/// Errors of ever finer rungs: each below `bound` divided by its refinement, each step of order
+/// `order` ± 0.25.
 pub fn ladder(name: &str, errors: &[f64], order: f64, bound: f64) {
     let orders: Vec<f64> = errors.windows(2).map(|e| (e[0] / e[1]).abs().log2()).collect();
     let shown: Vec<String> = errors.iter().map(|e| format!("{e:.2e}")).collect();

@@ -1,11 +1,13 @@
-//! Pendulums: a mass on a light stiff cable at large amplitude, a mass on a heavy cable at small ones.
+//! Pendulums: a mass on a light stiff cable at large amplitude, a mass on a heavy cable at small
+//! ones.
 
 use cable_core::Vec2;
 use cable_core::scene::Support;
 
 use super::measure::{G, behind, cable, climbs, energy, ladder, lump, masses, ring, sampled, started};
 
-/// Period of a mathematical pendulum, s: 4√(L/g) K(sin θ₀/2) = 2π√(L/g)/agm(1, cos θ₀/2) (C. F. Gauss).
+/// Period of a mathematical pendulum, s: 4√(L/g) K(sin θ₀/2) = 2π√(L/g)/agm(1, cos θ₀/2) (C. F.
+/// Gauss).
 pub fn period(length: f64, amplitude: f64) -> f64 {
     let (mut a, mut b) = (1.0, (0.5 * amplitude).cos());
     while a - b > 1e-15 {
@@ -58,8 +60,9 @@ fn a_large_swing_takes_gausss_period() {
     ladder("large pendulum, energy lost in two periods", &losses, 2.15, 2.8e-3);
 }
 
-/// Lowest frequency of a mass M below a heavy cable, 1/s, and its shape at 400 even steps, by shooting (T y')' + ρω²y = 0, T = g(M + ρ(L − s)), from
-/// y(0) = 0 to T y' = Mω²y at L with Runge–Kutta 4 in (y, F = T y').
+/// Lowest frequency of a mass M below a heavy cable, 1/s, and its shape at 400 even steps, by
+/// shooting (T y')' + ρω²y = 0, T = g(M + ρ(L − s)), from y(0) = 0 to T y' = Mω²y at L with
+/// Runge–Kutta 4 in (y, F = T y').
 pub fn heavy_pendulum(length: f64, density: f64, mass: f64) -> (f64, Vec<f64>) {
     let miss = |omega: f64| {
         let n = 400;

@@ -1,5 +1,5 @@
-//! Supports that let go: the middle of mass then falls by ½g t², whatever the cable does; the end of a soft hanging cable
-//! does not know of it for L/c.
+//! Supports that let go: the middle of mass then falls by ½g t², whatever the cable does; the end
+//! of a soft hanging cable does not know of it for L/c.
 
 use cable_core::scene::{Support, SupportKind};
 use cable_core::state::State;
@@ -65,8 +65,9 @@ fn masses_and_springs_fall_as_a_stone_too() {
         }
         let (at, spin) = middle(&sim);
         let fall = (at - start).y + 0.5 * G * (t - RELEASE).powi(2);
-        // The leapfrog's parabola is the true one, begun with half a kick at the very instant of the release: with a whole one, or a sub-step
-        // k early, it would fall by g k t/2 too far, 2e-3 m.
+        // The leapfrog's parabola is the true one, begun with half a kick at the very instant of
+        // the release: with a whole one, or a sub-step k early, it would fall by g k t/2 too far,
+        // 2e-3 m.
         println!("steps of {h:.1e} s: off by {fall:.2e} m, spin {spin:.1e}");
         assert!(fall.abs() < 1e-12, "{fall} m off");
         assert!(spin.abs() < 1e-9 && (at.x - start.x).abs() < 1e-9, "{spin} {}", at.x - start.x);
@@ -90,8 +91,8 @@ fn the_end_of_a_soft_cable_learns_of_it_late() {
     let moved = sim.states()[0].position_m[100].y - rest;
     let fallen = middle(&sim).0.y - start + 0.5 * G * (t - RELEASE).powi(2);
     println!("after 0.85 L/c the end has moved by {moved:.1e} m; the middle of mass is {fallen:.1e} m from a stone");
-    // The model's least damping (τ = 1 ms) blurs the front to √(τt) = 0.017 s; 2.7 of these ahead of it, where the end
-    // jumps to 2gL/c, it is due to have moved by 1.3e-4 m.
+    // The model's least damping (τ = 1 ms) blurs the front to √(τt) = 0.017 s; 2.7 of these ahead
+    // of it, where the end jumps to 2gL/c, it is due to have moved by 1.3e-4 m.
     assert!(moved.abs() < 3e-4, "the end moved by {moved} m");
     assert!(fallen.abs() < 1e-4, "the middle is off by {fallen} m");
 }

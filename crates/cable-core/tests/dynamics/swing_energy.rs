@@ -1,5 +1,6 @@
-//! What an undamped swing loses in 100 periods: steps take (1 − 2β) ω⁴h³/4 of its amplitude a second and nothing else does (a light
-//! stiff cable stretches too little for its damping to matter), so of its energy 1 − e^{−50 (1 − 2β) ω⁴h³ · 2π/ω}.
+//! What an undamped swing loses in 100 periods: steps take (1 − 2β) ω⁴h³/4 of its amplitude a
+//! second and nothing else does (a light stiff cable stretches too little for its damping to
+//! matter), so of its energy 1 − e^{−50 (1 − 2β) ω⁴h³ · 2π/ω}.
 
 use cable_core::Vec2;
 use cable_core::scene::Support;
@@ -18,7 +19,8 @@ fn lost(h: f64) -> f64 {
             *p = Vec2::new(angle.sin(), -angle.cos()) * (s * (1.0 + mass * G * angle.cos() / 1e7));
         }
     });
-    // The first step is implicit Euler's, and the pull rings for some more: what counts begins after them.
+    // The first step is implicit Euler's, and the pull rings for some more: what counts begins
+    // after them.
     for _ in 0..40 {
         sim.step(h).unwrap();
     }
@@ -39,7 +41,8 @@ fn an_undamped_swing_loses_what_the_scheme_takes() {
         let theory = 1.0 - (-2.0 * damps(omega, h) * time).exp();
         let found = lost(h);
         println!("h {h:.5}: {found:.3e} of the energy lost in 100 periods, theory {theory:.3e}");
-        // What is left unbalanced is some 1e-7 a period; BDF2 alone would take 25 times the theory, 8.7e-5 and 1.1e-5.
+        // What is left unbalanced is some 1e-7 a period; BDF2 alone would take 25 times the theory,
+        // 8.7e-5 and 1.1e-5.
         assert!((found - theory).abs() < 1e-6, "{found} instead of {theory}");
     }
 }

@@ -1,5 +1,6 @@
-//! A weightless taut string swings at kπ/L √(T/(λρ)), λ its stretch: L, ρ unstretched. N bars come to that as 1/N⁴; with their mass
-//! in their nodes (J. L. Lagrange's loaded string) they swing at (2N/L) √(T/(λρ)) sin(kπ/2N), which comes to it as 1/N².
+//! A weightless taut string swings at kπ/L √(T/(λρ)), λ its stretch: L, ρ unstretched. N bars come
+//! to that as 1/N⁴; with their mass in their nodes (J. L. Lagrange's loaded string) they swing at
+//! (2N/L) √(T/(λρ)) sin(kπ/2N), which comes to it as 1/N².
 
 use cable_core::scene::{Scene, Support};
 use cable_core::state::State;
@@ -110,7 +111,8 @@ fn a_heated_string_swings_more_slowly() {
     }
 }
 
-/// In frames of 1/60 s fast strings get the steps that their tone needs: at 1/240 s they are flat by (1 − β)(ωh)²/3.
+/// In frames of 1/60 s fast strings get the steps that their tone needs: at 1/240 s they are flat
+/// by (1 − β)(ωh)²/3.
 #[test]
 fn fast_strings_are_in_tune_in_frames() {
     const FRAME: f64 = 1.0 / 60.0;

@@ -1,9 +1,11 @@
-//! A chain of point masses stepped explicitly: it shares no line with the models it is compared with.
+//! A chain of point masses stepped explicitly: it shares no line with the models it is compared
+//! with.
 //!
-//! Bars pull as Kelvin-Voigt bars do, T = EA (ε + τ dε/dt) where they are stretched and T > 0, and never push. The ground is a
-//! penalty spring with a loss of its own under each node, and under each bar at corners of the ground between its nodes; friction is
-//! Coulomb's, as far as it stops what slides within one step. Symplectic Euler at a part of the stable step. The centre line stays the
-//! cable's radius away from the ground. Bending is the moment EI (κ + τ dκ/dt) at nodes.
+//! Bars pull as Kelvin-Voigt bars do, T = EA (ε + τ dε/dt) where they are stretched and T > 0, and
+//! never push. The ground is a penalty spring with a loss of its own under each node, and under
+//! each bar at corners of the ground between its nodes; friction is Coulomb's, as far as it stops
+//! what slides within one step. Symplectic Euler at a part of the stable step. The centre line
+//! stays the cable's radius away from the ground. Bending is the moment EI (κ + τ dκ/dt) at nodes.
 
 use cable_core::Vec2;
 
@@ -87,7 +89,8 @@ impl Chain {
         if k == 0 || k + 1 == self.x.len() { 0.5 * whole } else { whole }
     }
 
-    /// The longest stable step, s: 2/ω (√(1 + ζ²) − ζ) of the highest frequency of bars and of contacts.
+    /// The longest stable step, s: 2/ω (√(1 + ζ²) − ζ) of the highest frequency of bars and of
+    /// contacts.
     pub fn stable_step(&self) -> f64 {
         let mass = self.density * self.bar;
         let limit = |rate: f64, loss: f64| {
@@ -123,7 +126,8 @@ impl Chain {
         }
         if self.bending > 0.0 {
             for k in 1..n - 1 {
-                // The turn is linear in the places where it is small; here its exact gradient is used.
+                // The turn is linear in the places where it is small; here its exact gradient is
+                // used.
                 let (a, b) = (self.x[k] - self.x[k - 1], self.x[k + 1] - self.x[k]);
                 let turn = (a.x * b.y - a.y * b.x).atan2(a.dot(&b));
                 let across = |d: Vec2| Vec2::new(-d.y, d.x) / d.norm_squared();

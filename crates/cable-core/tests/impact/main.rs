@@ -1,8 +1,8 @@
 //! Cables that fall on rough ground and slip over pipes, against an independent explicit chain.
 //!
 //! The whole table of the drop, medians over 16 starts, is
-//! `cargo test -p cable-core --test impact -- --ignored --nocapture` (half an hour); `BENDING=1 STARTS=4 CHAIN=0` takes one stiffness, fewer
-//! starts and no chain.
+//! `cargo test -p cable-core --test impact -- --ignored --nocapture` (half an hour);
+//! `BENDING=1 STARTS=4 CHAIN=0` takes one stiffness, fewer starts and no chain.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod explicit_chain;
@@ -15,8 +15,8 @@ use peaks::{Tensions, median};
 
 const G: f64 = cable_core::scene::STANDARD_GRAVITY;
 
-/// Medians over starts, each with the least and the greatest: greatest tension, greatest mean over 4 ms of one place, and how much the
-/// greatest tension still changes when the cable lies, N.
+/// Medians over starts, each with the least and the greatest: greatest tension, greatest mean over
+/// 4 ms of one place, and how much the greatest tension still changes when the cable lies, N.
 fn medians(starts: usize, drop: impl Fn(f64) -> Tensions) -> [[f64; 3]; 3] {
     let runs: Vec<Tensions> = rubble::shifts(starts).into_iter().map(drop).collect();
     let of = |read: &dyn Fn(&Tensions) -> f64| median(runs.iter().map(read).collect());
@@ -31,8 +31,9 @@ fn show(name: &str, found: &[[f64; 3]; 3]) {
 /// What the explicit chain has at 84 bars: 454 to 486 N, 390 to 410 N over 4 ms.
 const CHAIN_PEAK_N: f64 = 470.0;
 
-/// With the loss of bars differenced over the history of their nodes, nodes put where tangents meet, a reach that grew with the speed
-/// and grips left as they were the drop had 36 kN here at 84 bars, 71 kN at 168, and hundreds of newtons of chatter for ever.
+/// With the loss of bars differenced over the history of their nodes, nodes put where tangents
+/// meet, a reach that grew with the speed and grips left as they were the drop had 36 kN here at 84
+/// bars, 71 kN at 168, and hundreds of newtons of chatter for ever.
 #[test]
 fn a_drop_on_rubble_pulls_as_hard_on_every_mesh() {
     let found = [84, 168].map(|n| medians(2, |aside| rubble::by_fem(&rubble::scene(n, aside, 0.0), 1.0 / 960.0)));
@@ -47,8 +48,10 @@ fn a_drop_on_rubble_pulls_as_hard_on_every_mesh() {
     }
 }
 
-/// An impact rubs in the step in which it presses: a bar of a stiff cable that strikes a corner presses with kilonewtons for one step, and by the normal
-/// forces of the step before that was rubbed in the step after it, at nine times the normal force that was left. These starts had 467, 371 and 618 N.
+/// An impact rubs in the step in which it presses: a bar of a stiff cable that strikes a corner
+/// presses with kilonewtons for one step, and by the normal forces of the step before that was
+/// rubbed in the step after it, at nine times the normal force that was left. These starts had 467,
+/// 371 and 618 N.
 #[test]
 fn a_drop_of_a_stiff_cable_on_rubble_pulls_as_hard_on_every_mesh() {
     let found = [84, 168, 336].map(|n| medians(2, |aside| rubble::by_fem(&rubble::scene(n, aside, 1.0), 1.0 / 960.0)));
@@ -60,9 +63,10 @@ fn a_drop_of_a_stiff_cable_on_rubble_pulls_as_hard_on_every_mesh() {
     assert!(most < 1.25 * least, "{peaks:?} N");
 }
 
-/// A plastic floor gives nothing back, whether it rubs or not: contacts without friction were left to the barrier, which is a spring, and threw
-/// the cable 0.8 m high. (Its ends, which come down last, shove it together into folds: by 6 to 46 mm in steps of 1/240 to 1/3840 s on a rough floor of
-/// 40 bars; that it is 3 mm in one of them says nothing.)
+/// A plastic floor gives nothing back, whether it rubs or not: contacts without friction were left
+/// to the barrier, which is a spring, and threw the cable 0.8 m high. (Its ends, which come down
+/// last, shove it together into folds: by 6 to 46 mm in steps of 1/240 to 1/3840 s on a rough floor
+/// of 40 bars; that it is 3 mm in one of them says nothing.)
 #[test]
 fn a_cable_that_falls_on_a_smooth_floor_stays_there() {
     for friction in [0.5, 0.0] {
@@ -90,8 +94,8 @@ fn a_cable_that_falls_on_a_smooth_floor_stays_there() {
     }
 }
 
-/// Fine steps do not hold the cable to the ground: where all speed along the normal was taken from what touches, leaving or not, 168 bars had
-/// 663 to 846 N at this step.
+/// Fine steps do not hold the cable to the ground: where all speed along the normal was taken from
+/// what touches, leaving or not, 168 bars had 663 to 846 N at this step.
 #[test]
 fn a_drop_on_rubble_pulls_no_harder_in_fine_steps() {
     let found = medians(2, |aside| rubble::by_fem(&rubble::scene(168, aside, 0.0), 1.0 / 3840.0));
@@ -110,7 +114,8 @@ fn the_explicit_chain_is_converged_in_its_step() {
     assert!((a / c - 1.0).abs() < 0.1 && (b / d - 1.0).abs() < 0.1);
 }
 
-/// Slip is found in the step: with six rounds of it, and without the loss among the forces it is judged by, 600 bars had 10 kN here.
+/// Slip is found in the step: with six rounds of it, and without the loss among the forces it is
+/// judged by, 600 bars had 10 kN here.
 #[test]
 fn a_draped_cable_slips_at_the_same_tension_on_every_mesh() {
     for segments in [200, 600] {
@@ -145,7 +150,8 @@ fn the_table_of_the_drop() {
                 show(&format!("EI {bending}, steps of 1/{rate} s, {n} bars"), &found);
                 found[0][0]
             });
-            // Without bending stiffness: what holds today (1.10, 1.08 and 1.22, of four starts). The aim is 1.15 at each step.
+            // Without bending stiffness: what holds today (1.10, 1.08 and 1.22, of four starts).
+            // The aim is 1.15 at each step.
             if bending == 0.0 {
                 let (least, most) = peaks[1..].iter().fold((f64::INFINITY, 0.0f64), |(a, b), p| (a.min(*p), b.max(*p)));
                 let allowed = if rate > 1000.0 { 1.35 } else { 1.25 };

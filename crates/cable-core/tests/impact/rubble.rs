@@ -19,7 +19,8 @@ pub const FOLLOWED_S: f64 = 2.0;
 /// From when on it lies, s after the release.
 pub const LIES_FROM_S: f64 = 1.5;
 
-/// The scene, moved aside by `aside` (m), cut into so many bars, with bending stiffness EI (N m²). Nothing breaks.
+/// The scene, moved aside by `aside` (m), cut into so many bars, with bending stiffness EI (N m²).
+/// Nothing breaks.
 pub fn scene(segments: usize, aside: f64, bending: f64) -> Scene {
     let mut scene = catalog::rubble_drop();
     let cable = &mut scene.cables[0];
@@ -35,7 +36,8 @@ pub fn scene(segments: usize, aside: f64, bending: f64) -> Scene {
     scene
 }
 
-/// Shifts of so many perturbed starts, m: whole millimetres, so that nodes of any mesh strike other places of the ground.
+/// Shifts of so many perturbed starts, m: whole millimetres, so that nodes of any mesh strike other
+/// places of the ground.
 pub fn shifts(count: usize) -> Vec<f64> {
     (0..count).map(|k| 1e-3 * k as f64).collect()
 }
@@ -58,7 +60,8 @@ pub fn by_fem(scene: &Scene, step_s: f64) -> Tensions {
     Tensions { step_s, rows }
 }
 
-/// Tensions of the drop by the explicit chain in steps of a part of the stable one, read every 1e-4 s.
+/// Tensions of the drop by the explicit chain in steps of a part of the stable one, read every 1e-4
+/// s.
 pub fn by_chain(scene: &Scene, part: f64, contact: f64) -> Tensions {
     let cable = &scene.cables[0];
     let mut sim = Simulation::with_settings(scene.clone(), Model::Fem, Settings::default()).expect("a sound scene");

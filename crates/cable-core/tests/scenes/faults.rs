@@ -210,7 +210,8 @@ fn truncated_texts_are_read_or_refused_never_worse() {
     }
 }
 
-/// Texts with one bit flipped, the same on every run (a linear congruential sequence, Knuth's MMIX).
+/// Texts with one bit flipped, the same on every run (a linear congruential sequence, Knuth's
+/// MMIX).
 fn flips(count: usize) {
     let mut seed: u64 = 1;
     for _ in 0..count {
@@ -324,8 +325,8 @@ fn terrain_and_polygons_that_cross_themselves_are_refused_with_both_edges() {
     with_obstacle(Shape::Terrain { points_m: overhang }).validate().unwrap();
 }
 
-/// Rough ground of a million points with an overhang every tenth: no quick way out of the search for crossings. (About a
-/// second; that it ends is the test.)
+/// Rough ground of a million points with an overhang every tenth: no quick way out of the search
+/// for crossings. (About a second; that it ends is the test.)
 #[test]
 fn a_million_points_of_ground_are_taken() {
     let points_m = (0..1_000_000)

@@ -109,7 +109,8 @@ fn a_child_saves_for_ever() {
     }
 }
 
-/// Kills a saving process `count` times with SIGKILL at changing moments: the file is always one of the two scenes.
+/// Kills a saving process `count` times with SIGKILL at changing moments: the file is always one of
+/// the two scenes.
 fn kills(count: u64) {
     use std::process::{Command, Stdio};
     let folder = tempfile::tempdir().unwrap();
@@ -125,8 +126,8 @@ fn kills(count: u64) {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // From its first save to some saves later, however slow the disk, and then a time in steps that never repeat
-        // (the golden ratio's).
+        // From its first save to some saves later, however slow the disk, and then a time in steps
+        // that never repeat (the golden ratio's).
         let saves = io::BufReader::new(child.stdout.take().unwrap())
             .lines()
             .filter(|l| l.as_ref().is_ok_and(|l| l == "saved"))

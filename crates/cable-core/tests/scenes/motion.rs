@@ -79,7 +79,8 @@ proptest! {
     #[test]
     fn velocity_and_acceleration_are_continuous_and_velocity_is_the_derivative(m in motions()) {
         let h = 1e-6;
-        // Jerk of a quintic with zero end accelerations is at most 60·(4 + 4·1.25)·step/dt³ < 600 step/dt³.
+        // Jerk of a quintic with zero end accelerations is at most 60·(4 + 4·1.25)·step/dt³ < 600
+        // step/dt³.
         let jerk = (1..m.times_s.len()).map(|k| {
             let (a, b) = (m.points_m[k - 1], m.points_m[k]);
             600.0 * (b[0] - a[0]).hypot(b[1] - a[1]) / (m.times_s[k] - m.times_s[k - 1]).powi(3)

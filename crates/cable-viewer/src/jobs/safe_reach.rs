@@ -142,7 +142,7 @@ fn find(order: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<
         ReachSubject::Robot => {
             let ends_m = order.corners_m.map(|p| p[0]);
             let told = |map: &ReachMap, share: f64| tell(share, &|| Maps::Line(Arc::new(map.clone())));
-            let map = line::robot_reach((&scene, order.now.as_deref()), order.settings, (ends_m, PLACES), told)
+            let map = line::robot_reach(&scene, order.now.as_deref(), order.settings, ends_m, PLACES, told)
                 .map_err(|e| e.to_string())?;
             Maps::Line(Arc::new(map))
         }

@@ -91,8 +91,8 @@ fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
     harness.run_steps(2);
     let probe = state(&harness).analysis.tension_marker.expect("a place");
     assert!((probe.arc_length_m - near_hand.arc_length_m).abs() < 0.1, "{probe:?}");
-    let found = tension_budget(&state(&harness).document.scene, &answer(&harness), (0, probe.arc_length_m), probe.from)
-        .unwrap();
+    let found =
+        tension_budget(&state(&harness).document.scene, &answer(&harness), 0, probe.arc_length_m, probe.from).unwrap();
     let sum: f64 = found.contributions.iter().map(|t| t.tension_n).sum();
     assert!((sum - found.tension_n).abs() < 1e-6);
     let contact =

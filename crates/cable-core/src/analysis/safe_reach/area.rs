@@ -1,8 +1,9 @@
 //! This analysis finds where a hand or a crane can take an end of a cable in the free plane.
 //!
-//! From where it is the end is taken outwards from place to place of a grid (`exploration.rs`), each on the shortest way that passes
-//! no obstacle, a coarse grid first and finer ones from its places. Each place goes on from the cable as it was at the one before:
-//! with the friction and the wraps of the way there. The way back is the same way.
+//! From where it is the end is taken outwards from place to place of a grid (`exploration.rs`),
+//! each on the shortest way that passes no obstacle, a coarse grid first and finer ones from its
+//! places. Each place goes on from the cable as it was at the one before: with the friction and the
+//! wraps of the way there. The way back is the same way.
 
 mod exploration;
 
@@ -14,6 +15,7 @@ use exploration::Exploration;
 use super::{lay, least, stilled, unsupported};
 use crate::any_error::Error;
 use crate::contact::World;
+use crate::error::UnsupportedReach;
 use crate::math::{Point, larger, vec2};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
@@ -21,15 +23,17 @@ use crate::scene::{Scene, Support, SupportKind};
 use crate::simulation::Simulation;
 use crate::solution::Solution;
 
-/// Length of a bar where the cable hangs slack and finite elements answer, m. Longer: nodes catch on rough ground and pull by
-/// thousands of newtons that no cable feels (0.6 m over ground of 0.23 m: 800 kN), and the cable is laid anew more often; shorter:
-/// each step of a heap of slack takes longer (0.2 m on the tank: 2.5 times as long).
+/// Length of a bar where the cable hangs slack and finite elements answer, m. Longer: nodes catch
+/// on rough ground and pull by thousands of newtons that no cable feels (0.6 m over ground of 0.23
+/// m: 800 kN), and the cable is laid anew more often; shorter: each step of a heap of slack takes
+/// longer (0.2 m on the tank: 2.5 times as long).
 const SLACK_ELEMENT_M: f64 = 0.4;
 
 /// Most places that are looked at: more is a slip of the unit.
 const MAX_PLACES: usize = 100_000;
 
-/// How much farther than its length a cable is tried, of its length: more than any cable stretches before it breaks.
+/// How much farther than its length a cable is tried, of its length: more than any cable stretches
+/// before it breaks.
 const REACH_FACTOR: f64 = 1.1;
 
 /// What is asked.
@@ -49,7 +53,8 @@ pub struct ReachQuery {
     pub corners_m: [Point; 2],
     /// Side of a place, m.
     pub spacing_m: f64,
-    /// Asks for the way there and back instead of the place itself: by the number of places on a way as much work again.
+    /// Asks for the way there and back instead of the place itself: by the number of places on a
+    /// way as much work again.
     pub back: bool,
 }
 
@@ -62,11 +67,12 @@ pub struct Area {
     pub spacing_m: f64,
     /// Places side by side.
     pub columns: usize,
-    /// Largest tension with the end there, or on the way there and back, N, row by row from below. Not a number: nothing is known
-    /// of it, no free way leads there or no answer was found; infinite: the cable does not reach.
+    /// Largest tension with the end there, or on the way there and back, N, row by row from below.
+    /// Not a number: nothing is known of it, no free way leads there or no answer was found;
+    /// infinite: the cable does not reach.
     pub most_n: Vec<f64>,
-    /// Of each place: its tension is taken from four round it that agree, or, while the map is not done, from the nearest of a coarser
-    /// grid.
+    /// Of each place: its tension is taken from four round it that agree, or, while the map is not
+    /// done, from the nearest of a coarser grid.
     pub guessed: Vec<bool>,
     /// Where the end starts, m.
     pub start_m: Point,
@@ -85,7 +91,8 @@ impl Area {
         [self.origin_m[0] + column * self.spacing_m, self.origin_m[1] + row * self.spacing_m]
     }
 
-    /// How much of the plane is below a tension (N), m², and the corners of the rectangle round it, m; None where nothing is.
+    /// How much of the plane is below a tension (N), m², and the corners of the rectangle round it,
+    /// m; None where nothing is.
     #[must_use]
     pub fn below(&self, tension_n: f64) -> Option<(f64, [Point; 2])> {
         let within = self.most_n.iter().enumerate().filter(|(_, t)| **t <= tension_n).map(|(k, _)| self.at(k));
@@ -100,7 +107,8 @@ impl Area {
     }
 }
 
-/// Looks at all places; `progress` hears what is known so far and the share done (0 to 1), and can end it.
+/// Looks at all places; `progress` hears what is known so far and the share done (0 to 1), and can
+/// end it.
 ///
 /// # Errors
 /// The scene is wrong, the support is none that has a place, or its start has no answer.
@@ -114,18 +122,18 @@ pub fn area(query: &ReachQuery, mut progress: impl FnMut(&Area, f64) -> ControlF
 /// The search before its first step, and the cable as it is laid.
 fn begin(query: &ReachQuery) -> Result<(Exploration<'_>, Simulation), Error> {
     let still = unmanned(&stilled(&query.scene, query.now.as_deref()))?;
-    let cable = still.cables.get(query.cable).ok_or_else(|| unsupported("a cable that is not there"))?;
+    let cable = still.cables.get(query.cable).ok_or_else(|| unsupported(UnsupportedReach::NoSuchCable))?;
     let start = cable.supports.get(query.support).and_then(|s| s.at_m);
-    let start = vec2(start.ok_or_else(|| unsupported("a support without a place"))?);
+    let start = vec2(start.ok_or_else(|| unsupported(UnsupportedReach::SupportWithoutPlace))?);
     if !(query.spacing_m > 0.0 && query.corners_m.iter().flatten().all(|v| v.is_finite())) {
-        return Err(unsupported("a grid without places"));
+        return Err(unsupported(UnsupportedReach::EmptyGrid));
     }
     // The start is a place of the grid.
     let before = [0, 1].map(|k| ((start[k] - query.corners_m[0][k]) / query.spacing_m).floor().max(0.0));
     let after = [0, 1].map(|k| ((query.corners_m[1][k] - start[k]) / query.spacing_m).floor().max(0.0));
     let [columns, rows] = [0, 1].map(|k| (before[k] + after[k]) as usize + 1);
     if columns.saturating_mul(rows) > MAX_PLACES {
-        return Err(unsupported("a grid of so many places"));
+        return Err(unsupported(UnsupportedReach::GridTooLarge));
     }
     let found = Area {
         origin_m: [0, 1].map(|k| start[k] - before[k] * query.spacing_m),
@@ -154,7 +162,8 @@ fn begin(query: &ReachQuery) -> Result<(Exploration<'_>, Simulation), Error> {
     };
     let question = Question::History(Inertia::QuasiStatic);
     let bars = still.cables.iter().map(|c| (c.length_m / SLACK_ELEMENT_M).ceil()).fold(1.0, larger);
-    let settings = Settings { segments: Some(query.settings.segments.unwrap_or(bars as usize)), ..query.settings };
+    let segments = Some(query.settings.segments.unwrap_or(bars as usize));
+    let settings = Settings { segments, breaks: false, ..query.settings };
     let mut laid = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
     lay(&mut laid, query.now.as_deref())?;
     Ok((exploration, laid))
@@ -165,7 +174,7 @@ fn unmanned(scene: &Scene) -> Result<Scene, Error> {
     let mut scene = scene.clone();
     let hitch = scene.hitch_m();
     for support in scene.cables.iter_mut().flat_map(|c| &mut c.supports).filter(|s| s.kind == SupportKind::Robot) {
-        let at = hitch.ok_or_else(|| unsupported("a cable on a robot that is not there"))?;
+        let at = hitch.ok_or_else(|| unsupported(UnsupportedReach::HitchWithoutRobot))?;
         *support = Support { arc_length_m: support.arc_length_m, ..Support::fixed(support.name.clone(), at) };
     }
     scene.robot = None;

@@ -1,12 +1,14 @@
 //! This analysis finds where a robot can go along its ground.
 //!
-//! It is put where its tracks stand, place after place; its outline is an obstacle for its cable. No drive, slope or traction
-//! limits it here: [`crate::robot::Vehicle`] answers whether the robot could pull so hard.
+//! It is put where its tracks stand, place after place; its outline is an obstacle for its cable.
+//! No drive, slope or traction limits it here: [`crate::robot::Vehicle`] answers whether the robot
+//! could pull so hard.
 
 use std::ops::ControlFlow;
 
 use super::{STEP_S, UNREACHABLE_FACTOR, lay, least, stilled, unsupported};
 use crate::any_error::Error;
+use crate::error::UnsupportedReach;
 use crate::math::{Point, larger};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
@@ -17,21 +19,24 @@ use crate::scene::{Scene, SupportKind};
 use crate::simulation::Simulation;
 use crate::solution::Solution;
 
-/// Longest way between two answers, m. Longer: an edge that the cable slips over is passed unseen; shorter: more answers.
+/// Longest way between two answers, m. Longer: an edge that the cable slips over is passed unseen;
+/// shorter: more answers.
 const STEP_M: f64 = 0.05;
 
-/// What the cable may leave of a step, m: a robot that it holds back by a hair has not been stopped.
+/// What the cable may leave of a step, m: a robot that it holds back by a hair has not been
+/// stopped.
 const MAX_SHORTFALL_M: f64 = 1e-3;
 
-/// Where a heap of slack cable has no rest to be pushed to it is thrown over: such a step is taken with inertia, at this speed, m/s.
-/// Faster: its swing shows in the tension; slower: longer.
+/// Where a heap of slack cable has no rest to be pushed to it is thrown over: such a step is taken
+/// with inertia, at this speed, m/s. Faster: its swing shows in the tension; slower: longer.
 const PUSH_SPEED_M_PER_S: f64 = 0.3;
 
-/// Every how manieth way back is looked at, one after the other. Begun with less: longer until the first picture; with more: of no use.
+/// Every how manieth way back is looked at, one after the other. Begun with less: longer until the
+/// first picture; with more: of no use.
 const RETURN_STRIDES: [usize; 4] = [8, 4, 2, 1];
 
-/// Two places whose tensions lie closer than this part of the service tension agree: between them the larger counts. More: a snag
-/// between them is not seen; less: more ways back.
+/// Two places whose tensions lie closer than this part of the service tension agree: between them
+/// the larger counts. More: a snag between them is not seen; less: more ways back.
 const AGREEMENT_FRACTION: f64 = 0.02;
 
 /// A place of the map.
@@ -39,10 +44,12 @@ const AGREEMENT_FRACTION: f64 = 0.02;
 pub struct ReachPlace {
     /// Where the tracks' middle is, m.
     pub at_m: Point,
-    /// Largest tension with the robot there, N; infinite where the cable does not reach, not a number where no answer was found.
+    /// Largest tension with the robot there, N; infinite where the cable does not reach, not a
+    /// number where no answer was found.
     pub there_n: f64,
-    /// Largest tension on the way there and back, N; infinite where the cable does not reach, not a number where no answer was found
-    /// or none is known yet. Between neighbours that agree it is the larger of theirs.
+    /// Largest tension on the way there and back, N; infinite where the cable does not reach, not a
+    /// number where no answer was found or none is known yet. Between neighbours that agree it is
+    /// the larger of theirs.
     pub there_and_back_n: f64,
     /// The cable lies in the robot's way there or back and cannot get out of it.
     pub jammed: bool,
@@ -62,8 +69,8 @@ pub struct ReachMap {
 }
 
 impl ReachMap {
-    /// From where to where the robot can go without passing a tension (N), and with `back` also come back; None if not even at
-    /// its start.
+    /// From where to where the robot can go without passing a tension (N), and with `back` also
+    /// come back; None if not even at its start.
     #[must_use]
     pub fn safe_m(&self, tension_n: f64, back: bool) -> Option<[f64; 2]> {
         let fits = |p: &ReachPlace| (if back { p.there_and_back_n } else { p.there_n }) <= tension_n;
@@ -75,23 +82,28 @@ impl ReachMap {
     }
 }
 
-/// Looks at so many places between two, m, from where an answer of the scene has robot and cable now, if there is one; `progress` hears the map so far and the share done (0 to 1), and can end it.
+/// Looks at so many places between two, m, from where an answer of the scene has robot and cable
+/// now, if there is one; `progress` hears the map so far and the share done (0 to 1), and can end
+/// it.
 ///
 /// # Errors
-/// The scene is wrong or has no robot with a cable on ground in a side view, or its start has no answer.
+/// The scene is wrong or has no robot with a cable on ground in a side view, or its start has no
+/// answer.
 pub fn robot_reach(
-    (scene, now): (&Scene, Option<&Solution>),
+    scene: &Scene,
+    now: Option<&Solution>,
     settings: Settings,
-    ([from_m, to_m], count): ([f64; 2], usize),
+    [from_m, to_m]: [f64; 2],
+    count: usize,
     mut progress: impl FnMut(&ReachMap, f64) -> ControlFlow<()>,
 ) -> Result<ReachMap, Error> {
     let still = stilled(scene, now);
-    let vehicle = still.robot.as_ref().ok_or_else(|| unsupported("a scene without a robot"))?;
-    let preset = robot_preset(&vehicle.preset).ok_or_else(|| unsupported("a robot of no known kind"))?;
+    let vehicle = still.robot.as_ref().ok_or_else(|| unsupported(UnsupportedReach::NoRobot))?;
+    let preset = robot_preset(&vehicle.preset).ok_or_else(|| unsupported(UnsupportedReach::UnknownRobot))?;
     let hangs = |k: &usize| scene.cables[*k].supports.iter().any(|s| s.kind == SupportKind::Robot);
     let cables: Vec<usize> = (0..scene.cables.len()).filter(hangs).collect();
     if cables.is_empty() {
-        return Err(unsupported("a robot that no cable hangs on"));
+        return Err(unsupported(UnsupportedReach::RobotWithoutCable));
     }
     let ground = Ground::of(scene);
     let start_x_m = vehicle.at_m[0];
@@ -102,6 +114,7 @@ pub fn robot_reach(
         ..ReachMap::default()
     };
     let question = Question::History(Inertia::QuasiStatic);
+    let settings = Settings { breaks: false, ..settings };
     let mut start = Simulation::for_question(still.clone(), Model::Auto, settings, question)?;
     lay(&mut start, now)?;
     let walk = Traverse { cables: &cables, limit_n: UNREACHABLE_FACTOR * map.breaking_n };
@@ -120,7 +133,7 @@ pub fn robot_reach(
     let stands = |x: f64| vehicle.pose_on(&ground, preset, x).map(|stand| stand.at_m);
     let mut sides = Vec::with_capacity(2);
     for xs in [right, left] {
-        match walk.out(&start, (&xs, stands), &mut map, &mut progress) {
+        match walk.out(&start, &xs, stands, &mut map, &mut progress) {
             ControlFlow::Continue(side) => sides.push(side),
             ControlFlow::Break(()) => return Ok(map),
         }
@@ -183,7 +196,8 @@ impl Traverse<'_> {
     fn out(
         &self,
         start: &Simulation,
-        (xs, stands): (&[f64], impl Fn(f64) -> Option<Point>),
+        xs: &[f64],
+        stands: impl Fn(f64) -> Option<Point>,
         map: &mut ReachMap,
         progress: LineProgress<'_>,
     ) -> ControlFlow<(), Vec<VisitedPlace>> {
@@ -209,7 +223,8 @@ impl Traverse<'_> {
         ControlFlow::Continue(side)
     }
 
-    /// Goes back from every so manieth place that is not known yet; one between two that agree is not gone back from.
+    /// Goes back from every so manieth place that is not known yet; one between two that agree is
+    /// not gone back from.
     fn back(
         &self,
         side: &mut [VisitedPlace],
@@ -260,7 +275,7 @@ impl Traverse<'_> {
         for k in 1..=steps as usize {
             let x = from + (to - from) * (k as f64 / steps);
             // Where it cannot stand the cable is led past.
-            let left_m = simulation.lead_robot(x, (STEP_S, Inertia::QuasiStatic)).map_err(|_| Obstruction::NoAnswer)?;
+            let left_m = simulation.lead_robot(x, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?;
             most = larger(most, simulation.largest_n(self.cables.iter().copied()));
             if left_m.is_some_and(|m| m > MAX_SHORTFALL_M) {
                 self.shove(simulation, [x - (to - from) / steps, x])?;
@@ -273,18 +288,18 @@ impl Traverse<'_> {
         Ok(most)
     }
 
-    /// A step with inertia, against the heap of cable before the robot. What swings on the way is not looked at: with what
-    /// speed a robot does this is not asked.
+    /// A step with inertia, against the heap of cable before the robot. What swings on the way is
+    /// not looked at: with what speed a robot does this is not asked.
     fn shove(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<(), Obstruction> {
         let parts = ((to - from).abs() / (PUSH_SPEED_M_PER_S * robot::STEP_S)).ceil();
         let mut left_m = None;
         for k in 1..=parts as usize {
             let x = from + (to - from) * (k as f64 / parts);
-            left_m = simulation.lead_robot(x, (robot::STEP_S, Inertia::Dynamic)).map_err(|_| Obstruction::NoAnswer)?;
+            left_m = simulation.lead_robot(x, robot::STEP_S, Inertia::Dynamic).map_err(|_| Obstruction::NoAnswer)?;
         }
         // What it threw over has come down.
         let rests =
-            simulation.lead_robot(to, (STEP_S, Inertia::QuasiStatic)).map_err(|_| Obstruction::NoAnswer)?.or(left_m);
+            simulation.lead_robot(to, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?.or(left_m);
         if rests.is_some_and(|m| m > MAX_SHORTFALL_M) { Err(Obstruction::Jammed) } else { Ok(()) }
     }
 }
@@ -297,7 +312,7 @@ mod tests {
     fn map(change: impl FnOnce(&mut Scene), ends: [f64; 2], count: usize) -> ReachMap {
         let mut scene = catalog::robot_drive();
         change(&mut scene);
-        robot_reach((&scene, None), Settings::default(), (ends, count), |_, _| ControlFlow::Continue(())).unwrap()
+        robot_reach(&scene, None, Settings::default(), ends, count, |_, _| ControlFlow::Continue(())).unwrap()
     }
 
     #[test]
@@ -318,7 +333,7 @@ mod tests {
     fn it_ends_when_it_is_told_to() {
         let scene = catalog::robot_drive();
         let mut progress = 0;
-        let map = robot_reach((&scene, None), Settings::default(), ([8.0, 12.0], 9), |_, _| {
+        let map = robot_reach(&scene, None, Settings::default(), [8.0, 12.0], 9, |_, _| {
             progress += 1;
             if progress < 3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
@@ -327,9 +342,8 @@ mod tests {
 
     #[test]
     fn what_has_no_robot_is_refused_in_words() {
-        let error = robot_reach((&catalog::tank(), None), Settings::default(), ([0.0, 1.0], 3), |_, _| {
-            ControlFlow::Continue(())
-        });
+        let error =
+            robot_reach(&catalog::tank(), None, Settings::default(), [0.0, 1.0], 3, |_, _| ControlFlow::Continue(()));
         assert!(error.unwrap_err().to_string().contains("robot"));
     }
 }

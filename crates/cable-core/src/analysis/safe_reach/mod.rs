@@ -6,32 +6,30 @@
 //! | `line.rs` | a robot is led along its ground |
 //! | `area.rs` | an end is taken through the free plane; `area/exploration.rs` visits the places |
 //!
-//! Histories without inertia, with friction: a robot is led along its ground ([`mod@line`]), an end that a hand or a crane moves
-//! through the free plane ([`mod@area`]). From each place it goes back to where it started: a cable that was drawn round an edge on
-//! the way out may hold there on the way back. Nothing limits what moves it: the question is what the cable would have to bear.
+//! Histories without inertia, with friction: a robot is led along its ground ([`mod@line`]), an end
+//! that a hand or a crane moves through the free plane ([`mod@area`]). From each place it goes back
+//! to where it started: a cable that was drawn round an edge on the way out may hold there on the
+//! way back. Nothing limits what moves it: the question is what the cable would have to bear.
 
 pub mod area;
 pub mod line;
 
 use crate::any_error::Error;
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported, UnsupportedReach};
 use crate::model::Model;
 use crate::scene::{Cable, Scene, SupportKind};
 use crate::simulation::Simulation;
 use crate::solution::Solution;
 
-/// Time of a step, s: no inertia acts, so it only says how far a support trails what draws it. Less: by a part of the step, and a taut cable
-/// shows a tenth of a millimetre; more: nothing.
+/// Time of a step, s: no inertia acts, so it only says how far a support trails what draws it.
+/// Less: by a part of the step, and a taut cable shows a tenth of a millimetre; more: nothing.
 const STEP_S: f64 = 0.5;
 
 /// A cable that would have to bear this many times its breaking tension will not get any farther.
 const UNREACHABLE_FACTOR: f64 = 2.0;
 
-/// Breaking tension while looking, N: the map says where it would break and goes on.
-const UNBREAKABLE_N: f64 = 1e15;
-
-/// The scene as it is at the start, for good: nothing moves by itself, lets go or breaks. Supports and robot stand where an answer
-/// has them, if there is one.
+/// The scene as it is at the start, for good: nothing moves by itself, lets go or breaks. Supports
+/// and robot stand where an answer has them, if there is one.
 fn stilled(scene: &Scene, now: Option<&Solution>) -> Scene {
     let mut still = scene.clone();
     let environment = &mut still.environment;
@@ -46,7 +44,6 @@ fn stilled(scene: &Scene, now: Option<&Solution>) -> Scene {
         load.times_s.clear();
     }
     for cable in &mut still.cables {
-        cable.breaking_tension_n = UNBREAKABLE_N;
         for support in &mut cable.supports {
             if let Some(&from) = support.motion.as_ref().and_then(|m| m.points_m.first()) {
                 support.at_m = Some(from);
@@ -78,7 +75,7 @@ fn stilled(scene: &Scene, now: Option<&Solution>) -> Scene {
 fn lay(simulation: &mut Simulation, now: Option<&Solution>) -> Result<(), Error> {
     if let Some(now) = now {
         if now.cables.iter().any(|c| !c.breaks.is_empty()) {
-            return Err(unsupported("a cable that has broken"));
+            return Err(unsupported(UnsupportedReach::BrokenCable));
         }
         simulation.resume(&at_rest(now))?;
     }
@@ -101,6 +98,6 @@ fn least(scene: &Scene, cables: &[usize], of: fn(&Cable) -> f64) -> f64 {
     values.fold(f64::INFINITY, |a, b| if b < a { b } else { a })
 }
 
-fn unsupported(feature: &str) -> Error {
-    Error::from(SolveError::Unsupported { model: Model::Auto, feature: feature.to_owned() })
+fn unsupported(question: UnsupportedReach) -> Error {
+    Error::from(SolveError::Unsupported { model: Model::Auto, feature: Unsupported::Reach(question) })
 }

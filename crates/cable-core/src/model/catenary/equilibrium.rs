@@ -1,8 +1,9 @@
-//! This module solves for the equilibrium: which pulleys slip, where the material lies, where wheels are touched.
+//! This module solves for the equilibrium: which pulleys slip, where the material lies, where
+//! wheels are touched.
 
 use super::layout::{Anchor, Layout, angle_near, angle_of, unsupported};
 use super::slide::{Arc, Mode, Slide, Stretches};
-use crate::error::{Place, SolveError};
+use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
 use crate::problem::Problem;
@@ -37,27 +38,28 @@ const MAX_HALVINGS: usize = 40;
 /// Rounds of wheel geometry at most; κR = 0.5 takes 12.
 const MAX_ROUNDS: usize = 60;
 /// Balance wanted at a pulley, relative to its tension.
-const BALANCE: f64 = 1e-13;
+const PULLEY_BALANCE_TOLERANCE: f64 = 1e-13;
 /// Balance accepted where round-off allows no better.
 const BALANCE_ACCEPTED: f64 = 1e-9;
 /// Wheel angles wanted, rad.
 const ANGLE: f64 = 1e-12;
 /// A step keeps this part of every stretch. Smaller: stretches shrink to nothing in a bad step.
-const KEEP: f64 = 0.2;
+const KEPT_STRETCH_FRACTION: f64 = 0.2;
 /// A dangling end shorter than this part of the cable has run off its pulley.
-const RUN_OFF: f64 = 1e-6;
+const RUN_OFF_LENGTH_FRACTION: f64 = 1e-6;
 /// Below this part of the energy a predicted decrease is round-off.
 const ENERGY_NOISE: f64 = 1e-9;
 /// A pulley slips when friction is exceeded by this much (in ln T). Smaller: chatter of round-off.
-const CONE: f64 = 1e-10;
-/// Rises of friction from none to what it is, failed ones included: as many halve the rise to 1e-6. One has done for
-/// every scene tried (400 random dead loads over a rubbing wheel, EA 3e4 to 1e9).
+const CONE_TOLERANCE: f64 = 1e-10;
+/// Rises of friction from none to what it is, failed ones included: as many halve the rise to 1e-6.
+/// One has done for every scene tried (400 random dead loads over a rubbing wheel, EA 3e4 to 1e9).
 const MAX_RISES: usize = 20;
 /// Sets of modes changed together; after that one pulley at a time, which cannot cycle so easily.
-const TOGETHER: usize = 12;
+const JOINT_MODE_ROUNDS: usize = 12;
 
-/// Direction of the straight line that touches two anchors one after the other, rad. With t along it, n = perp t and
-/// the touch points c + f R n: (c₂ − c₁)·n = f₁R₁ − f₂R₂. None where they are in one place.
+/// Direction of the straight line that touches two anchors one after the other, rad. With t along
+/// it, n = perp t and the touch points c + f R n: (c₂ − c₁)·n = f₁R₁ − f₂R₂. None where they are in
+/// one place.
 fn tangent(from: &Anchor, to: &Anchor) -> Option<f64> {
     let d = to.at - from.at;
     let apart = d.norm();
@@ -98,7 +100,7 @@ pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Eq
     let (mut lifted, mut near) = (None, None);
     for _ in 0..MAX_ROUNDS {
         let slide = Slide { problem: p, layout, arcs: &arcs };
-        let found = contact(&slide, held, (sigma, near), modes)?;
+        let found = contact(&slide, held, sigma, near, modes)?;
         iterations += found.iterations;
         let m = |k: usize| called_upon(&slide, &found.stretches, k, found.modes[k]);
         let (turned, off, lift) = slide.turned(&found.stretches, m);
@@ -110,7 +112,7 @@ pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Eq
     match lifted {
         Some(k) => {
             let name = p.supports.get(layout.anchors[k].support).map_or("", |s| s.name.as_str());
-            Err(unsupported(format!("the cable lifts off the wheel of `{name}`")))
+            Err(unsupported(Unsupported::OffWheel { support: name.to_owned() }))
         }
         None => Err(not_converged(p, layout, 0, iterations, f64::NAN)),
     }
@@ -142,29 +144,32 @@ fn not_converged(p: &Problem, layout: &Layout, anchor: usize, iterations: usize,
 fn contact(
     slide: &Slide<'_>,
     held: &[f64],
-    (mut sigma, mut near): (Vec<f64>, Option<Stretches>),
+    mut sigma: Vec<f64>,
+    mut near: Option<Stretches>,
     mut modes: Vec<Mode>,
 ) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
     let mut iterations = 0;
-    for round in 0..4 * TOGETHER + 4 * layout.anchors.len() {
-        let found = match newton(slide, (sigma.clone(), near.as_ref()), &modes) {
+    for round in 0..4 * JOINT_MODE_ROUNDS + 4 * layout.anchors.len() {
+        let found = match newton(slide, sigma.clone(), near.as_ref(), &modes) {
             Ok(e) => e,
-            // Another branch of the slip law drew it away: come from the smooth pulley's rest, the first error if not.
+            // Another branch of the slip law drew it away: come from the smooth pulley's rest, the
+            // first error if not.
             Err(e) => from_smooth(slide, sigma, &modes).map_err(|_| e)?,
         };
         iterations += found.iterations;
         sigma = found.sigma;
         let mut changed = false;
         for (k, a) in layout.anchors.iter().enumerate() {
-            if a.held.is_some() || a.friction <= 0.0 || (changed && round >= TOGETHER) {
+            if a.held.is_some() || a.friction <= 0.0 || (changed && round >= JOINT_MODE_ROUNDS) {
                 continue;
             }
             let (Some(b), Some(f)) = Slide::forces(&found.stretches, k) else { continue };
             let next = match modes[k] {
-                Mode::Stick if slide.excess(k, b, f, a.friction).0 > CONE => Mode::Slip(a.friction),
-                Mode::Stick if slide.excess(k, b, f, -a.friction).0 < -CONE => Mode::Slip(-a.friction),
-                // Friction +μ holds material back from going on to the side after: σ must have fallen.
+                Mode::Stick if slide.excess(k, b, f, a.friction).0 > CONE_TOLERANCE => Mode::Slip(a.friction),
+                Mode::Stick if slide.excess(k, b, f, -a.friction).0 < -CONE_TOLERANCE => Mode::Slip(-a.friction),
+                // Friction +μ holds material back from going on to the side after: σ must have
+                // fallen.
                 Mode::Slip(m) if m * (sigma[k] - held[k]) > 1e-12 * a.friction * slide.problem.length => {
                     sigma[k] = held[k];
                     Mode::Stick
@@ -182,17 +187,17 @@ fn contact(
     Err(not_converged(slide.problem, layout, 0, iterations, f64::NAN))
 }
 
-/// Balance with the modes given, by way of slipping pulleys without friction (an energy to go down in, so any start
-/// will do) and friction growing from there to what it is.
+/// Balance with the modes given, by way of slipping pulleys without friction (an energy to go down
+/// in, so any start will do) and friction growing from there to what it is.
 fn from_smooth(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equilibrium, SolveError> {
     let with = |part: f64| -> Vec<Mode> {
         modes.iter().map(|m| if let Mode::Slip(m) = m { Mode::Slip(part * m) } else { *m }).collect()
     };
-    let mut found = newton(slide, (sigma, None), &with(0.0))?;
+    let mut found = newton(slide, sigma, None, &with(0.0))?;
     let (mut reached, mut rise, mut iterations) = (0.0f64, 1.0f64, found.iterations);
     for _ in 0..MAX_RISES {
         let next = if reached + rise < 1.0 { reached + rise } else { 1.0 };
-        match newton(slide, (found.sigma.clone(), Some(&found.stretches)), &with(next)) {
+        match newton(slide, found.sigma.clone(), Some(&found.stretches), &with(next)) {
             Ok(e) => {
                 iterations += e.iterations;
                 (found, reached, rise) = (Equilibrium { iterations, ..e }, next, 2.0 * rise);
@@ -209,7 +214,8 @@ fn from_smooth(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equ
 /// One row of the three-diagonal system.
 type Row = [f64; 3];
 
-/// Residuals and slopes at every anchor (zero, one where nothing slides) and the worst relative residual.
+/// Residuals and slopes at every anchor (zero, one where nothing slides) and the worst relative
+/// residual.
 fn rows(slide: &Slide<'_>, s: &Stretches, modes: &[Mode], smooth: bool) -> Option<(Vec<f64>, Vec<Row>, f64, f64)> {
     let n = modes.len();
     let (mut r, mut j) = (vec![0.0; n], vec![[0.0, 1.0, 0.0]; n]);
@@ -232,8 +238,8 @@ fn rows(slide: &Slide<'_>, s: &Stretches, modes: &[Mode], smooth: bool) -> Optio
     Some((r, j, worst, newtons))
 }
 
-/// −J⁻¹ r for a three-diagonal J, by elimination; in `descend` the pivots are lifted until all are positive, so
-/// that the step goes down in energy.
+/// −J⁻¹ r for a three-diagonal J, by elimination; in `descend` the pivots are lifted until all are
+/// positive, so that the step goes down in energy.
 fn step(r: &[f64], j: &[Row], descend: bool) -> Option<Vec<f64>> {
     let n = r.len();
     let largest = j.iter().fold(0.0f64, |m, row| if row[1].abs() > m { row[1].abs() } else { m });
@@ -262,8 +268,9 @@ fn step(r: &[f64], j: &[Row], descend: bool) -> Option<Vec<f64>> {
     None
 }
 
-/// Whether the balance is stable: σ pushed one way is drawn back (all pivots of J positive). With more slack than any
-/// tension asks for a fold pulls the harder the longer it is: a balance too, but one that runs away.
+/// Whether the balance is stable: σ pushed one way is drawn back (all pivots of J positive). With
+/// more slack than any tension asks for a fold pulls the harder the longer it is: a balance too,
+/// but one that runs away.
 fn stable(j: &[Row]) -> bool {
     let mut pivot = 1.0;
     (0..j.len()).all(|k| {
@@ -281,8 +288,8 @@ fn room(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
         let from = if i == 0 { 0.0 } else { p[i - 1] };
         let to = if i == slide.arcs.len() { 0.0 } else { p[i] };
         let (length, change) = (stretch.to - stretch.from, to - from);
-        if change < 0.0 && alpha * -change > (1.0 - KEEP) * length {
-            alpha = (1.0 - KEEP) * length / -change;
+        if change < 0.0 && alpha * -change > (1.0 - KEPT_STRETCH_FRACTION) * length {
+            alpha = (1.0 - KEPT_STRETCH_FRACTION) * length / -change;
         }
     }
     alpha
@@ -291,7 +298,8 @@ fn room(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
 /// Newton for σ with the modes given, from a σ and the stretches near it where they are known.
 fn newton(
     slide: &Slide<'_>,
-    (sigma, near): (Vec<f64>, Option<&Stretches>),
+    sigma: Vec<f64>,
+    near: Option<&Stretches>,
     modes: &[Mode],
 ) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
@@ -310,7 +318,7 @@ fn newton(
             iterations,
             residual,
         };
-        if worst <= BALANCE {
+        if worst <= PULLEY_BALANCE_TOLERANCE {
             return if smooth || stable(&j) { Ok(end(sigma, s, newtons)) } else { Err(lost(iterations)) };
         }
         run_off(slide, &s)?;
@@ -348,13 +356,11 @@ fn newton(
 fn run_off(slide: &Slide<'_>, s: &Stretches) -> Result<(), SolveError> {
     let ends = [(0, 0), (s.all.len() - 1, slide.arcs.len() - 1)];
     for (i, k) in ends {
-        let short = s.all[i].is_some_and(|e| e.to - e.from < RUN_OFF * slide.problem.length);
+        let short = s.all[i].is_some_and(|e| e.to - e.from < RUN_OFF_LENGTH_FRACTION * slide.problem.length);
         let anchor = &slide.layout.anchors[k];
         if short && anchor.held.is_none() {
             let name = slide.problem.supports.get(anchor.support).map_or("", |p| p.name.as_str());
-            return Err(SolveError::NoRestingPlace {
-                why: format!("the cable runs off through pulley `{name}`, which nothing holds back"),
-            });
+            return Err(SolveError::NoRestingPlace { why: NoEquilibrium::RunsOff { pulley: name.to_owned() } });
         }
     }
     Ok(())

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::equilibrium::first_arcs;
 use crate::catenary::PointForce;
-use crate::error::SolveError;
+use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, perp};
 use crate::model::Model;
 use crate::problem::{Problem, SupportPoint};
@@ -36,7 +36,8 @@ pub(super) struct Layout {
     pub loads: Vec<PointForce>,
     /// Load per metre of unstretched length, N/m.
     pub weight: Vec2,
-    /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one that has weight.
+    /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one
+    /// that has weight.
     pub hint: f64,
     /// Whether the start and the end dangle.
     pub free: [bool; 2],
@@ -44,19 +45,21 @@ pub(super) struct Layout {
     pub end_force: [Vec2; 2],
 }
 
-/// Weight of a weightless cable, in parts of its loads. Smaller: slack parts beside loaded ones have no direction that rounding
-/// leaves alone. Larger: it shows in the ninth digit.
+/// Weight of a weightless cable, in parts of its loads. Smaller: slack parts beside loaded ones
+/// have no direction that rounding leaves alone. Larger: it shows in the ninth digit.
 const HINT_OF_LOADS: f64 = 1e-15;
 /// The same in parts of EA where nothing is loaded: far below the strain that rounding hides.
 const HINT_OF_STIFFNESS: f64 = 1e-18;
-/// Tension that such a weight can make, in weights: a slack of 1e-9 of the length gives 6e3. Smaller: a trace of tension is told where
-/// there is none. Larger: tensions that loads make are told to be none.
-const HINT_SHOWS: f64 = 1e4;
+/// Tension that such a weight can make, in weights: a slack of 1e-9 of the length gives 6e3.
+/// Smaller: a trace of tension is told where there is none. Larger: tensions that loads make are
+/// told to be none.
+const HINT_TENSION_FACTOR: f64 = 1e4;
 
-/// The hint of weight (N/m) of a weightless cable with dead loads of a size (N), and the force up to which it alone may be the cause, N.
+/// The hint of weight (N/m) of a weightless cable with dead loads of a size (N), and the force up
+/// to which it alone may be the cause, N.
 pub(in crate::model) fn hint_of_weight(p: &Problem, loads: f64) -> (Vec2, f64) {
     let whole = if loads > 0.0 { HINT_OF_LOADS * loads } else { HINT_OF_STIFFNESS * p.axial_stiffness };
-    (Vec2::new(0.0, -whole / p.length), HINT_SHOWS * whole)
+    (Vec2::new(0.0, -whole / p.length), HINT_TENSION_FACTOR * whole)
 }
 
 /// Where a support is now: by hand, by its motion, or not at all.
@@ -110,15 +113,15 @@ impl Layout {
             loads,
         };
         if layout.anchors.is_empty() {
-            return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
+            return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
         layout.hint_weight(p);
         layout.face_wheels(p);
         Ok(layout)
     }
 
-    /// Gives a weightless cable so little weight that no force shows it: where it is slack any shape is at rest, and this one is
-    /// that of a very light cable.
+    /// Gives a weightless cable so little weight that no force shows it: where it is slack any
+    /// shape is at rest, and this one is that of a very light cable.
     fn hint_weight(&mut self, p: &Problem) {
         if self.weight.norm() > 0.0 {
             return;
@@ -127,7 +130,8 @@ impl Layout {
         (self.weight, self.hint) = hint_of_weight(p, loads);
     }
 
-    /// Which side of its wheel the cable runs on, seen along it: over means above where it travels to the right.
+    /// Which side of its wheel the cable runs on, seen along it: over means above where it travels
+    /// to the right.
     fn face_wheels(&mut self, p: &Problem) {
         let centres: Vec<Vec2> = self.anchors.iter().map(|a| a.at).collect();
         for (k, a) in self.anchors.iter_mut().enumerate() {
@@ -150,10 +154,11 @@ impl Layout {
         inside.fold(self.weight * (to - from), |sum, l| sum + l.force)
     }
 
-    /// Where each anchor sits on the cable when the material is spread evenly along the way: m of arc length.
+    /// Where each anchor sits on the cable when the material is spread evenly along the way: m of
+    /// arc length.
     ///
-    /// Along the route the ends of the scene give, else straight from anchor to anchor; a dangling end takes
-    /// what a taut cable leaves over.
+    /// Along the route the ends of the scene give, else straight from anchor to anchor; a dangling
+    /// end takes what a taut cable leaves over.
     pub fn spread(&self, p: &Problem) -> Vec<f64> {
         let way = self.way(p);
         let (n, total) = (self.anchors.len(), way.1);
@@ -272,6 +277,6 @@ impl Anchor {
 }
 
 /// The model's refusal.
-pub(super) fn unsupported(feature: impl Into<String>) -> SolveError {
-    SolveError::Unsupported { model: Model::Catenary, feature: feature.into() }
+pub(super) fn unsupported(feature: Unsupported) -> SolveError {
+    SolveError::Unsupported { model: Model::Catenary, feature }
 }

@@ -1,10 +1,10 @@
-//! Rung 0 as a model: exact elastic catenaries between supports, loads and pulleys. Statics and slow motion with
-//! friction that remembers; no obstacles within reach, no bending, no inertia.
+//! Rung 0 as a model: exact elastic catenaries between supports, loads and pulleys. Statics and
+//! slow motion with friction that remembers; no obstacles within reach, no bending, no inertia.
 //!
-//! What is unknown is only where the material sits at each pulley (`slide`); everything between is a convex
-//! problem of two forces ([`crate::catenary`]). With friction the resting place depends on how the cable was
-//! laid: [`Mechanics::settle`] takes it spread evenly along its way and lets it slip only where friction cannot
-//! hold it.
+//! What is unknown is only where the material sits at each pulley (`slide`); everything between is
+//! a convex problem of two forces ([`crate::catenary`]). With friction the resting place depends on
+//! how the cable was laid: [`Mechanics::settle`] takes it spread evenly along its way and lets it
+//! slip only where friction cannot hold it.
 
 mod equilibrium;
 pub(super) mod layout;
@@ -20,15 +20,15 @@ use self::report::{report, straight};
 use self::slide::Mode;
 use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
-use crate::error::SolveError;
+use crate::error::{FailureCause, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, Node, SupportReaction, Warning, WarningKind};
 use crate::state::State;
 
-/// Supports move by at most this part of the cable in one solve of a slow motion. Larger: slip that starts and
-/// reverses inside a step is missed. Smaller: more solves for the same answer. 1 % halved changed the drags of
-/// the reference scenes by less than 1e-6.
+/// Supports move by at most this part of the cable in one solve of a slow motion. Larger: slip that
+/// starts and reverses inside a step is missed. Smaller: more solves for the same answer. 1 %
+/// halved changed the drags of the reference scenes by less than 1e-6.
 const STEP: f64 = 0.01;
 /// Halvings of a slow step before it is given up.
 const MAX_HALVINGS: u32 = 10;
@@ -57,13 +57,13 @@ impl CatenaryModel {
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, _settings: Settings) -> Result<Self, SolveError> {
         if problem.bending_stiffness > 0.0 {
-            return Err(unsupported("the cable has bending stiffness"));
+            return Err(unsupported(Unsupported::BendingStiffness));
         }
         if problem.floor_friction.is_some() {
-            return Err(unsupported("in plan view the floor rubs everywhere"));
+            return Err(unsupported(Unsupported::PlanView));
         }
         if problem.cable.self_contact {
-            return Err(unsupported("the cable can touch itself"));
+            return Err(unsupported(Unsupported::SelfContact));
         }
         let n = problem.supports.len();
         let mut model = Self {
@@ -124,8 +124,9 @@ impl CatenaryModel {
         solve(&self.problem, layout, Start { held: &held, sigma: held.clone(), modes, arcs })
     }
 
-    /// Takes a balance as the state at a time; on an error nothing has changed. Nodes cost more than the balance, so
-    /// those of an instant nobody sees (`shown` false) are made only where they may meet an obstacle.
+    /// Takes a balance as the state at a time; on an error nothing has changed. Nodes cost more
+    /// than the balance, so those of an instant nobody sees (`shown` false) are made only where
+    /// they may meet an obstacle.
     fn accept(&mut self, layout: &Layout, e: Equilibrium, time_s: f64, shown: bool) -> Result<StepReport, SolveError> {
         if shown || !self.problem.world.is_empty() {
             let (nodes, reactions) = report(&self.problem, layout, &e);
@@ -147,8 +148,8 @@ impl CatenaryModel {
         Ok(StepReport { cost, warnings: Vec::new() })
     }
 
-    /// Obstacles are for other models, unless the cable hangs clear of them and comes there from the way it is
-    /// laid without meeting any.
+    /// Obstacles are for other models, unless the cable hangs clear of them and comes there from
+    /// the way it is laid without meeting any.
     fn refuse_contact(&self, layout: &Layout, nodes: &[Node]) -> Result<(), SolveError> {
         let world = &self.problem.world;
         if world.is_empty() {
@@ -156,7 +157,7 @@ impl CatenaryModel {
         }
         let at = |n: &Node| Vec2::new(n.x_m, n.y_m);
         let laid = laid(&self.problem, layout);
-        let reached = |s: f64| unsupported(format!("the cable reaches an obstacle {s:.3} m along it"));
+        let reached = |s: f64| unsupported(Unsupported::Obstacle { arc_length_m: s });
         for w in nodes.windows(2) {
             let (s0, s1) = (w[0].arc_length_m, w[1].arc_length_m);
             if let (Some(a), Some(b)) = (laid.position_at(s0), laid.position_at(s1)) {
@@ -271,7 +272,7 @@ impl Mechanics for CatenaryModel {
         _gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
         if inertia == Inertia::Dynamic {
-            return Err(unsupported("motion with inertia"));
+            return Err(unsupported(Unsupported::Inertia));
         }
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
             return Err(SolveError::TimeStep { dt_s, allowed: "0 < dt ≤ 1e6 s" });
@@ -300,7 +301,7 @@ impl Mechanics for CatenaryModel {
                             dt_s: step,
                             residual_n,
                             place,
-                            cause: format!("no balance in {iterations} iterations"),
+                            cause: FailureCause::NoBalance { iterations },
                         });
                     }
                 }

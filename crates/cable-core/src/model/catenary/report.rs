@@ -1,4 +1,5 @@
-//! The report turns a solution into nodes, close enough for straight lines between them, and support reactions.
+//! The report turns a solution into nodes, close enough for straight lines between them, and
+//! support reactions.
 
 use super::equilibrium::{Equilibrium, called_upon};
 use super::layout::Layout;
@@ -11,16 +12,19 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{Node, SupportReaction};
 
-/// Between two nodes the cable leaves a straight line by no more than this part of its length. Larger: a
-/// picture shows corners, and sag read between nodes is off by as much. Smaller: thousands of nodes.
+/// Between two nodes the cable leaves a straight line by no more than this part of its length.
+/// Larger: a picture shows corners, and sag read between nodes is off by as much. Smaller:
+/// thousands of nodes.
 const FLATNESS: f64 = 1e-5;
 /// Between two nodes tension leaves a straight line by no more than this part of itself.
 const TENSION_FLATNESS: f64 = 5e-5;
-/// Tensions below this part of the greatest are not resolved further (a fold, where T → 0 in a point).
+/// Tensions below this part of the greatest are not resolved further (a fold, where T → 0 in a
+/// point).
 const TENSION_FLOOR: f64 = 0.02;
-/// Tensions either side of a point that differ by no more than this part are one: ten times the balance accepted at a
-/// pulley. Smaller: two nodes where the balance was found badly. Larger: a light load on a taut cable shows no jump.
-const SAME_TENSION: f64 = 1e-8;
+/// Tensions either side of a point that differ by no more than this part are one: ten times the
+/// balance accepted at a pulley. Smaller: two nodes where the balance was found badly. Larger: a
+/// light load on a taut cable shows no jump.
+const TENSION_JUMP_TOLERANCE: f64 = 1e-8;
 /// Nodes a catenary has at least: 2 to this power + 1.
 const LEAST_DEPTH: u32 = 2;
 /// Halvings of a catenary at most.
@@ -41,7 +45,8 @@ pub(in crate::model) struct Nodes<'a> {
     problem: &'a Problem,
     flat: f64,
     least_tension: f64,
-    /// Whether the nodes are turned end for start afterwards: of two nodes that are one the first is that beyond the point then.
+    /// Whether the nodes are turned end for start afterwards: of two nodes that are one the first
+    /// is that beyond the point then.
     pub turned: bool,
     pub out: Vec<Node>,
 }
@@ -70,10 +75,11 @@ impl<'a> Nodes<'a> {
             force_n: [p.force.x, p.force.y],
             ..Node::default()
         };
-        // A node twice at the same material point only where the tension jumps (a load, a rubbing pulley).
+        // A node twice at the same material point only where the tension jumps (a load, a rubbing
+        // pulley).
         if let Some(last) = self.out.last_mut()
             && node.arc_length_m - last.arc_length_m <= 1e-12 * self.problem.length
-            && (node.tension_n - last.tension_n).abs() <= SAME_TENSION * node.tension_n
+            && (node.tension_n - last.tension_n).abs() <= TENSION_JUMP_TOLERANCE * node.tension_n
         {
             if !self.turned {
                 last.curvature_per_m = node.curvature_per_m;
@@ -89,32 +95,33 @@ impl<'a> Nodes<'a> {
         let point = |s: f64| {
             let force = c.force_at(s);
             let square = force.norm_squared();
-            // A fold is a point without tension: its direction turns at once, and no number says how sharply.
+            // A fold is a point without tension: its direction turns at once, and no number says
+            // how sharply.
             let curvature = if square > 0.0 { -cross(force, c.span().weight) / square } else { 0.0 };
             Point { s: s0 + s, at: at + c.position_at(s), force, curvature }
         };
         let (a, b) = (point(0.0), point(c.span().length));
         self.push(a);
-        self.refine(&point, (a, b), (0.0, c.span().length), 0);
+        self.refine(&point, [a, b], 0.0, c.span().length, 0);
         self.push(b);
     }
 
-    fn refine(&mut self, point: &impl Fn(f64) -> Point, ends: (Point, Point), (s0, s1): (f64, f64), depth: u32) {
+    fn refine(&mut self, point: &impl Fn(f64) -> Point, ends: [Point; 2], s0: f64, s1: f64, depth: u32) {
         let s = 0.5 * (s0 + s1);
         let middle = point(s);
-        let off = ((ends.0.at + ends.1.at) * 0.5 - middle.at).norm();
-        let [before, after, here] = [ends.0, ends.1, middle].map(|p| p.force.norm());
+        let off = ((ends[0].at + ends[1].at) * 0.5 - middle.at).norm();
+        let [before, after, here] = [ends[0], ends[1], middle].map(|p| p.force.norm());
         let tension = (0.5 * (before + after) - here).abs();
         let scale = if here > self.least_tension { here } else { self.least_tension };
         // What is off falls to a quarter with the node in the middle, which is known already.
         let rough = off > 4.0 * self.flat || tension > 4.0 * TENSION_FLATNESS * scale;
         let deeper = depth + 1 < LEAST_DEPTH || rough && depth + 1 < MOST_DEPTH;
         if deeper {
-            self.refine(point, (ends.0, middle), (s0, s), depth + 1);
+            self.refine(point, [ends[0], middle], s0, s, depth + 1);
         }
         self.push(middle);
         if deeper {
-            self.refine(point, (middle, ends.1), (s, s1), depth + 1);
+            self.refine(point, [middle, ends[1]], s, s1, depth + 1);
         }
     }
 }
@@ -178,7 +185,7 @@ fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &Slide<'_>, e: &Equilibrium, k: usi
     let parts = arc_nodes::parts(a.radius, arc.turn, slide.problem.radius);
     for i in 0..=parts {
         let psi = arc.turn * i as f64 / parts as f64;
-        let passed = pass(&chain, a, before.norm(), (arc.arrive, psi), m);
+        let passed = pass(&chain, a, before.norm(), arc.arrive, psi, m);
         let lambda = chain.thermal_stretch * (1.0 + passed.tension / chain.axial_stiffness);
         nodes.push(Point {
             s: from + passed.material,
@@ -231,8 +238,8 @@ fn reactions(p: &Problem, slide: &Slide<'_>, e: &Equilibrium, nodes: &[Node]) ->
         .collect()
 }
 
-/// Nodes before anything is solved: straight ways with the material spread evenly, dangling ends straight along
-/// their load.
+/// Nodes before anything is solved: straight ways with the material spread evenly, dangling ends
+/// straight along their load.
 pub(super) fn straight(p: &Problem, layout: &Layout, sigma: &[f64]) -> Vec<Node> {
     let hang = |force: Vec2| {
         let f = if force.norm() > 0.0 { force } else { layout.weight };

@@ -1,18 +1,19 @@
 //! The material slides between catenaries that are joined by the material point σ at each pulley.
 //!
-//! With the σ given every stretch is one convex problem (see [`Chain`]), so σ are the only unknowns. The energy
-//! of the whole has the gradient (ψ = T + T²/2EA, a after the pulley, b before, p₂ − p₁ across its wheel)
+//! With the σ given every stretch is one convex problem (see [`Chain`]), so σ are the only
+//! unknowns. The energy of the whole has the gradient (ψ = T + T²/2EA, a after the pulley, b
+//! before, p₂ − p₁ across its wheel)
 //!
 //! ```text
 //! ∂E/∂σ = (1 + αΔT)(ψ(T_a) − ψ(T_b)) + b·(p₂ − p₁)
 //! ```
 //!
 //! and each end force changes with σ through the chain's compliance K, λ = (1 + αΔT)(1 + T/EA):
-//! dF_a = K⁻¹(λ_a t_a dσ_a − λ_b t_b dσ_b) − b dσ_a,  dF_b the same with − b dσ_b.
-//! Smooth pulleys are found by going down in E (a resting place, not merely a balance); pulleys that rub add
-//! ln(T_a/T_b) = m·turn, solved by Newton. Material passing through a fixed point in space: after S. Sueda,
-//! G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic simulation of highly constrained strands",
-//! *ACM Transactions on Graphics* 30 (2011) 39.
+//! dF_a = K⁻¹(λ_a t_a dσ_a − λ_b t_b dσ_b) − b dσ_a, dF_b the same with − b dσ_b. Smooth pulleys
+//! are found by going down in E (a resting place, not merely a balance); pulleys that rub add
+//! ln(T_a/T_b) = m·turn, solved by Newton. Material passing through a fixed point in space: after
+//! S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic simulation of highly
+//! constrained strands", *ACM Transactions on Graphics* 30 (2011) 39.
 
 use super::layout::{Anchor, Layout, angle_near, angle_of};
 use super::wheel::pass;
@@ -36,8 +37,8 @@ pub(super) struct Arc {
     pub arrive: f64,
     /// How far it turns, rad, ≥ 0.
     pub turn: f64,
-    /// Angle of the cable at the point of the wheel where σ is read, rad: fixed to the wheel, so that a touch
-    /// point that wanders does not move material.
+    /// Angle of the cable at the point of the wheel where σ is read, rad: fixed to the wheel, so
+    /// that a touch point that wanders does not move material.
     pub mark: f64,
     /// Unstretched material on the arc, m.
     pub material: f64,
@@ -51,7 +52,8 @@ impl Arc {
     }
 }
 
-/// A stretch between holds, or a dangling end, with derivatives of its end forces by its end material points.
+/// A stretch between holds, or a dangling end, with derivatives of its end forces by its end
+/// material points.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stretch {
     pub from: f64,
@@ -123,7 +125,7 @@ impl Slide<'_> {
                 Some(self.dangling(from, to, false))
             } else {
                 let (a, b) = (self.touches(i - 1).1, self.touches(i).0);
-                Some(self.held(from, to, (a, b), near)?)
+                Some(self.held(from, to, a, b, near)?)
             };
             if let Some(s) = &stretch {
                 if !(s.start.iter().chain(s.end.iter()).all(|v| v.is_finite())) {
@@ -138,7 +140,7 @@ impl Slide<'_> {
     }
 
     /// A stretch between two anchors.
-    fn held(&self, from: f64, to: f64, (a, b): (Vec2, Vec2), near: Option<Vec2>) -> Option<Stretch> {
+    fn held(&self, from: f64, to: f64, a: Vec2, b: Vec2, near: Option<Vec2>) -> Option<Stretch> {
         let chain = self.chain(from, to);
         let f: ChainForce = match chain.solve(b - a, near) {
             Ok(f) => f,
@@ -201,25 +203,26 @@ impl Slide<'_> {
         }
     }
 
-    /// ln of the tension after the pulley over what the wheel makes of the tension before it with friction m,
-    /// and its slopes by ln T_b and by ln T_a.
+    /// ln of the tension after the pulley over what the wheel makes of the tension before it with
+    /// friction m, and its slopes by ln T_b and by ln T_a.
     pub fn excess(&self, k: usize, before: Vec2, after: Vec2, m: f64) -> (f64, f64) {
         let a = &self.layout.anchors[k];
         let (tb, ta) = (before.norm(), after.norm());
         let turn = self.turn(k, before, after);
         let chain = self.chain(0.0, 1.0);
-        let way = (self.arcs[k].arrive, turn);
-        let passed = pass(&chain, a, tb, way, m).tension;
+        let arrive = self.arcs[k].arrive;
+        let passed = pass(&chain, a, tb, arrive, turn, m).tension;
         let slope = if a.radius > 0.0 {
             let d = 1e-6 * tb;
-            (pass(&chain, a, tb + d, way, m).tension - passed) / d * tb / passed
+            (pass(&chain, a, tb + d, arrive, turn, m).tension - passed) / d * tb / passed
         } else {
             1.0
         };
         ((ta / passed).ln(), slope)
     }
 
-    /// Residual of a slipping pulley and its derivatives by σ of the pulley before, itself, and the one after.
+    /// Residual of a slipping pulley and its derivatives by σ of the pulley before, itself, and the
+    /// one after.
     ///
     /// `smooth`: in energy form (symmetric), else the logarithm of the slip law.
     pub fn row(&self, s: &Stretches, k: usize, m: f64, smooth: bool) -> Option<(f64, [f64; 3])> {
@@ -243,8 +246,8 @@ impl Slide<'_> {
         Some((r, [-db(b.d_end[0]), da(a.d_start[0]) - db(b.d_end[1]), da(a.d_start[1])]))
     }
 
-    /// Turns each wheel's arc to the cable's directions: the new arcs, the largest angle still off, rad, and a
-    /// wheel the cable would leave.
+    /// Turns each wheel's arc to the cable's directions: the new arcs, the largest angle still off,
+    /// rad, and a wheel the cable would leave.
     pub fn turned(&self, s: &Stretches, m: impl Fn(usize) -> f64) -> (Vec<Arc>, f64, Option<usize>) {
         let (mut worst, mut lifted) = (0.0f64, None);
         let mut out = Vec::with_capacity(self.arcs.len());
@@ -254,8 +257,9 @@ impl Slide<'_> {
                 continue;
             };
             let leave = arc.arrive - a.facing * arc.turn;
-            // Moving the touch point by R dφ along the cable with the material on it turns the cable there by
-            // κR dφ: Newton divides by 1 + κR (κ < 0 where cable and wheel bend the same way).
+            // Moving the touch point by R dφ along the cable with the material on it turns the
+            // cable there by κR dφ: Newton divides by 1 + κR (κ < 0 where cable and wheel bend the
+            // same way).
             let step = |force: Vec2, at: f64| {
                 let off = angle_near(angle_of(force), at) - at;
                 let t = force.norm();
@@ -274,7 +278,7 @@ impl Slide<'_> {
                 arrive = 0.5 * (arrive + leave);
                 turn = 0.0;
             }
-            let passed = pass(&self.chain(0.0, 1.0), a, fb.norm(), (arrive, turn), m(k));
+            let passed = pass(&self.chain(0.0, 1.0), a, fb.norm(), arrive, turn, m(k));
             let change = (passed.material - arc.material).abs() / a.radius;
             worst = larger(worst, change);
             out.push(Arc { arrive, turn, material: passed.material, ..*arc });
@@ -283,6 +287,6 @@ impl Slide<'_> {
     }
 }
 
-/// Where cable and wheel bend almost alike the touch point is hardly defined; steps are not made longer than
-/// by this divisor. Smaller: the touch point jumps to and fro. Larger: more rounds.
+/// Where cable and wheel bend almost alike the touch point is hardly defined; steps are not made
+/// longer than by this divisor. Smaller: the touch point jumps to and fro. Larger: more rounds.
 const LEAST_GAIN: f64 = 0.2;

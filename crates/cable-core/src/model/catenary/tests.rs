@@ -35,7 +35,8 @@ fn balance(m: &CatenaryModel) {
     let p = m.problem();
     let sum = m.reactions.iter().fold(Vec2::zeros(), |s, r| s + Vec2::new(r.reaction_x_n, r.reaction_y_n));
     let load = p.body_force(m.time_s) * p.length + p.loads.iter().fold(Vec2::zeros(), |s, l| s + l.force.at(m.time_s));
-    // What a dead load pulls is in the sum with its own sign: reaction −P on the load, P on the rest.
+    // What a dead load pulls is in the sum with its own sign: reaction −P on the load, P on the
+    // rest.
     assert!((sum - load).norm() < 1e-8 * (1.0 + load.norm()), "{sum:?} {load:?}");
     for s in p.supports.iter().filter(|s| s.wheel_radius > 0.0) {
         let c = s.at.expect("a centre");
@@ -83,8 +84,8 @@ fn a_small_wheel_tends_to_a_point() {
         m.settle().expect("rest");
         m.nodes[0].tension_n
     };
-    // The cable's own radius adds 1 mm to each. First order in R, and the second order is large (−0.65 R + 8.5 R²
-    // newtons here).
+    // The cable's own radius adds 1 mm to each. First order in R, and the second order is large
+    // (−0.65 R + 8.5 R² newtons here).
     let (point, d1, d2) = (at(0.0), at(0.019), at(0.009));
     let ratio = (d1 - point) / (d2 - point);
     assert!((ratio - 2.0).abs() < 0.4, "{point} {d1} {d2} {ratio}");
@@ -92,8 +93,9 @@ fn a_small_wheel_tends_to_a_point() {
 
 #[test]
 fn a_rubbing_wheel_slips_by_the_heavy_capstan() {
-    // A dead load lowered over a wheel of 180°, stiff: T = C e^{μφ} + wR[(1−μ²)cos φ + 2μ sin φ]/(1+μ²) where the
-    // cable moves with growing φ (from the left horizontal over the top: φ from −90° to 90°).
+    // A dead load lowered over a wheel of 180°, stiff: T = C e^{μφ} + wR[(1−μ²)cos φ + 2μ sin
+    // φ]/(1+μ²) where the cable moves with growing φ (from the left horizontal over the top: φ from
+    // −90° to 90°).
     let (mu, r) = (0.3, 0.4);
     let mut s = scene(
         8.0,
@@ -220,8 +222,8 @@ fn every_catalogue_scene_is_answered_or_refused() {
 proptest::proptest! {
     #![proptest_config(proptest::prelude::ProptestConfig { cases: 400, failure_persistence: None, ..Default::default() })]
 
-    /// A dead load over a rubbing wheel rests at every stiffness: the tensions obey the heavy capstan, and friction that
-    /// is called upon in full is called upon against the slip.
+    /// A dead load over a rubbing wheel rests at every stiffness: the tensions obey the heavy
+    /// capstan, and friction that is called upon in full is called upon against the slip.
     #[test]
     fn a_dead_load_over_a_rubbing_wheel_always_rests(
         mu in 0.02..0.8f64,
@@ -246,8 +248,8 @@ proptest::proptest! {
         let layout = Layout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
         let e = m.balance.as_ref().expect("a balance");
         let slide = slide::Slide { problem: m.problem(), layout: &layout, arcs: &e.arcs };
-        let way = (e.arcs[1].arrive, e.arcs[1].turn);
-        let by = |mu: f64| wheel::pass(&slide.chain(0.0, 1.0), &layout.anchors[1], tb, way, mu).tension;
+        let (from, turn) = (e.arcs[1].arrive, e.arcs[1].turn);
+        let by = |mu: f64| wheel::pass(&slide.chain(0.0, 1.0), &layout.anchors[1], tb, from, turn, mu).tension;
         proptest::prop_assert!(ta > by(-mu) * (1.0 - 1e-6) && ta < by(mu) * (1.0 + 1e-6), "{ta} {} {}", by(-mu), by(mu));
         if let Mode::Slip(m) = e.modes[1] {
             proptest::prop_assert!((ta - by(m)).abs() < 1e-6 * ta, "{ta} {}", by(m));

@@ -1,24 +1,26 @@
-//! The cable lies on a wheel: this module says how tension changes round it, and how much material lies on it.
+//! The cable lies on a wheel: this module says how tension changes round it, and how much material
+//! lies on it.
 //!
-//! The centre line runs on a circle of radius R, ψ the angle turned since it arrived, t its direction, n the
-//! outward normal, b the load per unstretched metre, λ = (1 + αΔT)(1 + T/EA) the stretch, ds/dψ = R/λ. Balance
-//! along n gives the normal force per unstretched metre N = T dψ/ds − b·n, balance along t
+//! The centre line runs on a circle of radius R, ψ the angle turned since it arrived, t its
+//! direction, n the outward normal, b the load per unstretched metre, λ = (1 + αΔT)(1 + T/EA) the
+//! stretch, ds/dψ = R/λ. Balance along n gives the normal force per unstretched metre N = T dψ/ds −
+//! b·n, balance along t
 //!
 //! ```text
 //! dT/dψ = −(R/λ) b·t + m (T − (R/λ) b·n),      −μ ≤ m ≤ μ
 //! ```
 //!
-//! with m the friction called upon: 0 on a smooth wheel, ±μ where all of it slides. While it holds, the state
-//! in between is taken as one m along the whole arc. That is exact at both ends of the range and for points,
-//! and in between misplaces material by no more than (ΔT/EA)·(arc length), since nobody knows how the friction
-//! is shared along an arc that has not slid yet.
+//! with m the friction called upon: 0 on a smooth wheel, ±μ where all of it slides. While it holds,
+//! the state in between is taken as one m along the whole arc. That is exact at both ends of the
+//! range and for points, and in between misplaces material by no more than (ΔT/EA)·(arc length),
+//! since nobody knows how the friction is shared along an arc that has not slid yet.
 
 use super::layout::{Anchor, direction};
 use crate::catenary::Chain;
 use crate::math::perp;
 
-/// Steps of the classical Runge–Kutta method (order 4) round one wheel: at 32 the error is below 1e-8 of the
-/// tension for a full turn at μ = 0.5.
+/// Steps of the classical Runge–Kutta method (order 4) round one wheel: at 32 the error is below
+/// 1e-8 of the tension for a full turn at μ = 0.5.
 const STEPS: usize = 32;
 
 /// What the wheel makes of a tension.
@@ -30,8 +32,9 @@ pub(super) struct Passed {
     pub material: f64,
 }
 
-/// Follows the tension round a wheel from `tension` where the cable arrives at angle `from`, over `turn` rad.
-pub(super) fn pass(chain: &Chain<'_>, a: &Anchor, tension: f64, (from, turn): (f64, f64), m: f64) -> Passed {
+/// Follows the tension round a wheel from `tension` where the cable arrives at angle `from`, over
+/// `turn` rad.
+pub(super) fn pass(chain: &Chain<'_>, a: &Anchor, tension: f64, from: f64, turn: f64, m: f64) -> Passed {
     if a.radius == 0.0 {
         return Passed { tension: tension * (m * turn).exp(), material: 0.0 };
     }

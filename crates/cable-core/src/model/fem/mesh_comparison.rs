@@ -1,15 +1,18 @@
 //! Two meshes are compared to estimate how wrong the figures of a cable in contact are.
 //!
-//! Where `spans` laid the cable its answer has no error of a mesh, and the bars only came to rest from it: the two differ by what mesh,
-//! barrier and grips do, and that is what is said of each figure. On the way without inertia `spans` goes on beside the bars: it costs a small
-//! part of what they do, and remembers friction as they do.
+//! If `spans` has a solution, that has no mesh error, and the bars came to rest from it: the two
+//! differ by the effect of mesh, barrier and stick-slip states. That difference is the error
+//! estimate of each figure. In quasi-static steps `spans` continues beside the bars: it costs a
+//! small part of what they cost, and has the same friction memory.
 //!
-//! Where it has no answer (slack, stiff, in plan, in touch with itself) the same cable on bars twice and four times as long is asked. Straight bars between
-//! contacts are of the second order, where the cable touches down or meets a corner of the first: what is left of an error on the finest of three
-//! meshes is a third of what the finer two differ by, or all of it. All of it is said, and no less than half of what the coarser two differ by:
-//! one difference may pass through nothing where the error does not, as a node comes to lie at a corner. (L. F. Richardson and
-//! J. A. Gaunt, *The deferred approach to the limit*, Phil. Trans. R. Soc. A 226, 1927, without the extrapolation: its order is not
-//! known here.)
+//! If it has no solution (slack, stiff, in plan view, in self-contact), the same cable is solved on
+//! bars twice and four times as long. Straight bars between contacts are of the second order,
+//! where the cable touches down or meets a corner of the first: what is left of an error on the
+//! finest of three meshes is a third of what the finer two differ by, or all of it. All of it is
+//! said, and no less than half of what the coarser two differ by: one difference may pass through
+//! nothing where the error does not, as a node comes to lie at a corner. (L. F. Richardson and J.
+//! A. Gaunt, *The deferred approach to the limit*, Phil. Trans. R. Soc. A 226, 1927, without the
+//! extrapolation: its order is not known here.)
 
 use std::sync::Arc;
 
@@ -24,10 +27,12 @@ use crate::solution::ErrorEstimates;
 
 /// Fewer bars than this have no half of use.
 const LEAST_BARS: usize = 8;
-/// Most bars to which the mesh is refined by itself. More: 1e-3 is met by more scenes, each twice as dear as with half as many.
+/// Most bars to which the mesh is refined by itself. More: 1e-3 is met by more scenes, each twice
+/// as dear as with half as many.
 const MOST_BARS: usize = 800;
-/// Part of what the coarser two of three meshes differ by that the error of the finest is at least: that of the first order.
-const COARSER: f64 = 0.5;
+/// Part of what the coarser two of three meshes differ by that the error of the finest is at least:
+/// that of the first order.
+const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
 
 /// Who goes on beside the cable, and what is said.
 #[derive(Clone, Debug, Default)]
@@ -38,14 +43,25 @@ pub(in crate::model::fem) struct TwoMeshes {
     pub errors: ErrorEstimates,
 }
 
+/// Whether the comparison may change the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Refinement {
+    /// The scene leaves the number of bars open.
+    Allowed,
+    /// The scene or the settings give it.
+    Forbidden,
+}
+
 impl TwoMeshes {
-    /// Looks at a cable that came to rest, beside the answer without a mesh where there is one; makes its mesh finer where it may be
-    /// (`refines`) and that comes nearer.
+    /// Looks at a cable that came to rest, beside the answer without a mesh where there is one;
+    /// makes its mesh finer where that is allowed and comes nearer.
     pub fn compare(
         &mut self,
         problem: &Arc<Problem>,
-        (settings, refines): (Settings, bool),
-        (fine, exact): (&mut Dynamics, Option<InitialEquilibrium>),
+        settings: Settings,
+        refinement: Refinement,
+        fine: &mut Dynamics,
+        exact: Option<InitialEquilibrium>,
         dragged: &[Option<Vec2>],
     ) {
         *self = Self::default();
@@ -60,15 +76,18 @@ impl TwoMeshes {
             };
             return;
         }
-        if !fine.slides {
+        if !fine.meshing.slides {
             return;
         }
         if let Some(exact) = exact {
             let mut answer = fine.solution();
             self.errors = beside(&answer, &exact.answer, problem);
-            while refines && exceeds(&self.errors, &answer, settings) && 2 * fine.even_bars <= MOST_BARS {
-                let bars = 2 * fine.even_bars;
-                let Some(finer) = laid_over(problem, settings, (fine, bars), (&exact.answer, dragged)) else { break };
+            while refinement == Refinement::Allowed
+                && exceeds(&self.errors, &answer, settings)
+                && 2 * fine.meshing.even_bars <= MOST_BARS
+            {
+                let bars = 2 * fine.meshing.even_bars;
+                let Some(finer) = laid_over(problem, settings, fine, bars, &exact.answer, dragged) else { break };
                 let next = finer.solution();
                 let errors = beside(&next, &exact.answer, problem);
                 if !(errors.relative(&next) < self.errors.relative(&answer)) {
@@ -88,7 +107,8 @@ impl TwoMeshes {
     /// Goes on beside the cable without inertia; with inertia nothing is said.
     pub fn follow(
         &mut self,
-        (problem, settings): (&Arc<Problem>, Settings),
+        problem: &Arc<Problem>,
+        settings: Settings,
         fine: &Dynamics,
         dt_s: f64,
         inertia: Inertia,
@@ -107,7 +127,7 @@ impl TwoMeshes {
                     return;
                 }
                 // The cable has no answer without a mesh from here on.
-                laid_over(problem, settings, (fine, fine.even_bars / 2), (&answer, dragged)).map(Box::new)
+                laid_over(problem, settings, fine, fine.meshing.even_bars / 2, &answer, dragged).map(Box::new)
             }
             (None, Some(mut coarse)) => coarse.advance(dt_s, inertia, dragged).is_ok().then_some(coarse),
             (None, None) => None,
@@ -130,23 +150,23 @@ fn go_on(spans: &mut SpansModel, dt_s: f64, dragged: &[Option<Vec2>]) -> Option<
     Some(spans.solution())
 }
 
-/// Errors of a cable by the same one on bars twice and four times as long, and the one on bars twice as long; None where that finds no rest.
+/// Errors of a cable by the same one on bars twice and four times as long, and the one on bars
+/// twice as long; None where that finds no rest.
 fn coarser(
     problem: &Arc<Problem>,
     settings: Settings,
     fine: &Dynamics,
     dragged: &[Option<Vec2>],
 ) -> Option<(ErrorEstimates, Dynamics)> {
-    if fine.even_bars < LEAST_BARS {
+    if fine.meshing.even_bars < LEAST_BARS {
         return None;
     }
     let answer = fine.solution();
-    let laid = (&answer, dragged);
-    let coarse = laid_over(problem, settings, (fine, fine.even_bars / 2), laid)?;
+    let coarse = laid_over(problem, settings, fine, fine.meshing.even_bars / 2, &answer, dragged)?;
     let other = coarse.solution();
     let errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
-    let coarsest = laid_over(problem, settings, (fine, fine.even_bars / 4), laid);
-    let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(COARSER));
+    let coarsest = laid_over(problem, settings, fine, fine.meshing.even_bars / 4, &answer, dragged);
+    let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(FIRST_ORDER_ERROR_FRACTION));
     Some((change.map_or(errors, |change| errors.or_larger(&change)), coarse))
 }
 
@@ -163,11 +183,13 @@ fn exceeds(errors: &ErrorEstimates, answer: &CableSolution, settings: Settings) 
 fn laid_over(
     problem: &Arc<Problem>,
     settings: Settings,
-    (like, bars): (&Dynamics, usize),
-    (answer, dragged): (&CableSolution, &[Option<Vec2>]),
+    like: &Dynamics,
+    bars: usize,
+    answer: &CableSolution,
+    dragged: &[Option<Vec2>],
 ) -> Option<Dynamics> {
     let mut other = Dynamics::new(problem.clone(), Settings { segments: Some(bars), ..settings }).ok()?;
-    other.slides = like.slides;
+    other.meshing.slides = like.meshing.slides;
     other.warm_start(answer, like.time(), dragged).ok()?;
     if !other.rested {
         other.settle(dragged).ok()?;

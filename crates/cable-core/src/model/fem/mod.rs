@@ -1,4 +1,5 @@
-//! `fem` is the finite element model of a cable: contact, friction, bending, equilibrium and motion.
+//! `fem` is the finite element model of a cable: contact, friction, bending, equilibrium and
+//! motion.
 //!
 //! | room | what it holds |
 //! |---|---|
@@ -36,7 +37,8 @@ use std::sync::Arc;
 use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
-use crate::model::fem::mesh_comparison::TwoMeshes;
+use crate::model::fem::mesh_comparison::{Refinement, TwoMeshes};
+use crate::model::fem::newton::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
 use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
@@ -47,35 +49,41 @@ use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
 use elastica::Elastica;
 
-/// Part of the greatest tension by which the force on a support may change when a first lay is taken over. Less: coarse meshes lay themselves, in folds; more:
-/// bars too long for the ground, held by friction at both ends, keep a pull that nothing else asks for (25 bars on a robot's ground: 220 %).
-const JAMMED: f64 = 0.1;
+/// The solution of `spans` is accepted as the initial equilibrium if no support force changes by
+/// more than this part of the greatest tension. Smaller: coarse meshes reject it and relax into
+/// folds. Larger: bars that are too long for the ground, held by friction at both ends, keep a
+/// tension that nothing else requires (25 bars on a robot's ground: 220 %).
+const SUPPORT_FORCE_CHANGE_LIMIT: f64 = 0.1;
 
-/// The same of a stiff cable, which is laid as a flexible one: its bending takes part in what supports feel.
-const JAMMED_STIFF: f64 = 0.5;
+/// The same limit for a stiff cable, whose initial shape is that of a flexible one: its bending
+/// contributes to the support forces.
+const STIFF_SUPPORT_FORCE_CHANGE_LIMIT: f64 = 0.5;
 
-/// Segments from which a first rest begins at that of a coarser mesh. Fewer: meshes that need no help pay for two; more: the way down
-/// of a thousand bars takes minutes.
-const FINE: usize = 500;
-/// How much coarser that mesh is. Less: more meshes, each nearer to the next; more: it lies otherwise than the fine one will.
-const COARSER: usize = 8;
+/// Number of segments from which on the search for the initial equilibrium begins at that of a
+/// coarser mesh. Fewer: meshes that need no help are solved twice; more: a relaxation of a thousand
+/// bars takes minutes.
+const TWO_MESH_START_SEGMENTS: usize = 500;
+/// Ratio of the bar lengths of the two meshes. Smaller: more meshes, each nearer to the next;
+/// larger: the coarse solution differs from that of the fine mesh.
+const FIRST_MESH_COARSENING: usize = 8;
 
-/// What `spans` says of where the cable is laid.
+/// The outcome of starting from the solution of `spans`.
 enum Laid {
-    /// It rests there, and so does the mesh: what there is to say of it.
+    /// The mesh rests in it too; with the warnings about it.
     TakenOver(Vec<Warning>),
-    /// It rests there, but the mesh does not: it lays itself.
+    /// The mesh does not rest in it and relaxes from its own initial guess.
     Alone,
     /// Nothing.
     Unknown,
 }
 
-/// Part of the tolerance that the error of a stiff cable's rest must stay below.
-const SAFETY: f64 = 0.5;
+/// The error estimate of a stiff cable's equilibrium must stay below this part of the tolerance.
+const STIFF_ESTIMATE_FRACTION: f64 = 0.5;
 
-/// Part of its length by which a stiff cable may lie elsewhere than where its mesh has it at rest. Less: coarse meshes are left as they are;
-/// more: another resting place is taken for the same.
-const STRAY: f64 = 0.05;
+/// A stiff cable's equilibrium may differ from that of its mesh by this part of the cable's length.
+/// Smaller: the equilibrium of coarse meshes is not replaced; larger: another equilibrium is taken
+/// for the same.
+const STIFF_SHIFT_LIMIT: f64 = 0.05;
 
 /// Which part holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,7 +110,8 @@ pub struct FemModel {
     led: Option<RigidPose>,
     /// The rest of a stiff cable in contact, until something moves.
     bent: Option<CableSolution>,
-    /// What the mesh's rest of a stiff cable may be off by, in parts of the greatest tension, until something moves.
+    /// What the mesh's rest of a stiff cable may be off by, in parts of the greatest tension, until
+    /// something moves.
     unbent: Option<f64>,
 }
 
@@ -137,13 +146,14 @@ impl FemModel {
         self
     }
 
-    /// Lays the cable with the least sliding, if there is an answer to that. On its own way down slack comes to lie in folds, which
-    /// friction then holds. Returns what there is to say of it, and the answer without a mesh.
+    /// Lays the cable with the least sliding, if there is an answer to that. On its own way down
+    /// slack comes to lie in folds, which friction then holds. Returns what there is to say of it,
+    /// and the answer without a mesh.
     ///
     /// # Errors
     /// That it slides from where it is laid.
     fn lay(&mut self) -> Result<(Laid, Option<InitialEquilibrium>), SolveError> {
-        let laid = initial_equilibrium(&self.problem, self.settings, (&self.dragged, self.led))?;
+        let laid = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.led)?;
         let Some(lay) = laid else { return Ok((Laid::Unknown, None)) };
         // A stiff cable is laid as a flexible one: that is where it begins, not how it lies.
         let flexible = self.problem.bending_stiffness == 0.0;
@@ -153,7 +163,11 @@ impl FemModel {
         let found = self.dynamics.solution();
         let pairs = lay.answer.supports.iter().zip(&found.supports);
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
-        let jammed = if self.problem.bending_stiffness > 0.0 { JAMMED_STIFF } else { JAMMED };
+        let jammed = if self.problem.bending_stiffness > 0.0 {
+            STIFF_SUPPORT_FORCE_CHANGE_LIMIT
+        } else {
+            SUPPORT_FORCE_CHANGE_LIMIT
+        };
         if taken && off.fold(0.0, larger) <= jammed * greatest {
             return Ok((Laid::TakenOver(lay.warnings.clone()), flexible.then_some(lay)));
         }
@@ -161,8 +175,9 @@ impl FemModel {
         Ok((Laid::Alone, flexible.then_some(lay)))
     }
 
-    /// The resting place where nothing can be touched. From the flexible cable up in EI a stiff one may come to where its shape snaps
-    /// over, clamps against which it sags turn it upwards: a chain of bars that is let go follows it there, as it does in contact.
+    /// The resting place where nothing can be touched. From the flexible cable up in EI a stiff one
+    /// may come to where its shape snaps over, clamps against which it sags turn it upwards: a
+    /// chain of bars that is let go follows it there, as it does in contact.
     fn rest_in_the_air(&mut self) -> Result<StepReport, SolveError> {
         self.ask(Part::Statics)?;
         self.bent = None;
@@ -232,7 +247,8 @@ impl FemModel {
         Ok(report)
     }
 
-    /// What the mesh leaves out of the bend of a stiff cable; says so where that is more than was asked for.
+    /// What the mesh leaves out of the bend of a stiff cable; says so where that is more than was
+    /// asked for.
     fn bend_warning(&mut self) -> Option<Warning> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
@@ -245,19 +261,19 @@ impl FemModel {
         }
         let message = format!(
             "{} bars show the bend of a stiff cable where it is led round something to {off:.1e} of the greatest tension only; {limit:.1e} was asked for: use more segments",
-            self.dynamics.even_bars
+            self.dynamics.meshing.even_bars
         );
         Some(Warning::new(WarningKind::Accuracy, &self.problem.cable.name, s, [off, limit], message))
     }
 
-    /// Begins a first rest of a fine mesh at that of a coarse one (nested iteration): the way down takes as many steps as waves of slack
-    /// run along the bars, which a coarse mesh does cheaply.
+    /// Begins a first rest of a fine mesh at that of a coarse one (nested iteration): the way down
+    /// takes as many steps as waves of slack run along the bars, which a coarse mesh does cheaply.
     fn begin_coarse(&mut self) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
-        if fine <= FINE {
+        if fine <= TWO_MESH_START_SEGMENTS {
             return;
         }
-        let settings = Settings { segments: Some(fine / COARSER), ..self.settings };
+        let settings = Settings { segments: Some(fine / FIRST_MESH_COARSENING), ..self.settings };
         let Ok(coarse) = Self::new(self.problem.clone(), settings) else { return };
         let mut coarse = Self { dragged: self.dragged.clone(), ..coarse.laid_alone() };
         if let Some(to) = self.led {
@@ -273,15 +289,16 @@ impl FemModel {
         }
     }
 
-    /// The resting place of a stiff cable in contact as an elastica, from that of a flexible one; None where this finds none.
+    /// The resting place of a stiff cable in contact as an elastica, from that of a flexible one;
+    /// None where this finds none.
     fn bend(&mut self) -> Option<StepReport> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let lay = initial_equilibrium(&self.problem, self.settings, (&self.dragged, self.led)).ok()?;
-        let at = (self.dynamics.time(), self.dragged.as_slice());
-        let (answer, cost) =
-            elastica::rest(&self.problem, at, lay.as_ref().map(|l| &l.answer), SAFETY * self.settings.tolerance)?;
+        let lay = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.led).ok()?;
+        let (time_s, tolerance) = (self.dynamics.time(), STIFF_ESTIMATE_FRACTION * self.settings.tolerance);
+        let flexible = lay.as_ref().map(|l| &l.answer);
+        let (answer, cost) = elastica::rest(&self.problem, time_s, &self.dragged, flexible, tolerance)?;
         self.bent = Some(answer);
         let mut warnings = lay.map_or_else(Vec::new, |l| l.warnings);
         warnings.extend(self.bent_warning());
@@ -295,12 +312,12 @@ impl FemModel {
         }
         let answer = self.dynamics.solution();
         let bar = self.dynamics.even();
-        let found = Elastica::from_mesh(&self.problem, self.dynamics.time(), &self.dragged, (&answer, bar))?;
+        let found = Elastica::from_mesh(&self.problem, self.dynamics.time(), &self.dragged, &answer, bar)?;
         let cost = self.take_bent(found)?;
         // What the mesh found is followed, not left: places that differ by more are another rest.
         let near = |n: &Node| {
             let at = self.bent.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
-            at.is_some_and(|at| (at - n.at()).norm() <= STRAY * self.problem.length)
+            at.is_some_and(|at| (at - n.at()).norm() <= STIFF_SHIFT_LIMIT * self.problem.length)
         };
         if !answer.nodes.iter().all(near) {
             self.bent = None;
@@ -322,32 +339,35 @@ impl FemModel {
         if !found.stiffen(&self.problem) {
             return None;
         }
-        let (estimate, errors) = found.refine(&self.problem, SAFETY * self.settings.tolerance)?;
+        let (estimate, errors) = found.refine(&self.problem, STIFF_ESTIMATE_FRACTION * self.settings.tolerance)?;
         let (iterations, residual_n) = found.cost();
         self.bent = Some(CableSolution { error_estimate: Some(estimate), errors, ..found.solution(&self.problem) });
         Some(Cost { iterations, residual_n, ..Cost::default() })
     }
 
-    /// The same without sliding nodes at corners and posts: every node stays with its material. For models that take
-    /// over its nodes.
+    /// The same without sliding nodes at corners and posts: every node stays with its material. For
+    /// models that take over its nodes.
     #[must_use]
     pub fn with_material_nodes(mut self) -> Self {
-        self.dynamics.slides = false;
+        self.dynamics.meshing.slides = false;
         self
     }
 
-    /// A copy to go back to. It leaves the obstacles, among which the outline of the robot is moved, to this one.
+    /// A copy to go back to. It leaves the obstacles, among which the outline of the robot is
+    /// moved, to this one.
     pub(super) fn kept(&self) -> Self {
         let mut copy = self.clone();
         copy.dynamics.problem = self.problem.clone();
         copy
     }
 
-    /// Looks at the cable in contact beside an answer without a mesh, or on another one, and makes its own finer where the scene
-    /// leaves that open.
+    /// Looks at the cable in contact beside an answer without a mesh, or on another one, and makes
+    /// its own finer where the scene leaves that open.
     fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
-        self.meshes.compare(&self.problem, (self.settings, !given), (&mut self.dynamics, exact), &self.dragged);
+        let refinement = if given { Refinement::Forbidden } else { Refinement::Allowed };
+        let (meshes, dynamics) = (&mut self.meshes, &mut self.dynamics);
+        meshes.compare(&self.problem, self.settings, refinement, dynamics, exact, &self.dragged);
     }
 
     /// What there is to say of a mesh that is coarser than the tolerance asks for.
@@ -356,7 +376,7 @@ impl FemModel {
         (estimate > asked).then(|| {
             let message = format!(
                 "{} elements give the forces to about {estimate:.1e} of the greatest tension; {asked:.1e} was asked for: use more segments",
-                self.dynamics.even_bars
+                self.dynamics.meshing.even_bars
             );
             Warning::new(WarningKind::Accuracy, &self.problem.cable.name, 0.0, [estimate, asked], message)
         })
@@ -401,9 +421,9 @@ impl Mechanics for FemModel {
         if let Some(report) = self.bend() {
             return Ok(report);
         }
-        self.dynamics.work_left = equilibrium::quasi_static::REST_WORK;
+        self.dynamics.solver.work_left = WorkBudget::Left(equilibrium::quasi_static::REST_WORK);
         let found = self.rest_in_touch();
-        self.dynamics.work_left = usize::MAX;
+        self.dynamics.solver.work_left = WorkBudget::Unlimited;
         found
     }
 
@@ -425,8 +445,8 @@ impl Mechanics for FemModel {
             if let Some(answer) = self.bent.take() {
                 self.dynamics.warm_start(&answer, self.dynamics.time(), &self.dragged)?;
             }
-            let mut report = self.dynamics.advance_gauged((dt_s, inertia), &self.dragged, gauge)?;
-            self.meshes.follow((&self.problem, self.settings), &self.dynamics, dt_s, inertia, &self.dragged);
+            let mut report = self.dynamics.advance_gauged(dt_s, inertia, &self.dragged, gauge)?;
+            self.meshes.follow(&self.problem, self.settings, &self.dynamics, dt_s, inertia, &self.dragged);
             let led = !touches_nothing(&self.problem) || self.dynamics.slides_anywhere();
             match if led { self.bend_warning() } else { None } {
                 Some(warning) => report.warnings.push(warning),
@@ -452,7 +472,7 @@ impl Mechanics for FemModel {
         self.bent = None;
         self.unbent = None;
         // Statics has no velocities: what moves is taken over by the part that can move.
-        if self.present == Part::Statics && state.velocity_m_per_s.iter().any(|v| v.norm() > 0.0) {
+        if self.present == Part::Statics && state.moves() {
             self.dynamics.set_state(state)?;
             self.present = Part::Dynamics;
             return Ok(());
@@ -476,7 +496,9 @@ impl Mechanics for FemModel {
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        if let (Some(d), Some(pulled)) = (self.dragged.get_mut(support), self.dynamics.pulled.get_mut(support)) {
+        if let (Some(d), Some(pulled)) =
+            (self.dragged.get_mut(support), self.dynamics.hand_drive.pulled.get_mut(support))
+        {
             (*d, *pulled) = (Some(target_m), false);
         }
     }
@@ -484,7 +506,7 @@ impl Mechanics for FemModel {
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {
         self.drag_support(support, hand_m);
         let kind = self.problem.supports.get(support).map(|s| s.kind);
-        if let Some(pulled) = self.dynamics.pulled.get_mut(support) {
+        if let Some(pulled) = self.dynamics.hand_drive.pulled.get_mut(support) {
             *pulled = matches!(kind, Some(SupportKind::Fixed | SupportKind::Clamped));
         }
     }
@@ -522,7 +544,7 @@ impl Mechanics for FemModel {
     }
 
     fn inner_step_s(&self) -> f64 {
-        self.dynamics.pace.step
+        self.dynamics.pacing.pace.step
     }
 
     fn copy_to_keep(&self) -> Box<dyn Mechanics> {
@@ -531,7 +553,7 @@ impl Mechanics for FemModel {
 
     fn lend(&mut self) -> Option<OwnedResources> {
         Some(OwnedResources {
-            memory: self.dynamics.memory.0.take().map(|memory| memory as Box<dyn std::any::Any + Send>),
+            memory: self.dynamics.solver.memory.0.take().map(|memory| memory as Box<dyn std::any::Any + Send>),
             problem: self.dynamics.problem.clone(),
         })
     }
@@ -541,7 +563,7 @@ impl Mechanics for FemModel {
             memory: None,
             problem: obstacle::moving_outline::with_outline(self.problem.clone()),
         });
-        self.dynamics.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
+        self.dynamics.solver.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
         self.dynamics.problem = own.problem;
         self.dynamics.place_outline();
     }

@@ -5,7 +5,7 @@ use crate::energy::bending::turn;
 use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::arc_nodes::SMALL;
+use crate::model::fem::mesh::arc_nodes::ONE_MARK_BAR_FRACTION;
 use crate::model::fem::mesh::sliding_node::{Balanced, Load, Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::angle_between;
 use crate::model::fem::system::assembly::Mesh;
@@ -19,13 +19,15 @@ use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, 
 /// Nodes on a round: one at least every so many radians.
 const ARC_STEP: f64 = 0.13;
 
-/// Rounds in which it is found where a sagging cable leaves a round: each is nearer by the weight on the round over the tension.
+/// Rounds in which it is found where a sagging cable leaves a round: each is nearer by the weight
+/// on the round over the tension.
 const SAG_ROUNDS: usize = 4;
 
-/// Part of the diameter by which the way may be drawn longer than its material where a bar sags and leaves a round sooner or later than straight,
-/// which makes it rδ³/6 longer at an angle δ. More: of slack bars, whose sag is not known, more cable is drawn than there is; less: the force leads
+/// Part of the diameter by which the way may be drawn longer than its material where a bar sags and
+/// leaves a round sooner or later than straight, which makes it rδ³/6 longer at an angle δ. More:
+/// of slack bars, whose sag is not known, more cable is drawn than there is; less: the force leads
 /// away from the round that is drawn.
-const DRAWN_LONGER: f64 = 0.005;
+const PATH_EXCESS_DIAMETERS: f64 = 0.005;
 
 /// The answer at positions `x` and velocities `v`.
 #[must_use]
@@ -35,7 +37,7 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
     let (ends, lain) = end_forces(d, x, &tension);
     CableSolution {
         name: problem.cable.name.clone(),
-        nodes: nodes(d, (x, v), &tension, &ends),
+        nodes: nodes(d, x, v, &tension, &ends),
         supports: supports(d, x, &ends, &tension),
         contacts: contacts(d, x, &tension, &lain),
         assumptions: Assumptions {
@@ -51,11 +53,11 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
 impl Dynamics {
     /// Reads the tension at each node, as [`nodes`] has it.
     pub(in crate::model::fem) fn gauge_tension(&mut self) {
-        let mut gauged = std::mem::take(&mut self.gauged);
+        let mut gauged = std::mem::take(&mut self.answers.gauged);
         let x = &self.motion.x;
         gauged.arc_length.clone_from(&self.mesh.arc_length);
         gauged.bars.clear();
-        if self.never_slides {
+        if self.meshing.never_slides {
             let mesh = &self.mesh;
             gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| {
                 let t = mesh.bar(e).tension((pair[1] - pair[0]).norm());
@@ -75,7 +77,7 @@ impl Dynamics {
                 *t = larger(load.tension[0], load.tension[1]);
             }
         }
-        self.gauged = gauged;
+        self.answers.gauged = gauged;
     }
 
     /// Whether the cable slides through any node.
@@ -83,10 +85,11 @@ impl Dynamics {
         self.mesh.sliding.iter().any(Option::is_some)
     }
 
-    /// What the mesh leaves out of a stiff cable's bend at what it is led round, in parts of the greatest tension, and where that is most
-    /// (m of arc length). A sliding node carries no moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
-    /// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the normal force of a contact has any
-    /// direction in between: along the cable that is ½ψ of it.
+    /// What the mesh leaves out of a stiff cable's bend at what it is led round, in parts of the
+    /// greatest tension, and where that is most (m of arc length). A sliding node carries no
+    /// moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
+    /// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the
+    /// normal force of a contact has any direction in between: along the cable that is ½ψ of it.
     pub(in crate::model::fem) fn bending_error(&self) -> (f64, f64) {
         let (mesh, x) = (&self.mesh, &self.motion.x);
         let tension = bar_tensions(self, x);
@@ -122,7 +125,8 @@ impl Dynamics {
     }
 }
 
-/// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than zero.
+/// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than
+/// zero.
 fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
     (0..d.mesh.rest_length.len()).map(|e| bar_tension(d, x, e)).collect()
 }
@@ -139,8 +143,9 @@ fn bar_tension(d: &Dynamics, x: &[Vec2], e: usize) -> f64 {
     if t < 0.0 && flexible { 0.0 } else { t }
 }
 
-/// Arc length from a node to the middle of the straight part of the bar before it (`side` 0) or after it (1), m.
-fn half(d: &Dynamics, (node, side): (usize, usize), x: &[Vec2]) -> f64 {
+/// Arc length from a node to the middle of the straight part of the bar before it (`side` 0) or
+/// after it (1), m.
+fn half(d: &Dynamics, node: usize, side: usize, x: &[Vec2]) -> f64 {
     let e = node + side - 1;
     let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
     Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.task.body).carried(material)[1 - side]
@@ -159,16 +164,18 @@ struct Lain {
     force: Vec2,
 }
 
-/// Tension force (N) at the start of the first bar and at the end of the last: what hangs there on a free end, else that of
-/// the middle plus what acts on the half between. On the ground what acts on the half is guessed from the next node.
-/// With it what the ground does to the halves that lie along an edge.
+/// Tension force (N) at the start of the first bar and at the end of the last: what hangs there on
+/// a free end, else that of the middle plus what acts on the half between. On the ground what acts
+/// on the half is guessed from the next node. With it what the ground does to the halves that lie
+/// along an edge.
 fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<Lain>; 2]) {
     let n = x.len();
     let mut lain = [None, None];
     let mut end = |node: usize, next: usize, e: usize, sign: f64| {
         let ground = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach);
         if let Some(hung) = free_end(d, node) {
-            // What presses on the ground there is the ground's, and what friction holds of it: at the tip itself no more than its cone.
+            // What presses on the ground there is the ground's, and what friction holds of it: at
+            // the tip itself no more than its cone.
             let taken = ground.map_or(Vec2::zeros(), |g| {
                 let pressed = hung.dot(&g.normal).min(0.0);
                 let along = perp(g.normal);
@@ -180,19 +187,21 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
             return (taken - hung) * sign;
         }
         let middle = d.mesh.path(e, x).direction * tension[e];
-        let half = half(d, (node, usize::from(sign > 0.0)), x);
+        let half = half(d, node, usize::from(sign > 0.0), x);
         let body = d.problem.body_force(d.time()) * half;
         let Some(ground) = ground else { return middle + body * sign };
         let grounded = ground_force(d, next, x) * (half / d.mesh.share(next));
         let force = middle + (body + grounded) * sign;
-        // What lies on an edge up to its end presses on the edge alone; the barrier's width would tilt the last bar.
+        // What lies on an edge up to its end presses on the edge alone; the barrier's width would
+        // tilt the last bar.
         let beyond = d.problem.world.signed_gap(x[next], 3.0 * d.contacts.barrier.reach);
         let along = ground.feature % 2 == 0 && beyond.is_some_and(|g| g.feature == ground.feature);
         // No more than what presses: beyond that the support is pulled off the edge.
         let pressed = larger(grounded.dot(&ground.normal), 0.0);
         let tilt = force.dot(&ground.normal) * sign;
         let lift = if along { if tilt < pressed { tilt } else { pressed } } else { 0.0 };
-        // The next node presses more by what the tilt lifts here, and rubs more: with less normal force this half rubs less.
+        // The next node presses more by what the tilt lifts here, and rubs more: with less normal
+        // force this half rubs less.
         let kept = if pressed > 0.0 { (1.0 - lift / pressed).clamp(0.0, 1.0) } else { 1.0 };
         let rubbed = (grounded - ground.normal * pressed) * (1.0 - kept);
         let lift = ground.normal * (lift * sign);
@@ -214,11 +223,12 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
     ([end(0, 1, 0, 1.0), end(n - 1, n - 2, n - 2, -1.0)], lain)
 }
 
-/// What hangs on a free end, N; None for other nodes, and where a lump moves, whose inertia pulls as well.
+/// What hangs on a free end, N; None for other nodes, and where a lump moves, whose inertia pulls
+/// as well.
 fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
-    let k = d.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
+    let k = d.meshing.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
     if d.motion.hands[k].is_some() {
-        return Some(d.problem.hung_on(k, d.time()) - d.reaction[node]);
+        return Some(d.problem.hung_on(k, d.time()) - d.answers.reaction[node]);
     }
     let rests = d.problem.supports.get(k)?.mass == 0.0 || !d.inertia_counts();
     rests.then(|| d.problem.hung_on(k, d.time()))
@@ -236,9 +246,10 @@ fn ground_force(d: &Dynamics, node: usize, x: &[Vec2]) -> Vec2 {
     sum
 }
 
-/// What is left of all forces on a cable that no support holds, N: weight, loads, and what obstacles and floor do to it. Between its
-/// bars nothing is left, whatever their tension: this has none of the rounding of their forces, and tells what slides from what
-/// rests where each node alone is let off with a little.
+/// What is left of all forces on a cable that no support holds, N: weight, loads, and what
+/// obstacles and floor do to it. Between its bars nothing is left, whatever their tension: this has
+/// none of the rounding of their forces, and tells what slides from what rests where each node
+/// alone is let off with a little.
 pub(in crate::model::fem) fn unbalanced(d: &Dynamics, x: &[Vec2], time_s: f64) -> Vec2 {
     let problem = &d.problem;
     let hung: Vec2 = (0..problem.supports.len()).map(|k| problem.hung_on(k, time_s)).sum();
@@ -275,7 +286,7 @@ pub(in crate::model::fem) fn rub_force(contacts: &ContactSet, rub: &FrictionCont
     -rub.tangent * friction::at(rub.sliding(x), rub.limit, contacts.slip).1
 }
 
-fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
+fn nodes(d: &Dynamics, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
     let (mesh, n) = (&d.mesh, x.len());
     let area = d.problem.cable.area_m2();
     let moments = moments(d, x);
@@ -295,7 +306,7 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
     let mut out: Vec<Node> = Vec::with_capacity(n + 2);
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
-            for p in on_round(d, (k, sliding, &load), x, tension) {
+            for p in on_round(d, k, sliding, &load, x, tension) {
                 let velocity = p.force.try_normalize(0.0).unwrap_or_default() * (-d.motion.w[k] * p.stretch);
                 let curvature =
                     if sliding.end.radius > 0.0 { p.stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
@@ -316,7 +327,7 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
         let force = match k {
             0 => ends[0] + shear(mesh, &moments, 0, x),
             k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),
-            k => bar(k) + d.task.body * half(d, (k, 1), x),
+            k => bar(k) + d.task.body * half(d, k, 1, x),
         };
         // Where a round reaches to it within a step, the round ends there.
         while out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
@@ -332,20 +343,23 @@ fn nodes(d: &Dynamics, (x, v): (&[Vec2], &[Vec2]), tension: &[f64], ends: &[Vec2
     out
 }
 
-/// What a round does to the cable at a sliding node, N: all that the change of the internal force asks for, but for what the floor does.
+/// What a round does to the cable at a sliding node, N: all that the change of the internal force
+/// asks for, but for what the floor does.
 fn by_round(load: &Load) -> Vec2 {
     let [before, after] = load.force.map(|f| f.try_normalize(0.0).unwrap_or_default());
     let on = (before + after).try_normalize(0.0).unwrap_or_default();
     -load.jump - before * load.floor[0] - on * load.floor[1] - after * load.floor[2]
 }
 
-/// Growth of the logarithm of tension over a small round, in parts of what friction makes of its turn, from which on weight that hangs over it from the
-/// bars beside it is told from sag. Less: what a sagging bar rubs in the air beside a corner is said to rub there; more: short pieces rub beyond
-/// their cone.
-const HUNG: f64 = 1.2;
+/// Growth of the logarithm of tension over a small round, in parts of what friction makes of its
+/// turn, from which on weight that hangs over it from the bars beside it is told from sag. Less:
+/// what a sagging bar rubs in the air beside a corner is said to rub there; more: short pieces rub
+/// beyond their cone.
+const HANGING_TENSION_GROWTH: f64 = 1.2;
 
-/// Part of what chords are shorter than their arc that goes to the ways beside it. More: they were longer than their material.
-const SPARED: f64 = 0.8;
+/// Part of what chords are shorter than their arc that goes to the ways beside it. More: they were
+/// longer than their material.
+const CHORD_CORRECTION_FRACTION: f64 = 0.8;
 
 /// A point of the cable on a round.
 struct OnRound {
@@ -358,27 +372,30 @@ struct OnRound {
     stretch: f64,
 }
 
-/// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the sliding node before, to where it
-/// leaves it, or halfway to the next. Its tension is that of its weight, and beyond that grows evenly in its logarithm, as friction makes it.
-fn on_round(d: &Dynamics, (k, node, load): (usize, &SlidingNode, &Load), x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
+/// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the
+/// sliding node before, to where it leaves it, or halfway to the next. Its tension is that of its
+/// weight, and beyond that grows evenly in its logarithm, as friction makes it.
+fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
     let mesh = &d.mesh;
     let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
     let stretch = [0, 1].map(|j| paths[j].length / (mesh.arc_length[k + j] - mesh.arc_length[k + j - 1]));
     let (mark, sense, radius) = (node.end.mark, node.end.sense, node.end.radius);
-    // What lies between the node and where the cable meets or leaves the round, so far (rad) from it, has its own weight.
+    // What lies between the node and where the cable meets or leaves the round, so far (rad) from
+    // it, has its own weight.
     let force_at =
         |arcs: [f64; 2]| [0, 1].map(|j| load.force[j] - d.task.body * (arcs[j] * radius / stretch[j] * [-1.0, 1.0][j]));
     let sag = |j: usize, from: Vec2, to: Vec2| {
         let sag = sense * angle_between(from, to);
         let longer = radius * sag.abs().powi(3) / 6.0;
-        if same[j] || longer > DRAWN_LONGER * 2.0 * d.problem.radius { 0.0 } else { sag }
+        if same[j] || longer > PATH_EXCESS_DIAMETERS * 2.0 * d.problem.radius { 0.0 } else { sag }
     };
     let normal = |turned: f64| {
         let (sin, cos) = (sense * turned).sin_cos();
         Vec2::new(cos * mark.x - sin * mark.y, sin * mark.x + cos * mark.y)
     };
-    // It leaves where its force does: what sags turns further round than the straight bar that stands for it, and has less weight beyond.
+    // It leaves where its force does: what sags turns further round than the straight bar that
+    // stands for it, and has less weight beyond.
     let straight = [paths[0].arcs[1], paths[1].arcs[0]];
     // The nearer half of the bar at most: the rest hangs from the node beyond.
     let room = [0, 1].map(|j| larger(0.5 * (paths[j].length / radius - straight[j]), 0.0));
@@ -414,14 +431,14 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &SlidingNode, &Load), x: &[Ve
     let unrubbed = |normal: Vec2| a - d.task.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
     let last = unrubbed(normal(after));
     let over = OverRound::between([a, b - (last - a)], floor);
-    // On a round that is small beside its bars, friction of the weight that hangs over it from them is beside it: on the round it is no more than
-    // its turn there allows.
+    // On a round that is small beside its bars, friction of the weight that hangs over it from them
+    // is beside it: on the round it is no more than its turn there allows.
     let grown = (b / last).ln();
-    let small = same == [false; 2] && whole * radius < SMALL * d.even();
+    let small = same == [false; 2] && whole * radius < ONE_MARK_BAR_FRACTION * d.even();
     let most = node.friction * whole;
-    let rate = if small && grown.abs() > HUNG * most { most.copysign(grown) } else { grown };
-    // What is beside it stands where the weight hangs: before the round and after it by the angle there between
-    // the cable's force and the end of the arc.
+    let rate = if small && grown.abs() > HANGING_TENSION_GROWTH * most { most.copysign(grown) } else { grown };
+    // What is beside it stands where the weight hangs: before the round and after it by the angle
+    // there between the cable's force and the end of the arc.
     let tangents = [-before, after].map(|turned| perp(normal(turned)) * sense);
     let hangs = [angle_between(ends[0], tangents[0]), angle_between(tangents[1], ends[1])]
         .map(|angle| larger(sense * angle, 0.0));
@@ -440,19 +457,21 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &SlidingNode, &Load), x: &[Ve
         } else {
             a + (b - a) * f
         };
-        // The floor's friction of half of what lies beside a point acts at it, as it does at a node of the cable.
+        // The floor's friction of half of what lies beside a point acts at it, as it does at a node
+        // of the cable.
         let beyond = if i < count { tension - 0.5 * floor / count } else { tension - f2 };
         let force = perp(normal) * (sense * beyond);
         let arc_length = mesh.arc_length[k] + turned * radius / stretch;
         OnRound { arc_length, at: node.end.center + normal * radius, tension, force, stretch }
     };
     let mut points: Vec<OnRound> = (0..=count as usize).map(|i| at(i as f64)).collect();
-    // Friction on the round strains what lies there otherwise than the straight part beyond, which has its own tension. And what sags on to the
-    // round, or comes from inside its gap, comes and goes by a longer way than the bar: by as much as chords are shorter than their arc the
-    // round has material to spare.
+    // Friction on the round strains what lies there otherwise than the straight part beyond, which
+    // has its own tension. And what sags on to the round, or comes from inside its gap, comes and
+    // goes by a longer way than the bar: by as much as chords are shorter than their arc the round
+    // has material to spare.
     let half = 0.5 * whole / count;
     let sides = if same.contains(&true) { 1.0 } else { 2.0 };
-    let spare = SPARED / sides * (whole - count * 2.0 * half.sin()) * radius;
+    let spare = CHORD_CORRECTION_FRACTION / sides * (whole - count * 2.0 * half.sin()) * radius;
     for j in [0, 1] {
         let (bar, beside) = (k + j - 1, if j == 0 { k - 1 } else { k + 1 });
         let Some(p) = (if j == 0 { points.first_mut() } else { points.last_mut() }) else { continue };
@@ -470,7 +489,8 @@ fn on_round(d: &Dynamics, (k, node, load): (usize, &SlidingNode, &Load), x: &[Ve
     points
 }
 
-/// Spreads the material of an arc as the tension along it strains it; how much of it there is on the whole stays.
+/// Spreads the material of an arc as the tension along it strains it; how much of it there is on
+/// the whole stays.
 fn strain_evenly(points: &mut [OnRound], axial_stiffness: f64) {
     let [Some(begins), Some(ends)] = [points.first(), points.last()].map(|p| p.map(|p| p.arc_length)) else { return };
     // Chords of one round are equally long: their material goes by their strain alone.
@@ -525,7 +545,7 @@ fn pulley(d: &Dynamics, support: usize, x: &[Vec2], tension: &[f64]) -> Option<S
     let last = (1..x.len() - 1).rev().find(on)?;
     let (before, after) = (d.load(first)?, d.load(last)?);
     let inner = d.mesh.arc_length[last] - d.mesh.arc_length[first];
-    let share = half(d, (first, 0), x) + inner + half(d, (last, 1), x);
+    let share = half(d, first, 0, x) + inner + half(d, last, 1, x);
     let directions = [d.mesh.path(first - 1, x).direction, d.mesh.path(last, x).direction];
     let force = directions[1] * tension[last] - directions[0] * tension[first - 1] + d.task.body * share;
     let center = d.mesh.sliding[first]?.end.center;
@@ -547,7 +567,7 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
     problem
         .supports
         .iter()
-        .zip(&d.support_node)
+        .zip(&d.meshing.support_node)
         .enumerate()
         .filter_map(|(k, (s, node))| {
             let Some(node) = *node else { return pulley(d, k, x, tension) };
@@ -555,17 +575,18 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
             let lies = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
             let hand = d.motion.hands[k];
             let reaction = match node {
-                _ if hand.is_some() => d.reaction[node],
-                // A dead load is what hangs there: the cable pulls it the other way; a lump it may pull faster. Of one that lies
-                // the ground takes a part, which is the contact's.
+                _ if hand.is_some() => d.answers.reaction[node],
+                // A dead load is what hangs there: the cable pulls it the other way; a lump it may
+                // pull faster. Of one that lies the ground takes a part, which is the contact's.
                 _ if !d.mesh.held[node] && lies => -problem.hung_on(k, d.time()),
                 0 if !d.mesh.held[node] => ends[0],
                 k if k == last && !d.mesh.held[node] => -ends[1],
                 _ if !d.mesh.held[node] => -problem.hung_on(k, d.time()),
-                // On the ground the end's own share of weight and friction is the ground's, not the support's.
+                // On the ground the end's own share of weight and friction is the ground's, not the
+                // support's.
                 0 if lies => ends[0],
                 k if k == last && lies => -ends[1],
-                _ => d.reaction[node],
+                _ => d.answers.reaction[node],
             };
             Some(SupportReaction {
                 name: s.name.clone(),
@@ -593,12 +614,12 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2])
         let mut stretch: Vec<ContactPair> = Vec::new();
         for t in touches.iter().filter(|t| t.pair.gap.obstacle == obstacle) {
             if stretch.last().is_some_and(|l| t.node > l.node + 1) {
-                out.push(report(d, x, (tension, lain), &stretch));
+                out.push(report(d, x, tension, lain, &stretch));
                 stretch.clear();
             }
             stretch.push(*t);
         }
-        out.push(report(d, x, (tension, lain), &stretch));
+        out.push(report(d, x, tension, lain, &stretch));
     }
     for end in lain.iter().flatten() {
         let (tip, at) = (d.mesh.arc_length[end.node], d.mesh.arc_length[end.next]);
@@ -661,8 +682,9 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
         for j in first..k {
             let (Some(load), Some(node)) = (d.load(j), &d.mesh.sliding[j]) else { continue };
             let [before, after] = load.tension;
-            // The law of friction holds between the pulls along the bars: what hangs across them is the cable's own weight, and
-            // what the floor takes of what slides here is not the round's.
+            // The law of friction holds between the pulls along the bars: what hangs across them is
+            // the cable's own weight, and what the floor takes of what slides here is not the
+            // round's.
             let acts = node.balanced.unwrap_or(Balanced { pull: load.at_round(), turn: load.turn });
             let [a, b] = acts.pull;
             let floor = load.floor[1];
@@ -700,7 +722,8 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
 fn report(
     d: &Dynamics,
     x: &[Vec2],
-    (tension, lain): (&[f64], &[Option<Lain>; 2]),
+    tension: &[f64],
+    lain: &[Option<Lain>; 2],
     stretch: &[ContactPair],
 ) -> ContactReport {
     let (Some(first), Some(last)) = (stretch.first(), stretch.last()) else {
@@ -710,7 +733,8 @@ fn report(
     let before = if first.on_segment { first.node } else { first.node.saturating_sub(1) };
     let after = last.node.min(bars - 1);
     let (mut normal, mut normal_n, mut friction_n) = (Vec2::zeros(), 0.0, 0.0);
-    // What presses on a node that stays where it is, over a round or as an end that lies, is of that round, or of the end.
+    // What presses on a node that stays where it is, over a round or as an end that lies, is of
+    // that round, or of the end.
     let stays = |k: usize| d.mesh.sliding[k].is_some() || lain.iter().flatten().any(|l| l.node == k);
     let part = |t: &ContactPair| {
         let [a, b] = t.shares();

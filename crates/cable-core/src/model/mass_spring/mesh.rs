@@ -4,27 +4,66 @@ use std::sync::Arc;
 
 use crate::math::{Vec2, bounded};
 use crate::model::Settings;
-use crate::model::mass_spring::MassSpringModel;
-use crate::model::mass_spring::pulleys::pulley::{NONE, Pulley};
+use crate::model::mass_spring::pulleys::pulley::Pulley;
+use crate::model::mass_spring::{Clock, ContactMemory, MassSpringModel, Report, Rollback, SupportDrives, Wheels};
 use crate::problem::Problem;
-use crate::solution::Cost;
 use crate::state::State;
 
-/// Elements where neither scene nor settings say: fewer is visibly angular, more makes sub-steps shorter and dearer.
+/// Elements where neither scene nor settings say: fewer is visibly angular, more makes sub-steps
+/// shorter and dearer.
 const DEFAULT_SEGMENTS: usize = 60;
-/// Nodes of another model are taken if they are nowhere nearer than this, of the even length: less makes sub-steps short.
+/// Nodes of another model are taken if they are nowhere nearer than this, of the even length: less
+/// makes sub-steps short.
 const LEAST_SPACING: f64 = 0.2;
-/// Least damping ratio of the fastest axial mode. Without any, springs that go slack and taut near the stability limit
-/// pump energy into violent motion (a cable dropped into its supports gained 11 kJ in 4 s); the first mode of N elements
-/// gets π/2N of it, and motion across the cable nothing. More damps what is seen.
+/// Least damping ratio of the fastest axial mode. Without any, springs that go slack and taut near
+/// the stability limit pump energy into violent motion (a cable dropped into its supports gained 11
+/// kJ in 4 s); the first mode of N elements gets π/2N of it, and motion across the cable nothing.
+/// More damps what is seen.
 const MIN_MODE_DAMPING: f64 = 0.1;
-/// Most of the cable that the way to the last support gets when it is longer: the rest hangs, the first balance decides.
+/// Most of the cable that the way to the last support gets when it is longer: the rest hangs, the
+/// first balance decides.
 const LONGEST_WAY: f64 = 0.95;
-/// Greatest damping ratio of the fastest mode: more shortens the stable step without changing what is seen.
+/// Greatest damping ratio of the fastest mode: more shortens the stable step without changing what
+/// is seen.
 const MAX_MODE_DAMPING: f64 = 1.0;
 
+part! {
+    /// The masses, and the springs between them.
+    Chain {
+        /// Arc length of each node, m.
+        s: Vec<f64>,
+        /// Unstretched length of each element at the present temperature, m.
+        rest: Vec<f64>,
+        /// Arc length of each element at rest temperature, m: weight and wind go with it.
+        span: Vec<f64>,
+        /// Arc length of the straight part of each element (all of it but what lies on a wheel), m.
+        share: Vec<f64>,
+        /// Length of an element where they are even, m.
+        even: f64,
+        /// Mass of each node, kg.
+        mass: Vec<f64>,
+        /// Lumped mass at each node, kg.
+        lump: Vec<f64>,
+        /// Node of each support.
+        node_of: Vec<usize>,
+        /// Node of each load.
+        load_node: Vec<usize>,
+        /// Position of each node, m.
+        x: Vec<Vec2>,
+        /// Velocity of each node, m/s.
+        v: Vec<Vec2>,
+        /// Force on each node but that of supports and contacts, N.
+        f: Vec<Vec2>,
+        /// Tension of each element, N.
+        tension: Vec<f64>,
+        /// Time constant of the material's loss, s.
+        damping_time_s: f64,
+    }
+}
+
 impl MassSpringModel {
-    /// Puts a node at each support and load, the others evenly between them. `slid` is where each support sits, m.
+    /// Puts a node at each support and load, the others evenly between them. `slid` is where each
+    /// support sits, m.
     pub(super) fn mesh(problem: Arc<Problem>, settings: Settings, slid: &[f64]) -> Self {
         Self::mesh_on(problem, settings, slid, None)
     }
@@ -67,49 +106,23 @@ impl MassSpringModel {
             mass[k] += p.mass;
             lump[k] += p.mass;
         }
-        let mut pulley_at = vec![NONE; s.len()];
+        let mut pulley_at = vec![None; s.len()];
         for (k, p) in pulleys.iter_mut().enumerate() {
-            p.node = node_of[p.support];
-            p.anchor = s[p.node];
-            pulley_at[p.node] = k;
+            let node = node_of[p.support];
+            p.sit(node, s[node]);
+            pulley_at[p.node] = Some(k);
         }
         let load_node = problem.loads.iter().map(|l| nearest(l.arc_length)).collect();
         let x = first_shape(&problem, &s, &node_of);
         let (n, ne, ns) = (s.len(), span.len(), node_of.len());
         let damping_time_s = damping_time(&problem, &rest);
-        let mut model = Self {
-            time_s: 0.0,
-            due_s: 0.0,
-            behind_s: 0.0,
+        let chain = Chain {
             v: vec![Vec2::zeros(); n],
             f: vec![Vec2::zeros(); n],
             tension: vec![0.0; ne],
-            held: vec![false; n],
-            let_go: Vec::new(),
-            held_acceleration: vec![Vec2::zeros(); n],
-            drag: vec![None; ns],
-            clearance: vec![0.0; ne],
-            touches: Vec::with_capacity(2 * ne),
-            gaps: Vec::with_capacity(16),
-            cost: Cost::default(),
-            laid: false,
-            followers: vec![None; ns],
-            pulled: vec![false; ns],
-            hands: vec![None; ns],
             even: problem.length / wanted as f64,
             share: span.clone(),
             lump,
-            pulleys,
-            pulley_at,
-            anchors: Vec::new(),
-            warnings: Vec::new(),
-            settings,
-            driven: 0.0,
-            kept: crate::model::mass_spring::Rollback::default(),
-            beside: crate::model::mass_spring::ErrorEstimator::default(),
-            account: crate::model::mass_spring::dynamics::momentum::Account::default(),
-            errors: crate::solution::ErrorEstimates::default(),
-            problem,
             s,
             rest,
             span,
@@ -119,29 +132,57 @@ impl MassSpringModel {
             x,
             damping_time_s,
         };
+        let drives = SupportDrives {
+            held: vec![false; n],
+            held_acceleration: vec![Vec2::zeros(); n],
+            drag: vec![None; ns],
+            followers: vec![None; ns],
+            pulled: vec![false; ns],
+            hands: vec![None; ns],
+            ..SupportDrives::default()
+        };
+        let contacts = ContactMemory {
+            clearance: vec![0.0; ne],
+            touches: Vec::with_capacity(2 * ne),
+            gaps: Vec::with_capacity(16),
+            ..ContactMemory::default()
+        };
+        let mut model = Self {
+            problem,
+            settings,
+            clock: Clock::default(),
+            chain,
+            drives,
+            contacts,
+            wheels: Wheels { pulleys, pulley_at },
+            report: Report::default(),
+            laid: false,
+            kept: Rollback::default(),
+        };
         model.place_supports();
         model.tidy();
         model.forces();
         model
     }
 
-    /// The nodes of a shape, if they will do: resampled, its elements would cut the corners that they lie round.
+    /// The nodes of a shape, if they will do: resampled, its elements would cut the corners that
+    /// they lie round.
     pub(super) fn nodes_of(&self, shape: &State) -> Option<Vec<f64>> {
         let s = &shape.arc_length_m;
         let fits = |wanted: f64| s.iter().any(|v| (v - wanted).abs() <= 1e-9 * self.problem.length);
         let supports = self.problem.supports.iter().filter_map(|p| p.arc_length);
         let marks = supports.chain(self.problem.loads.iter().map(|l| l.arc_length)).chain([0.0, self.problem.length]);
-        let apart = s.windows(2).all(|w| w[1] - w[0] >= LEAST_SPACING * self.even);
-        let wanted = self.problem.length / self.even;
+        let apart = s.windows(2).all(|w| w[1] - w[0] >= LEAST_SPACING * self.chain.even);
+        let wanted = self.problem.length / self.chain.even;
         let many = (0.5 * wanted..=2.0 * wanted).contains(&(s.len() as f64));
-        let plain = self.pulleys.is_empty() && !self.problem.world.is_empty();
+        let plain = self.wheels.pulleys.is_empty() && !self.problem.world.is_empty();
         (plain && apart && many && marks.into_iter().all(fits)).then(|| s.clone())
     }
 
     /// Brings the elements beside pulleys near the even length.
     pub(super) fn tidy(&mut self) {
         self.measure();
-        for _ in 0..self.x.len() {
+        for _ in 0..self.chain.x.len() {
             if !self.remesh() {
                 break;
             }
@@ -149,8 +190,9 @@ impl MassSpringModel {
     }
 }
 
-/// Where each support sits (m): as given, and what slides kept `least` (m), or its share of what room there is, from what it could
-/// run onto. Material lies on both sides of a pulley, however near to a support it stands.
+/// Where each support sits (m): as given, and what slides kept `least` (m), or its share of what
+/// room there is, from what it could run onto. Material lies on both sides of a pulley, however
+/// near to a support it stands.
 fn apart(p: &Problem, slid: &[f64], least: f64) -> Vec<f64> {
     let mut out: Vec<f64> =
         (0..p.supports.len()).map(|k| p.supports[k].arc_length.or(slid.get(k).copied()).unwrap_or(f64::NAN)).collect();
@@ -173,8 +215,9 @@ fn apart(p: &Problem, slid: &[f64], least: f64) -> Vec<f64> {
     out
 }
 
-/// Damping ζ of the first axial mode, ω₁ = π/L·√(EA/ρ): strain-rate force EA·τ·ε̇ with τ = 2ζ/ω₁. Mode k then has
-/// ζ_k = ζ·ω_k/ω₁, which for the fastest one is kept between [`MIN_MODE_DAMPING`] and [`MAX_MODE_DAMPING`].
+/// Damping ζ of the first axial mode, ω₁ = π/L·√(EA/ρ): strain-rate force EA·τ·ε̇ with τ = 2ζ/ω₁.
+/// Mode k then has ζ_k = ζ·ω_k/ω₁, which for the fastest one is kept between [`MIN_MODE_DAMPING`]
+/// and [`MAX_MODE_DAMPING`].
 fn damping_time(p: &Problem, rest: &[f64]) -> f64 {
     let c = (p.axial_stiffness / p.linear_density).sqrt();
     let first = std::f64::consts::PI / p.damped_length * c;
@@ -184,8 +227,8 @@ fn damping_time(p: &Problem, rest: &[f64]) -> f64 {
     bounded(own, 2.0 * MIN_MODE_DAMPING / fastest, 2.0 * MAX_MODE_DAMPING / fastest)
 }
 
-/// Where each support sits on the cable before anything is known, m: material even along the straight way between those
-/// whose place is given; a hanging end gets what the way leaves.
+/// Where each support sits on the cable before anything is known, m: material even along the
+/// straight way between those whose place is given; a hanging end gets what the way leaves.
 pub(super) fn lay_supports(p: &Problem) -> Vec<f64> {
     let count = p.supports.len();
     let mut way = vec![0.0; count];
@@ -220,8 +263,8 @@ pub(super) fn lay_supports(p: &Problem) -> Vec<f64> {
         .collect()
 }
 
-/// Along the route, material spread evenly; without one, straight from support to support. A free end goes on in the
-/// direction of gravity.
+/// Along the route, material spread evenly; without one, straight from support to support. A free
+/// end goes on in the direction of gravity.
 fn first_shape(p: &Problem, s: &[f64], node_of: &[usize]) -> Vec<Vec2> {
     if p.route.len() >= 2 {
         let mut along = vec![0.0];

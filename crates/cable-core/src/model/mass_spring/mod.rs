@@ -1,4 +1,5 @@
-//! `mass_spring` is the model of lumped masses and springs: a quick look, and the cheap way through violent free motion.
+//! `mass_spring` is the model of lumped masses and springs: a quick look, and the cheap way through
+//! violent free motion.
 //!
 //! | room | what it holds |
 //! |---|---|
@@ -10,14 +11,38 @@
 //! | `pulleys`, `bending` | material that slides through pulleys; bending forces |
 //! | `results`, `corner_error` | the answer, and what a mesh cannot know of tension beyond a corner |
 //!
-//! The leapfrog keeps velocities half a sub-step behind places. The discretisation error is of second order in the
-//! element; at equilibrium and without inertia it is estimated, in motion only for corners.
+//! The leapfrog keeps velocities half a sub-step behind places. The discretisation error is of
+//! second order in the element; at equilibrium and without inertia it is estimated, in motion only
+//! for corners.
 //!
-//! Sub-steps keep below the stability limit of a chain of springs, with ω_max = 2√(EA/(ρ l₀²)) and the damping ratio ζ
-//! of that mode: `dt < 2/ω_max · (√(1+ζ²) − ζ)` (D. Baraff, A. Witkin, Physically based modeling, SIGGRAPH course notes,
-//! 1997, derive the undamped part). Equilibria are found by Newton's method on the energy of springs, contacts and
-//! friction. They start from the shape of [`crate::model::fem`] where there is one: which of many equilibria a rough
-//! floor allows is then the same for both models; what holds there is this model's own balance of forces.
+//! Sub-steps keep below the stability limit of a chain of springs, with ω_max = 2√(EA/(ρ l₀²)) and
+//! the damping ratio ζ of that mode: `dt < 2/ω_max · (√(1+ζ²) − ζ)` (D. Baraff, A. Witkin,
+//! Physically based modeling, SIGGRAPH course notes, 1997, derive the undamped part). Equilibria
+//! are found by Newton's method on the energy of springs, contacts and friction. They start from
+//! the shape of [`crate::model::fem`] where there is one: which of many equilibria a rough floor
+//! allows is then the same for both models; what holds there is this model's own balance of forces.
+
+/// Declares a part of the model whose `clone_from` goes through its fields, into the memory that a
+/// copy already has: a step keeps the state before it without new memory.
+macro_rules! part {
+    ($(#[$doc:meta])* $name:ident { $($(#[$about:meta])* $field:ident: $kind:ty,)+ }) => {
+        $(#[$doc])*
+        #[derive(Debug, Default)]
+        pub(in crate::model::mass_spring) struct $name {
+            $($(#[$about])* pub(in crate::model::mass_spring) $field: $kind,)+
+        }
+
+        impl Clone for $name {
+            fn clone(&self) -> Self {
+                Self { $($field: self.$field.clone(),)+ }
+            }
+
+            fn clone_from(&mut self, other: &Self) {
+                $(self.$field.clone_from(&other.$field);)+
+            }
+        }
+    };
+}
 
 mod bending;
 mod corner_error;
@@ -32,11 +57,11 @@ mod xpbd;
 use std::sync::Arc;
 
 use crate::contact::Gap;
-use crate::error::SolveError;
+use crate::error::{SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
 use crate::model::gauge::TensionGauge;
-use crate::model::input_filter::{Hand, SmoothedTarget, held_warning};
+use crate::model::input_filter::{SmoothedTarget, held_warning};
 pub use crate::model::settings::Stepping;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
@@ -44,85 +69,59 @@ use crate::scene::SupportKind;
 use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Cost, Warning, WarningKind};
 use crate::state::State;
+use dynamics::momentum::Account;
 use dynamics::rollback::Rollback;
+use dynamics::{Clock, SupportDrives};
+use equilibrium::contact_energy::{Anchors, ContactMemory};
 use equilibrium::error_estimate::ErrorEstimator;
-use pulleys::pulley::Pulley;
+use mesh::Chain;
+use pulleys::pulley::Wheels;
+
+part! {
+    /// What is said of the present instant and of the last step.
+    Report {
+        /// What it took.
+        cost: Cost,
+        /// What the user should know.
+        warnings: Vec<Warning>,
+        /// What became of the momentum since the caller's step began.
+        account: Account,
+        /// The model that goes on beside it to tell its errors.
+        beside: ErrorEstimator,
+        /// What these are.
+        errors: ErrorEstimates,
+    }
+}
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
 pub struct MassSpringModel {
     problem: Arc<Problem>,
-    time_s: f64,
-    /// When the present step of the caller ends, s.
-    due_s: f64,
-    /// Arc length of each node, m.
-    s: Vec<f64>,
-    /// Unstretched length of each element at the present temperature, m.
-    rest: Vec<f64>,
-    /// Arc length of each element at rest temperature, m: weight and wind go with it.
-    span: Vec<f64>,
-    /// Mass of each node, kg.
-    mass: Vec<f64>,
-    /// Node of each support.
-    node_of: Vec<usize>,
-    /// Node of each load.
-    load_node: Vec<usize>,
-    x: Vec<Vec2>,
-    v: Vec<Vec2>,
-    /// Time by which velocities are behind places, s: half of the last sub-step, 0 where a motion begins.
-    behind_s: f64,
-    /// Force on each node but that of supports and contacts, N.
-    f: Vec<Vec2>,
-    /// Tension of each element, N.
-    tension: Vec<f64>,
-    /// Whether a support holds the node now.
-    held: Vec<bool>,
-    /// Nodes that their support has let go as the present sub-step began.
-    let_go: Vec<usize>,
-    /// Acceleration of held nodes, m/s².
-    held_acceleration: Vec<Vec2>,
-    /// Where each support is dragged to, if it is.
-    drag: Vec<Option<Vec2>>,
-    /// How far each element may still travel before it can touch anything, m.
-    clearance: Vec<f64>,
-    touches: Vec<Touch>,
-    gaps: Vec<Gap>,
-    damping_time_s: f64,
-    cost: Cost,
+    settings: Settings,
+    clock: Clock,
+    chain: Chain,
+    drives: SupportDrives,
+    contacts: ContactMemory,
+    wheels: Wheels,
+    report: Report,
     /// Whether it has left the route for a shape found by a solve, a step or another model.
     laid: bool,
-    /// Followers of dragged supports.
-    followers: Vec<Option<SmoothedTarget>>,
-    /// Which of the dragged supports a hand holds by a spring, and those hands.
-    pulled: Vec<bool>,
-    hands: Vec<Option<Hand>>,
-    /// Length of an element where they are even, m.
-    even: f64,
-    /// Arc length of the straight part of each element (all of it but what lies on a wheel), m.
-    share: Vec<f64>,
-    /// Lumped mass at each node, kg.
-    lump: Vec<f64>,
-    pulleys: Vec<Pulley>,
-    /// Index of the pulley at each node, or `pulleys::pulley::NONE`.
-    pulley_at: Vec<usize>,
-    /// Where friction holds, between steps without inertia.
-    anchors: Vec<Anchor>,
-    warnings: Vec<Warning>,
-    settings: Settings,
-    /// Fastest any support has moved, m/s.
-    driven: f64,
     kept: Rollback,
-    /// Who goes on beside it to tell its errors, and what they are.
-    beside: ErrorEstimator,
-    /// What became of the momentum since the caller's step began.
-    account: dynamics::momentum::Account,
-    errors: ErrorEstimates,
+}
+
+/// What an anchor holds the cable to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Surface {
+    /// The floor of a plan view, which rubs everywhere.
+    Floor,
+    /// The obstacle of this index.
+    Obstacle(usize),
 }
 
 /// Where friction holds the cable: the material point, m, and where it lies.
 #[derive(Clone, Copy, Debug)]
 struct Anchor {
-    obstacle: usize,
+    surface: Surface,
     s: f64,
     at: Vec2,
 }
@@ -141,8 +140,8 @@ struct Touch {
 /// The longest step, s: longer is a mistake in the caller's clock.
 const MAX_STEP_S: f64 = 60.0;
 
-fn unsupported(feature: &str) -> SolveError {
-    SolveError::Unsupported { model: Model::MassSpring, feature: feature.to_owned() }
+fn unsupported(feature: Unsupported) -> SolveError {
+    SolveError::Unsupported { model: Model::MassSpring, feature }
 }
 
 /// The resting shape of the corrected bars and where the supports sit on it.
@@ -174,7 +173,7 @@ impl MassSpringModel {
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
         if problem.cable.self_contact {
-            return Err(unsupported("self-contact"));
+            return Err(unsupported(Unsupported::SelfContact));
         }
         let slid = mesh::lay_supports(&problem);
         Ok(Self::mesh(problem, settings, &slid))
@@ -182,31 +181,32 @@ impl MassSpringModel {
 
     /// Takes the first shape from the corrected bars, if they find one.
     fn lay(&mut self) {
-        let settings = Settings { segments: Some(self.rest.len()), ..self.settings };
+        let settings = Settings { segments: Some(self.chain.rest.len()), ..self.settings };
         let found = shape_of(self.problem.clone(), settings).or_else(|| shape_of(Arc::new(self.pinned()), settings));
         if let Some(shape) = found
             && let Some(mut next) = self.shaped(&shape.state, &shape.slid)
         {
-            next.time_s = self.time_s;
-            for e in 0..next.tension.len() {
-                let middle = 0.5 * (next.s[e] + next.s[e + 1]);
+            next.clock.time_s = self.clock.time_s;
+            for e in 0..next.chain.tension.len() {
+                let middle = 0.5 * (next.chain.s[e] + next.chain.s[e + 1]);
                 let k = shape.tension.partition_point(|n| n.0 < middle).min(shape.tension.len().saturating_sub(1));
-                next.tension[e] = shape.tension.get(k).map_or(0.0, |n| n.1);
+                next.chain.tension[e] = shape.tension.get(k).map_or(0.0, |n| n.1);
             }
-            next.warnings.extend(shape.warnings);
+            next.report.warnings.extend(shape.warnings);
             *self = next;
         }
         self.laid = true;
     }
 
-    /// The problem with its pulleys gripping the cable where it was laid: for models that have none beside obstacles.
+    /// The problem with its pulleys gripping the cable where it was laid: for models that have none
+    /// beside obstacles.
     fn pinned(&self) -> Problem {
         let mut problem = (*self.problem).clone();
-        for p in &self.pulleys {
+        for p in &self.wheels.pulleys {
             let support = &mut problem.supports[p.support];
             let out = Vec2::new(-p.mark.sin(), p.mark.cos()) * (p.facing * p.radius);
             support.kind = SupportKind::Fixed;
-            support.arc_length = Some(self.s[p.node]);
+            support.arc_length = Some(self.chain.s[p.node]);
             support.at = support.at.map(|a| a + out);
             if let Some(m) = &mut support.motion {
                 m.shift(out);
@@ -215,30 +215,31 @@ impl MassSpringModel {
         problem
     }
 
-    /// A chain of the same cable along a shape, its supports where `slid` says; None if the shape has no place for it.
+    /// A chain of the same cable along a shape, its supports where `slid` says; None if the shape
+    /// has no place for it.
     fn shaped(&self, shape: &State, slid: &[f64]) -> Option<Self> {
         let own = self.nodes_of(shape);
         let mut next = Self::mesh_on(self.problem.clone(), self.settings, slid, own);
         let speeds = State { position_m: shape.velocity_m_per_s.clone(), ..shape.clone() };
         // A cable whose length was edited keeps its shape: material is spread over it evenly.
         let scale = shape.arc_length_m.last().copied().unwrap_or(0.0) / self.problem.length;
-        for n in 0..next.x.len() {
-            next.x[n] = shape.position_at(next.s[n] * scale)?;
-            next.v[n] = speeds.position_at(next.s[n] * scale)?;
+        for n in 0..next.chain.x.len() {
+            next.chain.x[n] = shape.position_at(next.chain.s[n] * scale)?;
+            next.chain.v[n] = speeds.position_at(next.chain.s[n] * scale)?;
         }
-        next.time_s = shape.time_s;
-        next.driven = self.driven;
-        next.drag.clone_from(&self.drag);
-        next.followers.clone_from(&self.followers);
-        next.pulled.clone_from(&self.pulled);
-        next.hands.clone_from(&self.hands);
+        next.clock.time_s = shape.time_s;
+        next.drives.driven = self.drives.driven;
+        next.drives.drag.clone_from(&self.drives.drag);
+        next.drives.followers.clone_from(&self.drives.followers);
+        next.drives.pulled.clone_from(&self.drives.pulled);
+        next.drives.hands.clone_from(&self.drives.hands);
         next.place_pulleys();
-        for k in 0..next.pulleys.len() {
+        for k in 0..next.wheels.pulleys.len() {
             // What `slid` says is the middle of the arc, σ is where the mark is.
-            let i = next.pulleys[k].node;
+            let i = next.wheels.pulleys[k].node;
             let ahead = next.reach(i - 1).arc[0] - next.reach(i).arc[1];
-            next.s[i] += 0.5 * ahead / self.problem.thermal_stretch;
-            next.pulleys[k].anchor = next.s[i];
+            next.chain.s[i] += 0.5 * ahead / self.problem.thermal_stretch;
+            next.wheels.pulleys[k].anchor = next.chain.s[i];
         }
         next.tidy();
         next.laid = true;
@@ -252,18 +253,23 @@ impl MassSpringModel {
 
     /// What a sub-step cannot go beyond.
     fn non_finite(&self) -> Option<SolveError> {
-        let bad = (0..self.x.len()).find(|&i| !(self.x[i] + self.v[i]).iter().all(|c| c.is_finite()))?;
-        Some(SolveError::NonFinite { quantity: "position or velocity", arc_length_m: self.s[bad], time_s: self.time_s })
+        let bad =
+            (0..self.chain.x.len()).find(|&i| !(self.chain.x[i] + self.chain.v[i]).iter().all(|c| c.is_finite()))?;
+        Some(SolveError::NonFinite {
+            quantity: "position or velocity",
+            arc_length_m: self.chain.s[bad],
+            time_s: self.clock.time_s,
+        })
     }
 
     /// Comes to rest; on an error nothing has changed.
     fn settle_alone(&mut self) -> Result<(), SolveError> {
-        self.account = dynamics::momentum::Account::default();
+        self.report.account = dynamics::momentum::Account::default();
         let kept = self.clone();
         if !self.laid {
             self.lay();
         }
-        let found = self.equilibrium(true);
+        let found = self.equilibrium(Anchors::Forgotten);
         if found.is_err() {
             *self = kept;
         }
@@ -272,14 +278,20 @@ impl MassSpringModel {
 
     fn report(&mut self) -> StepReport {
         self.warn_of_corners();
-        for (k, f) in self.followers.iter().enumerate() {
+        for (k, f) in self.drives.followers.iter().enumerate() {
             if let Some(f) = f.as_ref().filter(|f| f.behind_m() > 0.0) {
                 let fastest = self.settings.hand_speed_m_per_s;
-                self.warnings.push(held_warning(&self.problem, k, self.s[self.node_of[k]], (f, fastest)));
+                self.report.warnings.push(held_warning(
+                    &self.problem,
+                    k,
+                    self.chain.s[self.chain.node_of[k]],
+                    f,
+                    fastest,
+                ));
             }
         }
         self.warn_of_hands();
-        StepReport { cost: self.cost, warnings: std::mem::take(&mut self.warnings) }
+        StepReport { cost: self.report.cost, warnings: std::mem::take(&mut self.report.warnings) }
     }
 }
 
@@ -289,7 +301,7 @@ impl Mechanics for MassSpringModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let first = !self.laid && self.time_s == 0.0;
+        let first = !self.laid && self.clock.time_s == 0.0;
         self.settle_alone()?;
         self.look_beside(first);
         Ok(self.report())
@@ -305,14 +317,14 @@ impl Mechanics for MassSpringModel {
             return Err(SolveError::TimeStep { dt_s, allowed: "above 0 s, at most 60 s" });
         }
         self.laid = true;
-        let end_s = self.time_s + dt_s;
-        self.due_s = end_s;
-        if inertia == Inertia::Dynamic && gauge.asks(self.time_s) {
-            let at_rest = self.v.iter().all(|v| *v == Vec2::zeros());
-            gauge.begin(self.time_s, at_rest, &self.s, |i| self.gauged(i));
+        let end_s = self.clock.time_s + dt_s;
+        self.clock.due_s = end_s;
+        if inertia == Inertia::Dynamic && gauge.asks(self.clock.time_s) {
+            let at_rest = self.chain.v.iter().all(|v| *v == Vec2::zeros());
+            gauge.begin(self.clock.time_s, at_rest, &self.chain.s, |i| self.gauged(i));
         }
         // Not copied with each of its parts.
-        let beside = std::mem::take(&mut self.beside);
+        let beside = std::mem::take(&mut self.report.beside);
         let counts = inertia == Inertia::Dynamic && !self.previews();
         let done = self.or_as_before(|this| {
             this.begin_account(dt_s, counts);
@@ -322,9 +334,9 @@ impl Mechanics for MassSpringModel {
                 Inertia::QuasiStatic => this.creep(dt_s),
             }
         });
-        self.beside = beside;
+        self.report.beside = beside;
         done?;
-        self.time_s = end_s;
+        self.clock.time_s = end_s;
         self.follow_beside(dt_s, inertia);
         Ok(self.report())
     }
@@ -338,7 +350,7 @@ impl Mechanics for MassSpringModel {
             return Err(e);
         }
         let slid = self.slid_in(state);
-        let next = self.shaped(state, &slid).ok_or_else(|| unsupported("a state of no nodes"))?;
+        let next = self.shaped(state, &slid).ok_or_else(|| unsupported(Unsupported::EmptyState))?;
         next.refuse_buried()?;
         *self = next;
         Ok(())
@@ -346,10 +358,10 @@ impl Mechanics for MassSpringModel {
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
         if target_m.iter().all(|c| c.is_finite())
-            && let Some(d) = self.drag.get_mut(support)
+            && let Some(d) = self.drives.drag.get_mut(support)
         {
             *d = Some(target_m);
-            self.pulled[support] = false;
+            self.drives.pulled[support] = false;
         }
     }
 
@@ -357,7 +369,7 @@ impl Mechanics for MassSpringModel {
         self.drag_support(support, hand_m);
         let holds = |kind| matches!(kind, SupportKind::Fixed | SupportKind::Clamped);
         if self.problem.supports.get(support).is_some_and(|s| holds(s.kind)) {
-            self.pulled[support] = true;
+            self.drives.pulled[support] = true;
         }
     }
 

@@ -105,7 +105,8 @@ fn dragging_along_a_floor_takes_mu_w_l() {
     assert!((mean / exact - 1.0).abs() < 0.01, "{mean} against {exact}");
 }
 
-/// Pulled slowly one way and back: μwL either way once everything slides, and the same place again gives it too.
+/// Pulled slowly one way and back: μwL either way once everything slides, and the same place again
+/// gives it too.
 #[test]
 fn slow_motion_takes_mu_w_l_and_turns_round() {
     let mut scene = drag();
@@ -177,19 +178,20 @@ fn mechanics(scene: &Scene) -> MassSpringModel {
 /// Kinetic energy, stretch and height, J.
 fn energy(m: &MassSpringModel) -> f64 {
     let p = &m.problem;
-    let body = p.body_force(m.time_s);
+    let body = p.body_force(m.clock.time_s);
     let mut out = 0.0;
-    for e in 0..m.rest.len() {
+    for e in 0..m.chain.rest.len() {
         let r = m.reach(e);
-        let stretch = (r.length - m.rest[e]).max(0.0);
-        out += 0.5 * p.axial_stiffness * stretch * stretch / m.rest[e] - body.dot(&(r.middle * m.share[e] + r.hung));
+        let stretch = (r.length - m.chain.rest[e]).max(0.0);
+        out += 0.5 * p.axial_stiffness * stretch * stretch / m.chain.rest[e]
+            - body.dot(&(r.middle * m.chain.share[e] + r.hung));
     }
-    for i in 0..m.x.len() {
-        if !m.held[i] {
-            out += 0.5 * m.mass[i] * m.v[i].norm_squared();
+    for i in 0..m.chain.x.len() {
+        if !m.drives.held[i] {
+            out += 0.5 * m.chain.mass[i] * m.chain.v[i].norm_squared();
         }
     }
-    out + m.pulleys.iter().map(|p| 0.5 * p.mass * p.rate * p.rate).sum::<f64>()
+    out + m.wheels.pulleys.iter().map(|p| 0.5 * p.mass * p.rate * p.rate).sum::<f64>()
 }
 
 #[test]
@@ -199,21 +201,21 @@ fn a_smooth_pulley_makes_no_energy_and_loses_no_material() {
         scene.cables[0].supports[1].friction = Some(2.0);
         let mut m = mechanics(&scene);
         m.settle().unwrap();
-        m.pulleys[0].friction = 0.0;
+        m.wheels.pulleys[0].friction = 0.0;
         let start = energy(&m);
         let mut slid = [f64::INFINITY, f64::NEG_INFINITY];
         let (mut most, mut last, mut counts) = (0.0f64, start, std::collections::BTreeSet::new());
         for _ in 0..200 {
             m.advance(0.02, Inertia::Dynamic).unwrap();
-            let node = m.pulleys[0].node;
+            let node = m.wheels.pulleys[0].node;
             counts.insert(node);
-            slid = [slid[0].min(m.s[node]), slid[1].max(m.s[node])];
+            slid = [slid[0].min(m.chain.s[node]), slid[1].max(m.chain.s[node])];
             last = energy(&m);
             most = most.max(last - start);
-            assert_eq!(m.span.iter().sum::<f64>().to_bits() & !0xff, 11.0f64.to_bits() & !0xff);
-            let mass = m.mass.iter().sum::<f64>() / (11.0 * 1.246) - 1.0;
+            assert_eq!(m.chain.span.iter().sum::<f64>().to_bits() & !0xff, 11.0f64.to_bits() & !0xff);
+            let mass = m.chain.mass.iter().sum::<f64>() / (11.0 * 1.246) - 1.0;
             assert!(mass.abs() < 1e-12, "mass {mass:e}");
-            assert!(m.s.windows(2).all(|w| w[1] > w[0]));
+            assert!(m.chain.s.windows(2).all(|w| w[1] > w[0]));
         }
         println!("R {radius}: made {most:.2e} J, end {:.2e} J, slid {slid:?}, nodes {counts:?}", last - start);
         assert!(slid[1] - slid[0] > 0.3 && counts.len() > 1, "it slides, nodes come and go");
@@ -222,7 +224,8 @@ fn a_smooth_pulley_makes_no_energy_and_loses_no_material() {
     }
 }
 
-/// Dropped slack into its supports, without damping of its own: springs go slack and taut, energy only falls.
+/// Dropped slack into its supports, without damping of its own: springs go slack and taut, energy
+/// only falls.
 #[test]
 fn a_cable_that_snaps_taut_gains_no_energy() {
     let mut scene = swinging(0.0, 2e4);
@@ -232,11 +235,12 @@ fn a_cable_that_snaps_taut_gains_no_energy() {
     for _ in 0..100 {
         m.advance(0.02, Inertia::Dynamic).unwrap();
         let made = energy(&m) - start;
-        assert!(made < 0.1, "{made} J at {} s", m.time_s);
+        assert!(made < 0.1, "{made} J at {} s", m.clock.time_s);
     }
 }
 
-/// A stiff cable on a wheel, its end swung to and fro: display frames of any length give the same end.
+/// A stiff cable on a wheel, its end swung to and fro: display frames of any length give the same
+/// end.
 #[test]
 fn a_preview_does_not_depend_on_the_frames() {
     let mut scene = swinging(0.0, 1e9);
@@ -250,7 +254,7 @@ fn a_preview_does_not_depend_on_the_frames() {
             let report = m.advance(dt, Inertia::Dynamic).unwrap();
             assert_eq!(report.warnings.len(), 1, "{:?}", report.warnings);
             assert!(report.warnings[0].message.contains("preview"));
-            if m.time_s > 2.04 - 1e-9 {
+            if m.clock.time_s > 2.04 - 1e-9 {
                 return m.solution();
             }
         }
@@ -290,7 +294,7 @@ fn a_preview_rests_where_the_springs_rest() {
 fn a_preview_that_runs_away_is_cut_and_said() {
     let mut m = mechanics(&swinging(0.0, 1e8));
     m.settings.stepping = Stepping::Preview;
-    m.v.fill(crate::math::Vec2::new(0.0, 1e4));
+    m.chain.v.fill(crate::math::Vec2::new(0.0, 1e4));
     let report = m.advance(0.02, Inertia::Dynamic).unwrap();
     let said: Vec<_> = report.warnings.iter().map(|w| w.message.as_str()).collect();
     assert!(said.iter().any(|s| s.contains("velocity was cut")), "{said:?}");
@@ -344,8 +348,8 @@ fn a_cable_below_its_slip_threshold_stays_where_it_lies() {
     }
 }
 
-/// Between posts from above the leg at the reel never slides: what it was laid with stays, and differs from model to model. The
-/// answer says at least by how much.
+/// Between posts from above the leg at the reel never slides: what it was laid with stays, and
+/// differs from model to model. The answer says at least by how much.
 #[test]
 fn what_a_floor_holds_is_said() {
     let end = |model| {
@@ -362,6 +366,7 @@ fn what_a_floor_holds_is_said() {
     let off = (pull(&fem) - pull(&springs)).abs() / springs.max_tension().tension_n;
     let said = springs.cables[0].error_estimate.unwrap();
     println!("off by {off:.3}, said {said:.3}");
-    // A ground of fem that gave way by 1e-5 m was off by more than 0.05; what it says is of the floor and not of that.
+    // A ground of fem that gave way by 1e-5 m was off by more than 0.05; what it says is of the
+    // floor and not of that.
     assert!(said > 0.05 && said > off, "{off} {said}");
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::catenary::PointForce;
 use crate::contact::swept_corners::{self, Corner};
-use crate::error::SolveError;
+use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::Model;
 use crate::model::catenary::layout::hint_of_weight;
@@ -26,7 +26,8 @@ pub(in crate::model::spans) struct BoundaryConditions {
     pub thermal: f64,
     /// Dead loads of the layout, N.
     pub forces: Vec<Vec2>,
-    /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one that has weight.
+    /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one
+    /// that has weight.
     pub hint: f64,
     /// Part of the friction that acts: 1, less only while a rest is sought.
     pub friction: f64,
@@ -55,8 +56,8 @@ pub(in crate::model::spans) struct Pulley {
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct Layout {
     pub problem: Arc<Problem>,
-    /// Whether it counts the cable from the end of the scene's: its problem is that one turned.
-    pub turned: bool,
+    /// The end of the scene's cable from which it counts.
+    pub counted_from: CableEnd,
     loads: Vec<Load>,
     /// Where it must not pass, in order of x.
     pub corners: Arc<[Corner]>,
@@ -73,28 +74,49 @@ pub(in crate::model::spans) struct Part {
 }
 
 /// The model's refusal.
-pub(in crate::model::spans) fn unsupported(feature: impl Into<String>) -> SolveError {
-    SolveError::Unsupported { model: Model::Spans, feature: feature.into() }
+pub(in crate::model::spans) fn unsupported(feature: Unsupported) -> SolveError {
+    SolveError::Unsupported { model: Model::Spans, feature }
+}
+
+/// An end of a cable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) enum CableEnd {
+    Start,
+    End,
+}
+
+impl CableEnd {
+    pub fn other(self) -> Self {
+        match self {
+            Self::Start => Self::End,
+            Self::End => Self::Start,
+        }
+    }
 }
 
 impl Layout {
+    /// Whether its problem is that of the scene reversed.
+    pub fn is_reversed(&self) -> bool {
+        self.counted_from == CableEnd::End
+    }
+
     /// The layout of a cable.
     ///
     /// # Errors
     /// `Unsupported` for what the model lacks.
-    pub fn new(problem: &Arc<Problem>, turned: bool) -> Result<Self, SolveError> {
+    pub fn new(problem: &Arc<Problem>, counted_from: CableEnd) -> Result<Self, SolveError> {
         let p = problem;
         if p.bending_stiffness > 0.0 {
-            return Err(unsupported("the cable has bending stiffness"));
+            return Err(unsupported(Unsupported::BendingStiffness));
         }
         if p.floor_friction.is_some() {
-            return Err(unsupported("in plan view the floor rubs everywhere"));
+            return Err(unsupported(Unsupported::PlanView));
         }
         if p.cable.self_contact {
-            return Err(unsupported("the cable can touch itself"));
+            return Err(unsupported(Unsupported::SelfContact));
         }
         if p.supports.iter().any(|s| s.release.is_some()) {
-            return Err(unsupported("a support lets go"));
+            return Err(unsupported(Unsupported::Release));
         }
         let mut loads = Vec::new();
         for (load, l) in p.loads.iter().enumerate() {
@@ -116,7 +138,9 @@ impl Layout {
                     wheels += 1;
                 }
                 SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot => {
-                    let Some(arc_length) = s.arc_length else { return Err(unsupported("a grip without a place")) };
+                    let Some(arc_length) = s.arc_length else {
+                        return Err(unsupported(Unsupported::SupportWithoutPlace));
+                    };
                     if arc_length > part.material[0] {
                         part.material[1] = arc_length;
                         part.supports[1] = Some(k);
@@ -130,18 +154,18 @@ impl Layout {
             strands.push(part);
         }
         if p.supports.iter().all(|s| s.at.is_none()) && p.world.is_empty() {
-            return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
+            return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
         let corners = swept_corners::corners(&problem.world).into();
-        let mut layout = Self { problem: problem.clone(), turned, loads, corners, strands };
+        let mut layout = Self { problem: problem.clone(), counted_from, loads, corners, strands };
         layout.face_wheels();
         Ok(layout)
     }
 
     /// Which side of its wheel the cable passes: over means above where it travels to the right.
     fn face_wheels(&mut self) {
-        let p = &self.problem;
+        let (p, reversed) = (&self.problem, self.counted_from == CableEnd::End);
         let held: Vec<usize> = (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).collect();
         let at = |k: usize| p.supports[k].at.unwrap_or_default();
         for pulley in self.strands.iter_mut().flat_map(|s| &mut s.pulleys) {
@@ -153,7 +177,7 @@ impl Layout {
             let before = i.checked_sub(1).and_then(|j| held.get(j)).map_or(at(pulley.support), |&k| at(k));
             let after = held.get(i + 1).map_or(at(pulley.support), |&k| at(k));
             let way = after.x - before.x;
-            let right = if way < 0.0 || (way == 0.0 && self.turned) { -1.0 } else { 1.0 };
+            let right = if way < 0.0 || (way == 0.0 && reversed) { -1.0 } else { 1.0 };
             let over = if s.side == PulleySide::Over { 1.0 } else { -1.0 };
             pulley.facing = right * over;
         }
@@ -296,7 +320,7 @@ pub(in crate::model::spans) fn place_ends(
         let at = instant.places[support];
         let world = &layout.problem.world;
         let gap = world.signed_gap(at, layout.problem.radius).map(|g| g.gap_m);
-        if gap.is_some_and(|g| g < -crate::model::spans::changes::ON) {
+        if gap.is_some_and(|g| g < -crate::model::spans::changes::SUPPORT_CONTACT_DISTANCE_M) {
             return Err(Failure::SupportInside { at });
         }
         crate::model::spans::contact::support_contact::place(strand, course, side, at);

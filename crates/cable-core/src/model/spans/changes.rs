@@ -1,8 +1,9 @@
 //! Changes are what a converged run may need: contacts released, joined, met, made.
 //!
-//! R a contact whose interval has turned round is let go; M two contacts of one chain are one; L one that pulls is parted (`lift`); P where a span runs into
-//! an obstacle the neighbouring contact is drawn out to it, or a new one begins at a point. After each the strand is
-//! solved again, until nothing fires.
+//! R a contact whose interval has turned round is let go; M two contacts of one chain are one; L
+//! one that pulls is parted (`lift`); P where a span runs into an obstacle the neighbouring contact
+//! is drawn out to it, or a new one begins at a point. After each the strand is solved again, until
+//! nothing fires.
 
 use crate::contact::swept_corners::{self, Corner};
 use crate::contact::{Gap, World};
@@ -18,32 +19,33 @@ use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton;
 use crate::model::spans::newton::{Solved, Work};
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::model::spans::verify::penetration;
 use crate::model::spans::verify::penetration::Penetration;
 use crate::model::spans::verify::tunnelling;
 
 /// Events in one solve at most. A cold start over 24 corners takes 60.
 const MAX_EVENTS: usize = 200;
-/// A contact is let go when its interval has turned round by this much (m or rad). Smaller: rounding releases what
-/// touches in a point. Larger: a contact that pulls is accepted.
-const TURNED: f64 = 1e-10;
-/// Depth inside an obstacle that is met, of the strand's length, and at most, m. Smaller: rounding at touch points; larger: it
-/// is seen.
-const DEEP: f64 = 1e-9;
-const DEEPEST: f64 = 1e-6;
+/// A contact is let go when its interval has turned round by this much (m or rad). Smaller:
+/// rounding releases what touches in a point. Larger: a contact that pulls is accepted.
+const RELEASE_OVERLAP: f64 = 1e-10;
+/// Depth inside an obstacle that is met, of the strand's length, and at most, m. Smaller: rounding
+/// at touch points; larger: it is seen.
+const DEPTH_FRACTION: f64 = 1e-9;
+const DEPTH_LIMIT_M: f64 = 1e-6;
 /// Times in one solve at most that something is done about loads where Newton stalls.
 const MOST_CAUGHT: usize = 4;
-/// What lies beside a load is let go where it is shorter than this part of the strand when Newton stalls. Smaller: Newton comes
-/// so near to its end only after many halvings. Larger: it is laid down again for nothing.
-const SHED: f64 = 1e-4;
+/// What lies beside a load is let go where it is shorter than this part of the strand when Newton
+/// stalls. Smaller: Newton comes so near to its end only after many halvings. Larger: it is laid
+/// down again for nothing.
+const SHED_LENGTH_FRACTION: f64 = 1e-4;
 /// Edges that a contact grows over at once.
 const MOST_EDGES: usize = 8;
-/// Part of p by which an end of a contact may be off the end of an arc and be taken to be there: Newton's steps go beyond it by
-/// less.
-const AT_BORDER: f64 = 1e-8;
+/// Part of p by which an end of a contact may be off the end of an arc and be taken to be there:
+/// Newton's steps go beyond it by less.
+const ARC_END_FRACTION: f64 = 1e-8;
 /// A support this near to a boundary lies on it, m.
-pub(in crate::model::spans) const ON: f64 = 1e-9;
+pub(in crate::model::spans) const SUPPORT_CONTACT_DISTANCE_M: f64 = 1e-9;
 
 /// Solves a strand, events and all.
 ///
@@ -51,7 +53,8 @@ pub(in crate::model::spans) const ON: f64 = 1e-9;
 pub(in crate::model::spans) fn solve(
     strand: &mut CableRun,
     course: &mut Course,
-    (world, corners): (&World, &[Corner]),
+    world: &World,
+    corners: &[Corner],
     came: Option<&[Vec2]>,
     work: &mut Work,
 ) -> Result<Solved, Failure> {
@@ -78,7 +81,8 @@ pub(in crate::model::spans) fn solve(
         };
         sum.iterations += found.iterations;
         sum.residual = found.residual;
-        // What was passed on the way says better than what is inside on which side of it the cable shall be.
+        // Tunnelled corners are checked before penetrations: they tell on which side of an obstacle
+        // the cable belongs.
         let changed = release(strand, course)?
             || join(strand, course)
             || release_below::part(strand, course)
@@ -86,12 +90,13 @@ pub(in crate::model::spans) fn solve(
             || point_load::settle(strand, course)?
             || slack_pocket::open(strand, course)
             || match came {
-                Some(came) => passed(strand, course, (corners, came), work)?,
+                Some(came) => passed(strand, course, corners, came, work)?,
                 None => false,
             }
             || meet(strand, course, world, came.is_some())?;
         if !changed {
-            // What else holds the cable may press it on to its wheel again: it is off when nothing else changes.
+            // What else holds the cable may press it on to its wheel again: it is off when nothing
+            // else changes.
             return lifted(strand, course).map_or(Ok(sum), |support| Err(Failure::OffWheel { support }));
         }
     }
@@ -104,7 +109,7 @@ fn release(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> 
     let worst = (0..strand.contacts.len())
         .filter(|&j| !is_round_wheel(&strand.contacts[j], course))
         .min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
-    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -TURNED) else { return Ok(false) };
+    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -RELEASE_OVERLAP) else { return Ok(false) };
     let_go(strand, course, j)
 }
 
@@ -117,14 +122,14 @@ fn is_round_wheel(c: &Contact, course: &Course) -> bool {
 fn lifted(strand: &CableRun, course: &Course) -> Option<usize> {
     let wheels = strand.contacts.iter().filter(|c| is_round_wheel(c, course));
     let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
-    wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -TURNED)?.wheel
+    wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -RELEASE_OVERLAP)?.wheel
 }
 
-/// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned round past it would count;
-/// whether there was any.
+/// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned
+/// round past it would count; whether there was any.
 fn shed(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> {
-    let least = SHED * (strand.to - strand.from);
-    let small = |c: &Contact| !c.weight && c.ends.s[1] - c.ends.s[0] < least;
+    let least = SHED_LENGTH_FRACTION * (strand.to - strand.from);
+    let small = |c: &Contact| !c.is_load() && c.ends.s[1] - c.ends.s[0] < least;
     let beside = |j: usize| strand.is_joined(j, 0) || strand.is_joined(j, 1);
     let Some(j) = (0..strand.contacts.len()).find(|&j| small(&strand.contacts[j]) && beside(j)) else {
         return Ok(false);
@@ -143,12 +148,12 @@ fn let_go(strand: &mut CableRun, course: &mut Course, j: usize) -> Result<bool, 
     let contact = strand.contacts.remove(j);
     let m = strand.contacts.len();
     if let Some(before) = j.checked_sub(1).and_then(|i| strand.contacts.get_mut(i)) {
-        before.pocket = false;
+        before.next.end_pocket();
     }
     // Beside a load there was no span; now there is the one that was on the other side.
-    let before = j.checked_sub(1).is_some_and(|i| std::mem::take(&mut strand.contacts[i].joined));
-    if before || contact.joined {
-        let (k, other) = if contact.joined { (j + 1, j) } else { (j, j + 1) };
+    let before = j.checked_sub(1).is_some_and(|i| strand.contacts[i].next.part());
+    if before || contact.next == Next::Joined {
+        let (k, other) = if contact.next == Next::Joined { (j + 1, j) } else { (j, j + 1) };
         let ends = (other == 0 && !strand.ties[0].has_span()) || (other > m && !strand.ties[1].has_span());
         if ends {
             return Err(Failure::LoadLies { s: contact.ends.s[0] });
@@ -157,7 +162,7 @@ fn let_go(strand: &mut CableRun, course: &mut Course, j: usize) -> Result<bool, 
         resolve(strand, course, j);
         return Ok(true);
     }
-    // What lay is held in the air now, or hangs.
+    // An end that rested on this contact becomes a fixed or a free end.
     for side in 0..2 {
         let outer = if side == 0 { j == 0 } else { j == m };
         if outer && !strand.ties[side].has_span() {
@@ -207,7 +212,7 @@ fn turn_eye(c: &mut Contact) {
 fn join(strand: &mut CableRun, course: &Course) -> bool {
     for j in 1..strand.contacts.len() {
         let (a, b) = (&strand.contacts[j - 1], &strand.contacts[j]);
-        let loads = a.weight || b.weight;
+        let loads = a.is_load() || b.is_load();
         let apart =
             |track: &Track<'_>| track.curve.is_round() && release_below::hangs_between(track, a.ends.p[1], b.ends.p[0]);
         if a.curve == b.curve
@@ -222,7 +227,7 @@ fn join(strand: &mut CableRun, course: &Course) -> bool {
             let a = &mut strand.contacts[j - 1];
             a.history.append(&course.track(&b), &b.history);
             a.smooth &= b.smooth;
-            (a.pocket, a.joined) = (b.pocket, b.joined);
+            a.next = b.next;
             (a.ends.p[1], a.ends.s[1], a.ends.t[1]) = (b.ends.p[1], b.ends.s[1], b.ends.t[1]);
             if let (Mode::Slide(m), Mode::Hold) = (a.mode, b.mode)
                 && m != 0.0
@@ -240,11 +245,11 @@ fn meet(strand: &mut CableRun, course: &Course, world: &World, resting: bool) ->
     if world.is_empty() {
         return Ok(false);
     }
-    let deep = smaller(DEEP * (strand.to - strand.from), DEEPEST);
+    let deep = smaller(DEPTH_FRACTION * (strand.to - strand.from), DEPTH_LIMIT_M);
     let mut any = false;
     // From the last span, so that those before keep their number.
     for k in (0..strand.spans()).rev() {
-        if let Some(landing) = load_landing::find(strand, course, world, (k, deep)) {
+        if let Some(landing) = load_landing::find(strand, course, world, k, deep) {
             load_landing::touch(strand, course, k, &landing)?;
             any = true;
             continue;
@@ -261,7 +266,8 @@ fn meet(strand: &mut CableRun, course: &Course, world: &World, resting: bool) ->
 fn passed(
     strand: &mut CableRun,
     course: &Course,
-    (corners, came): (&[Corner], &[Vec2]),
+    corners: &[Corner],
+    came: &[Vec2],
     work: &mut Work,
 ) -> Result<bool, Failure> {
     let mut shape = Vec::new();
@@ -270,8 +276,8 @@ fn passed(
     let mut best: Option<(f64, usize, f64, Vec2, Vec2)> = None;
     for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
         penetration::shapes(strand, course, k, |s0, at, c| {
-            for i in 1..PASSED_POINTS {
-                let s = c.span().length * i as f64 / PASSED_POINTS as f64;
+            for i in 1..CORNER_SEARCH_POINTS {
+                let s = c.span().length * i as f64 / CORNER_SEARCH_POINTS as f64;
                 let p = at + c.position_at(s);
                 let d = (p - corner.at).norm();
                 if best.is_none_or(|b| d < b.0) {
@@ -282,7 +288,8 @@ fn passed(
     }
     let Some((_, k, s, at, force)) = best else { return Ok(false) };
     let tangent = force / force.norm();
-    // It must come to lie on the other side of the cable: on its left now, it shall be on its right.
+    // It must come to lie on the other side of the cable: on its left now, it shall be on its
+    // right.
     let normal = perp(tangent) * cross(tangent, corner.at - at).signum();
     let gap = Gap {
         gap_m: -(corner.at - at).norm(),
@@ -298,7 +305,7 @@ fn passed(
 }
 
 /// Points of a catenary among which the nearest to a corner is sought.
-const PASSED_POINTS: usize = 64;
+const CORNER_SEARCH_POINTS: usize = 64;
 
 /// Lays span k down where it hit.
 ///
@@ -319,7 +326,7 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
     let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
     let ends = strand.ends_of(course, k);
     let force = strand.force(course, k, hit.s).norm();
-    let same = |c: &Contact| c.curve == curve_index && c.home == home && c.wheel.is_none() && !c.weight;
+    let same = |c: &Contact| c.curve == curve_index && c.home == home && c.wheel.is_none() && !c.is_load();
     let end = |j: Option<usize>, side: usize| {
         j.and_then(|j| strand.contacts.get(j)).filter(|c| same(c)).map(|c| c.ends.p[side])
     };
@@ -331,7 +338,7 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
     let bears = |c: &Contact, (from, to): (f64, f64)| {
         let track = course.track(c);
         let mut bears = true;
-        track.bottoms((from, to), |p| bears &= track.law.press(&track.place(p), force) >= 0.0);
+        track.bottoms(from, to, |p| bears &= track.law.press(&track.place(p), force) >= 0.0);
         bears || !curve.is_round()
     };
     if let Some(c) = k
@@ -339,12 +346,12 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
         .and_then(|j| strand.contacts.get_mut(j))
         .filter(|c| same(c) && p > c.ends.p[1] && bears(c, (c.ends.p[1], p)))
     {
-        let p = beyond_edges(curve, home, (p, 1), ends[1]);
+        let p = beyond_edges(curve, home, p, 1, ends[1]);
         (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.s, force);
         return Ok(());
     }
     if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0] && bears(c, (p, c.ends.p[0]))) {
-        let p = beyond_edges(curve, home, (p, 0), ends[0]);
+        let p = beyond_edges(curve, home, p, 0, ends[0]);
         (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.s, force);
         return Ok(());
     }
@@ -357,10 +364,8 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
         wheel: None,
         flips: 0,
         held: None,
-        pocket: false,
-        joined: false,
-        weight: false,
-        kink: None,
+        next: Next::Span,
+        load: None,
         smooth: resting,
     };
     let track = course.track(&contact);
@@ -368,7 +373,7 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
     for side in 0..2 {
         let outer = if side == 0 { k == 0 } else { k == strand.contacts.len() };
         if let (true, Tie::Held(at)) = (outer, strand.ties[side])
-            && let Some(end) = curve.on_chain(home, at, ON)
+            && let Some(end) = curve.on_chain(home, at, SUPPORT_CONTACT_DISTANCE_M)
             && (if side == 0 { end <= p } else { end >= p })
         {
             let s = if side == 0 { strand.from } else { strand.to };
@@ -397,9 +402,10 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
     Ok(())
 }
 
-/// From p, where a contact ends on a side, on to the corner behind each edge that the way to the far end of the span there
-/// leads into: along an edge nothing turns, and Newton's method does not find across it.
-fn beyond_edges(curve: &Curve, home: ChainRange, (mut p, side): (f64, usize), far: Option<Vec2>) -> f64 {
+/// From p, where a contact ends on a side, on to the corner behind each edge that the way to the
+/// far end of the span there leads into: along an edge nothing turns, and Newton's method does not
+/// find across it.
+fn beyond_edges(curve: &Curve, home: ChainRange, mut p: f64, side: usize, far: Option<Vec2>) -> f64 {
     let (step, forward) = if side == 0 { (-1, -1.0) } else { (1, 1.0) };
     let Some(far) = far else { return p };
     let inside = |i: i64| i >= home.first && i <= home.last;
@@ -430,7 +436,7 @@ fn beyond_edges(curve: &Curve, home: ChainRange, (mut p, side): (f64, usize), fa
 /// What has been laid down in span k leads the contacts beside it over their edges.
 fn lead(strand: &mut CableRun, course: &Course, k: usize) {
     for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
-        if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.weight)) {
+        if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.is_load())) {
             lead_end(strand, course, j, side);
         }
     }
@@ -440,7 +446,7 @@ fn lead(strand: &mut CableRun, course: &Course, k: usize) {
 fn lead_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bool {
     let far = strand.ends_of(course, j + side)[side];
     let c = &mut strand.contacts[j];
-    let p = beyond_edges(&course.curves[c.curve], c.home, (c.ends.p[side], side), far);
+    let p = beyond_edges(&course.curves[c.curve], c.home, c.ends.p[side], side, far);
     if p == c.ends.p[side] {
         return false;
     }
@@ -449,8 +455,8 @@ fn lead_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bo
     true
 }
 
-/// Takes an end of contact j that lies at the start of an arc, seen along the contact, back over the edge before it where its span
-/// leaves that edge; whether it did.
+/// Takes an end of contact j that lies at the start of an arc, seen along the contact, back over
+/// the edge before it where its span leaves that edge; whether it did.
 fn lift_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bool {
     let Some(far) = strand.ends_of(course, j + side)[side] else { return false };
     let c = &mut strand.contacts[j];
@@ -475,9 +481,10 @@ fn lift_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bo
     moved != 0.0
 }
 
-/// G: contacts that came to the end of an arc, with their span turned on into the edge behind it, go on to the corner at the
-/// edge's far end, those that came to its start, with their span lifted off the edge before it, back to the near one; whether there
-/// was one. A stiff taut cable turns by w/T a metre along an edge: next to nothing.
+/// G: contacts that came to the end of an arc, with their span turned on into the edge behind it,
+/// go on to the corner at the edge's far end, those that came to its start, with their span lifted
+/// off the edge before it, back to the near one; whether there was one. A stiff taut cable turns by
+/// w/T a metre along an edge: next to nothing.
 fn grow(strand: &mut CableRun, course: &Course) -> bool {
     let mut any = false;
     for j in 0..strand.contacts.len() {
@@ -486,9 +493,9 @@ fn grow(strand: &mut CableRun, course: &Course) -> bool {
             let curve = &course.curves[c.curve];
             let p = c.ends.p[side];
             let i = curve.locate(p, c.home);
-            let border = |q: f64| (p - q).abs() <= AT_BORDER * (1.0 + p.abs());
+            let border = |q: f64| (p - q).abs() <= ARC_END_FRACTION * (1.0 + p.abs());
             if c.wheel.is_none()
-                && !c.weight
+                && !c.is_load()
                 && strand.has_span(j + side)
                 && (border(curve.origin(i)) || border(curve.end(i)))
             {

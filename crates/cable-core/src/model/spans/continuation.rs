@@ -1,4 +1,5 @@
-//! The continuation leads from one instant to another, in as many steps as it takes; it begins with the initial equilibrium.
+//! The continuation finds the initial equilibrium and follows it through time, and halves load
+//! steps that fail.
 
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};
@@ -27,49 +28,57 @@ use crate::solution::Node;
 /// Halvings of a step at most: 2⁻¹² of a step of 1 % of the cable is a hair's breadth.
 const MAX_HALVINGS: u32 = 12;
 /// Part of a step over which a cable that runs away is followed at least.
-const RUN: f64 = 1e-3;
-/// Drag with which it is followed at first, of the load per metre. Less: steps fail where it runs fast. More: more of them.
+const RUNAWAY_STEP_FRACTION: f64 = 1e-3;
+/// Drag with which it is followed at first, of the load per metre. Less: steps fail where it runs
+/// fast. More: more of them.
 const DRAG: f64 = 10.0;
 /// It has come to rest when it needs no more than this part of that drag.
 const LEAST_DRAG: f64 = 1e-3;
 /// A force that differs by less than this part is the same.
-const SAME: f64 = 1e-9;
+const FORCE_TOLERANCE: f64 = 1e-9;
 /// Steps it is followed for at most, and times in a row the drag is raised.
 const MOST_DRAGGED: usize = 200;
 const MOST_RAISED: usize = 5;
-/// Friction, of the force there, that may be missing in the step in which a load comes down, and the shortest step taken for its
-/// sake. More: forces are off by as much while such a step lasts. Less: more steps.
-const FRESH: f64 = 3e-4;
-const LANDS: f64 = 1.0 / 64.0;
+/// Friction, of the force there, that may be missing in the step in which a load comes down, and
+/// the shortest step taken for its sake. More: forces are off by as much while such a step lasts.
+/// Less: more steps.
+const MISSING_FRICTION_FRACTION: f64 = 3e-4;
+const LANDING_STEP_FRACTION: f64 = 1.0 / 64.0;
 /// Spans that are tried as pockets in one step. More: dearer failures, each halving tries again.
 const MOST_POCKETS: usize = 3;
-/// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches only what it is led
-/// round. Less: it lies on more than the string of the route. More: nothing gained.
-const TAUT: f64 = 4.0;
-/// The same where that finds none: corners that the string of the route bends round and the cable does not give away more
-/// than it was shrunk by.
-const TAUTER: f64 = 400.0;
-/// Part of the load that acts at first. More: a long span sags into what is below it before it can be met step by step.
-/// Less: nothing gained.
-const LIGHT: f64 = 1e-3;
-/// First step of the way from taut to what it is, and how large (at most twice this) steps become that succeed.
+/// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches
+/// only what it is led round. Less: it lies on more than the string of the route. More: nothing
+/// gained.
+const FIRST_TENSION_WEIGHTS: f64 = 4.0;
+/// The same where that finds none: corners that the string of the route bends round and the cable
+/// does not give away more than it was shrunk by.
+const SECOND_TENSION_WEIGHTS: f64 = 400.0;
+/// Part of the load that acts at first. More: a long span sags into what is below it before it can
+/// be met step by step. Less: nothing gained.
+const FIRST_LOAD_FRACTION: f64 = 1e-3;
+/// First step of the way from taut to what it is, and how large (at most twice this) steps become
+/// that succeed.
 const FIRST_STEP: f64 = 0.05;
 const LARGEST_STEP: f64 = 0.2;
 
-/// Parts of the cone of friction that a cable taken over may use: along the very edge of the cone sliding from an end would
-/// stop anywhere, and Newton stalls. The first changes nothing that shows, the second holds a little first.
-const WITHIN: [f64; 3] = [1.0 - 1e-5, 1.0 - 1e-3, 0.99];
+/// Parts of the cone of friction that a cable taken over may use: along the very edge of the cone
+/// sliding from an end would stop anywhere, and Newton stalls. The first changes nothing that
+/// shows, the second holds a little first.
+const ADOPTED_CONE_FRACTIONS: [f64; 3] = [1.0 - 1e-5, 1.0 - 1e-3, 0.99];
 
-/// Friction over what there is that is first tried where a cable slides, then twice that, and so on to the last, as parts of what
-/// there is. First smaller: more of them are tried. Last larger: dearer where no friction holds it.
+/// Friction over what there is that is first tried where a cable slides, then twice that, and so on
+/// to the last, as parts of what there is. First smaller: more of them are tried. Last larger:
+/// dearer where no friction holds it.
 const FIRST_PART: f64 = 0.04;
 const MOST_PART: f64 = 1e4;
 /// Part of the friction that is missing to which it is found: three digits are shown.
-const NEEDED: f64 = 2e-4;
-/// Less than this part that is missing is none: rounding. Larger: a cable that slides by so little has no answer and no cause.
+const MISSING_FRICTION_TOLERANCE: f64 = 2e-4;
+/// Less than this part that is missing is none: rounding. Larger: a cable that slides by so little
+/// has no answer and no cause.
 const LEAST_PART: f64 = 1e-7;
-/// Part of the tensions by which a contact may be off sliding where less friction does not hold. Smaller: what is missing would
-/// have to be found to more digits. Larger: a failure to find an answer is taken for sliding.
+/// Part of the tensions by which a contact may be off sliding where less friction does not hold.
+/// Smaller: what is missing would have to be found to more digits. Larger: a failure to find an
+/// answer is taken for sliding.
 const MOBILISED: f64 = 2e-2;
 
 /// All strands of a cable at an instant.
@@ -83,7 +92,8 @@ pub(in crate::model::spans) struct CableEquilibrium {
 /// Why no rest was found, and how far the cable was let out.
 pub(in crate::model::spans) type Unfound = (Failure, Option<Box<CableEquilibrium>>);
 
-/// How a route is seen: what stands for a post, and the tension (of the weight) to which the cable is shrunk at first.
+/// How a route is seen: what stands for a post, and the tension (of the weight) to which the cable
+/// is shrunk at first.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
     ring: Ring,
@@ -140,8 +150,13 @@ impl CableEquilibrium {
         let course = layout.course(curves, instant);
         // As it is laid; else where it needs no friction; either may have to begin taut.
         let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
-        let ways =
-            [(instant, None), (&smooth, None), (&smooth, Some(TAUT)), (instant, Some(TAUT)), (&smooth, Some(TAUTER))];
+        let ways = [
+            (instant, None),
+            (&smooth, None),
+            (&smooth, Some(FIRST_TENSION_WEIGHTS)),
+            (instant, Some(FIRST_TENSION_WEIGHTS)),
+            (&smooth, Some(SECOND_TENSION_WEIGHTS)),
+        ];
         // What is not held at both ends would run to where it needs no friction.
         let held = start == SearchStart::AlsoWithoutFriction
             && layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
@@ -173,20 +188,22 @@ impl CableEquilibrium {
     /// A cable that comes down in a heap and hangs over crests, without tension where it lies.
     pub fn heaped(layout: &Layout, instant: &BoundaryConditions) -> Option<Self> {
         let course = layout.course(layout.curves(), instant);
-        let strands = strands_of(layout, |k| slack::lay(layout, k, (&course, instant)))?;
+        let strands = strands_of(layout, |k| slack::lay(layout, k, &course, instant))?;
         Some(Self { strands, course, instant: instant.clone() })
     }
 
-    /// How a cable can be laid as it is: posts seen nearer, too, where it lies on something and nothing else holds it.
+    /// How a cable can be laid as it is: posts seen nearer, too, where it lies on something and
+    /// nothing else holds it.
     fn seen(layout: &Layout) -> Vec<Seen> {
         let loose = layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none));
         let rings = if loose { &RINGS[..] } else { &RINGS[..1] };
         let laid = rings.iter().map(|ring| Seen { ring: *ring, ..Seen::default() });
-        laid.chain(loose.then_some(Seen { cooled: Some(TAUT), ..Seen::default() })).collect()
+        laid.chain(loose.then_some(Seen { cooled: Some(FIRST_TENSION_WEIGHTS), ..Seen::default() })).collect()
     }
 
-    /// The same cable where all friction acts against it as it is drawn one way (1: towards its end, −1: towards its start): what it
-    /// comes to where a history ends so. None where there is no such balance.
+    /// The same cable where all friction acts against it as it is drawn one way (1: towards its
+    /// end, −1: towards its start): what it comes to where a history ends so. None where there is
+    /// no such balance.
     pub fn drawn(&self, layout: &Layout, way: f64, work: &mut Work) -> Option<Self> {
         let mut network = self.clone();
         network.course.mobilised = way;
@@ -195,11 +212,12 @@ impl CableEquilibrium {
         Some(network)
     }
 
-    /// The part of its friction with which a cable that nothing holds but friction would rest as it is laid, where with all of
-    /// it it slides: just above the least one. None where it rests, or where it is not known to slide.
+    /// The part of its friction with which a cable that nothing holds but friction would rest as it
+    /// is laid, where with all of it it slides: just above the least one. None where it rests, or
+    /// where it is not known to slide.
     ///
-    /// With less than that part every contact of the strand slides the same way: that, found just above it, is what proves that it
-    /// is friction that is missing, not an answer.
+    /// With less than that part every contact of the strand slides the same way: that, found just
+    /// above it, is what proves that it is friction that is missing, not an answer.
     pub fn friction_needed(layout: &Layout, instant: &BoundaryConditions, work: &mut Work) -> Option<f64> {
         let course = layout.course(layout.curves(), instant);
         let mut rests = |part: f64, seen: Seen| {
@@ -219,7 +237,7 @@ impl CableEquilibrium {
             }
             (low, step) = (high, 2.0 * step);
         };
-        while high - low > NEEDED * (high - 1.0) {
+        while high - low > MISSING_FRICTION_TOLERANCE * (high - 1.0) {
             let middle = 0.5 * (low + high);
             if rests(middle, seen).is_some() {
                 high = middle;
@@ -231,7 +249,7 @@ impl CableEquilibrium {
             }
         }
         let found = rests(high, seen)?;
-        let near = MOBILISED * (1.0 + NEEDED * (high - 1.0));
+        let near = MOBILISED * (1.0 + MISSING_FRICTION_TOLERANCE * (high - 1.0));
         let slides = |s: &CableRun| [1.0, -1.0].iter().any(|way| point_load::mobilised(s, &found.course, *way, near));
         let loose = layout.strands.iter().zip(&found.strands).filter(|(p, _)| p.supports.iter().all(Option::is_none));
         loose.map(|(_, s)| s).any(slides).then_some(high)
@@ -248,9 +266,9 @@ impl CableEquilibrium {
         work: &mut Work,
     ) -> Result<Self, Failure> {
         let mut first = None;
-        for within in WITHIN {
+        for within in ADOPTED_CONE_FRACTIONS {
             let course = layout.course(layout.curves(), instant);
-            let Some(strands) = from_solution::take(layout, &course, instant, (nodes, within)) else { continue };
+            let Some(strands) = from_solution::take(layout, &course, instant, nodes, within) else { continue };
             let mut network = Self { strands, course, instant: instant.clone() };
             match network.step(layout, instant, work) {
                 Ok(_) => return Ok(network),
@@ -276,13 +294,13 @@ impl CableEquilibrium {
         let mut came = Vec::new();
         for k in 0..layout.strands.len() {
             let may = taut.is_none() && seen.loose;
-            let loose = if may { slack::lay(layout, k, (&self.course, &begin)) } else { None };
+            let loose = if may { slack::lay(layout, k, &self.course, &begin) } else { None };
             if let Some(strand) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
                 self.strands.push(strand);
                 came.push(Vec::new());
                 continue;
             }
-            let laid = contacts::lay(layout, k, (&self.course, &begin), seen.ring);
+            let laid = contacts::lay(layout, k, &self.course, &begin, seen.ring);
             let no_way = Failure::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] };
             let (strand, way) = laid.ok_or(no_way)?;
             self.strands.push(strand);
@@ -290,8 +308,8 @@ impl CableEquilibrium {
         }
         if let Some(taut) = taut {
             begin.thermal = self.shrunk_thermal(layout, goal, taut);
-            begin.load *= LIGHT;
-            begin.forces.iter_mut().for_each(|f| *f *= LIGHT);
+            begin.load *= FIRST_LOAD_FRACTION;
+            begin.forces.iter_mut().for_each(|f| *f *= FIRST_LOAD_FRACTION);
             layout.give(&mut self.course, &begin);
             for (strand, part) in self.strands.iter_mut().zip(&layout.strands) {
                 if part.supports.iter().all(Option::is_some) {
@@ -398,7 +416,7 @@ impl CableEquilibrium {
     ) -> Result<StepStats, Failure> {
         let [mut start, mut moved] = std::mem::take(&mut work.strands);
         start.clone_from(&self.strands[k]);
-        let found = self.solve_from(layout, k, came, ([&mut start, &mut moved], work));
+        let found = self.solve_from(layout, k, came, [&mut start, &mut moved], work);
         if found.is_err() {
             self.strands[k].clone_from(&start);
         }
@@ -412,7 +430,8 @@ impl CableEquilibrium {
         layout: &Layout,
         k: usize,
         came: Option<&[Vec2]>,
-        ([start, moved], work): ([&mut CableRun; 2], &mut Work),
+        [start, moved]: [&mut CableRun; 2],
+        work: &mut Work,
     ) -> Result<StepStats, Failure> {
         if self.strands[k].loose.is_some() {
             return self.lie(layout, k);
@@ -424,7 +443,7 @@ impl CableEquilibrium {
         if came.is_none() && self.course.mobilised == 0.0 {
             foresee(strand, &self.course, &mut work.foresight);
         }
-        let mut found = changes::solve(strand, &mut self.course, (world, &layout.corners), came, work);
+        let mut found = changes::solve(strand, &mut self.course, world, &layout.corners, came, work);
         if found.is_err() {
             // From where each span by itself would be.
             strand.clone_from(moved);
@@ -433,12 +452,12 @@ impl CableEquilibrium {
                 if strand.has_span(j)
                     && let Some(g) = strand.solve_span(&self.course, j)
                 {
-                    other |= (strand.forces[j] - g).norm() > SAME * g.norm();
+                    other |= (strand.forces[j] - g).norm() > FORCE_TOLERANCE * g.norm();
                     strand.forces[j] = g;
                 }
             }
             if other {
-                found = changes::solve(strand, &mut self.course, (world, &layout.corners), came, work);
+                found = changes::solve(strand, &mut self.course, world, &layout.corners, came, work);
             }
         }
         if found.is_err() {
@@ -450,7 +469,7 @@ impl CableEquilibrium {
                 for (_, k) in &loose[..n] {
                     slack_pocket::fill(strand, &self.course, *k);
                 }
-                let again = changes::solve(strand, &mut self.course, (world, &layout.corners), came, work);
+                let again = changes::solve(strand, &mut self.course, world, &layout.corners, came, work);
                 if again.is_ok() {
                     found = again;
                     break;
@@ -463,10 +482,10 @@ impl CableEquilibrium {
         }
         for c in &mut self.strands[k].contacts {
             let track = self.course.track(c).seen_from(c.ends.p[0]);
-            if c.weight {
+            if c.is_load() {
                 c.ends.p[1] = c.ends.p[0];
             }
-            c.history.commit(&track, &c.ends, (c.mode, c.held), &mut work.past);
+            c.history.commit(&track, &c.ends, c.mode, c.held, &mut work.past);
             // What came down in this step rubs from now on.
             if c.smooth && came.is_none() {
                 c.smooth = false;
@@ -475,8 +494,9 @@ impl CableEquilibrium {
         }
         equilibrium::sound(&self.strands[k], &self.course)?;
         clearance::clear(&self.strands[k], &self.course, world)?;
-        // The shape before the step is drawn with the load and the lengths of before: with those of after it spans of a cable that is let
-        // out or loaded in this step would end beside their contacts.
+        // The shape before the step is drawn with the load and the lengths of before: with those of
+        // after it spans of a cable that is let out or loaded in this step would end beside their
+        // contacts.
         let was = &work.instants[0];
         let other =
             was.load != self.instant.load || was.thermal != self.instant.thermal || was.forces != self.instant.forces;
@@ -498,10 +518,10 @@ impl CableEquilibrium {
         Ok(taken)
     }
 
-    /// A strand that lies loose goes on lying so while its supports stay where they are: as they move they draw its folds over
-    /// the ground, and what that takes is not known here.
+    /// A strand that lies loose goes on lying so while its supports stay where they are: as they
+    /// move they draw its folds over the ground, and what that takes is not known here.
     fn lie(&mut self, layout: &Layout, k: usize) -> Result<StepStats, Failure> {
-        let found = slack::lay(layout, k, (&self.course, &self.instant));
+        let found = slack::lay(layout, k, &self.course, &self.instant);
         let strand = &mut self.strands[k];
         let Some(found) = found.filter(|f| f.ties == strand.ties) else {
             return Err(Failure::Drawn { s: strand.from });
@@ -521,10 +541,12 @@ impl CableEquilibrium {
         self.strands.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.friction(&self.course)).sum()
     }
 
-    /// To an instant that no balance near by leads to: the cable slides under a drag that is taken away as it comes to rest.
+    /// To an instant that no balance near by leads to: the cable slides under a drag that is taken
+    /// away as it comes to rest.
     ///
-    /// Each step is one of implicit Euler of η ds/dt = T₂ − T₁, which falls in energy; η is lowered as far as it goes
-    /// (pseudo-transient continuation: C. T. Kelley and D. E. Keyes, SIAM J. Numer. Anal. 35, 1998).
+    /// Each step is one of implicit Euler of η ds/dt = T₂ − T₁, which falls in energy; η is lowered
+    /// as far as it goes (pseudo-transient continuation: C. T. Kelley and D. E. Keyes, SIAM J.
+    /// Numer. Anal. 35, 1998).
     fn follow(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) -> Result<StepStats, Failure> {
         let (before, old) = (self.strands.clone(), self.instant.clone());
         let size = to.load.norm();
@@ -567,7 +589,8 @@ impl CableEquilibrium {
         self.strands.iter().all(|s| newton::stable(s, &self.course, work))
     }
 
-    /// Why a step was not taken: it would have to push however much it is held back, or nothing better than the trouble of the step.
+    /// Why a step was not taken: it would have to push however much it is held back, or nothing
+    /// better than the trouble of the step.
     fn reason(&self, step: Failure, held_back: Failure) -> Failure {
         let found_nothing = matches!(step, Failure::Stalled { .. } | Failure::Restless { .. });
         let pushes = matches!(held_back, Failure::Compressed { .. });
@@ -578,7 +601,8 @@ impl CableEquilibrium {
         }
     }
 
-    /// A cable that lies loose along its route with a free end, as it is drawn: under hardly any tension instead, so that it can be followed.
+    /// A cable that lies loose along its route with a free end, as it is drawn: under hardly any
+    /// tension instead, so that it can be followed.
     fn take_up(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) {
         let held = |k: usize| layout.strands[k].supports.iter().all(Option::is_some);
         let lies = |k: usize| self.strands[k].loose.as_ref().is_some_and(Loose::spreads);
@@ -600,12 +624,12 @@ impl CableEquilibrium {
         to: &BoundaryConditions,
         first: f64,
         work: &mut Work,
-    ) -> Result<StepStats, (Failure, f64)> {
+    ) -> Result<StepStats, Stopped> {
         self.take_up(layout, to, work);
         let [old, mut from, mut at] = std::mem::take(&mut work.instants);
         work.instants[0] = old;
         from.clone_from(&self.instant);
-        let found = self.travel_from(layout, (&from, to, &mut at), first, work);
+        let found = self.travel_from(layout, &from, to, &mut at, first, work);
         let old = std::mem::take(&mut work.instants[0]);
         work.instants = [old, from, at];
         found
@@ -614,20 +638,24 @@ impl CableEquilibrium {
     fn travel_from(
         &mut self,
         layout: &Layout,
-        (from, to, at): (&BoundaryConditions, &BoundaryConditions, &mut BoundaryConditions),
+        from: &BoundaryConditions,
+        to: &BoundaryConditions,
+        at: &mut BoundaryConditions,
         first: f64,
         work: &mut Work,
-    ) -> Result<StepStats, (Failure, f64)> {
+    ) -> Result<StepStats, Stopped> {
         let (mut done, mut step, mut taken) = (0.0, first, StepStats::default());
         let mut halvings: u32 = 0;
-        // Not on the way to a first rest; and the step that was taken but had something come down in it.
+        // Not on the way to a first rest; and the step that was taken but had something come down
+        // in it.
         let (mut moves, mut whole) = (first >= 1.0, None);
         while done < 1.0 {
             let next = if done + 1.000_001 * step >= 1.0 { 1.0 } else { done + step };
             at.between(from, to, next);
             let trouble = match self.step(layout, at, work) {
-                // What comes down has no friction in the step in which it does: that shall be a short one.
-                Ok(t) if moves && t.fresh > FRESH && step > LANDS => {
+                // What comes down has no friction in the step in which it does: that shall be a
+                // short one.
+                Ok(t) if moves && t.fresh > MISSING_FRICTION_FRACTION && step > LANDING_STEP_FRACTION => {
                     self.undo(layout, work);
                     whole = whole.or(Some(step));
                     (step, taken.halved) = (0.5 * step, taken.halved + 1);
@@ -655,13 +683,13 @@ impl CableEquilibrium {
             taken.halved += 1;
             if halvings > MAX_HALVINGS {
                 // Where nothing near by holds the cable it runs away, to the next place that does.
-                let next = if done + RUN < 1.0 { done + RUN } else { 1.0 };
+                let next = if done + RUNAWAY_STEP_FRACTION < 1.0 { done + RUNAWAY_STEP_FRACTION } else { 1.0 };
                 at.between(from, to, next);
                 let t = match self.follow(layout, at, work) {
                     Ok(t) => t,
-                    Err(other) => return Err((self.reason(trouble, other), done)),
+                    Err(other) => return Err(Stopped { failure: self.reason(trouble, other), done }),
                 };
-                (taken, done, halvings, step) = (taken.and(t), next, 0, RUN);
+                (taken, done, halvings, step) = (taken.and(t), next, 0, RUNAWAY_STEP_FRACTION);
                 taken.ran += 1;
             }
         }
@@ -674,9 +702,18 @@ fn strands_of(layout: &Layout, lay: impl Fn(usize) -> Option<CableRun>) -> Optio
     (0..layout.strands.len()).map(lay).collect()
 }
 
-impl From<(Failure, f64)> for Failure {
-    fn from((trouble, _): (Failure, f64)) -> Self {
-        trouble
+/// How a way to an instant ended that was not gone to its end.
+#[derive(Clone, Debug)]
+pub(in crate::model::spans) struct Stopped {
+    /// Why.
+    pub failure: Failure,
+    /// The part of it that was gone.
+    pub done: f64,
+}
+
+impl From<Stopped> for Failure {
+    fn from(stopped: Stopped) -> Self {
+        stopped.failure
     }
 }
 

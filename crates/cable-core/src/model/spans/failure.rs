@@ -1,4 +1,5 @@
-//! A failure says why a run has no answer here, before it becomes a [`SolveError`](crate::SolveError).
+//! A failure says why a run has no answer here, before it becomes a
+//! [`SolveError`](crate::SolveError).
 
 use crate::math::Vec2;
 

@@ -1,7 +1,9 @@
-//! `spans` is the quasi-static model of exact elements: a taut flexible cable with contact and friction, without a mesh.
+//! `spans` is the quasi-static model of exact elements: a taut flexible cable with contact and
+//! friction, without a mesh.
 //!
-//! Free spans are elastic catenaries, contacts are intervals of an obstacle's boundary through which the material
-//! slides, and friction remembers in closed form. Each room has its derivation at its head.
+//! Free spans are elastic catenaries, contacts are intervals of an obstacle's boundary through
+//! which the material slides, and friction remembers in closed form. Each room has its derivation
+//! at its head.
 //!
 //! | room | what it holds |
 //! |---|---|
@@ -17,8 +19,8 @@
 //! | `verify` | checks of an answer that do not use the solver |
 //! | `results`, `failure` | the answer; why there is none |
 //!
-//! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that let go. A cable that
-//! loses its tension is said to have lost it, with the place.
+//! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that
+//! let go. A cable that loses its tension is said to have lost it, with the place.
 
 mod boundary;
 mod boundary_conditions;
@@ -37,11 +39,11 @@ mod verify;
 
 use std::sync::Arc;
 
-use crate::error::{Place, SolveError};
+use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
 use crate::model::catenary::slack_without_weight;
 use crate::model::gauge::TensionGauge;
-use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, unsupported};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, Layout, unsupported};
 use crate::model::spans::continuation::{CableEquilibrium, SearchStart, StepStats, Unfound};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::Work;
@@ -53,8 +55,9 @@ use crate::scene::FrictionMobilised;
 use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
 
-/// Supports move by at most this part of the cable in one solve. Larger: sliding that starts and reverses inside a step
-/// is missed, and what is laid down in a step is laid with the tension it began with. Smaller: more solves.
+/// Supports move by at most this part of the cable in one solve. Larger: sliding that starts and
+/// reverses inside a step is missed, and what is laid down in a step is laid with the tension it
+/// began with. Smaller: more solves.
 const STEP: f64 = 0.01;
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
@@ -84,7 +87,8 @@ impl SpansModel {
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
-        let layout = counted(&problem, reversed::is_led_up(&problem))?;
+        let from = if reversed::is_led_up(&problem) { CableEnd::End } else { CableEnd::Start };
+        let layout = counted(&problem, from)?;
         let n = problem.supports.len();
         let mut points: Vec<Vec2> = problem.route.clone();
         if points.len() < 2 {
@@ -123,7 +127,7 @@ impl SpansModel {
         match &self.network {
             Some(network) => {
                 let report = results::report(&self.layout, network);
-                if self.layout.turned { self.turned().report(&report) } else { report }
+                if self.layout.is_reversed() { self.turned().report(&report) } else { report }
             }
             None => self.shown.clone(),
         }
@@ -134,13 +138,14 @@ impl SpansModel {
         from.places.iter().zip(&to.places).map(|(a, b)| (b - a).norm()).fold(0.0, |m, d| if d > m { d } else { m })
     }
 
-    /// A trouble as an error: a loss of tension where the last state found, `stopped` or the present one, shows one.
+    /// A trouble as an error: a loss of tension where the last state found, `stopped` or the
+    /// present one, shows one.
     fn said(&self, stopped: Option<&CableEquilibrium>, trouble: Failure) -> SolveError {
         if let Some(network) = stopped.or(self.network.as_ref())
             && let Some((loss, arc_length_m, at_m)) =
                 verify::tension_loss::lost(&network.strands, &network.course, &trouble)
         {
-            let arc_length_m = if self.layout.turned { self.turned().s(arc_length_m) } else { arc_length_m };
+            let arc_length_m = if self.layout.is_reversed() { self.turned().s(arc_length_m) } else { arc_length_m };
             return SolveError::TensionLost { model: Model::Spans, loss, arc_length_m, at_m };
         }
         self.in_words(trouble)
@@ -148,22 +153,24 @@ impl SpansModel {
 
     /// A trouble of the layout in the words everyone uses.
     fn in_words(&self, trouble: Failure) -> SolveError {
-        said(&self.problem, if self.layout.turned { self.turned().trouble(trouble) } else { trouble })
+        said(&self.problem, if self.layout.is_reversed() { self.turned().trouble(trouble) } else { trouble })
     }
 
-    /// What leads from how the layout counts the cable to how the scene does, where that is otherwise.
+    /// What leads from how the layout counts the cable to how the scene does, where that is
+    /// otherwise.
     fn turned(&self) -> Turned<'_> {
         Turned { problem: &self.problem }
     }
 
-    /// A rest of the cable laid along its way, counted from its upper end; where none is found so, from the other; else as it comes down.
+    /// A rest of the cable laid along its way, counted from its upper end; where none is found so,
+    /// from the other; else as it comes down.
     fn lay(&mut self, instant: &mut BoundaryConditions, work: &mut Work) -> Result<StepStats, Unfound> {
         let (network, taken) = match CableEquilibrium::rest(&self.layout, instant, work) {
             Ok(found) => found,
             Err(unfound) => {
                 let (mut there, mut dragged) = (BoundaryConditions::default(), self.dragged.clone());
                 dragged.reverse();
-                let other = counted(&self.problem, !self.layout.turned).ok().and_then(|other| {
+                let other = counted(&self.problem, self.layout.counted_from.other()).ok().and_then(|other| {
                     other.instant(&dragged, self.time_s, &mut there);
                     Some((CableEquilibrium::rest(&other, &there, work).ok()?, other))
                 });
@@ -194,12 +201,14 @@ impl SpansModel {
         }
     }
 
-    /// What other histories would have left in the cable, in words: as it was laid, and drawn towards either end.
+    /// What other histories would have left in the cable, in words: as it was laid, and drawn
+    /// towards either end.
     ///
-    /// An equilibrium that was found without friction is not sought so again: the search would come to the place from which the cable is drawn here.
+    /// An equilibrium that was found without friction is not sought so again: the search would come
+    /// to the place from which the cable is drawn here.
     fn histories(&self, start: SearchStart, work: &mut Work) -> String {
         let Some(network) = &self.network else { return String::new() };
-        let turned = self.layout.turned;
+        let turned = self.layout.is_reversed();
         let tensions = |network: &CableEquilibrium| {
             let [start, end, greatest] = results::tensions(network);
             if turned { [end, start, greatest] } else { [start, end, greatest] }
@@ -251,24 +260,12 @@ impl SpansModel {
     }
 }
 
-/// That a cable slides away, and by how much more friction, as a part of what there is, it would be held.
-fn slides_away(part: f64) -> SolveError {
-    let more = 100.0 * (part - 1.0);
-    // Three digits, the last one up: so much more does hold it.
-    let digits = (2.0 - more.log10().floor()).clamp(0.0, 9.0);
-    let unit = 10f64.powi(-(digits as i32));
-    let shown = (more / unit).ceil() * unit;
-    SolveError::NoRestingPlace {
-        why: format!("it slides: {shown:.0$} % more friction would hold it where it is laid", digits as usize),
-    }
-}
-
-/// Why a cable that nothing holds finds no rest where nothing rubs.
-const NOTHING_RUBS: &str = "it slides: nothing rubs that would hold it where it is laid";
-
 /// The layout of a cable counted from its start, or from its end.
-fn counted(problem: &Arc<Problem>, turned: bool) -> Result<Layout, SolveError> {
-    if turned { Layout::new(&Arc::new(reversed::problem(problem)), true) } else { Layout::new(problem, false) }
+fn counted(problem: &Arc<Problem>, from: CableEnd) -> Result<Layout, SolveError> {
+    match from {
+        CableEnd::Start => Layout::new(problem, from),
+        CableEnd::End => Layout::new(&Arc::new(reversed::problem(problem)), from),
+    }
 }
 
 /// A trouble in the words everyone uses.
@@ -284,21 +281,15 @@ fn said(problem: &Problem, trouble: Failure) -> SolveError {
         Failure::Compressed { s, at, tension } => {
             SolveError::Compressed { model: Model::Spans, tension_n: tension, place: problem.place(s, at, 0.0) }
         }
-        Failure::Restless { s } => unsupported(format!("contacts come and go without end near {s:.3} m")),
-        Failure::OffWheel { support } => unsupported(format!("the cable lifts off the wheel of `{}`", name(support))),
-        Failure::Passed { at } => {
-            unsupported(format!("the cable springs past a corner at ({:.3} m, {:.3} m)", at.x, at.y))
-        }
-        Failure::SupportInside { at } => {
-            unsupported(format!("a support is inside an obstacle at ({:.3} m, {:.3} m)", at.x, at.y))
-        }
-        Failure::LoadLies { s } => unsupported(format!("the load at {s:.3} m lies on an obstacle")),
-        Failure::NoSeat { s, at } => {
-            unsupported(format!("an obstacle is met {s:.3} m along the cable at ({:.3} m, {:.3} m)", at.x, at.y))
-        }
-        Failure::Drawn { s } => unsupported(format!("the cable lies loose and is drawn along, from {s:.3} m")),
+        Failure::Restless { s } => unsupported(Unsupported::EndlessContacts { arc_length_m: s }),
+        Failure::OffWheel { support } => unsupported(Unsupported::OffWheel { support: name(support).to_owned() }),
+        Failure::Passed { at } => unsupported(Unsupported::CornerPassed { at_m: at }),
+        Failure::SupportInside { at } => unsupported(Unsupported::SupportInside { at_m: at }),
+        Failure::LoadLies { s } => unsupported(Unsupported::LoadOnObstacle { arc_length_m: s }),
+        Failure::NoSeat { s, at } => unsupported(Unsupported::ContactWithoutSeat { arc_length_m: s, at_m: at }),
+        Failure::Drawn { s } => unsupported(Unsupported::LooseCableDrawn { arc_length_m: s }),
         Failure::Unsound { what, s, at } => {
-            unsupported(format!("{what} {s:.3} m along it at ({:.3} m, {:.3} m)", at.x, at.y))
+            unsupported(Unsupported::Unverified { finding: what, arc_length_m: s, at_m: at })
         }
     }
 }
@@ -314,7 +305,7 @@ impl Mechanics for SpansModel {
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         if self.layout.strands.is_empty() {
-            return Err(unsupported("no support holds the cable: two loads or loose ends, and obstacles at most"));
+            return Err(unsupported(Unsupported::NothingHolds));
         }
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
@@ -322,7 +313,9 @@ impl Mechanics for SpansModel {
         // What lies loose remembers nothing.
         self.network = self.network.take().filter(|n| n.loose().is_none());
         let found = match &mut self.network {
-            Some(network) => network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|t| (t.0, None)),
+            Some(network) => {
+                network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|stopped| (stopped.failure, None))
+            }
             None => self.lay(&mut instant, &mut work),
         };
         let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
@@ -337,10 +330,11 @@ impl Mechanics for SpansModel {
         let range = if seeks { self.histories(start, &mut work) } else { String::new() };
         self.work = work;
         if let Some(part) = needed {
-            return Err(slides_away(part));
+            let why = NoEquilibrium::TooLittleFriction { friction_ratio: part };
+            return Err(SolveError::NoRestingPlace { why });
         }
         let taken = found.map_err(|(trouble, stopped)| match slides && !self.rubs() {
-            true => SolveError::NoRestingPlace { why: NOTHING_RUBS.to_owned() },
+            true => SolveError::NoRestingPlace { why: NoEquilibrium::NoFriction },
             false => self.said(stopped.as_deref(), trouble),
         })?;
         let mut report = self.report_of(taken);
@@ -381,7 +375,7 @@ impl Mechanics for SpansModel {
         _gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
         if inertia == Inertia::Dynamic {
-            return Err(unsupported("motion with inertia"));
+            return Err(unsupported(Unsupported::Inertia));
         }
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
             return Err(SolveError::TimeStep { dt_s, allowed: "0 < dt ≤ 1e6 s" });
@@ -418,9 +412,9 @@ impl Mechanics for SpansModel {
                     ran += taken.ran;
                     self.time_s = time_s;
                 }
-                Err((trouble, done)) => {
-                    self.time_s += (time_s - self.time_s) * done;
-                    failed = Some(trouble);
+                Err(stopped) => {
+                    self.time_s += (time_s - self.time_s) * stopped.done;
+                    failed = Some(stopped.failure);
                     break;
                 }
             }
@@ -462,7 +456,7 @@ impl Mechanics for SpansModel {
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
-        let nodes = self.layout.turned.then(|| self.turned().nodes(&answer.nodes));
+        let nodes = self.layout.is_reversed().then(|| self.turned().nodes(&answer.nodes));
         let nodes = nodes.as_ref().unwrap_or(&answer.nodes);
         let taken = CableEquilibrium::taken(&self.layout, &instant, nodes, &mut work);
         self.work = work;
@@ -473,7 +467,7 @@ impl Mechanics for SpansModel {
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
         let n = self.dragged.len();
-        let k = if self.layout.turned { n.checked_sub(support + 1) } else { Some(support) };
+        let k = if self.layout.is_reversed() { n.checked_sub(support + 1) } else { Some(support) };
         if let Some(d) = k.and_then(|k| self.dragged.get_mut(k)) {
             *d = Some(target_m);
         }

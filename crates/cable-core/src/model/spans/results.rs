@@ -12,17 +12,18 @@ use crate::model::spans::contact::friction_memory::{Mode, TensionProfile};
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::continuation::CableEquilibrium;
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::model::spans::verify::penetration;
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Nodes on each stretch of an edge.
 const EDGE_NODES: usize = 8;
 
-/// Longest stretch of an arc over which forces are summed with one rule of 5 Gauss points, rad: exact to 1e-11.
+/// Longest stretch of an arc over which forces are summed with one rule of 5 Gauss points, rad:
+/// exact to 1e-11.
 const PANEL: f64 = 1.0;
 /// Longest one for which 3 points are as good, rad.
-const SHORT: f64 = 0.1;
+const THREE_POINT_ARC: f64 = 0.1;
 
 /// Nodes and weights of 3-point Gauss–Legendre quadrature on [0, 1].
 const THREE: [(f64, f64); 3] =
@@ -56,7 +57,7 @@ pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibriu
         }
     }
     let mut nodes = Nodes::new(&layout.problem, greatest);
-    nodes.turned = layout.turned;
+    nodes.turned = layout.is_reversed();
     let mut contacts = Vec::new();
     for strand in &network.strands {
         if let Some(loose) = &strand.loose {
@@ -73,20 +74,20 @@ pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibriu
             }
             if let Some(c) = strand.contacts.get(k) {
                 let track = course.track(c).seen_from(c.ends.p[0]);
-                let stretches = stretches((&track, layout.problem.radius), &c.history, c.ends.p);
-                if c.weight {
-                    load_nodes(&mut nodes, (strand, course, k), &track);
+                let stretches = stretches(&track, layout.problem.radius, &c.history, c.ends.p);
+                if c.is_load() {
+                    load_nodes(&mut nodes, strand, course, k, &track);
                 } else {
                     contact_nodes(&mut nodes, &track, c, &stretches);
                 }
                 if let Some(obstacle) = track.curve.obstacle {
                     let name = layout.problem.world.obstacle_name(obstacle);
-                    contacts.push(match c.weight {
-                        true => load((strand, course, k), (&track, name)),
-                        false => contact((&track, name), c, &stretches),
+                    contacts.push(match c.is_load() {
+                        true => load(strand, course, k, &track, name),
+                        false => contact(&track, name, c, &stretches),
                     });
-                    if c.pocket {
-                        contacts.extend(heap((strand, course, k), name));
+                    if c.next == Next::Pocket {
+                        contacts.extend(heap(strand, course, k, name));
                     }
                 }
             }
@@ -118,7 +119,7 @@ struct Stretch {
 }
 
 impl Stretch {
-    fn new((track, cable_radius): (&Track<'_>, f64), history: &TensionProfile, [from, to]: [f64; 2]) -> Self {
+    fn new(track: &Track<'_>, cable_radius: f64, history: &TensionProfile, [from, to]: [f64; 2]) -> Self {
         let middle = 0.5 * (from + to);
         let (tension, s) = history.at(track, from);
         let pivot = match track.pivot {
@@ -145,7 +146,7 @@ impl Stretch {
     }
 }
 
-fn stretches((track, cable_radius): (&Track<'_>, f64), history: &TensionProfile, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
+fn stretches(track: &Track<'_>, cable_radius: f64, history: &TensionProfile, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
     let knots = history.knots();
     let mut out = Vec::with_capacity(knots.len() + 1);
     let (mut p, mut k) = (p1, 0);
@@ -155,7 +156,7 @@ fn stretches((track, cable_radius): (&Track<'_>, f64), history: &TensionProfile,
             k += 1;
         }
         let next = knots.get(k).map_or(border, |knot| if knot.p < border { knot.p } else { border });
-        out.push(Stretch::new((track, cable_radius), history, [p, next]));
+        out.push(Stretch::new(track, cable_radius, history, [p, next]));
         p = next;
     }
     out
@@ -179,8 +180,9 @@ fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretche
     push(&track.place(c.ends.p[1]), (c.ends.t[1], c.ends.s[1]));
 }
 
-/// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes, what lies beside it along the ground.
-fn load_nodes(nodes: &mut Nodes<'_>, (strand, course, j): (&CableRun, &Course, usize), track: &Track<'_>) {
+/// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes,
+/// what lies beside it along the ground.
+fn load_nodes(nodes: &mut Nodes<'_>, strand: &CableRun, course: &Course, j: usize, track: &Track<'_>) {
     let c = &strand.contacts[j];
     let place = track.place(c.ends.p[0]);
     let pulls = |side: usize| strand.force_at_contact(course, j, side);
@@ -193,14 +195,15 @@ fn load_nodes(nodes: &mut Nodes<'_>, (strand, course, j): (&CableRun, &Course, u
     }
 }
 
-/// Normal force summed over a contact, its direction, the pull of the load along it, and how far it turns.
+/// Normal force summed over a contact, its direction, the pull of the load along it, and how far it
+/// turns.
 fn pressed(track: &Track<'_>, stretches: &[Stretch]) -> (f64, Vec2, f64, f64) {
     let (mut normal, mut push, mut along, mut turned) = (0.0, Vec2::zeros(), 0.0, 0.0);
     for stretch in stretches {
         let (a, way, turns) = (stretch.from, stretch.to - stretch.from, stretch.pivot.turns());
         let panels = if turns { (way / PANEL).ceil().max(1.0) } else { 1.0 };
         let h = way / panels;
-        let rule: &[(f64, f64)] = if turns && h <= SHORT { &THREE } else { &GAUSS };
+        let rule: &[(f64, f64)] = if turns && h <= THREE_POINT_ARC { &THREE } else { &GAUSS };
         for k in 0..panels as usize {
             for (u, weight) in rule {
                 let p = a + (k as f64 + u) * h;
@@ -216,7 +219,7 @@ fn pressed(track: &Track<'_>, stretches: &[Stretch]) -> (f64, Vec2, f64, f64) {
     (normal, push, along, turned)
 }
 
-fn contact((track, name): (&Track<'_>, &str), c: &Contact, stretches: &[Stretch]) -> ContactReport {
+fn contact(track: &Track<'_>, name: &str, c: &Contact, stretches: &[Stretch]) -> ContactReport {
     let friction = track.friction;
     let (normal_n, push, along, turned) = pressed(track, stretches);
     let middle = track.place(0.5 * (c.ends.p[0] + c.ends.p[1]));
@@ -245,7 +248,8 @@ fn contact((track, name): (&Track<'_>, &str), c: &Contact, stretches: &[Stretch]
     report
 }
 
-/// Forces of the obstacle on the cable between the nodes of a contact: N n on an edge or arc, less the friction called upon, m N t.
+/// Forces of the obstacle on the cable between the nodes of a contact: N n on an edge or arc, less
+/// the friction called upon, m N t.
 fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
     let mut out = Vec::with_capacity(EDGE_NODES * stretches.len());
     for stretch in stretches {
@@ -266,7 +270,8 @@ fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
     out
 }
 
-/// The force of an obstacle on what lies on it, N: it holds the load there and what the tensions at both ends leave over.
+/// The force of an obstacle on what lies on it, N: it holds the load there and what the tensions at
+/// both ends leave over.
 fn held_by(track: &Track<'_>, c: &Contact) -> Vec2 {
     let [before, after] = [0, 1].map(|side| track.place(c.ends.p[side]).tangent * c.ends.t[side]);
     before - after - track.law.load * (c.ends.s[1] - c.ends.s[0])
@@ -275,7 +280,7 @@ fn held_by(track: &Track<'_>, c: &Contact) -> Vec2 {
 /// The material that lies loose in the kink behind contact j, m.
 pub(in crate::model::spans) fn loose(strand: &CableRun, j: usize) -> Option<[f64; 2]> {
     let (c, next) = (strand.contacts.get(j)?, strand.contacts.get(j + 1)?);
-    (c.pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
+    (c.next == Next::Pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
 }
 
 /// Tension at the start, at the end, and the greatest, N.
@@ -302,7 +307,8 @@ pub(in crate::model::spans) fn tensions(network: &CableEquilibrium) -> [f64; 3] 
     [start, last, greatest]
 }
 
-/// What is left of all forces on the cable as they are reported, and their size, N: supports and contacts hold weight and loads.
+/// What is left of all forces on the cable as they are reported, and their size, N: supports and
+/// contacts hold weight and loads.
 pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquilibrium) -> (Vec2, f64) {
     let (p, course) = (&layout.problem, &network.course);
     let mut sum = course.law.load * p.length;
@@ -325,7 +331,7 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
             add(loose.held(course));
         }
         for (j, c) in strand.contacts.iter().enumerate() {
-            add(match (c.wheel, c.weight) {
+            add(match (c.wheel, c.is_load()) {
                 (Some(_), _) => -wheel_force(course, strand, j).0,
                 (None, true) => -point_load::felt(strand, course, j).sum,
                 (None, false) => held_by(&course.track(c), c),
@@ -339,7 +345,7 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
 }
 
 /// The contact of the load that is contact j.
-fn load((strand, course, j): (&CableRun, &Course, usize), (track, name): (&Track<'_>, &str)) -> ContactReport {
+fn load(strand: &CableRun, course: &Course, j: usize, track: &Track<'_>, name: &str) -> ContactReport {
     let c = &strand.contacts[j];
     let felt = point_load::felt(strand, course, j);
     let at = track.place(c.ends.p[0]).at;
@@ -366,8 +372,9 @@ fn load((strand, course, j): (&CableRun, &Course, usize), (track, name): (&Track
     }
 }
 
-/// The contacts of the heap in the pocket after contact j: one with each edge that carries a part of it.
-fn heap((strand, course, j): (&CableRun, &Course, usize), name: &str) -> Vec<ContactReport> {
+/// The contacts of the heap in the pocket after contact j: one with each edge that carries a part
+/// of it.
+fn heap(strand: &CableRun, course: &Course, j: usize, name: &str) -> Vec<ContactReport> {
     let ([before, after], at) = match (&strand.contacts[j], strand.contacts.get(j + 1)) {
         (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], course.track(c).place(c.ends.p[1]).at),
         (_, None) => return Vec::new(),
@@ -393,7 +400,8 @@ fn heap((strand, course, j): (&CableRun, &Course, usize), name: &str) -> Vec<Con
     borne.filter(|b| b.press > 0.0).map(edge).collect()
 }
 
-/// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where all is alike.
+/// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where
+/// all is alike.
 fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> {
     /// What is called upon of friction counts as all of it from this share on: rounding.
     const LIMIT: f64 = 1.0 - 1e-9;
@@ -476,7 +484,8 @@ fn wheel(r: &mut SupportReaction, network: &CableEquilibrium, strand: &CableRun,
     (r.tension_before_n, r.tension_after_n) = (Some(before.norm()), Some(after.norm()));
 }
 
-/// The force of the cable on the wheel that is contact j, and the forces in the cable before and after it, N.
+/// The force of the cable on the wheel that is contact j, and the forces in the cable before and
+/// after it, N.
 fn wheel_force(course: &Course, strand: &CableRun, j: usize) -> (Vec2, [Vec2; 2]) {
     let [before, after] = [0, 1].map(|side| strand.force_at_contact(course, j, side).unwrap_or_default());
     let [from, to] = strand.contacts[j].ends.s;

@@ -1,7 +1,8 @@
-//! A cable may be counted from its other end.
+//! A cable can be solved from its other end.
 //!
-//! Where friction leaves several rests, which one is found must not depend on the end from which a scene counts its cable: it is laid and
-//! followed counted from its *upper* end, and what is found is turned back.
+//! Where friction allows several equilibria, the one that is found must not depend on the end from
+//! which a scene counts its cable. The cable is therefore solved and followed from its *upper* end,
+//! and the solution is reversed afterwards.
 
 use crate::math::Vec2;
 use crate::model::spans::failure::Failure;
@@ -10,12 +11,13 @@ use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
 use crate::solution::{ContactPart, ContactReport, ContactSample, Node, SupportReaction};
 
-/// Heights that differ by less than this part of the cable are one. Smaller: rounding, which is another one in a scene that is moved or
-/// mirrored, says from where it is counted. Larger: a cable whose ends differ by so little is counted from either.
-const LEVEL: f64 = 1e-9;
+/// Heights that differ by less than this part of the cable are one. Smaller: rounding, which is
+/// another one in a scene that is moved or mirrored, says from where it is counted. Larger: a cable
+/// whose ends differ by so little is counted from either.
+const HEIGHT_TOLERANCE: f64 = 1e-9;
 
-/// Whether a cable is counted from its end when its rest is sought: that is its upper one; of two that are level the one beside which
-/// the cable is led higher.
+/// Whether a cable is counted from its end when its rest is sought: that is its upper one; of two
+/// that are level the one beside which the cable is led higher.
 pub(in crate::model::spans) fn is_led_up(p: &Problem) -> bool {
     let places: Vec<Vec2> = if p.route.len() > 1 {
         p.route.clone()
@@ -26,7 +28,7 @@ pub(in crate::model::spans) fn is_led_up(p: &Problem) -> bool {
     let height = |v: &Vec2| -v.dot(&load) / load.norm();
     let n = places.len();
     let pairs = places.iter().zip(places.iter().rev()).take(n / 2);
-    let higher = pairs.map(|(a, b)| height(b) - height(a)).find(|d| d.abs() > LEVEL * p.length);
+    let higher = pairs.map(|(a, b)| height(b) - height(a)).find(|d| d.abs() > HEIGHT_TOLERANCE * p.length);
     higher.is_some_and(|d| d > 0.0)
 }
 
@@ -63,7 +65,8 @@ pub(in crate::model::spans) struct Turned<'a> {
 }
 
 impl Turned<'_> {
-    /// An arc length counted from the other end, m: those of supports and loads come out as they were given.
+    /// An arc length counted from the other end, m: those of supports and loads come out as they
+    /// were given.
     pub fn s(&self, s: f64) -> f64 {
         let p = self.problem;
         let marks = p.supports.iter().filter_map(|s| s.arc_length).chain(p.loads.iter().map(|l| l.arc_length));

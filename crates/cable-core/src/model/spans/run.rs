@@ -1,9 +1,10 @@
 //! A run is one stretch of cable between two grips: free spans and contacts in a row.
 //!
-//! Unknown are for each span the force G that the cable would carry at the strand's start if its law went on there,
-//! F(s) = G − b(s − s_a) − Σ P_k [s_k < s], and for each contact its interval (p₁, p₂) of the boundary and the material
-//! (s₁, s₂) at both ends. Material sliding through points fixed in space: after S. Sueda, G. L. Jones, D. I. W. Levin and
-//! D. K. Pai, "Large-scale dynamic simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011) 39.
+//! Unknown are for each span the force G that the cable would carry at the strand's start if its
+//! law went on there, F(s) = G − b(s − s_a) − Σ P_k [s_k < s], and for each contact its interval
+//! (p₁, p₂) of the boundary and the material (s₁, s₂) at both ends. Material sliding through points
+//! fixed in space: after S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic
+//! simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011) 39.
 
 use crate::catenary::{Chain, PointForce};
 use crate::math::Vec2;
@@ -19,10 +20,11 @@ pub(in crate::model::spans) struct Course {
     /// Boundaries: both senses of each body, then both of each wheel.
     pub curves: Vec<Curve>,
     pub law: Law,
-    /// What sliding is resisted with besides friction while a cable that runs away is followed, N per m of slip; else 0.
+    /// What sliding is resisted with besides friction while a cable that runs away is followed, N
+    /// per m of slip; else 0.
     pub drag: f64,
-    /// Which way friction is fully mobilised at every contact: 1 against a cable drawn towards its end, −1 towards its start; 0 where
-    /// friction does what the contact's past asks for.
+    /// Which way friction is fully mobilised at every contact: 1 against a cable drawn towards its
+    /// end, −1 towards its start; 0 where friction does what the contact's past asks for.
     pub mobilised: f64,
     /// Dead loads inside the cable, in order, N.
     pub loads: Vec<PointForce>,
@@ -63,16 +65,61 @@ pub(in crate::model::spans) struct Contact {
     pub wheel: Option<usize>,
     /// Times the mode has changed in this solve.
     pub flips: u32,
-    /// Whether it ends in a kink without tension, as the next begins there: no span between them, see `pocket`.
-    pub pocket: bool,
-    /// Whether the next begins where it ends, as one of the two is a load that lies: no span between them, see `weight`.
-    pub joined: bool,
-    /// Whether it is a load that lies.
-    pub weight: bool,
-    /// The kink that load is in.
-    pub kink: Option<Kink>,
+    /// How it goes on to the next contact.
+    pub next: Next,
+    /// The point load that rests here, where it is one.
+    pub load: Option<RestingLoad>,
     /// Smooth for now: found while a rest is sought, where it has not rubbed yet.
     pub smooth: bool,
+}
+
+/// A point load that rests on an obstacle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(in crate::model::spans) struct RestingLoad {
+    /// The kink that it is in, if it is in one.
+    pub kink: Option<Kink>,
+}
+
+/// What is between a contact and the next one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::model::spans) enum Next {
+    /// A span.
+    #[default]
+    Span,
+    /// Nothing: both end in a kink without tension, see `slack_pocket`.
+    Pocket,
+    /// Nothing: one of the two is a load that rests on the chain of the other, see `point_load`.
+    Joined,
+}
+
+impl Next {
+    /// Parts what was joined, which leaves a span; returns whether it was.
+    pub fn part(&mut self) -> bool {
+        let joined = *self == Self::Joined;
+        if joined {
+            *self = Self::Span;
+        }
+        joined
+    }
+
+    /// Ends a pocket, which leaves a span.
+    pub fn end_pocket(&mut self) {
+        if *self == Self::Pocket {
+            *self = Self::Span;
+        }
+    }
+}
+
+impl Contact {
+    /// Whether a point load rests here.
+    pub fn is_load(&self) -> bool {
+        self.load.is_some()
+    }
+
+    /// The kink that its load is in.
+    pub fn kink(&self) -> Option<Kink> {
+        self.load.and_then(|load| load.kink)
+    }
 }
 
 /// A strand.
@@ -189,29 +236,29 @@ impl CableRun {
         if self.loose.is_some() {
             return false;
         }
-        let none = k.checked_sub(1).and_then(|j| self.contacts.get(j)).is_some_and(|c| c.pocket || c.joined);
+        let none = k.checked_sub(1).and_then(|j| self.contacts.get(j)).is_some_and(|c| c.next != Next::Span);
         !none && (k > 0 || self.ties[0].has_span()) && (k < self.contacts.len() || self.ties[1].has_span())
     }
 
     /// Whether contact j ends in a pocket on a side.
     pub fn in_pocket(&self, j: usize, side: usize) -> bool {
-        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.pocket)
+        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.next == Next::Pocket)
     }
 
     /// Whether contact j is joined to what is beside it on a side.
     pub fn is_joined(&self, j: usize, side: usize) -> bool {
-        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.joined)
+        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.next == Next::Joined)
     }
 
     /// Whether the material at a side of contact j is that of a load.
     pub fn is_marked(&self, j: usize, side: usize) -> bool {
-        self.contacts[j].weight || self.is_joined(j, side)
+        self.contacts[j].is_load() || self.is_joined(j, side)
     }
 
     /// Whether contact j is joined to a load on a side that sticks.
     pub fn is_pinned(&self, j: usize, side: usize) -> bool {
         let beside = (j + 2 * side).checked_sub(1).and_then(|i| self.contacts.get(i));
-        self.is_joined(j, side) && beside.is_some_and(|c| c.weight && c.mode == Mode::Hold)
+        self.is_joined(j, side) && beside.is_some_and(|c| c.is_load() && c.mode == Mode::Hold)
     }
 
     /// Material at both ends of span k, m.
@@ -277,7 +324,7 @@ impl CableRun {
                     self.contacts[j].ends.t[side] = 0.0;
                 } else if self.is_joined(j, side) {
                     self.contacts[j].ends.t[side] = self.forces[j + side].x;
-                } else if self.contacts[j].weight {
+                } else if self.contacts[j].is_load() {
                     // Beyond it is nothing.
                     let k = j + 1 - side;
                     let inner = self.force_at_contact(course, j, 1 - side);

@@ -59,7 +59,8 @@ scenes! {
     loads_wind_heat = "loads-wind-heat";
 }
 
-/// A flexible, undamped cable alone, which nothing breaks: its length (m), density (kg/m) and EA (N). What closed forms are of.
+/// A flexible, undamped cable alone, which nothing breaks: its length (m), density (kg/m) and EA
+/// (N). What closed forms are of.
 #[must_use]
 pub fn cable_alone([length, density, ea]: [f64; 3], supports: Vec<Support>) -> Scene {
     let mut scene = hanging_span();
@@ -90,8 +91,8 @@ pub fn swinging_span() -> Scene {
     scene
 }
 
-/// An embedded scene. One that cannot be read (a test sees to it that none is) has no cables and is refused
-/// wherever it is solved.
+/// An embedded scene. One that cannot be read (a test sees to it that none is) has no cables and is
+/// refused wherever it is solved.
 fn read(text: &str) -> Scene {
     Scene::from_toml(text).unwrap_or_else(|e| Scene {
         version: VERSION,

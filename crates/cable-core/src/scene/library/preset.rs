@@ -54,8 +54,8 @@ pub struct CablePreset {
     pub axial_stiffness_n: Figure,
     /// EI, N·m².
     pub bending_stiffness_n_m2: Figure,
-    /// EI by which bends at sharp corners are judged where a scene takes the cable as perfectly flexible, N·m²: the geometric
-    /// mean of strands that slip and strands that stick.
+    /// EI by which bends at sharp corners are judged where a scene takes the cable as perfectly
+    /// flexible, N·m²: the geometric mean of strands that slip and strands that stick.
     pub likely_bending_stiffness_n_m2: Figure,
     /// Outside diameter, m.
     pub diameter_m: Figure,
@@ -163,7 +163,8 @@ pub struct MapPreset {
     pub riser_width_m: Figure,
     /// Where the cable comes through, m.
     pub riser_at_m: Point,
-    /// Terrain and what stands in it; the shape is drawn, not surveyed, unless the note says otherwise.
+    /// Terrain and what stands in it; the shape is drawn, not surveyed, unless the note says
+    /// otherwise.
     pub obstacles: Vec<Obstacle>,
 }
 
@@ -181,7 +182,8 @@ const ROBOTS: &[(&str, &str)] = embedded!("robots":
 const MAPS: &[(&str, &str)] = embedded!("maps":
     "flat-75ft", "dished-75ft", "saltcake-75ft", "debris-75ft", "riser-drop-55in", "small-200-series");
 
-/// Reads embedded texts once. Those that do not parse are left out (a test sees to it that none is).
+/// Reads embedded texts once. Those that do not parse are left out (a test sees to it that none
+/// is).
 fn parsed<T: for<'de> Deserialize<'de>>(texts: &[(&'static str, &str)], name: fn(&mut T, &'static str)) -> Vec<T> {
     let read = |&(id, text): &(&'static str, &str)| {
         let mut preset: T = toml::from_str(text).ok()?;

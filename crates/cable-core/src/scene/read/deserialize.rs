@@ -1,8 +1,8 @@
 //! The deserialiser turns a parsed TOML tree into a scene and keeps the path and the place in the
 //! text of any fault.
 //!
-//! A serde deserialiser of its own: the one of the `toml` crate names neither the path nor the nearest known
-//! key, and cannot fill what a file leaves out from a preset.
+//! A serde deserialiser of its own: the one of the `toml` crate names neither the path nor the
+//! nearest known key, and cannot fill what a file leaves out from a preset.
 
 use std::fmt;
 use std::ops::Range;
@@ -135,8 +135,8 @@ fn plain(expected: &dyn Expected) -> String {
 
 /// The known name nearest to a mistyped one, if any is near enough to be meant.
 pub(in crate::scene) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
-    // Jaro–Winkler similarity below which a hint is noise: 0.95 misses `lenght` for `length_m`, 0.75 offers
-    // `name` for `a`.
+    // Jaro–Winkler similarity below which a hint is noise: 0.95 misses `lenght` for `length_m`,
+    // 0.75 offers `name` for `a`.
     const MIN_SIMILARITY: f64 = 0.8;
     // A hostile key of megabytes would be compared in quadratic time.
     const MAX_NAME_CHARS: usize = 200;

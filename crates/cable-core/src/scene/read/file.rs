@@ -9,8 +9,9 @@ use super::path::Path;
 use crate::error::{SceneError, SceneFault, TextPosition};
 use crate::scene::{Scene, VERSION, preset};
 
-/// Longest scene text, bytes: about 240 000 terrain points. A hostile one takes a hundred times its size in
-/// memory while it is read (measured: 800 MB for 8 MiB of `1,1,1,…`), an honest one fifty times.
+/// Longest scene text, bytes: about 240 000 terrain points. A hostile one takes a hundred times its
+/// size in memory while it is read (measured: 800 MB for 8 MiB of `1,1,1,…`), an honest one fifty
+/// times.
 pub(crate) const MAX_TEXT_BYTES: usize = 4 << 20;
 
 impl Scene {

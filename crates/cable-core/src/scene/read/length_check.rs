@@ -6,8 +6,8 @@ use crate::error::SceneFault;
 use crate::math::{Vec2, vec2};
 use crate::scene::{Cable, Scene, Support, SupportKind};
 
-/// Refuses a cable that would have to break to reach its supports. Each stretch between two supports that grip
-/// it is looked at by itself; obstacles only make the way longer.
+/// Refuses a cable that would have to break to reach its supports. Each stretch between two
+/// supports that grip it is looked at by itself; obstacles only make the way longer.
 pub(super) fn long_enough(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checked {
     let thermal = 1.0 + cable.thermal_expansion_per_k * scene.environment.temperature_change_k;
     let last = cable.supports.len().saturating_sub(1);
@@ -16,8 +16,9 @@ pub(super) fn long_enough(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checke
     let mut way = 0.0;
     for (i, support) in cable.supports.iter().enumerate() {
         let Some(here) = Waypoint::of(scene, cable, support) else {
-            // A load or free point: the way before it says nothing about the way after it, but a gripping
-            // support beyond still bounds both together, so the way goes on from the last known point.
+            // A load or free point: the way before it says nothing about the way after it, but a
+            // gripping support beyond still bounds both together, so the way goes on from the last
+            // known point.
             continue;
         };
         if let Some(before) = from {
@@ -43,12 +44,14 @@ pub(super) fn long_enough(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checke
     Ok(())
 }
 
-/// Part of the cable's length by which two supports beside each other on it must be clear of each other where one slides or turns.
-/// Smaller: what lies between them is lost in rounding. Larger: eyes set close together are refused.
+/// Part of the cable's length by which two supports beside each other on it must be clear of each
+/// other where one slides or turns. Smaller: what lies between them is lost in rounding. Larger:
+/// eyes set close together are refused.
 const MIN_SEPARATION_FRACTION: f64 = 1e-9;
 
-/// Refuses neighbours along the cable without a straight line that touches both: a support inside the wheel beside it, a wheel inside
-/// the next one, an eye in the very place of what it stands beside.
+/// Refuses neighbours along the cable without a straight line that touches both: a support inside
+/// the wheel beside it, a wheel inside the next one, an eye in the very place of what it stands
+/// beside.
 pub(super) fn lines_exist(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checked {
     for (i, pair) in cable.supports.windows(2).enumerate() {
         let [from, to] = pair else { continue };
@@ -88,8 +91,8 @@ impl Waypoint {
         Some(Self { at: vec2(at), radius })
     }
 
-    /// Tangent between two circles, the crossed one, which is the shorter: √(d² − (r₁ + r₂)²). The arcs on the
-    /// wheels come on top, so this is never more than the cable needs.
+    /// Tangent between two circles, the crossed one, which is the shorter: √(d² − (r₁ + r₂)²). The
+    /// arcs on the wheels come on top, so this is never more than the cable needs.
     fn least_way_to(self, other: Self) -> f64 {
         let (d, r) = ((other.at - self.at).norm(), self.radius + other.radius);
         if d > r { ((d - r) * (d + r)).sqrt() } else { 0.0 }

@@ -1,4 +1,5 @@
-//! A scene file is read in three steps: parse, deserialize, validate; whatever is wrong is told with its path and its place in the text.
+//! A scene file is read in three steps: parse, deserialize, validate. Every error carries its path
+//! and its position in the text.
 //!
 //! | room | content |
 //! |---|---|

@@ -8,8 +8,8 @@ use crate::scene::{Scene, preset};
 const REQUIRED_KEYS: [&str; 3] = ["name", "length_m", "supports"];
 
 impl Scene {
-    /// The JSON Schema of a scene file, derived from the types that hold it: unknown keys are refused, and what
-    /// a preset gives may be left out where there is one.
+    /// The JSON Schema of a scene file, derived from the types that hold it: unknown keys are
+    /// refused, and what a preset gives may be left out where there is one.
     #[must_use]
     pub fn json_schema() -> Value {
         let mut schema = schemars::schema_for!(Self).to_value();

@@ -1,15 +1,16 @@
 //! A terrain or beam is refused if its line crosses or touches itself: it then has no inside and
 //! outside.
 //!
-//! Boxes of ever longer runs of edges form a binary tree; pairs of runs whose boxes lie apart cannot meet. The boxes have
-//! eight sides (x, y, x + y, x − y), so that slanting combs come apart too.
+//! Boxes of ever longer runs of edges form a binary tree; pairs of runs whose boxes lie apart
+//! cannot meet. The boxes have eight sides (x, y, x + y, x − y), so that slanting combs come apart
+//! too.
 
 use crate::math::Point;
 
 /// Edges in a leaf. Fewer: more boxes. More: more pairs of edges to look at.
 const LEAF_EDGES: usize = 4;
-/// Pairs of boxes looked at before a line is given up as too tangled, about a second's work. A million points of rough
-/// ground take 1e7.
+/// Pairs of boxes looked at before a line is given up as too tangled, about a second's work. A
+/// million points of rough ground take 1e7.
 const MAX_PAIRS: usize = 60_000_000;
 
 /// What a line does to itself.
@@ -32,7 +33,8 @@ struct EdgeTree<'a> {
     boxes: Vec<Sides>,
 }
 
-/// The first crossing found, if there is one. A closed line has an edge from its last point to its first.
+/// The first crossing found, if there is one. A closed line has an edge from its last point to its
+/// first.
 pub(super) fn first_self_touch(points: &[Point], closed: bool) -> Option<SelfTouch> {
     let rises = |axis: usize| points.windows(2).all(|w| w[1][axis] > w[0][axis]);
     if !closed && (rises(0) || rises(1)) {
@@ -109,7 +111,8 @@ impl<'a> EdgeTree<'a> {
         None
     }
 
-    /// Whether two edges meet, i < j; neighbours share a point and meet where they turn back on themselves.
+    /// Whether two edges meet, i < j; neighbours share a point and meet where they turn back on
+    /// themselves.
     fn edges_meet(&self, i: usize, j: usize) -> bool {
         let ((a, b), (c, d)) = (self.edge(i), self.edge(j));
         if j == i + 1 {
@@ -117,7 +120,7 @@ impl<'a> EdgeTree<'a> {
         } else if self.closed && i == 0 && j + 1 == self.edges {
             turns_back(a, b, c)
         } else {
-            meet((a, b), (c, d))
+            meet(a, b, c, d)
         }
     }
 }
@@ -132,7 +135,7 @@ fn turns_back(corner: Point, a: Point, b: Point) -> bool {
     turn(corner, a, b) == 0.0 && along > 0.0
 }
 
-fn meet((a, b): (Point, Point), (c, d): (Point, Point)) -> bool {
+fn meet(a: Point, b: Point, c: Point, d: Point) -> bool {
     let (c_side, d_side, a_side, b_side) = (turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b));
     let between = |side: f64, p: Point, from: Point, to: Point| {
         side == 0.0 && (0..2).all(|k| (p[k] >= from[k].min(to[k])) && p[k] <= from[k].max(to[k]))
@@ -154,7 +157,8 @@ mod tests {
         let bow: &[Point] = &[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]];
         assert_eq!(first_self_touch(bow, true), Some(SelfTouch::Edges(0, 2)));
         assert_eq!(first_self_touch(bow, false), Some(SelfTouch::Edges(0, 2)));
-        // Through a corner, onto an edge, back on itself, back on itself where it closes, along another edge.
+        // Through a corner, onto an edge, back on itself, back on itself where it closes, along
+        // another edge.
         let through = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0], [2.0, -1.0], [1.0, 0.0], [0.5, -1.0]];
         assert!(first_self_touch(&through, true).is_some());
         let onto = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]];
@@ -217,7 +221,8 @@ mod tests {
 
     #[test]
     fn combs_of_many_long_teeth_end() {
-        // Long teeth side by side, upright and slanting, without a crossing; and a spider's web that is given up or found.
+        // Long teeth side by side, upright and slanting, without a crossing; and a spider's web
+        // that is given up or found.
         for slant in [0.0, 1.0, 0.3] {
             let comb: Vec<Point> = (0..100_000)
                 .map(|k| {

@@ -1,7 +1,8 @@
 //! A scene is valid if every number is finite and in range, every name known, and every key where
 //! it belongs.
 //!
-//! The ranges are wide: they keep out what is surely a slip or would hurt the program, not what is unusual.
+//! The ranges are wide: they keep out what is surely a slip or would hurt the program, not what is
+//! unusual.
 
 use super::path::Path;
 use super::range::{self, Range};

@@ -50,7 +50,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.weak("Click on the cable: where does its tension come from?");
         return;
     };
-    let Some(found) = tension_budget(scene, answer, (probe.cable, probe.arc_length_m), probe.from) else {
+    let Some(found) = tension_budget(scene, answer, probe.cable, probe.arc_length_m, probe.from) else {
         ui.weak("This cable is not solved");
         return;
     };

@@ -1,11 +1,13 @@
 //! The exploration takes an end from place to place, outwards from where it is.
 //!
-//! On each grid places are reached in the order of how far their way is (E. W. Dijkstra, "A note on two problems in connexion with
-//! graphs", Numerische Mathematik 1, 1959; ways go to the eight neighbours, a diagonal counts 7/5 of a side). The first grid is
-//! coarse: it shows in a few steps what the map will look like. Each finer one has twice as many places side by side and goes on
-//! from the cables kept at those of the coarser ones, so that all grids together take hardly more steps than the finest alone.
-//! Between four places that agree, with nothing but free places between them, finer grids would show nothing new and do not look:
-//! where a cable lies slack all over a tank these are most places.
+//! On each grid places are reached in the order of how far their way is (E. W. Dijkstra, "A note on
+//! two problems in connexion with graphs", Numerische Mathematik 1, 1959; ways go to the eight
+//! neighbours, a diagonal counts 7/5 of a side). The first grid is coarse: it shows in a few steps
+//! what the map will look like. Each finer one has twice as many places side by side and goes on
+//! from the cables kept at those of the coarser ones, so that all grids together take hardly more
+//! steps than the finest alone. Between four places that agree, with nothing but free places
+//! between them, finer grids would show nothing new and do not look: where a cable lies slack all
+//! over a tank these are most places.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -17,41 +19,51 @@ use crate::contact::World;
 use crate::math::{Vec2, larger, vec2};
 use crate::simulation::Simulation;
 
-/// Longest way between two answers, m. Longer: an edge that the cable slips over is passed unseen; shorter: more answers.
+/// Longest way between two answers, m. Longer: an edge that the cable slips over is passed unseen;
+/// shorter: more answers.
 const STEP_M: f64 = 0.25;
 
-/// A step without an answer is taken again in so many parts. Fewer: white spots where a slack cable falls over an edge.
+/// A step without an answer is taken again in so many parts. Fewer: white spots where a slack cable
+/// falls over an edge.
 const RETRY_PARTS: usize = 4;
 
-/// Costs of a way to a neighbour beside and across: 7/5 is near enough to √2, and whole numbers have no ties that rounding breaks.
+/// Costs of a way to a neighbour beside and across: 7/5 is near enough to √2, and whole numbers
+/// have no ties that rounding breaks.
 const COSTS: [u64; 2] = [5, 7];
 
 /// The neighbours of a place.
 const NEIGHBOURS: [[i64; 2]; 8] = [[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, 1], [1, -1], [-1, -1]];
 
-/// Shortest look along a way, m. Longer: what is thinner than a cable is passed; shorter: ways along the ground take longer to look at.
+/// Shortest look along a way, m. Longer: what is thinner than a cable is passed; shorter: ways
+/// along the ground take longer to look at.
 const MIN_PROBE_STEP_M: f64 = 2e-3;
 
-/// Places side by side on the coarsest grid at least. Fewer: nothing can be told from it; more: it takes longer.
+/// Places side by side on the coarsest grid at least. Fewer: nothing can be told from it; more: it
+/// takes longer.
 const MIN_PLACES_ACROSS: usize = 6;
 
-/// Most places whose cables are kept for the next grid. More: memory (half a megabyte each); fewer: finer grids begin farther back.
+/// Most places whose cables are kept for the next grid. More: memory (half a megabyte each); fewer:
+/// finer grids begin farther back.
 const MAX_KEPT_CABLES: usize = 600;
 
-/// Four places whose tensions lie closer than this part of the service tension agree. More: a snag between them is not seen; less:
-/// slack parts of the map, which take longest, are looked at all over.
+/// Four places whose tensions lie closer than this part of the service tension agree. More: a snag
+/// between them is not seen; less: slack parts of the map, which take longest, are looked at all
+/// over.
 const AGREEMENT_FRACTION: f64 = 0.02;
 
-/// A tension that finite elements say has grown by this factor in one step is not believed at once: nodes catch on corners. The cable
-/// is laid anew as it last was, and the lesser tension counts. Less: laid anew more often, which forgets friction; more: false spots on
-/// the map, and all places behind them false (on the tank 68 kN and 233 N for 106 N).
+/// A tension that finite elements say has grown by this factor in one step is not believed at once:
+/// nodes catch on corners. The cable is laid anew as it last was, and the lesser tension counts.
+/// Less: laid anew more often, which forgets friction; more: false spots on the map, and all places
+/// behind them false (on the tank 68 kN and 233 N for 106 N).
 const SNAG_GROWTH: f64 = 2.0;
 
-/// Tensions below this part of the service tension are not asked for again: nothing depends on them.
+/// Tensions below this part of the service tension are not asked for again: nothing depends on
+/// them.
 const NEGLIGIBLE_FRACTION: f64 = 0.1;
 
-/// Nearer than this part of the farthest that is tried a cable that stops short is held by something: other ways there are tried as
-/// well. More: each place at the edge of the map is tried from all sides; less: false spots near obstacles.
+/// Nearer than this part of the farthest that is tried a cable that stops short is held by
+/// something: other ways there are tried as well. More: each place at the edge of the map is tried
+/// from all sides; less: false spots near obstacles.
 const RETRY_DISTANCE_FRACTION: f64 = 0.8;
 
 /// The end at a place, and the cable there.
@@ -91,7 +103,8 @@ pub(super) struct Exploration<'a> {
 type AreaProgress<'a> = &'a mut dyn FnMut(&Area, f64) -> ControlFlow<()>;
 
 impl Exploration<'_> {
-    /// Goes outwards from the start, grid after grid; what is only guessed from coarser grids is not there in the end.
+    /// Goes outwards from the start, grid after grid; what is only guessed from coarser grids is
+    /// not there in the end.
     pub fn spread(&mut self, laid: Simulation, progress: AreaProgress<'_>) {
         self.free = (0..self.found.most_n.len()).map(|k| self.may(k)).collect();
         let most_n = self.tension_n(&laid);
@@ -131,7 +144,8 @@ impl Exploration<'_> {
         let columns = self.found.columns;
         let [column, row] = [self.first % columns % stride, self.first / columns % stride];
         let cells = (0..self.known.len()).filter(|k| k % columns % stride == column && k / columns % stride == row);
-        // Cells at the lower and left edge, of which only a part is there, begin outside; they stay open as nothing settles them.
+        // Cells at the lower and left edge, of which only a part is there, begin outside; they stay
+        // open as nothing settles them.
         for low in cells {
             let agree = self.agree(low, stride);
             if agree {
@@ -158,7 +172,8 @@ impl Exploration<'_> {
         (0..=stride).flat_map(move |j| (0..wide).map(move |i| low + i + j * columns)).filter(move |k| *k < count)
     }
 
-    /// Whether a cell of a grid is all there and nothing is in it: nothing lies across sides and diagonals of its finest squares.
+    /// Whether a cell of a grid is all there and nothing is in it: nothing lies across sides and
+    /// diagonals of its finest squares.
     fn is_empty(&self, low: usize, stride: usize) -> bool {
         let columns = self.found.columns;
         if low % columns + stride >= columns || low + stride * (columns + 1) >= self.known.len() {
@@ -187,7 +202,8 @@ impl Exploration<'_> {
         high_n - low_n <= AGREEMENT_FRACTION * self.found.service_n
     }
 
-    /// Every how manieth place each grid has, the coarsest first. All but the last are small enough that their cables can be kept.
+    /// Every how manieth place each grid has, the coarsest first. All but the last are small enough
+    /// that their cables can be kept.
     fn strides(&self) -> Vec<usize> {
         let columns = self.found.columns;
         let rows = self.found.most_n.len() / columns.max(1);
@@ -205,14 +221,16 @@ impl Exploration<'_> {
         (0..self.free.len()).filter(move |k| self.free[*k]).filter(on)
     }
 
-    /// Answers all places of a grid that can be reached from those kept, and keeps theirs for the next one.
+    /// Answers all places of a grid that can be reached from those kept, and keeps theirs for the
+    /// next one.
     fn grid(
         &mut self,
         stride: usize,
         kept: &mut Vec<Rc<Reached>>,
         progress: &mut dyn FnMut(&Area, usize) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        // By cost and place; by from where as well: where one way has no answer another one of the same length may.
+        // By cost and place; by from where as well: where one way has no answer another one of the
+        // same length may.
         let mut open = BTreeMap::new();
         for from in kept.iter() {
             self.open(from, stride, &mut open);
@@ -269,7 +287,8 @@ impl Exploration<'_> {
         }
     }
 
-    /// What lies between four neighbours on a coarse grid is guessed from them until a finer one knows.
+    /// What lies between four neighbours on a coarse grid is guessed from them until a finer one
+    /// knows.
     fn guess(&mut self, place: usize, stride: usize) {
         let around: Vec<usize> = self.neighbours(place, stride).map(|(k, _)| k).chain([place]).collect();
         for low in around.iter().copied() {
@@ -319,7 +338,8 @@ impl Exploration<'_> {
         self.world.is_empty() || self.world.signed_gap(p, f64::INFINITY).is_none_or(|g| g.gap_m >= 0.0)
     }
 
-    /// Whether nothing lies between two free places: looked at in steps no longer than the way to the nearest obstacle.
+    /// Whether nothing lies between two free places: looked at in steps no longer than the way to
+    /// the nearest obstacle.
     fn clear(&self, from: Vec2, to: Vec2) -> bool {
         let (way, mut gone, mut before) = (to - from, 0.0, f64::NEG_INFINITY);
         while !self.world.is_empty() && gone < way.norm() {
@@ -345,8 +365,8 @@ impl Exploration<'_> {
         })
     }
 
-    /// The way back from a place to the start; the largest tension on it, infinite where the cable holds it back, None without an
-    /// answer.
+    /// The way back from a place to the start; the largest tension on it, infinite where the cable
+    /// holds it back, None without an answer.
     fn back(&self, simulation: &mut Simulation, place: usize) -> Option<f64> {
         let (mut at, mut most) = (place, 0.0);
         while let Some(before) = self.parents.get(at).copied().flatten().filter(|_| f64::is_finite(most)) {
@@ -356,8 +376,8 @@ impl Exploration<'_> {
         Some(most)
     }
 
-    /// Moves the end straight from one place to another; the largest tension on the way, infinite where it gets no farther, None
-    /// without an answer.
+    /// Moves the end straight from one place to another; the largest tension on the way, infinite
+    /// where it gets no farther, None without an answer.
     pub fn go(&self, simulation: &mut Simulation, [from, to]: [Vec2; 2]) -> Option<f64> {
         let steps = ((to - from).norm() / STEP_M).ceil();
         let mut most = self.tension_n(simulation);
@@ -371,7 +391,8 @@ impl Exploration<'_> {
         Some(most)
     }
 
-    /// A step; where it has no answer, or one that is not believed, it is taken in parts and with the cable laid anew.
+    /// A step; where it has no answer, or one that is not believed, it is taken in parts and with
+    /// the cable laid anew.
     fn go_with_retries(&self, simulation: &mut Simulation, ends: [Vec2; 2]) -> Option<f64> {
         let before = simulation.clone();
         let before_n = self.tension_n(&before);

@@ -118,8 +118,8 @@ fn it_ends_when_it_is_told_to_and_is_the_same_each_time() {
     assert_eq!(bits(&look(&query)), bits(&look(&query)));
 }
 
-/// What is heard of a fine map before it is done covers it from a coarse one, and is told to be guessed; in the end only places between
-/// others that agree are.
+/// What is heard of a fine map before it is done covers it from a coarse one, and is told to be
+/// guessed; in the end only places between others that agree are.
 #[test]
 fn a_coarse_map_comes_first_and_finer_ones_go_on_from_it() {
     let query = query(free(), [[-2.0, -2.0], [12.0, 6.0]], 0.5);
@@ -176,7 +176,8 @@ fn it_begins_where_the_cable_lies_now() {
     assert!(area(&ReachQuery { now: Some(Arc::new(broken)), ..there }, |_, _| ControlFlow::Continue(())).is_err());
 }
 
-/// Over heaps of slack finite elements catch on corners: on these two ways they pulled by 16 and 5 kN. None of that is on the map.
+/// Over heaps of slack finite elements catch on corners: on these two ways they pulled by 16 and 5
+/// kN. None of that is on the map.
 #[test]
 #[ignore = "open: on the way over heaps of slack the normal forces that friction uses do not come to an end in 25 rounds"]
 fn ways_over_heaps_of_slack_pull_by_no_more_than_weight() {

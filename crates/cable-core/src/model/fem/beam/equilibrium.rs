@@ -1,20 +1,23 @@
-//! This module finds the equilibrium of a cable with bending stiffness in the angles of its tangent.
+//! This module finds the equilibrium of a cable with bending stiffness in the angles of its
+//! tangent.
 //!
-//! The tangent t(θ) is followed by quadratic finite elements: an angle at each node and one at the middle of each bar
-//! (numbered 2e, 2e + 1, 2e + 2 in bar e). The force F(s) follows from the force F₀ at the start of its span as in a flexible
-//! cable. Stretch is eliminated (τ = F·t/EA, dx = (1 + τ)t ds), so neither a stiff nor an inextensible cable is hard, and
-//! a clamp is an angle prescribed exactly:
+//! The tangent t(θ) is followed by quadratic finite elements: an angle at each node and one at the
+//! middle of each bar (numbered 2e, 2e + 1, 2e + 2 in bar e). The force F(s) follows from the force
+//! F₀ at the start of its span as in a flexible cable. Stretch is eliminated (τ = F·t/EA, dx = (1 +
+//! τ)t ds), so neither a stiff nor an inextensible cable is hard, and a clamp is an angle
+//! prescribed exactly:
 //! ```text
 //! L(θ, F₀) = ∫ EI θ'²/2 − (F·t + (F·t)²/2EA) ds + Σ F₀·d        stationary: equilibrium and closed spans
 //! ∂L/∂θₐ   = ∫ EI θ' φₐ' − (F·n)(1 + τ) φₐ ds
 //! −∂L/∂F₀  = ∫ (1 + τ) t ds − d
 //! M(node)  = ± ∂Lₑ/∂θ(node) of the bar beside it                 the moment that balances this bar
 //! ```
-//! Forces, node positions, node angles and the moments so recovered are of fourth order (G. Strang and G. Fix, *An Analysis
-//! of the Finite Element Method*, Prentice-Hall 1973: twice the degree), at three Gauss points a bar. Newton on the whole:
-//! θ banded, two force rows a span by their Schur complement S = BH⁻¹Bᵀ + C. The equilibrium is stable when H and S have
-//! the same number of negative directions (Haynsworth's inertia formula). The start is the flexible cable; where Newton
-//! fails from there, the bending stiffness is raised in steps.
+//! Forces, node positions, node angles and the moments so recovered are of fourth order (G. Strang
+//! and G. Fix, *An Analysis of the Finite Element Method*, Prentice-Hall 1973: twice the degree),
+//! at three Gauss points a bar. Newton on the whole: θ banded, two force rows a span by their Schur
+//! complement S = BH⁻¹Bᵀ + C. The equilibrium is stable when H and S have the same number of
+//! negative directions (Haynsworth's inertia formula). The start is the flexible cable; where
+//! Newton fails from there, the bending stiffness is raised in steps.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -23,21 +26,23 @@ use crate::math::{Vec2, larger, perp};
 use crate::model::fem::beam::mesh::places;
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::pulley_balance::Network;
-use crate::model::fem::free::stations::{Layout, Stop};
+use crate::model::fem::free::stations::{Layout, SpanEnds, Stop};
 
 /// Newton steps at one bending stiffness. Measured: 4 to 12.
 const MAX_STEPS: usize = 40;
-/// Longest turn of a node in one step, rad. Larger steps jump to other windings, smaller ones cost steps.
+/// Longest turn of a node in one step, rad. Larger steps jump to other windings, smaller ones cost
+/// steps.
 const LONGEST_TURN: f64 = 0.5;
 /// Angles and forces are found when a step changes them by less than this.
-const STILL: f64 = 1e-11;
+const STEP_TOLERANCE: f64 = 1e-11;
 /// Tries with other bending stiffnesses on the way to the real one.
 const MAX_TRIES: usize = 80;
 /// Gauss points of a bar from 0 to 1 and their weights.
 pub(in crate::model::fem) const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 /// 3l ∫φₐ'φ_b' ds of a bar of length l.
-pub(in crate::model::fem) const BEND: [[f64; 3]; 3] = [[7.0, -8.0, 1.0], [-8.0, 16.0, -8.0], [1.0, -8.0, 7.0]];
+pub(in crate::model::fem) const BEND_STIFFNESS_INTEGRALS: [[f64; 3]; 3] =
+    [[7.0, -8.0, 1.0], [-8.0, 16.0, -8.0], [1.0, -8.0, 7.0]];
 
 /// One bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +60,7 @@ pub struct Beam {
     pub(in crate::model::fem) layout: Layout,
     pub(in crate::model::fem) material: Material,
     pub(in crate::model::fem) bending: f64,
-    ends: Vec<(usize, usize)>,
+    ends: Vec<SpanEnds>,
     pub(in crate::model::fem) bars: Vec<Bar>,
     pub(in crate::model::fem) angles: Vec<f64>,
     /// Prescribed angles: which, and its value, rad.
@@ -98,8 +103,8 @@ pub(in crate::model::fem) struct Sample {
 }
 
 impl Beam {
-    /// The bars and angles of a solved flexible cable: `network.layout` says how many bars each stretch has. `body` is its
-    /// weight and wind, N/m.
+    /// The bars and angles of a solved flexible cable: `network.layout` says how many bars each
+    /// stretch has. `body` is its weight and wind, N/m.
     #[must_use]
     pub fn new(network: &Network, bending: f64, body: Vec2) -> Self {
         let layout = network.layout.clone();
@@ -119,7 +124,8 @@ impl Beam {
         for k in 0..beam.layout.stops.len().saturating_sub(1) {
             let (stop, next) = (&beam.layout.stops[k], &beam.layout.stops[k + 1]);
             let (start, length) = (stop.arc_length, next.arc_length - stop.arc_length);
-            // λ = √(EI/T); where T goes to zero its own weight takes over, λ³ = EI/w; never longer than the stretch.
+            // λ = √(EI/T); where T goes to zero its own weight takes over, λ³ = EI/w; never longer
+            // than the stretch.
             let least = (bending / (length * length)).max((bending * weight * weight).cbrt());
             let layer = |force: Vec2| (bending / force.norm().max(least)).sqrt();
             let layers = [layer(network.forces[k][1]), layer(network.forces[k + 1][0])];
@@ -169,8 +175,8 @@ impl Beam {
         self.clamps.last().map_or(0.0, |z| z.1) - self.clamps.first().map_or(0.0, |a| a.1)
     }
 
-    /// Lies along a route (its points, m) where that winds otherwise between the clamps than the flexible cable does: a
-    /// stiff cable keeps its loops.
+    /// Lies along a route (its points, m) where that winds otherwise between the clamps than the
+    /// flexible cable does: a stiff cable keeps its loops.
     #[must_use]
     pub fn wound_as(mut self, route: &[Vec2]) -> Self {
         let flexible = (self.angles.clone(), self.clamps.clone(), self.winding());
@@ -255,7 +261,7 @@ impl Beam {
         let mut out = vec![Vec2::zeros(); stops.len()];
         let mut force = Vec2::zeros();
         for k in 0..stops.len() {
-            if let Some(i) = self.ends.iter().position(|e| e.0 == k) {
+            if let Some(i) = self.ends.iter().position(|e| e.first == k) {
                 force = self.forces[i];
             } else if k == last_anchor {
                 let loads: Vec2 = stops[k + 1..].iter().map(|s| s.load).sum();
@@ -305,7 +311,8 @@ impl Beam {
         if outcome == Outcome::Stable {
             return outcome;
         }
-        // Up from a softer cable: `part` of the bending stiffness was met last, `factor` is the next rise.
+        // Up from a softer cable: `part` of the bending stiffness was met last, `factor` is the
+        // next rise.
         (self.angles, self.forces) = start;
         let (mut part, mut factor): (f64, f64) = (1e-8, 10.0);
         let mut saved = (self.angles.clone(), self.forces.clone());
@@ -376,7 +383,7 @@ impl Beam {
             }
             self.steps += 1;
             let size = turn.max(change);
-            if size <= STILL || (size <= 1e3 * STILL && size > 0.5 * before) {
+            if size <= STEP_TOLERANCE || (size <= 1e3 * STEP_TOLERANCE && size > 0.5 * before) {
                 return if negative == down { Outcome::Stable } else { Outcome::Unstable };
             }
             before = size;
@@ -390,7 +397,7 @@ impl Beam {
         let (mut g, mut b, mut c) = (vec![0.0; n], vec![vec![0.0; n]; m], DMatrix::zeros(m, m));
         let mut gap = vec![0.0; m];
         h.clear();
-        for (i, &(first, last)) in self.ends.iter().enumerate() {
+        for (i, &SpanEnds { first, last }) in self.ends.iter().enumerate() {
             let points = (self.layout.stops[first].point(1), self.layout.stops[last].point(0));
             if let (Some(a), Some(z)) = points {
                 gap[2 * i] -= z.x - a.x;
@@ -399,12 +406,12 @@ impl Beam {
         }
         let (ea, starts) = (self.material.axial_stiffness, self.stretch_starts());
         for (e, bar) in self.bars.iter().enumerate() {
-            let span = self.ends.iter().position(|&(first, last)| first <= bar.stretch && bar.stretch < last);
+            let span = self.ends.iter().position(|ends| ends.first <= bar.stretch && bar.stretch < ends.last);
             let stiff = bending / (3.0 * self.rest(e));
             for r in 0..3 {
-                g[2 * e + r] += stiff * dot(&BEND[r], &self.angles[2 * e..2 * e + 3]);
+                g[2 * e + r] += stiff * dot(&BEND_STIFFNESS_INTEGRALS[r], &self.angles[2 * e..2 * e + 3]);
                 for s in r..3 {
-                    h.add(2 * e + r, 2 * e + s, stiff * BEND[r][s]);
+                    h.add(2 * e + r, 2 * e + s, stiff * BEND_STIFFNESS_INTEGRALS[r][s]);
                 }
             }
             for p in self.samples(e, &starts) {
@@ -461,7 +468,8 @@ mod tests {
 
     #[test]
     fn shapes_and_their_bending_are_those_of_the_same_parabolas() {
-        // 3l ∫φₐ'φ_b' by differences of the shapes at the Gauss points, exact for products of slopes.
+        // 3l ∫φₐ'φ_b' by differences of the shapes at the Gauss points, exact for products of
+        // slopes.
         let slope = |x: f64| {
             let (a, b) = (shapes(x - 0.5), shapes(x + 0.5));
             [0, 1, 2].map(|i| b[i] - a[i])
@@ -469,7 +477,7 @@ mod tests {
         for a in 0..3 {
             for b in 0..3 {
                 let sum: f64 = GAUSS.iter().map(|&(x, w)| 3.0 * w * slope(x)[a] * slope(x)[b]).sum();
-                assert!((sum - BEND[a][b]).abs() < 1e-12, "{a} {b}: {sum}");
+                assert!((sum - BEND_STIFFNESS_INTEGRALS[a][b]).abs() < 1e-12, "{a} {b}: {sum}");
             }
         }
     }

@@ -1,18 +1,19 @@
 //! The nodes of a stiff cable lie close together in the boundary layers at its stations.
 //!
-//! Beside a clamp, a load or a support the curvature of a taut stiff cable falls as e^{−s/λ}, λ = √(EI/T). The bars follow
-//! a density that gives a third of them to each end of a stretch,
+//! Beside a clamp, a load or a support the curvature of a taut stiff cable falls as e^{−s/λ}, λ =
+//! √(EI/T). The bars follow a density that gives a third of them to each end of a stretch,
 //! ```text
 //! ρ(s) = 1/3L + ⅓ e^{−s/cλ₀}/(cλ₀ (1 − e^{−L/cλ₀})) + the same from the other end,     ∫ρ ds = 1
 //! ```
 //! node i of n where ∫ρ ds = i/n. Where λ is not small against L this is nearly even.
 
-/// Reach of the density in layers. Smaller: the bars grow faster than the layer fades; larger: too few lie in it. Tuned on
-/// clamped spans of 50 to 400 bars with layers of 3e-4 to 0.1 of their length.
-const SPREAD: f64 = 4.0;
+/// Reach of the density in layers. Smaller: the bars grow faster than the layer fades; larger: too
+/// few lie in it. Tuned on clamped spans of 50 to 400 bars with layers of 3e-4 to 0.1 of their
+/// length.
+const DENSITY_REACH_LAYERS: f64 = 4.0;
 
 /// Part of the bars that each end of a stretch gets for its layer.
-const SHARE: f64 = 1.0 / 3.0;
+const END_LAYER_BAR_FRACTION: f64 = 1.0 / 3.0;
 
 /// Bisections of a node's place; 60 are the digits of an f64.
 const BISECTIONS: usize = 60;
@@ -22,13 +23,14 @@ fn layer_part(s: f64, reach: f64, length: f64) -> f64 {
     (-s / reach).exp_m1() / (-length / reach).exp_m1()
 }
 
-/// The places (m, from 0 to `length`) of `count` bars between two ends with layers of the given thickness, m.
+/// The places (m, from 0 to `length`) of `count` bars between two ends with layers of the given
+/// thickness, m.
 #[must_use]
 pub fn places(layers: [f64; 2], length: f64, count: usize) -> Vec<f64> {
-    let reach = layers.map(|l| SPREAD * l);
+    let reach = layers.map(|l| DENSITY_REACH_LAYERS * l);
     let part = |s: f64| {
         let ends = layer_part(s, reach[0], length) + 1.0 - layer_part(length - s, reach[1], length);
-        SHARE * ends + (1.0 - 2.0 * SHARE) * s / length
+        END_LAYER_BAR_FRACTION * ends + (1.0 - 2.0 * END_LAYER_BAR_FRACTION) * s / length
     };
     let mut out = Vec::with_capacity(count + 1);
     out.push(0.0);
@@ -62,7 +64,7 @@ mod tests {
             let bars: Vec<f64> = places.windows(2).map(|p| p[1] - p[0]).collect();
             prop_assert!(bars.iter().all(|&b| b > 0.0));
             // The first bar has at most its share of the layer: ∫ρ over it is 1/count.
-            prop_assert!(bars[0] <= 3.0 * SPREAD * layers[0].min(length) * 1.6 / count as f64 || bars[0] <= 3.0 * length / count as f64);
+            prop_assert!(bars[0] <= 3.0 * DENSITY_REACH_LAYERS * layers[0].min(length) * 1.6 / count as f64 || bars[0] <= 3.0 * length / count as f64);
             if count >= 50 {
                 prop_assert!(bars[0] <= 0.4 * layers[0] && bars[count - 1] <= 0.4 * layers[1], "{} of {}", bars[0], layers[0]);
             }

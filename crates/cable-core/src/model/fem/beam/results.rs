@@ -1,21 +1,23 @@
 //! This module reads nodes out of a solved stiff cable: places, tensions, moments and curvatures.
 
 use crate::math::{Vec2, larger};
-use crate::model::fem::beam::equilibrium::{BEND, Beam, GAUSS, dot};
+use crate::model::fem::beam::equilibrium::{BEND_STIFFNESS_INTEGRALS, Beam, GAUSS, dot};
 use crate::model::fem::free::results::Point;
 use crate::model::fem::free::stations::Stop;
 
-/// Between two points the cable leaves a straight line by no more than this part of its length. More: places read between
-/// points are off by as much, with the nodes alone by 1e-3 of a span; less: thousands of points.
+/// Between two points the cable leaves a straight line by no more than this part of its length.
+/// More: places read between points are off by as much, with the nodes alone by 1e-3 of a span;
+/// less: thousands of points.
 const FLATNESS: f64 = 1e-5;
-/// Parts of a bar at most. Fewer: a bar of a coarse given mesh shows corners; more: points that nobody can tell apart.
+/// Parts of a bar at most. Fewer: a bar of a coarse given mesh shows corners; more: points that
+/// nobody can tell apart.
 const MOST_PARTS: f64 = 32.0;
 
 impl Beam {
     /// Moments at both nodes of bar `e`, N·m: those that balance it.
     fn moments(&self, e: usize, starts: &[Vec2]) -> [f64; 2] {
         let stiff = self.bending / (3.0 * self.rest(e));
-        let mut pull = [0, 2].map(|r| stiff * dot(&BEND[r], &self.angles[2 * e..2 * e + 3]));
+        let mut pull = [0, 2].map(|r| stiff * dot(&BEND_STIFFNESS_INTEGRALS[r], &self.angles[2 * e..2 * e + 3]));
         for p in self.samples(e, starts) {
             for (pull, shape) in pull.iter_mut().zip([p.shapes[0], p.shapes[2]]) {
                 *pull -= p.length * p.across * (1.0 + p.tau) * shape;
@@ -24,8 +26,9 @@ impl Beam {
         [-pull[0], pull[1]]
     }
 
-    /// Curvature at node `v`, 1/m: at a stop from the moment that balances the bar beside it (the greater at a clamp between
-    /// two), else the slope of the curve of fourth degree through the angles of both bars.
+    /// Curvature at node `v`, 1/m: at a stop from the moment that balances the bar beside it (the
+    /// greater at a clamp between two), else the slope of the curve of fourth degree through the
+    /// angles of both bars.
     fn curvature(&self, v: usize, starts: &[Vec2]) -> f64 {
         let (before, after) = (v.checked_sub(1).and_then(|e| self.bars.get(e)), self.bars.get(v));
         if let (Some(a), Some(b)) = (before, after)
@@ -40,7 +43,8 @@ impl Beam {
         per_moment * if left.abs() > right.abs() { left } else { right }
     }
 
-    /// All nodes; `smooth`, as many points between them as it takes to draw the cable with straight lines.
+    /// All nodes; `smooth`, as many points between them as it takes to draw the cable with straight
+    /// lines.
     #[must_use]
     pub fn points(&self, smooth: bool) -> Vec<Point> {
         let n = self.bars.len();
@@ -81,7 +85,8 @@ impl Beam {
         out
     }
 
-    /// The points inside bar `e`, which begins at `at`: between two the cable leaves a straight line by `FLATNESS` at most.
+    /// The points inside bar `e`, which begins at `at`: between two the cable leaves a straight
+    /// line by `FLATNESS` at most.
     fn between(&self, e: usize, mut at: Vec2, curvatures: [f64; 2], starts: &[Vec2], out: &mut Vec<Point>) {
         let (bar, angles) = (&self.bars[e], &self.angles[2 * e..2 * e + 3]);
         let half_turn = larger((angles[1] - angles[0]).abs(), (angles[2] - angles[1]).abs());
@@ -119,7 +124,8 @@ fn slope_at_zero(places: &[f64; 5], values: &[f64]) -> f64 {
     let here = values.get(zero).copied().unwrap_or(f64::NAN);
     let mut slope = 0.0;
     for (i, (&x, &y)) in places.iter().zip(values).enumerate().filter(|(i, _)| *i != zero) {
-        // Lagrange: φᵢ'(0) = (1/xᵢ) Π (0 − xⱼ)/(xᵢ − xⱼ) over the others, which sum to 0 with that of 0 itself.
+        // Lagrange: φᵢ'(0) = (1/xᵢ) Π (0 − xⱼ)/(xᵢ − xⱼ) over the others, which sum to 0 with that
+        // of 0 itself.
         let others = places.iter().enumerate().filter(|(j, _)| *j != i && *j != zero);
         slope += (y - here) / x * others.map(|(_, &z)| z / (z - x)).product::<f64>();
     }

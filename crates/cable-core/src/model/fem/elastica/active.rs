@@ -10,23 +10,27 @@ use crate::problem::Problem;
 /// Changes of the set of contacts before it is given up. 1 to 4 are usual.
 const MAX_CHANGES: usize = 60;
 
-/// Part of the cable's radius by which a cable may lie in an obstacle: what elements are off between their ends.
-const DEEP: f64 = 1e-3;
+/// Part of the cable's radius by which a cable may lie in an obstacle: what elements are off
+/// between their ends.
+const OVERLAP_TOLERANCE: f64 = 1e-3;
 
 /// Elements of a new stretch of contact.
 const ELEMENTS: usize = 8;
 
-/// Length of a new stretch of contact in parts of its radius, or of the shorter free piece beside it. Newton's method finds the right one;
-/// far more than that turns over on the way.
+/// Length of a new stretch of contact in parts of its radius, or of the shorter free piece beside
+/// it. Newton's method finds the right one; far more than that turns over on the way.
 const NEW: f64 = 0.05;
 
-/// Length, in parts of the radius (of the cable for a line), below which a stretch of contact is a point.
+/// Length, in parts of the radius (of the cable for a line), below which a stretch of contact is a
+/// point.
 const POINT: f64 = 1e-4;
 
-/// Part by which a cable may be more bent than the round it touches, or pull at it in parts of the scene's forces.
-const SLACK: f64 = 1e-7;
+/// Part by which a cable may be more bent than the round it touches, or pull at it in parts of the
+/// scene's forces.
+const CONTACT_CURVATURE_TOLERANCE: f64 = 1e-7;
 
-/// The same for the bend of what was found to be no stretch: at the very limit it is either, and would go to and fro.
+/// The same for the bend of what was found to be no stretch: at the very limit it is either, and
+/// would go to and fro.
 const POINT_SLACK: f64 = 1e-3;
 
 /// A piece cut at a node, both parts free.
@@ -82,8 +86,9 @@ impl Elastica {
         false
     }
 
-    /// Back to a guess, with less of what lies on lines between free pieces: a stretch becomes a point, a point is left out, as a cable that
-    /// bends round what is before and behind it is lifted off. Where that is wrong it will be met again. Returns whether there was any.
+    /// Back to a guess, with less of what lies on lines between free pieces: a stretch becomes a
+    /// point, a point is left out, as a cable that bends round what is before and behind it is
+    /// lifted off. Where that is wrong it will be met again. Returns whether there was any.
     fn lift(&mut self, from: &Self) -> bool {
         let line = |k: usize| from.contacts.get(k).is_some_and(|c| c.radius.is_none());
         let inner = |k: usize| k > 0 && k + 1 < from.pieces.len();
@@ -167,7 +172,8 @@ impl Elastica {
         -(force(b) - force(a)).dot(&normal)
     }
 
-    /// Changes one contact that is not as it has to be; returns whether there was any, None where this can do nothing about it.
+    /// Changes one contact that is not as it has to be; returns whether there was any, None where
+    /// this can do nothing about it.
     fn exchange(&mut self, problem: &Problem, points: &[usize]) -> Option<bool> {
         let size = self.scale + self.bending / (self.length * self.length);
         for j in 0..self.joints.len() {
@@ -175,7 +181,7 @@ impl Elastica {
             let c = self.contacts[k];
             let u = *self.pieces[j].nodes.last()?;
             let pulley = matches!(c.owner, Owner::Pulley(_));
-            if !pulley && self.push(j) < -SLACK * size {
+            if !pulley && self.push(j) < -CONTACT_CURVATURE_TOLERANCE * size {
                 self.release(j);
                 return Some(true);
             }
@@ -185,7 +191,7 @@ impl Elastica {
             let bent = c.sense * (u[MOMENT] / self.bending - c.curvature());
             let least = 1.0 / self.length;
             let limit = if c.curvature().abs() > least { c.curvature().abs() } else { least };
-            let slack = if points.contains(&k) { POINT_SLACK } else { SLACK };
+            let slack = if points.contains(&k) { POINT_SLACK } else { CONTACT_CURVATURE_TOLERANCE };
             if bent > slack * limit {
                 self.stretch(j, k);
                 return Some(true);
@@ -201,7 +207,7 @@ impl Elastica {
             let pulley = matches!(c.owner, Owner::Pulley(_));
             for u in &self.pieces[k].nodes {
                 let deeper = !pulley && self.better(problem, c, place(u), tangent(u)).is_some();
-                if deeper || (!pulley && self.pressure(c, u) * self.length < -SLACK * size) {
+                if deeper || (!pulley && self.pressure(c, u) * self.length < -CONTACT_CURVATURE_TOLERANCE * size) {
                     return None;
                 }
             }
@@ -214,7 +220,7 @@ impl Elastica {
         for (which, tip) in tips {
             let Some((piece, Some(u))) = tip else { continue };
             let contact = piece.lies.and_then(|c| self.contacts.get(c));
-            if contact.is_some_and(|c| self.tip_push(which, c, u) < -SLACK * size) {
+            if contact.is_some_and(|c| self.tip_push(which, c, u) < -CONTACT_CURVATURE_TOLERANCE * size) {
                 return None;
             }
         }
@@ -245,7 +251,7 @@ impl Elastica {
 
     /// What a place on a contact lies deeper in than in that contact.
     fn better(&self, problem: &Problem, c: &Contact, x: Vec2, t: Vec2) -> Option<Contact> {
-        let deep = DEEP * problem.radius;
+        let deep = OVERLAP_TOLERANCE * problem.radius;
         let gap = problem.world.signed_gap(x, 0.0).filter(|g| g.gap_m < -deep)?;
         let other = contact_at(problem, &gap, x, t)?;
         Some(Contact { mobilised: c.mobilised, slips: c.slips, sense: c.sense, ..other })
@@ -253,7 +259,7 @@ impl Elastica {
 
     /// Looks for what free pieces run into; a contact in one point where they are deepest.
     fn meet(&mut self, problem: &Problem) -> Option<bool> {
-        let deep = DEEP * problem.radius;
+        let deep = OVERLAP_TOLERANCE * problem.radius;
         let mut worst: Option<(f64, usize, usize, crate::contact::Gap)> = None;
         let world = &problem.world;
         for (k, piece) in self.pieces.iter().enumerate().filter(|(_, p)| p.lies.is_none()) {

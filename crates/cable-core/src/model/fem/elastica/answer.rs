@@ -15,24 +15,25 @@ const MOST_PARTS: f64 = 400.0;
 const FLATNESS: [f64; 2] = [0.01, 5e-4];
 
 /// Part of a piece that lies by which a node stands before its end.
-const AT_THE_END: f64 = 1e-6;
+const END_NODE_OFFSET: f64 = 1e-6;
 
 /// Part of an element by which two nodes of an answer are apart at least.
-const SAME_PLACE: f64 = 1e-3;
+const NODE_SPACING_FRACTION: f64 = 1e-3;
 
-/// Halvings of an element by which the place of its greatest tension is found: what is left of it is squared.
+/// Halvings of an element by which the place of its greatest tension is found: what is left of it
+/// is squared.
 const PEAK_HALVINGS: usize = 24;
 
-/// Part of what halving the elements changes that may be left of an error: a fifteenth by the fourth order, twice that where the last
-/// elements beside a contact do not have it yet.
-const LEFT: f64 = 2.0 / 15.0;
+/// Part of what halving the elements changes that may be left of an error: a fifteenth by the
+/// fourth order, twice that where the last elements beside a contact do not have it yet.
+const HALVING_ERROR_FRACTION: f64 = 2.0 / 15.0;
 
 /// Elements of all pieces together that are refined to.
 const MOST_ELEMENTS: usize = 4000;
 
 impl Elastica {
-    /// Halves the elements until the forces change by less than `tolerance` of the greatest; returns what error is left, in
-    /// parts of the greatest tension.
+    /// Halves the elements until the forces change by less than `tolerance` of the greatest;
+    /// returns what error is left, in parts of the greatest tension.
     pub fn refine(&mut self, problem: &Problem, tolerance: f64) -> Option<(f64, ErrorEstimates)> {
         loop {
             let mut fine = self.halved();
@@ -56,7 +57,8 @@ impl Elastica {
             let coarse = std::mem::replace(self, fine);
             let count: usize = self.pieces.iter().map(|p| p.nodes.len()).sum();
             if estimate <= tolerance || count > MOST_ELEMENTS {
-                let errors = ErrorEstimates::between(&coarse.solution(problem), &self.solution(problem)).times(LEFT);
+                let errors = ErrorEstimates::between(&coarse.solution(problem), &self.solution(problem))
+                    .times(HALVING_ERROR_FRACTION);
                 return estimate.is_finite().then_some((estimate, errors));
             }
         }
@@ -255,22 +257,23 @@ impl Elastica {
             let off = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]) / 8.0;
             let parts = (off / flat).sqrt().ceil().clamp(1.0, MOST_PARTS) as usize;
             let mut places: Vec<f64> = (1..parts).map(|i| g[0] + i as f64 / parts as f64 * (g[1] - g[0])).collect();
-            let apart = SAME_PLACE * (g[1] - g[0]);
+            let apart = NODE_SPACING_FRACTION * (g[1] - g[0]);
             let clear = |x: &f64| places.iter().chain(g).all(|y| (x - y).abs() > apart);
             places.extend(self.peak(piece, [g[0], g[1]]).filter(clear));
             places.sort_by(f64::total_cmp);
             out.extend(places.into_iter().map(|x| self.read(piece, x)));
-            // What is spread along it and the point force at its end are told apart by a node just before that.
+            // What is spread along it and the point force at its end are told apart by a node just
+            // before that.
             if piece.lies.is_some() && g[1] >= 1.0 {
-                out.push(self.read(piece, 1.0 - AT_THE_END));
+                out.push(self.read(piece, 1.0 - END_NODE_OFFSET));
             }
             out.push(*b);
         }
         out
     }
 
-    /// Where between two places of a piece its tension is greatest, if not at one of them: between nodes it is read too small by as much as their
-    /// distance squared.
+    /// Where between two places of a piece its tension is greatest, if not at one of them: between
+    /// nodes it is read too small by as much as their distance squared.
     fn peak(&self, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
         let rises = |x: f64| {
             let u = self.read(piece, x);

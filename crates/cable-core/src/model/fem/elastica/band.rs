@@ -1,5 +1,5 @@
-//! This solver factorises a matrix whose band width is known at run time, LU with partial pivoting (G. H. Golub and C. F. Van
-//! Loan, *Matrix Computations*, Johns Hopkins, 4th ed. 2013, §4.3).
+//! This solver factorises a matrix whose band width is known at run time, LU with partial pivoting
+//! (G. H. Golub and C. F. Van Loan, *Matrix Computations*, Johns Hopkins, 4th ed. 2013, §4.3).
 
 /// A band matrix with as many entries on either side of the diagonal, factorised in place.
 #[derive(Clone, Debug)]
@@ -43,7 +43,8 @@ impl Band {
     pub fn solve(&mut self, b: &mut [f64]) -> bool {
         let (n, half) = (self.size, self.half);
         for (row, b) in b.iter_mut().enumerate().take(n) {
-            // Rows are brought to one size, as equations of length, angle and force stand side by side.
+            // Rows are brought to one size, as equations of length, angle and force stand side by
+            // side.
             let width = 3 * half + 1;
             let entries = &mut self.rows[row * width..(row + 1) * width];
             let largest = entries.iter().fold(0.0f64, |m, v| if v.abs() > m { v.abs() } else { m });

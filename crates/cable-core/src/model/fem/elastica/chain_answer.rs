@@ -1,7 +1,8 @@
-//! This module reads an answer out of a chain at rest.
+//! This module makes a solution of a chain at rest.
 //!
-//! Forces of contacts and weight act on the chain's nodes. In the answer a contact acts where it is: a bar that lies on a corner is cut
-//! there, its force before and after differ by what the corner does, and its moment balances as before.
+//! Forces of contacts and weight act on the chain's nodes. In the answer a contact acts where it
+//! is: a bar that lies on a corner is cut there, its force before and after differ by what the
+//! corner does, and its moment balances as before.
 
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::elastica::relax::{Chain, ContactPair};
@@ -9,7 +10,7 @@ use crate::scene::SupportKind;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Gap between two contacts with one obstacle, in bars, up to which they are one.
-const APART: f64 = 2.5;
+const CONTACT_MERGE_BARS: f64 = 2.5;
 
 impl Chain<'_> {
     /// Force of a contact on the cable, N.
@@ -137,7 +138,7 @@ impl Chain<'_> {
         while let Some(first) = left.first().copied() {
             let (mut group, mut rest, mut to) = (vec![first], Vec::new(), first.arc);
             for t in left.into_iter().skip(1) {
-                if t.gap.obstacle == first.gap.obstacle && t.arc - to <= APART * self.bar {
+                if t.gap.obstacle == first.gap.obstacle && t.arc - to <= CONTACT_MERGE_BARS * self.bar {
                     to = t.arc;
                     group.push(t);
                 } else {

@@ -1,23 +1,29 @@
-//! The resting place of a stiff cable in contact, as a boundary value problem: the elastica between supports and contacts that
-//! are a point or a stretch, without a mesh that contact would have to be found on.
+//! The resting place of a stiff cable in contact, as a boundary value problem: the elastica between
+//! supports and contacts that are a point or a stretch, without a mesh that contact would have to
+//! be found on.
 //!
-//! With t = (cos θ, sin θ), n = perp(t), the force F of what comes after on what comes before (T = F·t), the moment M and the
-//! unstretched arc length s, α = 1 + αₜΔT and ε = T/EA, a free piece obeys
+//! With t = (cos θ, sin θ), n = perp(t), the force F of what comes after on what comes before (T =
+//! F·t), the moment M and the unstretched arc length s, α = 1 + αₜΔT and ε = T/EA, a free piece
+//! obeys
 //! ```text
 //! x' = α(1 + ε) t,     θ' = αM/EI,     M' = −α(1 + ε) F·n,     F' = −b
 //! ```
-//! One that lies on a round of radius ρ, passed in the sense σ (+1 anticlockwise, outward normal N = −σn), or on a line (1/ρ = 0), has
+//! One that lies on a round of radius ρ, passed in the sense σ (+1 anticlockwise, outward normal
+//! N = −σn), or on a line (1/ρ = 0), has
 //! ```text
 //! θ' = α(1 + ε)σ/ρ,    M = EI (1 + ε)σ/ρ,    F = T t,    p = σ(Tθ' + b·n) ≥ 0,    T' = −b·t − μp
 //! ```
-//! with μ the friction that is mobilised, positive where it pulls the cable along growing s. Where a free piece and one that lies meet,
-//! and at a contact in one point, a point force P(N + μt) acts; x, θ and M go through. A contact is one point while its cable is less
-//! bent than its round, σM/EI ≤ 1/ρ, and a stretch where that would be broken: what belongs to which is found by an active set.
-//! Weightless and without friction T + M²/2EI is the same all along: T falls by EI/2ρ² where the cable lies on a round.
+//! with μ the friction that is mobilised, positive where it pulls the cable along growing s. Where
+//! a free piece and one that lies meet, and at a contact in one point, a point force P(N + μt)
+//! acts; x, θ and M go through. A contact is one point while its cable is less bent than its round,
+//! σM/EI ≤ 1/ρ, and a stretch where that would be broken: what belongs to which is found by an
+//! active set. Weightless and without friction T + M²/2EI is the same all along: T falls by EI/2ρ²
+//! where the cable lies on a round.
 //!
-//! Each piece is solved by Lobatto collocation of fourth order (U. Ascher, R. Mattheij, R. Russell, *Numerical Solution of Boundary
-//! Value Problems for Ordinary Differential Equations*, SIAM 1995), its length s among the unknowns; all equations are local, so the
-//! Jacobian is a band. The way there goes from the flexible cable up in EI.
+//! Each piece is solved by Lobatto collocation of fourth order (U. Ascher, R. Mattheij, R.
+//! Russell, *Numerical Solution of Boundary Value Problems for Ordinary Differential Equations*,
+//! SIAM 1995), its length s among the unknowns; all equations are local, so the Jacobian is a band.
+//! The way there goes from the flexible cable up in EI.
 
 mod active;
 mod answer;
@@ -52,21 +58,23 @@ const MAX_STEPS: usize = 40;
 const LONGEST_TURN: f64 = 0.4;
 
 /// Part of its length that a piece may lose in one step: it must not turn over.
-const MOST_OF_LENGTH: f64 = 0.6;
+const PIECE_SHORTENING_LIMIT: f64 = 0.6;
 
-/// Steps in which a stretch of contact wants to be shorter than nothing before it is taken for a point. Fewer: first guesses that are too
-/// long are; more: all others wait for it.
-const PATIENCE: usize = 3;
+/// Steps in which a stretch of contact wants to be shorter than nothing before it is taken for a
+/// point. Fewer: first guesses that are too long are; more: all others wait for it.
+const STEPS_BEFORE_POINT_CONTACT: usize = 3;
 
-/// Newton steps times nodes that are spent on a cable from one guess. Less: cables with ten contacts are left to a chain of bars; more: seconds go
-/// into what is not found. Chosen so that a guess costs some tenths of a second; not tuned further.
+/// Newton steps times nodes that are spent on a cable from one guess. Less: cables with ten
+/// contacts are left to a chain of bars; more: seconds go into what is not found. Chosen so that a
+/// guess costs some tenths of a second; not tuned further.
 const MOST_WORK: usize = 25_000;
 
 /// Newton has ended where no unknown moves by more than this part of its size.
-const STILL: f64 = 1e-10;
+const STEP_TOLERANCE: f64 = 1e-10;
 
-/// Part of an unknown's size by which it is moved to find a slope, with central differences: their error is its square.
-const NUDGE: f64 = 1e-6;
+/// Part of an unknown's size by which it is moved to find a slope, with central differences: their
+/// error is its square.
+const DIFFERENCE_STEP: f64 = 1e-6;
 
 /// What the cable can lie on, at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -140,7 +148,8 @@ enum Joint {
     Begin(usize),
     /// It ends.
     End(usize),
-    /// Held at a place of the cable (m) and of the plane (m), in a direction (rad) where it is clamped.
+    /// Held at a place of the cable (m) and of the plane (m), in a direction (rad) where it is
+    /// clamped.
     Held(usize, f64, Vec2, Option<f64>),
     /// A dead load at a place of the cable, N; with the support it is, if it is one.
     Load(Option<usize>, f64, Vec2),
@@ -200,34 +209,37 @@ fn slant(contact: &Contact, u: &[f64; STATES]) -> f64 {
     contact.gap(place(u)).1.dot(&tangent(u))
 }
 
-/// The resting place of a stiff cable in contact, from the answer for a flexible one where there is one: as an elastica where that is found,
-/// else as a chain of bars with what halving them changes as its error.
+/// The resting place of a stiff cable in contact, from the answer for a flexible one where there is
+/// one: as an elastica where that is found, else as a chain of bars with what halving them changes
+/// as its error.
 pub fn rest(
     problem: &Problem,
-    at: (f64, &[Option<Vec2>]),
+    time_s: f64,
+    dragged: &[Option<Vec2>],
     lay: Option<&CableSolution>,
     tolerance: f64,
 ) -> Option<(CableSolution, Cost)> {
-    let bent = lay.and_then(|lay| Elastica::from_flexible(problem, at.0, at.1, lay));
+    let bent = lay.and_then(|lay| Elastica::from_flexible(problem, time_s, dragged, lay));
     let bent = bent.and_then(|e| e.answer(problem, tolerance));
     let bent = bent.filter(|(found, _)| lay.is_some_and(|lay| keeps_sides(problem, &lay.nodes, found)));
     let chain = match &bent {
-        // An equilibrium may be one that a cable runs away from: a chain that is let go there tells.
-        Some((answer, _)) => match relax::let_go(problem, at, answer) {
+        // An equilibrium may be one that a cable runs away from: a chain that is let go there
+        // tells.
+        Some((answer, _)) => match relax::let_go(problem, time_s, dragged, answer) {
             LetGo::Stays | LetGo::Unknown => return bent,
             LetGo::Leaves(chain) => *chain,
             LetGo::Totters => return None,
         },
-        None => relax::relaxed(problem, at, lay)?,
+        None => relax::relaxed(problem, time_s, dragged, lay)?,
     };
     let bend = |chain: &Chain<'_>| {
-        let found = Elastica::from_chain(chain, at.1).and_then(|e| e.answer(problem, tolerance))?;
+        let found = Elastica::from_chain(chain, dragged).and_then(|e| e.answer(problem, tolerance))?;
         keeps_sides(problem, &chain.nodes(), &found.0).then_some(found)
     };
     if let Some(found) = bend(&chain) {
         return Some(found);
     }
-    let (fine, rests) = chain.halved(at.1)?;
+    let (fine, rests) = chain.halved(dragged)?;
     if let Some(found) = if rests { bend(&fine) } else { None } {
         return Some(found);
     }
@@ -237,8 +249,9 @@ pub fn rest(
     Some((if rests { finer } else { coarse }.known_to(errors), cost))
 }
 
-/// Whether a cable can have come from one shape to an answer without passing through an obstacle. Newton's method can: where a contact of the way up in
-/// stiffness would have to pull it is let go, and what springs off a post may come to rest on its other side.
+/// Whether a cable can have come from one shape to an answer without passing through an obstacle.
+/// Newton's method can: where a contact of the way up in stiffness would have to pull it is let go,
+/// and what springs off a post may come to rest on its other side.
 fn keeps_sides(problem: &Problem, from: &[Node], to: &CableSolution) -> bool {
     let [old, new] = [from, &to.nodes].map(|nodes| nodes.iter().map(Node::at).collect::<Vec<Vec2>>());
     swept_corners::through(&swept_corners::corners(&problem.world), &old, &new, &mut Vec::new()).is_none()
@@ -304,7 +317,8 @@ impl Elastica {
             self.lie(c, u, out);
         }
         match (self.ends[which], contact) {
-            // What lies is led: where along it, or how hard it is pulled, is all that is left to say.
+            // What lies is led: where along it, or how hard it is pulled, is all that is left to
+            // say.
             (End::Held(at, _), Some(_)) => out.push((place(u) - at).dot(&tangent(u))),
             (End::Loaded(load), Some(c)) => {
                 out.push(tension(u) - sign * (load.dot(&tangent(u)) + c.mobilised * self.tip_push(which, c, u)));
@@ -320,7 +334,8 @@ impl Elastica {
         }
     }
 
-    /// What a contact does to an end that lies on it, along its normal, N: the load of that end presses there in one point.
+    /// What a contact does to an end that lies on it, along its normal, N: the load of that end
+    /// presses there in one point.
     fn tip_push(&self, which: usize, c: &Contact, u: &[f64; STATES]) -> f64 {
         match self.ends[which] {
             End::Loaded(load) => c.sense * load.dot(&perp(tangent(u))),
@@ -328,7 +343,8 @@ impl Elastica {
         }
     }
 
-    /// The four conditions under which a piece lies on its contact: all of it does where its start does.
+    /// The four conditions under which a piece lies on its contact: all of it does where its start
+    /// does.
     fn lie(&self, c: &Contact, u: &[f64; STATES], out: &mut Vec<f64>) {
         let bent = self.bending * c.curvature() * (1.0 + tension(u) / self.axial_stiffness);
         out.extend([c.gap(place(u)).0, slant(c, u), u[MOMENT] - bent, force(u).dot(&perp(tangent(u)))]);
@@ -402,8 +418,8 @@ impl Elastica {
                 }
                 turn = if d[ANGLE].abs() <= turn { turn } else { d[ANGLE].abs() };
                 let shrinks = -d[LENGTH] / u[LENGTH].abs();
-                if shrinks > MOST_OF_LENGTH {
-                    part = part.min(MOST_OF_LENGTH / shrinks);
+                if shrinks > PIECE_SHORTENING_LIMIT {
+                    part = part.min(PIECE_SHORTENING_LIMIT / shrinks);
                 }
             }
             if !most.is_finite() {
@@ -416,7 +432,7 @@ impl Elastica {
                 wanting[k] = if gone { wanting[k] + 1 } else { 0 };
                 at += STATES * p.nodes.len();
             }
-            self.shrinking = wanting.iter().position(|w| *w >= PATIENCE);
+            self.shrinking = wanting.iter().position(|w| *w >= STEPS_BEFORE_POINT_CONTACT);
             if self.shrinking.is_some() {
                 return false;
             }
@@ -427,7 +443,7 @@ impl Elastica {
                 }
             }
             self.steps += 1;
-            if part == 1.0 && most < STILL {
+            if part == 1.0 && most < STEP_TOLERANCE {
                 return true;
             }
         }
@@ -450,7 +466,7 @@ impl Elastica {
             let mut moved = near.to_vec();
             for j in 0..STATES * near.len() {
                 let (node, i) = (j / STATES, j % STATES);
-                let by = NUDGE * if i == LENGTH { near[node][i].abs() } else { sizes[i] };
+                let by = DIFFERENCE_STEP * if i == LENGTH { near[node][i].abs() } else { sizes[i] };
                 high.clear();
                 low.clear();
                 moved[node][i] = near[node][i] + by;

@@ -1,15 +1,18 @@
-//! A chain of bars that is let go finds the equilibrium of a stiff cable: the elastica begins there when the contacts are
-//! not those of a flexible cable.
+//! A chain of bars that is let go finds the equilibrium of a stiff cable: the elastica begins there
+//! when the contacts are not those of a flexible cable.
 //!
-//! Bars of rest length l̂ between nodes x, the angle ψ between two of them, weight and loads b, obstacles at gaps g:
+//! Bars of rest length l̂ between nodes x, the angle ψ between two of them, weight and loads b,
+//! obstacles at gaps g:
 //! ```text
 //! E(x) = Σ EA (|d| − l̂)²/2l̂ + Σ EI ψ²/2l̄ − Σ b·x        least, with every g ≥ 0
 //! ```
-//! Newton's method with a resistance to motion that fades as it comes to rest (pseudo-transient continuation: C. Kelley, D. Keyes, *SIAM Journal
-//! on Numerical Analysis* 35(2), 1998). Tensions are unknowns of their own: a step turns bars by the tension of the last one, not by what
-//! turning has just stretched them, so that EA limits no step. Contacts are those whose gap would close in the step, an active set of a
-//! quadratic programme; each mobilises the friction that it is given. Material that the first lay has no room for is paid out on the way.
-//! At the end the second derivative of E on the active set is positive definite: what was found is stable.
+//! Newton's method with a resistance to motion that fades as it comes to rest (pseudo-transient
+//! continuation: C. Kelley, D. Keyes, *SIAM Journal on Numerical Analysis* 35(2), 1998). Tensions
+//! are unknowns of their own: a step turns bars by the tension of the last one, not by what turning
+//! has just stretched them, so that EA limits no step. Contacts are those whose gap would close in
+//! the step, an active set of a quadratic programme; each mobilises the friction that it is given.
+//! Material that the first lay has no room for is paid out on the way. At the end the second
+//! derivative of E on the active set is positive definite: what was found is stable.
 
 use crate::contact::Gap;
 use crate::contact::pairs::Pair;
@@ -25,7 +28,8 @@ use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Node};
 
-/// Bars in the bend beside a contact, √(EI/T) with T a third of the weight, or in the cable's length, whichever asks for more up to the most.
+/// Bars in the bend beside a contact, √(EI/T) with T a third of the weight, or in the cable's
+/// length, whichever asks for more up to the most.
 const BARS_IN_BEND: f64 = 3.0;
 /// See `BARS_IN_BEND`.
 const LEAST_BARS: f64 = 150.0;
@@ -36,50 +40,53 @@ const MOST_BARS: f64 = 500.0;
 const MAX_STEPS: usize = 1200;
 
 /// Steps before anything that is not definite is resisted.
-const PATIENT: usize = 700;
+const STEPS_BEFORE_RESISTANCE: usize = 700;
 
 /// Changes of the active set in a step. More: the first steps pay for exactness they do not need.
 const MAX_SETS: usize = 8;
 
 /// Changes of the active set in a step in which contacts are let go.
-const LET_GO: usize = 4;
+const RELEASE_ROUNDS: usize = 4;
 
 /// Longest turn of a bar in a step, rad.
 const LONGEST_TURN: f64 = 0.4;
 
 /// Part by which a bar's rest length grows in a step until all material is paid out.
-const PAID_OUT: f64 = 0.03;
+const PAY_OUT_RATE: f64 = 0.03;
 
-/// Part of the cable's radius that a push of the whole weight presses in. Smaller: numbers lose digits; larger: contacts are found late.
-const PRESSED: f64 = 1e-3;
+/// Part of the cable's radius that a push of the whole weight presses in. Smaller: numbers lose
+/// digits; larger: contacts are found late.
+const PENALTY_DEPTH_FRACTION: f64 = 1e-3;
 
 /// Part of the cable's radius by which nothing moves any more.
-const STILL: f64 = 1e-5;
+const MOVE_TOLERANCE: f64 = 1e-5;
 
 /// Times that resistance is raised in a step.
 const MOST_RESISTED: usize = 8;
 
-/// Part of the first resistance that a chain begins with which is nearly at rest.
-const NEAR: f64 = 1e-2;
+/// A chain that is nearly at rest begins with this part of the first resistance.
+const REDUCED_RESISTANCE_FACTOR: f64 = 1e-2;
 
 /// Times that a chain is moved which has come to rest where it could give way.
 const MAX_NUDGES: usize = 2;
 
-/// Part of the cable's radius by which it is moved. Less: rounding moves it as far; more: it is put into obstacles.
-const NUDGED: f64 = 1e-2;
+/// Part of the cable's radius by which it is moved. Less: rounding moves it as far; more: it is put
+/// into obstacles.
+const PERTURBATION_FRACTION: f64 = 1e-2;
 
 /// Part of the cable's radius by which the first lay is pushed out of obstacles.
-const CLEAR: f64 = 1e-3;
+const FIRST_CLEARANCE_FRACTION: f64 = 1e-3;
 
 /// Part of the cable's radius by which it may be in an obstacle on its way.
-const DEEPEST: f64 = 0.5;
+const OVERLAP_LIMIT: f64 = 0.5;
 
-/// Part by which a bar may be shorter than its material in the first lay of a flexible cable. A stiff one has no pockets: more is laid anew.
+/// Part by which a bar may be shorter than its material in the first lay of a flexible cable. A
+/// stiff one has no pockets: more is laid anew.
 const POCKET: f64 = 0.5;
 
-/// Bars by which an answer may be elsewhere than the chain that was let go from it. Less: what a coarse chain is off by; more: answers that give way
-/// a little are taken for stable.
-const STAYS: f64 = 2.0;
+/// Bars by which an answer may be elsewhere than the chain that was let go from it. Less: what a
+/// coarse chain is off by; more: answers that give way a little are taken for stable.
+const STABILITY_DISTANCE_BARS: f64 = 2.0;
 
 /// Half-bandwidth: a node sees two neighbours on each side.
 const HALF_BAND: usize = 5;
@@ -149,10 +156,12 @@ fn has_pockets(problem: &Problem, answer: &CableSolution) -> bool {
     })
 }
 
-/// A chain at rest from the answer for a flexible cable, or from where it is first laid; None where it finds none.
+/// A chain at rest from the answer for a flexible cable, or from where it is first laid; None where
+/// it finds none.
 pub(super) fn relaxed<'a>(
     problem: &'a Problem,
-    at: (f64, &[Option<Vec2>]),
+    time_s: f64,
+    dragged: &[Option<Vec2>],
     lay: Option<&'a CableSolution>,
 ) -> Option<Chain<'a>> {
     let lay = lay.filter(|l| l.nodes.len() > 1 && l.breaks.is_empty() && !has_pockets(problem, l));
@@ -160,8 +169,8 @@ pub(super) fn relaxed<'a>(
     if first.len() < 2 {
         return None;
     }
-    let laid = lay.and_then(|l| Chain::new(problem, at, &Curve::new(&l.nodes), lay, 1.0));
-    let mut chain = laid.or_else(|| Chain::new(problem, at, &Curve::new(&first), None, 1.0))?;
+    let laid = lay.and_then(|l| Chain::new(problem, time_s, dragged, &Curve::new(&l.nodes), lay, 1.0));
+    let mut chain = laid.or_else(|| Chain::new(problem, time_s, dragged, &Curve::new(&first), None, 1.0))?;
     (chain.settle(1.0) && chain.stable).then_some(chain)
 }
 
@@ -178,15 +187,20 @@ pub(super) enum LetGo<'a> {
 }
 
 /// Lets a chain go from an answer for the stiff cable.
-pub(super) fn let_go<'a>(problem: &'a Problem, at: (f64, &[Option<Vec2>]), answer: &'a CableSolution) -> LetGo<'a> {
-    let Some(mut chain) = Chain::new(problem, at, &Curve::new(&answer.nodes), Some(answer), 1.0) else {
+pub(super) fn let_go<'a>(
+    problem: &'a Problem,
+    time_s: f64,
+    dragged: &[Option<Vec2>],
+    answer: &'a CableSolution,
+) -> LetGo<'a> {
+    let Some(mut chain) = Chain::new(problem, time_s, dragged, &Curve::new(&answer.nodes), Some(answer), 1.0) else {
         return LetGo::Unknown;
     };
     let from = chain.x.clone();
-    if !chain.settle(NEAR) {
+    if !chain.settle(REDUCED_RESISTANCE_FACTOR) {
         return LetGo::Unknown;
     }
-    let near = STAYS * chain.bar;
+    let near = STABILITY_DISTANCE_BARS * chain.bar;
     let stays = from.iter().zip(&chain.x).all(|(a, b)| (a - b).norm() <= near);
     match (chain.stable, stays) {
         (true, true) => LetGo::Stays,
@@ -200,15 +214,17 @@ impl<'a> Chain<'a> {
     pub fn halved(&self, dragged: &[Option<Vec2>]) -> Option<(Self, bool)> {
         let nodes = self.nodes();
         let finer = 2.0 * self.finer;
-        let mut fine = Self::new(self.problem, (self.time_s, dragged), &Curve::new(&nodes), self.lay, finer)?;
-        let rests = fine.settle(NEAR);
+        let mut fine = Self::new(self.problem, self.time_s, dragged, &Curve::new(&nodes), self.lay, finer)?;
+        let rests = fine.settle(REDUCED_RESISTANCE_FACTOR);
         Some((fine, rests))
     }
 
-    /// The chain along a curve: the way of a flexible cable or its first lay. None where the scene has what this knows nothing of.
+    /// The chain along a curve: the way of a flexible cable or its first lay. None where the scene
+    /// has what this knows nothing of.
     pub fn new(
         problem: &'a Problem,
-        (time_s, dragged): (f64, &[Option<Vec2>]),
+        time_s: f64,
+        dragged: &[Option<Vec2>],
         curve: &Curve<'_>,
         lay: Option<&'a CableSolution>,
         finer: f64,
@@ -304,19 +320,19 @@ impl<'a> Chain<'a> {
             chain.whole.push(whole);
             let pull = curve.at(0.5 * (chain.arc[e] + chain.arc[e + 1])).1;
             let fits = whole * (1.0 + pull / problem.axial_stiffness);
-            chain.rest.push(if way < (1.0 - PAID_OUT) * fits { larger(way, 0.05 * whole) } else { whole });
+            chain.rest.push(if way < (1.0 - PAY_OUT_RATE) * fits { larger(way, 0.05 * whole) } else { whole });
             chain.tension.push(pull);
             for k in [e, e + 1] {
                 chain.load[k] += body * (0.5 * ds);
             }
         }
-        push_chain_out(problem, (&chain.held, &|_, _| false), &mut chain.x, CLEAR * problem.radius);
-        (chain.depth(&chain.x) < DEEPEST * problem.radius).then_some(chain)
+        push_chain_out(problem, &chain.held, &|_, _| false, &mut chain.x, FIRST_CLEARANCE_FRACTION * problem.radius);
+        (chain.depth(&chain.x) < OVERLAP_LIMIT * problem.radius).then_some(chain)
     }
 
     /// Stiffness of contacts, N/m.
     fn stiffness(&self) -> f64 {
-        self.scale / (PRESSED * self.problem.radius)
+        self.scale / (PENALTY_DEPTH_FRACTION * self.problem.radius)
     }
 
     /// All pairs of chain and obstacles within `reach`, m.
@@ -387,21 +403,22 @@ impl<'a> Chain<'a> {
         let weight = self.scale / self.problem.length;
         let first = weight / self.bar;
         let mut shift = resistance * first;
-        let still = STILL * self.problem.radius;
+        let still = MOVE_TOLERANCE * self.problem.radius;
         let (mut small, mut nudges) = (false, 0);
         for round in 0..MAX_STEPS {
             self.steps += 1;
             let paid = self.pay_out();
             self.find_touches();
-            // Near rest the second derivative counts as it is, far from it only what never gives way. Where the first is not definite it gives way
-            // too as long as that leads to rest, and is resisted where it does not.
+            // Near rest the second derivative counts as it is, far from it only what never gives
+            // way. Where the first is not definite it gives way too as long as that leads to rest,
+            // and is resisted where it does not.
             let (mut found, mut exact) = (None, small);
             for _ in 0..MOST_RESISTED {
-                found = self.step(&mut matrix, &mut factor, (shift, exact));
+                found = self.step(&mut matrix, &mut factor, shift, exact);
                 if found.is_some() {
                     break;
                 }
-                if exact && round < PATIENT && nudges == 0 {
+                if exact && round < STEPS_BEFORE_RESISTANCE && nudges == 0 {
                     exact = false;
                 } else {
                     shift = larger(shift * 8.0, 1e-6 * first);
@@ -426,7 +443,7 @@ impl<'a> Chain<'a> {
             let mut tries = 0;
             loop {
                 next = self.x.iter().zip(&step).map(|(x, d)| x + d * part).collect();
-                if self.depth(&next) < DEEPEST * self.problem.radius {
+                if self.depth(&next) < OVERLAP_LIMIT * self.problem.radius {
                     break;
                 }
                 part *= 0.5;
@@ -450,7 +467,7 @@ impl<'a> Chain<'a> {
                 // It stands still where it could give way.
                 nudges += 1;
                 self.nudge(nudges);
-                shift = larger(shift, NEAR * first);
+                shift = larger(shift, REDUCED_RESISTANCE_FACTOR * first);
             }
             small = paid && whole && moved < 0.2 * self.bar;
             shift *= if whole && moved < 0.5 * self.bar {
@@ -474,7 +491,8 @@ impl<'a> Chain<'a> {
         for k in (1..n - 1).filter(|&k| !self.held[k]) {
             let phase = std::f64::consts::PI * (waves * k) as f64 / n as f64;
             let along = from[k + 1] - from[k - 1];
-            self.x[k] += perp(along) * (NUDGED * self.problem.radius * phase.sin() / larger(along.norm(), 1e-300));
+            self.x[k] += perp(along)
+                * (PERTURBATION_FRACTION * self.problem.radius * phase.sin() / larger(along.norm(), 1e-300));
         }
     }
 
@@ -483,7 +501,7 @@ impl<'a> Chain<'a> {
         let mut paid = true;
         for (rest, whole) in self.rest.iter_mut().zip(&self.whole) {
             if *rest < *whole {
-                let grown = *rest * (1.0 + PAID_OUT);
+                let grown = *rest * (1.0 + PAY_OUT_RATE);
                 *rest = if grown < *whole { grown } else { *whole };
                 paid &= *rest >= *whole;
             }
@@ -497,7 +515,8 @@ impl<'a> Chain<'a> {
         &mut self,
         matrix: &mut BandMatrix,
         factor: &mut BandFactor,
-        (shift, exact): (f64, bool),
+        shift: f64,
+        exact: bool,
     ) -> Option<(Vec<Vec2>, bool)> {
         let n = self.x.len();
         let stiff = self.stiffness();
@@ -550,8 +569,9 @@ impl<'a> Chain<'a> {
                 let moved = t.shares().iter().fold(0.0, |m, (k, a)| m + a * out[*k].dot(&t.gap.normal));
                 let gap = t.gap.gap_m + moved;
                 changed |= t.active != (gap < 0.0);
-                // Two that are let go and taken back by turns would go on for ever: later on none is let go.
-                t.active = gap < 0.0 || (t.active && set >= LET_GO);
+                // Two that are let go and taken back by turns would go on for ever: later on none
+                // is let go.
+                t.active = gap < 0.0 || (t.active && set >= RELEASE_ROUNDS);
                 // What is new pushes from the next solution on.
                 t.push = if gap < 0.0 { -stiff * gap } else { 0.0 };
             }
@@ -567,8 +587,9 @@ impl<'a> Chain<'a> {
         (self.x[t.node + 1] - self.x[t.node]).normalize()
     }
 
-    /// The matrix with friction that follows its normal force in the same step: with the force of the step before, each change of the one changes the
-    /// other by more where an end is pressed against a corner, and none is found.
+    /// The matrix with friction that follows its normal force in the same step: with the force of
+    /// the step before, each change of the one changes the other by more where an end is pressed
+    /// against a corner, and none is found.
     fn rubbing(&self, matrix: &BandMatrix) -> Band {
         let size = matrix.rows();
         let mut band = Band::new(size, HALF_BAND);
@@ -596,8 +617,8 @@ impl<'a> Chain<'a> {
         self.problem.world.geometry().body_of(gap.feature).map_or(self.problem.radius, |b| b.offset)
     }
 
-    /// −p ∂²g of a contact that pushes with p: of a node against a round −p/D, of a bar that turns by φ about a point at distance D and slides
-    /// along itself by m, −p g = p (Dφ²/2 + φm).
+    /// −p ∂²g of a contact that pushes with p: of a node against a round −p/D, of a bar that turns
+    /// by φ about a point at distance D and slides along itself by m, −p g = p (Dφ²/2 + φm).
     fn add_round(&self, matrix: &mut BandMatrix, t: &ContactPair, at_node: &mut Mat2) {
         let round = !t.gap.feature.is_multiple_of(2);
         let far = t.gap.gap_m + self.offset(&t.gap);
@@ -759,9 +780,9 @@ mod tests {
         for (part, stays) in [(0.5, true), (0.98, true), (1.02, false), (2.0, false)] {
             let (problem, straight) = strut(part)?;
             let mut chain =
-                Chain::new(&problem, (0.0, &[None, None]), &Curve::new(&straight.nodes), Some(&straight), 1.0)
+                Chain::new(&problem, 0.0, &[None, None], &Curve::new(&straight.nodes), Some(&straight), 1.0)
                     .ok_or("no chain")?;
-            assert!(chain.settle(NEAR), "{part}");
+            assert!(chain.settle(REDUCED_RESISTANCE_FACTOR), "{part}");
             let off = chain.x.iter().map(|x| (x.y - 1.0).abs()).fold(0.0, larger);
             assert!(chain.stable, "{part}");
             assert_eq!(off < 1e-9, stays, "{part} of the critical force: {off} m aside");

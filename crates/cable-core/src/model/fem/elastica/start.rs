@@ -1,4 +1,5 @@
-//! The first guess of a stiff cable comes from the answer for a flexible one, by continuation in its stiffness.
+//! The first guess of a stiff cable comes from the answer for a flexible one, by continuation in
+//! its stiffness.
 
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};
@@ -13,16 +14,18 @@ use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 use crate::solution::{CableSolution, ContactState, Node};
 
-/// Elements of a free piece to begin with, and of one that lies. Fewer: Newton starts outside of where it converges; more: costs.
+/// Elements of a free piece to begin with, and of one that lies. Fewer: Newton starts outside of
+/// where it converges; more: costs.
 const FREE_ELEMENTS: usize = 32;
 /// See `FREE_ELEMENTS`.
 const LYING_ELEMENTS: usize = 8;
 
-/// Layer λ that the way up in EI begins with, in parts of the shortest free piece. Larger: its first guess, a flexible cable with
-/// layers, is too rough; smaller: more steps.
+/// Layer λ that the way up in EI begins with, in parts of the shortest free piece. Larger: its
+/// first guess, a flexible cable with layers, is too rough; smaller: more steps.
 const FIRST_LAYER: f64 = 0.05;
 
-/// Part of an element over which the slope of a state is compared with itself. Smaller: rounding; larger: its square is seen.
+/// Part of an element over which the slope of a state is compared with itself. Smaller: rounding;
+/// larger: its square is seen.
 const DIFFERENCE: f64 = 1e-2;
 
 /// Factor of the first rise of EI; it grows where that is easy and shrinks where it is not.
@@ -32,10 +35,10 @@ const FIRST_RISE: f64 = 4.0;
 const MAX_RISES: usize = 60;
 
 /// Part of the cable's radius that a node of the flexible answer may be off what it lies on.
-const ON_IT: f64 = 1e-3;
+const CONTACT_DISTANCE_FRACTION: f64 = 1e-3;
 
 /// Part of an arc that is given up where two contacts leave no cable between them.
-const GIVEN_UP: f64 = 0.25;
+const SURRENDERED_ARC_FRACTION: f64 = 0.25;
 
 /// What happens along the cable, between two arc lengths (m).
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +68,8 @@ pub(super) fn contact_at(problem: &Problem, gap: &Gap, x: Vec2, t: Vec2) -> Opti
     Some(Contact { at: center, radius: Some(radius), ..line })
 }
 
-/// How much of its friction an obstacle mobilises at `s` (m) in an answer, and whether that is all there is.
+/// How much of its friction an obstacle mobilises at `s` (m) in an answer, and whether that is all
+/// there is.
 pub(super) fn mobilised(problem: &Problem, answer: &CableSolution, obstacle: usize, s: f64) -> (f64, bool) {
     let name = problem.world.obstacle_name(obstacle);
     let far = |c: &&crate::solution::ContactReport| {
@@ -133,33 +137,34 @@ impl<'a> Curve<'a> {
 }
 
 impl Elastica {
-    /// A first guess: the cable of an answer for a flexible one, at rest at a time (s); None where the scene or the answer has what
-    /// this knows nothing of.
+    /// A first guess: the cable of an answer for a flexible one, at rest at a time (s); None where
+    /// the scene or the answer has what this knows nothing of.
     pub fn from_flexible(
         problem: &Problem,
         time_s: f64,
         dragged: &[Option<Vec2>],
         answer: &CableSolution,
     ) -> Option<Self> {
-        Self::guess(problem, (time_s, dragged), answer, None, None)
+        Self::guess(problem, time_s, dragged, answer, None, None)
     }
 
-    /// The same from the answer of a mesh for the cable as stiff as it is; `bar`: the length of its bars, m, over which it knows where
-    /// contacts are.
+    /// The same from the answer of a mesh for the cable as stiff as it is; `bar`: the length of its
+    /// bars, m, over which it knows where contacts are.
     pub fn from_mesh(
         problem: &Problem,
         time_s: f64,
         dragged: &[Option<Vec2>],
-        (answer, bar): (&CableSolution, f64),
+        answer: &CableSolution,
+        bar: f64,
     ) -> Option<Self> {
-        Self::guess(problem, (time_s, dragged), answer, Some(bar), None)
+        Self::guess(problem, time_s, dragged, answer, Some(bar), None)
     }
 
     /// The same from a chain of bars at rest.
     pub(super) fn from_chain(chain: &Chain<'_>, dragged: &[Option<Vec2>]) -> Option<Self> {
         let contacts = chain.lay.map_or_else(Vec::new, |l| l.contacts.clone());
         let answer = CableSolution { nodes: chain.nodes(), contacts, ..CableSolution::default() };
-        Self::guess(chain.problem, (chain.time_s, dragged), &answer, Some(chain.bar), Some(&chain.pushes()))
+        Self::guess(chain.problem, chain.time_s, dragged, &answer, Some(chain.bar), Some(&chain.pushes()))
     }
 
     /// The contacts of a chain.
@@ -168,7 +173,8 @@ impl Elastica {
         problem: &Problem,
         answer: &CableSolution,
         curve: &Curve<'_>,
-        (bar, pushes): (f64, &[ContactPair]),
+        bar: f64,
+        pushes: &[ContactPair],
         events: &mut Vec<Event>,
     ) {
         let mut done = vec![false; pushes.len()];
@@ -206,7 +212,8 @@ impl Elastica {
 
     fn guess(
         problem: &Problem,
-        (time_s, dragged): (f64, &[Option<Vec2>]),
+        time_s: f64,
+        dragged: &[Option<Vec2>],
         answer: &CableSolution,
         bar: Option<f64>,
         pushes: Option<&[ContactPair]>,
@@ -265,9 +272,9 @@ impl Elastica {
         };
         match bar {
             Some(bar) if pushes.is_some() => {
-                this.chain_contacts(problem, answer, &curve, (bar, pushes.unwrap_or_default()), &mut events);
+                this.chain_contacts(problem, answer, &curve, bar, pushes.unwrap_or_default(), &mut events);
             }
-            None => this.find_contacts(problem, (time_s, dragged), answer, &curve, &mut events),
+            None => this.find_contacts(problem, time_s, dragged, answer, &curve, &mut events),
             Some(bar) => this.read_contacts(problem, answer, &curve, bar, &mut events),
         }
         events.sort_by(|a, b| a.from.total_cmp(&b.from));
@@ -355,12 +362,13 @@ impl Elastica {
     fn find_contacts(
         &mut self,
         problem: &Problem,
-        (time_s, dragged): (f64, &[Option<Vec2>]),
+        time_s: f64,
+        dragged: &[Option<Vec2>],
         answer: &CableSolution,
         curve: &Curve<'_>,
         events: &mut Vec<Event>,
     ) {
-        let within = ON_IT * problem.radius + 1e-9 * problem.length;
+        let within = CONTACT_DISTANCE_FRACTION * problem.radius + 1e-9 * problem.length;
         let nodes = &answer.nodes;
         let along = |i: usize| {
             let side = |k: usize| curve.angles.get(k).map_or(Vec2::zeros(), |a| Vec2::new(a.cos(), a.sin()));
@@ -372,7 +380,7 @@ impl Elastica {
             let gap = problem.world.signed_gap(n.at(), within).filter(|g| g.gap_m <= within);
             let on = gap
                 .and_then(|g| contact_at(problem, &g, n.at(), along(i)))
-                .or_else(|| self.pulley_at(problem, (time_s, dragged), n.at(), along(i), within));
+                .or_else(|| self.pulley_at(problem, time_s, dragged, n.at(), along(i), within));
             match (&mut open, on) {
                 (Some((c, _, to)), Some(new))
                     if c.owner == new.owner
@@ -405,7 +413,8 @@ impl Elastica {
     fn pulley_at(
         &self,
         problem: &Problem,
-        (time_s, dragged): (f64, &[Option<Vec2>]),
+        time_s: f64,
+        dragged: &[Option<Vec2>],
         x: Vec2,
         t: Vec2,
         within: f64,
@@ -433,7 +442,8 @@ impl Elastica {
         None
     }
 
-    /// How much of its friction a contact mobilises: what it did when the cable was laid as a flexible one. All of it where it slipped.
+    /// How much of its friction a contact mobilises: what it did when the cable was laid as a
+    /// flexible one. All of it where it slipped.
     fn mobilise(&self, problem: &Problem, answer: &CableSolution, contact: &mut Contact, s: f64) {
         match contact.owner {
             Owner::Obstacle(obstacle) => {
@@ -443,7 +453,8 @@ impl Elastica {
                 let (Some(support), Some(r)) = (problem.supports.get(k), answer.supports.get(k)) else { return };
                 let (Some(a), Some(b)) = (r.tension_before_n, r.tension_after_n) else { return };
                 if support.friction > 0.0 && a > 0.0 && b > 0.0 {
-                    // Rubbing wheels hold or slip as a whole: to which the greater part of e^{μφ} is nearer is not told.
+                    // Rubbing wheels hold or slip as a whole: to which the greater part of e^{μφ}
+                    // is nearer is not told.
                     let turn =
                         (Vec2::new(r.reaction_x_n, r.reaction_y_n).norm() / (a + b)).clamp(0.0, 1.0).asin() * 2.0;
                     let part = if turn > 0.0 { (a / b).ln() / turn } else { 0.0 };
@@ -478,7 +489,8 @@ impl Elastica {
         (self.bending / pull.max(least)).sqrt()
     }
 
-    /// Makes the pieces and joints, and lays their nodes along the curve of the flexible cable with layers at their ends.
+    /// Makes the pieces and joints, and lays their nodes along the curve of the flexible cable with
+    /// layers at their ends.
     fn lay(&mut self, curve: &Curve<'_>, events: &mut Vec<Event>) -> Option<()> {
         let length = self.length;
         // Contacts too short for the stiffness are points.
@@ -499,7 +511,8 @@ impl Elastica {
                 }
             }
         }
-        // Between two rounds the layers lift a cable off a line by λ/2 times their turn, its weight sags by wl²/8T.
+        // Between two rounds the layers lift a cable off a line by λ/2 times their turn, its weight
+        // sags by wl²/8T.
         let lifted = |i: usize| {
             let Joint::Begin(k) = events[i].joint else { return false };
             let beside = |j: Option<usize>| {
@@ -521,7 +534,7 @@ impl Elastica {
             let need = 0.5 * self.layer(curve.at(events[i].from).1);
             let lack = need - (events[i].from - events[i - 1].to);
             if lack > 0.0 {
-                let spare = |e: &Event| (GIVEN_UP * (e.to - e.from)).min(0.5 * lack);
+                let spare = |e: &Event| (SURRENDERED_ARC_FRACTION * (e.to - e.from)).min(0.5 * lack);
                 let (a, b) = (spare(&events[i - 1]), spare(&events[i]));
                 events[i - 1].to -= a;
                 events[i].from += b;
@@ -574,7 +587,8 @@ impl Elastica {
         Piece { lies, nodes: grid.iter().map(node).collect(), grid }
     }
 
-    /// Adds the layers at the ends of free pieces, θ ∓ Δ e^{−s/λ}, and counts the angles of clamps on from their neighbours.
+    /// Adds the layers at the ends of free pieces, θ ∓ Δ e^{−s/λ}, and counts the angles of clamps
+    /// on from their neighbours.
     fn bend_layers(&mut self) -> Option<()> {
         use crate::model::fem::beam::equilibrium::nearest_turn;
         let count = self.pieces.len();
@@ -646,7 +660,8 @@ impl Elastica {
             let saved = self.clone();
             let next = self.bending * factor;
             self.bending = if next > 0.999 * whole { whole } else { next };
-            // Bending moments of lies grow with the stiffness, those of layers with its root: the first is exact.
+            // Bending moments of lies grow with the stiffness, those of layers with its root: the
+            // first is exact.
             self.regrid();
             if self.settle(problem) {
                 factor = (factor * 1.5).min(10.0);
@@ -663,8 +678,8 @@ impl Elastica {
         false
     }
 
-    /// Every node at a place of a piece, on Hermite's quintic between its nodes: as exact there as the nodes are (the cubic is off by 3e-7 m
-    /// where a cable is bent to 1 m within 10 elements).
+    /// Every node at a place of a piece, on Hermite's quintic between its nodes: as exact there as
+    /// the nodes are (the cubic is off by 3e-7 m where a cable is bent to 1 m within 10 elements).
     pub(super) fn read(&self, piece: &Piece, x: f64) -> [f64; STATES] {
         let e = piece.grid.partition_point(|g| *g <= x).clamp(1, piece.grid.len() - 1) - 1;
         let (a, b) = (&piece.nodes[e], &piece.nodes[e + 1]);
@@ -684,7 +699,8 @@ impl Elastica {
         })
     }
 
-    /// How the slope `f` of a state changes along a piece, by central differences over a part of an element of length `h`.
+    /// How the slope `f` of a state changes along a piece, by central differences over a part of an
+    /// element of length `h`.
     fn second_slope(&self, lies: Option<usize>, u: &[f64; STATES], f: &[f64; STATES], h: f64) -> [f64; STATES] {
         let step = DIFFERENCE * h;
         let [back, on] = [-step, step].map(|by| self.slope(lies, &std::array::from_fn(|i| u[i] + by * f[i])));

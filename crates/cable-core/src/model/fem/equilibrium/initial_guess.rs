@@ -1,4 +1,5 @@
-//! The initial guess spreads the material of a cable along a route that goes round what is in the way.
+//! The initial guess spreads the material of a cable along a route that goes round what is in the
+//! way.
 
 use crate::contact::Gap;
 use crate::math::{Vec2, cross};
@@ -7,16 +8,18 @@ use crate::problem::Problem;
 use crate::problem::ground_route::above_ground;
 use crate::scene::SupportKind;
 
-/// Passes of pushing the first lay out of obstacles. Ten are enough for routes drawn within a diameter.
+/// Passes of pushing the first lay out of obstacles. Ten are enough for routes drawn within a
+/// diameter.
 const MAX_PASSES: usize = 60;
 
 /// How deep (m) inside an obstacle a first lay is found and pushed out.
-const DEEPEST: f64 = 0.5;
+const DEPENETRATION_DEPTH: f64 = 0.5;
 
-/// Steps in which an end is leaned until it is clear of what is below it, rad, and how many to either side: a half turn. Smaller: the same at
-/// more cost; larger: it begins higher than it needs to.
-const LEAN: f64 = std::f64::consts::PI / 36.0;
-/// See `LEAN`.
+/// Steps in which an end is leaned until it is clear of what is below it, rad, and how many to
+/// either side: a half turn. Smaller: the same at more cost; larger: it begins higher than it needs
+/// to.
+const LEAN_STEP: f64 = std::f64::consts::PI / 36.0;
+/// See `LEAN_STEP`.
 const MOST_LEANS: i32 = 36;
 
 /// Corners of the way of a cable with the arc length at each, m.
@@ -32,7 +35,8 @@ pub fn way(problem: &Problem) -> Vec<(f64, Vec2)> {
         along[k] = along[k - 1] + (points[k] - points[k - 1]).norm();
     }
     let total = along.last().copied().unwrap_or(0.0);
-    // Arc length as a function of the way: straight between supports that sit at a known arc length.
+    // Arc length as a function of the way: straight between supports that sit at a known arc
+    // length.
     let mut knots = vec![(0.0, 0.0)];
     for s in &problem.supports {
         if let (Some(arc), Some(at)) = (s.arc_length, s.at)
@@ -54,8 +58,9 @@ pub fn way(problem: &Problem) -> Vec<(f64, Vec2)> {
     points.iter().zip(&along).map(|(p, &w)| (arc_at(w), *p)).collect()
 }
 
-/// The same of a stiff cable: an end that nothing holds, and that would hang into something solid, is turned about the support it hangs
-/// from until its tip is clear. A flexible cable comes down in a heap there, a stiff one leans.
+/// The same of a stiff cable: an end that nothing holds, and that would hang into something solid,
+/// is turned about the support it hangs from until its tip is clear. A flexible cable comes down in
+/// a heap there, a stiff one leans.
 #[must_use]
 pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
     let mut points = way(problem);
@@ -74,7 +79,7 @@ pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
         let down = pull.try_normalize(0.0).unwrap_or_else(|| -Vec2::y());
         // A clamp says to which side it leans.
         let aside = hinge.angle.map_or(1.0, f64::cos) * reach;
-        let lean = if cross(down, Vec2::new(aside, 0.0)) < 0.0 { -LEAN } else { LEAN };
+        let lean = if cross(down, Vec2::new(aside, 0.0)) < 0.0 { -LEAN_STEP } else { LEAN_STEP };
         let leaned = |k: i32| {
             let (sin, cos) = (lean * f64::from(k)).sin_cos();
             at + Vec2::new(cos * down.x - sin * down.y, sin * down.x + cos * down.y) * reach.abs()
@@ -106,7 +111,8 @@ fn nearest_way(points: &[Vec2], along: &[f64], at: Vec2) -> f64 {
     best.1
 }
 
-/// From support to support; an end that nothing holds hangs from the nearest one along its load, or down.
+/// From support to support; an end that nothing holds hangs from the nearest one along its load, or
+/// down.
 fn straight(problem: &Problem) -> Vec<Vec2> {
     let mut points: Vec<Vec2> = problem.supports.iter().filter_map(|s| s.position_at(0.0).map(|p| p.0)).collect();
     let used: f64 = points.windows(2).map(|p| (p[1] - p[0]).norm()).sum();
@@ -130,7 +136,8 @@ fn straight(problem: &Problem) -> Vec<Vec2> {
     points
 }
 
-/// Each leg that meets an obstacle is replaced by the upper hull of its ends and the obstacle corners between.
+/// Each leg that meets an obstacle is replaced by the upper hull of its ends and the obstacle
+/// corners between.
 fn lifted(problem: &Problem, points: &[Vec2]) -> Vec<Vec2> {
     let mut out: Vec<Vec2> = points.first().copied().into_iter().collect();
     for leg in points.windows(2) {
@@ -198,15 +205,17 @@ pub fn lay(mesh: &Mesh, way: &[(f64, Vec2)]) -> Vec<Vec2> {
     mesh.arc_length.iter().map(|&s| at(s)).collect()
 }
 
-/// Pushes free nodes and segments out of obstacles until every gap is at least half of `clear` (m) or it gives up.
+/// Pushes free nodes and segments out of obstacles until every gap is at least half of `clear` (m)
+/// or it gives up.
 pub fn push_out(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
-    push_chain_out(problem, (&mesh.held, &|e, feature| mesh.rounds(e).contains(&Some(feature))), x, clear);
+    push_chain_out(problem, &mesh.held, &|e, feature| mesh.rounds(e).contains(&Some(feature)), x, clear);
 }
 
 /// The same of a chain of which nodes are held, and bars lie on rounds.
 pub fn push_chain_out(
     problem: &Problem,
-    (held, lies_on): (&[bool], &dyn Fn(usize, usize) -> bool),
+    held: &[bool],
+    lies_on: &dyn Fn(usize, usize) -> bool,
     x: &mut [Vec2],
     clear: f64,
 ) {
@@ -214,7 +223,7 @@ pub fn push_chain_out(
     for _ in 0..MAX_PASSES {
         let mut moved = false;
         for k in (0..x.len()).filter(|&k| !held[k]) {
-            if let Some(g) = problem.world.signed_gap(x[k], DEEPEST)
+            if let Some(g) = problem.world.signed_gap(x[k], DEPENETRATION_DEPTH)
                 && g.gap_m < 0.5 * clear
             {
                 x[k] += g.normal * (clear - g.gap_m);

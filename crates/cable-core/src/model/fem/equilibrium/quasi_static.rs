@@ -1,25 +1,22 @@
 //! This module finds equilibria in contact, and takes quasi-static steps.
 
-use crate::error::SolveError;
+use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, bounded, larger};
 use crate::model::fem::dynamics::{Dynamics, REACH};
 use crate::model::fem::equilibrium::initial_guess::push_out;
-use crate::model::fem::newton::minimize::{DRIFT, WORK_SPENT};
-use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
+use crate::model::fem::newton::minimize::DRIFT;
+use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose, StepInput};
 use crate::model::fem::newton::step_setup::{StickSlipChanges, load_scale, tolerance};
 use crate::model::fem::obstacle::moving_outline::MovingOutline;
 use crate::model::fem::results;
 use crate::model::fem::system::friction_state::SLIDE;
-use crate::model::fem::time::bdf2::{NOT_FOUND, PULLED, ROUNDS_EACH};
-use crate::model::{Model, StepReport};
+use crate::model::fem::time::bdf2::ROUNDS_EACH;
+use crate::model::{Inertia, Model, StepReport};
 use crate::state::State;
 
-/// What is said of a way down that does not end.
-const STILL_MOVES: &str = "it never came to rest";
-
-/// Work of one search for a resting place: iterations times nodes. Less: scenes that come to rest slowly are refused; more: nobody is
-/// told for minutes. It is
-/// 20 000 iterations of 200 nodes, and some 10 s.
+/// Work budget of one search for an equilibrium: iterations times nodes. Smaller: scenes that
+/// converge slowly are refused; larger: a search that fails reports it after minutes. The value is
+/// 20 000 iterations of 200 nodes, and takes some 10 s.
 pub(in crate::model::fem) const REST_WORK: usize = 4_000_000;
 
 /// Newton iterations of a step without inertia.
@@ -28,14 +25,16 @@ const REST_ITERATIONS: usize = 150;
 /// Rounds of refreshing the normal forces that friction uses, in a step without inertia.
 const LAG_ROUNDS: usize = 25;
 
-/// Rounds after which normal forces are taken halfway to the new ones only: where a contact that rubs more lifts its neighbour, which then
-/// rubs less, they go round and round. Fewer: what converges by itself takes longer; more: fewer rounds are left to halve what is off.
+/// Rounds after which normal forces are taken halfway to the new ones only: where a contact that
+/// rubs more lifts its neighbour, which then rubs less, they go round and round. Fewer: what
+/// converges by itself takes longer; more: fewer rounds are left to halve what is off.
 const PLAIN_ROUNDS: usize = 8;
 
-/// Least part of the way that friction is taken towards its new normal forces, and by what that part changes from round to round.
+/// Least part of the way that friction is taken towards its new normal forces, and by what that
+/// part changes from round to round.
 const LEAST_PART: f64 = 0.03;
-const GROW: f64 = 1.1;
-const SHRINK: f64 = 0.6;
+const RESISTANCE_GROWTH: f64 = 1.1;
+const RESISTANCE_SHRINKAGE: f64 = 0.6;
 
 /// The same in a step of relaxation.
 const RELAX_LAG_ROUNDS: usize = 8;
@@ -43,29 +42,34 @@ const RELAX_LAG_ROUNDS: usize = 8;
 /// Steps of relaxation before it is given up.
 const MAX_RELAX: usize = 600;
 
-/// Whole load, in weights of the cable, from which dead loads set the first resistance. Less: a way down with a little load is
-/// slower than it need be; more: loads of that many weights throw the cable about.
-const LOADED: f64 = 2.0;
+/// Whole load, in weights of the cable, from which dead loads set the first resistance. Less: a way
+/// down with a little load is slower than it need be; more: loads of that many weights throw the
+/// cable about.
+const DEAD_LOAD_RATIO: f64 = 2.0;
 
-/// Unbalanced force, in tolerances, that is accepted at rest where contact forces are known no better: 1e-3 of the whole load. More:
-/// a node a rounding away from a corner makes any force a rest (6e10 N were taken for one); less: cables that a support
-/// squeezes find none.
-const NEGLIGIBLE: f64 = 1e3;
+/// Unbalanced force, in tolerances, that is accepted at rest where contact forces are known no
+/// better: 1e-3 of the whole load. More: a node a rounding away from a corner makes any force a
+/// rest (6e10 N were taken for one); less: cables that a support squeezes find none.
+const RESIDUAL_LIMIT_TOLERANCES: f64 = 1e3;
 
-/// Part of all loads on a cable that may be held by nothing. Larger: what slides slowly is said to rest. Smaller: what rests is
-/// refused for what its nodes are let off with. Of slopes, posts, beams and drapes at random those that held left up to 4e-5,
-/// those with 0.3 % too little friction 3e-4 and more.
-const WHOLE: f64 = 1e-4;
-/// Unbalanced force of a polished rest, in tolerances, and the iterations that each part of the way to it may take. Less force left: nothing
-/// but rounding is gained; more: what is left at a hundred nodes of a lay that all but slides is seen in the balance of the whole. The first
-/// has what the search left by coming to its last iteration; fewer for it: what slides as a whole on smooth ground is left as it slides.
-const POLISHES: [(f64, usize); 3] = [(1.0, 600), (0.1, 30), (1e-2, 30)];
+/// Part of all loads on a cable that may be held by nothing. Larger: what slides slowly is said to
+/// rest. Smaller: what rests is refused for what its nodes are let off with. Of slopes, posts,
+/// beams and drapes at random those that held left up to 4e-5, those with 0.3 % too little friction
+/// 3e-4 and more.
+const UNHELD_LOAD_FRACTION: f64 = 1e-4;
+/// Unbalanced force of a polished rest, in tolerances, and the iterations that each part of the way
+/// to it may take. Less force left: nothing but rounding is gained; more: what is left at a hundred
+/// nodes of a lay that all but slides is seen in the balance of the whole. The first has what the
+/// search left by coming to its last iteration; fewer for it: what slides as a whole on smooth
+/// ground is left as it slides.
+const POLISH_STAGES: [(f64, usize); 3] = [(1.0, 600), (0.1, 30), (1e-2, 30)];
 
 /// Times a resting place is sought again because corners were met or left on the way to it.
 const CORNER_ROUNDS: usize = 8;
 
-/// Turn (rad) the wrong way round a corner from which a step without inertia is taken again without that corner. Larger: other
-/// corners slip by what it pulls (at 0.02 and 50 N by 2 %), and keep that. Smaller: more steps are taken twice.
+/// Turn (rad) the wrong way round a corner from which a step without inertia is taken again without
+/// that corner. Larger: other corners slip by what it pulls (at 0.02 and 50 N by 2 %), and keep
+/// that. Smaller: more steps are taken twice.
 const LEAST_PULL: f64 = 1e-4;
 
 /// What was found with refreshed normal forces, grips and factors.
@@ -93,7 +97,8 @@ impl Dynamics {
     /// The same of a cable whose friction counts.
     ///
     /// # Errors
-    /// `PULLED` where a corner would have to pull, before anything is accepted: what slides meanwhile would keep what that did.
+    /// `CornerPulls` where a corner would have to pull, before anything is accepted: what slides
+    /// meanwhile would keep what that did.
     pub(in crate::model::fem) fn quiet_step(
         &mut self,
         to: f64,
@@ -109,11 +114,12 @@ impl Dynamics {
             self.adapt_slip();
             self.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
             self.task.max_iterations = REST_ITERATIONS;
-            self.task.most_noise = NEGLIGIBLE * self.task.tolerance;
+            self.task.most_noise = RESIDUAL_LIMIT_TOLERANCES * self.task.tolerance;
             let mut pose = self.still_pose();
             let mut done = self.lag_wholly(&mut pose);
-            if done.is_err_and(|f| f.cause != WORK_SPENT) && self.contacts.slip < SLIDE {
-                // Where grips change all along the cable, as on a first lay, ground that gives way is easier to come to rest on.
+            if done.is_err_and(|f| f.cause != FailureCause::WorkSpent) && self.contacts.slip < SLIDE {
+                // Where grips change all along the cable, as on a first lay, ground that gives way
+                // is easier to come to rest on.
                 self.contacts.set_slip(SLIDE);
                 pose = self.still_pose();
                 done = self.lag_wholly(&mut pose);
@@ -123,7 +129,7 @@ impl Dynamics {
                 && let Some(node) = self.pulled_by(&pose.x, pull)
             {
                 let residual = done.map_or_else(|f| f.residual, |d| d.residual);
-                return Err(Failure { node, residual, cause: PULLED });
+                return Err(Failure { node, residual, cause: FailureCause::CornerPulls });
             }
             let done = done?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
@@ -132,7 +138,7 @@ impl Dynamics {
             if settled || round + 1 == CORNER_ROUNDS {
                 break;
             }
-            let found = self.remesh(true);
+            let found = self.remesh(Inertia::QuasiStatic);
             // Marks that are moved take strain from bar to bar, which has to be balanced once more.
             settled = !found.bars;
             if settled && !found.marks {
@@ -142,13 +148,13 @@ impl Dynamics {
         Ok(total)
     }
 
-    /// Brings what is left unbalanced at a rest, which adds up along the cable, down to what can be told from rounding: on from where
-    /// the cable lies, or not at all where that does not come to an end.
+    /// Reduces the residual of an equilibrium, which adds up along the cable, to the level of
+    /// round-off. It starts from the present shape, and changes nothing where it does not converge.
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
-        let kept = (self.saved.clone(), self.can_restore);
+        let kept = (self.rollback.saved.clone(), self.rollback.can_restore);
         let (exact, to) = (self.task.tolerance, self.motion.time);
         let mut all = found;
-        for (part, iterations) in POLISHES {
+        for (part, iterations) in POLISH_STAGES {
             self.save();
             self.prepare_way([to, to], Some(dragged));
             self.task.most_noise = exact;
@@ -163,18 +169,19 @@ impl Dynamics {
             self.accept_pose(&pose, to);
         }
         self.task.tolerance = exact;
-        (self.saved, self.can_restore) = kept;
+        (self.rollback.saved, self.rollback.can_restore) = kept;
         all
     }
 
-    /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the second order in their
-    /// length, without which a run would begin with a jerk. Where they find no rest they stay as they were laid.
+    /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the
+    /// second order in their length, without which a run would begin with a jerk. Where they find
+    /// no rest they stay as they were laid.
     pub(in crate::model::fem) fn come_to_rest(&mut self, dragged: &[Option<Vec2>]) {
         if !self.rested {
             return;
         }
         self.save();
-        let reach = self.problem.length / self.even_bars as f64;
+        let reach = self.problem.length / self.meshing.even_bars as f64;
         let laid = self.motion.x.clone();
         let found = self.rest_step(self.motion.time, dragged).is_ok();
         let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= reach;
@@ -183,7 +190,8 @@ impl Dynamics {
         }
     }
 
-    /// Minimises again and again with refreshed normal forces, grips and factors until nothing changes.
+    /// Minimises again and again with refreshed normal forces, grips and factors until nothing
+    /// changes.
     fn lag(&mut self, pose: &mut Pose, rounds: usize) -> Result<Converged, Failure> {
         self.lag_until(pose, rounds).map(|found| found.done)
     }
@@ -203,9 +211,9 @@ impl Dynamics {
                 // What goes to and fro gets no nearer by taking as much of the way.
                 if round >= PLAIN_ROUNDS {
                     part = if now < (1.0 - 0.5 * part) * off {
-                        bounded(GROW * part, 0.0, 1.0)
+                        bounded(RESISTANCE_GROWTH * part, 0.0, 1.0)
                     } else {
-                        larger(SHRINK * part, LEAST_PART)
+                        larger(RESISTANCE_SHRINKAGE * part, LEAST_PART)
                     };
                 }
                 off = now;
@@ -236,13 +244,14 @@ impl Dynamics {
             return Ok(found.done);
         }
         let node = self.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
-        Err(Failure { node, residual: found.done.residual, cause: NOT_FOUND })
+        Err(Failure { node, residual: found.done.residual, cause: FailureCause::StickSlipUndecided })
     }
 
-    /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over changed.
+    /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over
+    /// changed.
     fn accept_rest(&mut self, pose: &Pose, to: f64) -> bool {
         self.accept_pose(pose, to);
-        self.remesh(true).seats
+        self.remesh(Inertia::QuasiStatic).seats
     }
 
     /// The same, corners as they are.
@@ -260,28 +269,31 @@ impl Dynamics {
 
     /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
     fn soft_shift(&self) -> f64 {
-        self.bar_weight / 0.1
+        self.meshing.bar_weight / 0.1
     }
 
-    /// The resistance that a way down begins with, N/m: what acts on an element over a tenth of a metre, dead loads with it
-    /// where they are what counts. With the weight alone a cable of 5 g/m under 100 N, laid through a post, was thrown about
-    /// and found no rest.
+    /// The resistance that a way down begins with, N/m: what acts on an element over a tenth of a
+    /// metre, dead loads with it where they are what counts. With the weight alone a cable of 5 g/m
+    /// under 100 N, laid through a post, was thrown about and found no rest.
     fn first_resistance(&self) -> f64 {
-        let whole = load_scale(&self.problem).1 / self.even_bars as f64;
-        if whole > LOADED * self.bar_weight { whole / 0.1 } else { self.soft_shift() }
+        let whole = load_scale(&self.problem).1 / self.meshing.even_bars as f64;
+        if whole > DEAD_LOAD_RATIO * self.meshing.bar_weight { whole / 0.1 } else { self.soft_shift() }
     }
 
-    /// Follows the way down with ever weaker viscous resistance, then finds the resting place itself. On the way what rounding
-    /// hides may be any force: a cable laid in touch begins there. Where that ends in no rest, it may not.
+    /// Follows the way down with ever weaker viscous resistance, then finds the resting place
+    /// itself. On the way what rounding hides may be any force: a cable laid in touch begins there.
+    /// Where that ends in no rest, it may not.
     pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
-        let kept = (self.saved.clone(), self.can_restore);
+        let kept = (self.rollback.saved.clone(), self.rollback.can_restore);
         self.save();
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
-        if found.is_err_and(|f| f.cause != WORK_SPENT && f.residual > NEGLIGIBLE * self.task.tolerance) {
+        if found.is_err_and(|f| {
+            f.cause != FailureCause::WorkSpent && f.residual > RESIDUAL_LIMIT_TOLERANCES * self.task.tolerance
+        }) {
             self.restore();
-            found = self.relax_within(NEGLIGIBLE, to, dragged);
+            found = self.relax_within(RESIDUAL_LIMIT_TOLERANCES, to, dragged);
         }
-        (self.saved, self.can_restore) = kept;
+        (self.rollback.saved, self.rollback.can_restore) = kept;
         found
     }
 
@@ -294,14 +306,15 @@ impl Dynamics {
         let laid = self.motion.x.clone();
         let mut resistance = self.first_resistance();
         let (full, floor) = (resistance, 1e-5 * resistance);
-        // Set where Newton without resistance has failed: then steps are solved exactly, until what resists is nothing.
+        // Set where Newton without resistance has failed: then steps are solved exactly, until what
+        // resists is nothing.
         let mut stubborn = false;
         let mut total = 0;
-        let mut last = Failure { node: 0, residual: f64::NAN, cause: STILL_MOVES };
+        let mut last = Failure { node: 0, residual: f64::NAN, cause: FailureCause::StillMoves };
         for round in 0..MAX_RELAX {
             self.prepare_task(to, Some(dragged));
             self.adapt_slip();
-            let even = self.problem.length / self.even_bars as f64;
+            let even = self.problem.length / self.meshing.even_bars as f64;
             self.task.inertia.fill(resistance);
             for k in 0..self.mesh.nodes() {
                 self.task.inertia[k] *= self.mesh.share(k) / even;
@@ -309,7 +322,8 @@ impl Dynamics {
             let exact = self.task.tolerance;
             self.task.tolerance = if stubborn { exact } else { 1e2 * exact };
             self.task.most_noise = noise * exact;
-            // A first lay carries no normal force yet: without refreshing, it would slide as if on ice.
+            // A first lay carries no normal force yet: without refreshing, it would slide as if on
+            // ice.
             let mut pose = self.still_pose();
             let done = self.lag_until(&mut pose, RELAX_LAG_ROUNDS);
             self.task.tolerance = exact;
@@ -330,17 +344,18 @@ impl Dynamics {
                             (resists, slowest) = (force, k);
                         }
                     }
-                    last = Failure { node: slowest, residual: done.residual + resists, cause: STILL_MOVES };
+                    last =
+                        Failure { node: slowest, residual: done.residual + resists, cause: FailureCause::StillMoves };
                     let remeshed = self.accept_rest(&pose, self.motion.time);
                     if self.ran_away(&laid).is_some() {
-                        return Err(Failure { node: 0, residual: f64::NAN, cause: "it slides away" });
+                        return Err(Failure { node: 0, residual: f64::NAN, cause: FailureCause::SlidesAway });
                     }
                     if remeshed {
                         moved = moved.max(0.1);
                     } else if stubborn
                         && found.is_lawful(&self.task)
                         && resists <= exact
-                        && done.residual <= NEGLIGIBLE * exact
+                        && done.residual <= RESIDUAL_LIMIT_TOLERANCES * exact
                     {
                         self.motion.time = to;
                         return Ok(Converged { iterations: total, residual: done.residual + resists });
@@ -349,7 +364,7 @@ impl Dynamics {
                     if resistance < floor || (moved < 1e-4 && round % 8 == 7) || moved < 1e-7 {
                         match self.rest_step(to, dragged) {
                             Ok(done) => return Ok(Converged { iterations: total + done.iterations, ..done }),
-                            Err(failure) if failure.cause == WORK_SPENT => return Err(failure),
+                            Err(failure) if failure.cause == FailureCause::WorkSpent => return Err(failure),
                             Err(failure) => {
                                 last = failure;
                                 stubborn = true;
@@ -358,7 +373,7 @@ impl Dynamics {
                         }
                     }
                 }
-                Err(failure) if failure.cause == WORK_SPENT => return Err(failure),
+                Err(failure) if failure.cause == FailureCause::WorkSpent => return Err(failure),
                 Err(failure) => {
                     last = failure;
                     resistance *= 8.0;
@@ -371,14 +386,15 @@ impl Dynamics {
         Err(last)
     }
 
-    /// Finds the resting place with contact at the present time; `dragged` are the hand-set support positions, m.
+    /// Finds the resting place with contact at the present time; `dragged` are the hand-set support
+    /// positions, m.
     ///
     /// # Errors
     /// A typed reason when there is none, or none was found.
     pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
         self.refuse()?;
         self.wake();
-        self.held_back.clear();
+        self.answers.held_back.clear();
         self.save();
         self.motion.followers.fill(None);
         self.motion.hands.fill(None);
@@ -399,11 +415,9 @@ impl Dynamics {
                 let sought = self.motion.x.clone();
                 self.restore();
                 if self.ran_away(&sought).is_some() {
-                    let why =
-                        "nothing holds the cable where it is laid: it slides away by more than its length".to_owned();
-                    return Err(SolveError::NoRestingPlace { why });
+                    return Err(SolveError::NoRestingPlace { why: NoEquilibrium::SlidesOff });
                 }
-                if f.cause == WORK_SPENT {
+                if f.cause == FailureCause::WorkSpent {
                     let (model, segments) = (Model::Fem, self.mesh.rest_length.len());
                     let iterations = REST_WORK / self.mesh.nodes().max(1);
                     let (residual_n, place) = (f.residual, self.place(f.node));
@@ -424,8 +438,9 @@ impl Dynamics {
         }
     }
 
-    /// Begins at `shape`, a rest without contact, if the cable gets there from its lay without coming near to anything. The way down
-    /// with contact takes as many rounds as a cable that hangs has bars.
+    /// Begins at `shape`, a rest without contact, if the cable gets there from its lay without
+    /// coming near to anything. The way down with contact takes as many rounds as a cable that
+    /// hangs has bars.
     pub(in crate::model::fem) fn begin_at(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
         let touched = self.problem.floor_friction.is_some() || self.contacts.own.shape.is_on();
         let alone = self.rider.is_none() && !touched && !self.problem.world.is_empty();
@@ -445,22 +460,23 @@ impl Dynamics {
         }
         self.motion.x = to;
         self.forget_history();
-        // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so that little force is left over.
+        // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so
+        // that little force is left over.
         self.prepare_task(self.motion.time, Some(dragged));
         self.task.max_iterations = REST_ITERATIONS;
         let exact = self.task.tolerance;
         self.task.tolerance = tolerance(&self.problem, 0.0);
         let mut pose = self.still_pose();
-        if self.free.solve(&self.mesh, &self.task, &mut pose).is_some() {
+        if self.solver.free.solve(&self.mesh, &self.task, &mut pose).is_some() {
             self.motion.x.clone_from(&pose.x);
             self.forget_history();
         }
-        self.pose = pose;
+        self.solver.pose = pose;
         self.task.tolerance = exact;
     }
 
-    /// The resting place; one that the cable reaches without ever touching itself is found as if it could pass itself, for
-    /// its first lay is no shape it could have.
+    /// The resting place; one that the cable reaches without ever touching itself is found as if it
+    /// could pass itself, for its first lay is no shape it could have.
     fn find_rest(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
         let time = self.motion.time;
         let shape = self.contacts.own.shape;
@@ -479,25 +495,26 @@ impl Dynamics {
         }
         let overlap = self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, 0.0);
         if overlap.is_some() || self.crosses_itself() {
-            let s = self.mesh.arc_length[overlap.map_or(0, |o| o.1)];
-            let feature =
-                format!("a cable that touches itself where it is laid (near {s:.2} m): draw it a route that does not");
+            let arc_length_m = self.mesh.arc_length[overlap.map_or(0, |o| o.1)];
+            let feature = Unsupported::SelfContactAtStart { arc_length_m };
             return Err(SolveError::Unsupported { model: Model::Fem, feature });
         }
         Ok(self.relax(time, dragged))
     }
 
-    /// Why a cable that nothing but friction holds does not rest where it was brought: what each node alone is let off with adds up.
-    pub(in crate::model::fem) fn slides_as_a_whole(&self) -> Option<String> {
+    /// Why a cable that nothing but friction holds does not rest where it was brought: what each
+    /// node alone is let off with adds up.
+    pub(in crate::model::fem) fn slides_as_a_whole(&self) -> Option<NoEquilibrium> {
         if self.problem.supports.iter().any(|s| s.at.is_some()) || self.contacts.own.shape.is_on() {
             return None;
         }
         let left = results::unbalanced(self, &self.motion.x, self.motion.time).norm();
         let scale = load_scale(&self.problem).1;
-        (left > WHOLE * scale).then(|| format!("it slides: {left:.3e} N of {scale:.3e} N are held by nothing"))
+        (left > UNHELD_LOAD_FRACTION * scale).then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
     }
 
-    /// How far (m) both ends have moved to `sought` at least, if that is further than the cable is long.
+    /// How far (m) both ends have moved to `sought` at least, if that is further than the cable is
+    /// long.
     fn ran_away(&self, sought: &[Vec2]) -> Option<f64> {
         let moved = |a: Option<&Vec2>, b: Option<&Vec2>| Some((a? - b?).norm());
         let now = &self.motion.x;
@@ -505,8 +522,8 @@ impl Dynamics {
         (way > self.problem.length).then_some(way)
     }
 
-    /// What a cable that found no rest at `x` runs through, in words: out of there it cannot get.
-    fn through(&self, x: &[Vec2]) -> Option<String> {
+    /// What a cable that found no rest at `x` runs through: out of there it cannot get.
+    fn through(&self, x: &[Vec2]) -> Option<NoEquilibrium> {
         let (mesh, world) = (&self.mesh, &self.problem.world);
         if x.len() != mesh.nodes() {
             return None;
@@ -517,13 +534,8 @@ impl Dynamics {
         let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
         let [a, b] = mesh.straight(e, x);
         let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
-        Some(format!(
-            "the cable is laid through `{}`, at ({:.3} m, {:.3} m), {:.3} m along it, and nothing leads it out: draw a route_m round it, or leave a way to where its ends are held",
-            world.obstacle_name(gap.obstacle),
-            gap.point.x,
-            gap.point.y,
-            mesh.arc_length[e]
-        ))
+        let obstacle = world.obstacle_name(gap.obstacle).to_owned();
+        Some(NoEquilibrium::ThroughObstacle { obstacle, at_m: gap.point, arc_length_m: mesh.arc_length[e] })
     }
 
     /// Whether the cable is in touch with itself.
@@ -538,7 +550,7 @@ impl Dynamics {
 
     /// Steps without inertia that keep every support's move below half an element.
     pub(in crate::model::fem) fn pieces(&self, end: f64, dragged: &[Option<Vec2>]) -> f64 {
-        let even = self.problem.length / self.even_bars as f64;
+        let even = self.problem.length / self.meshing.even_bars as f64;
         let mut most: f64 = 0.0;
         for (k, s) in self.problem.supports.iter().enumerate() {
             if let (Some((at, _)), Some(now)) = (s.position_at(end), self.support_position(k)) {

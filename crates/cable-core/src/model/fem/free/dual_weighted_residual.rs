@@ -1,17 +1,19 @@
 //! The dual-weighted residual estimates how wrong the forces are.
 //!
-//! Each element's chord lacks δ to the chord of the exact catenary under the same force. The span then closes with
-//! another start force, and pulleys slide a little to keep their balance:
+//! Each element's chord lacks δ to the chord of the exact catenary under the same force. The span
+//! then closes with another start force, and pulleys slide a little to keep their balance:
 //! ```text
 //! δF₀ = −C⁻¹ Σδ(F₀ + δF₀),     C = ∂reach/∂F₀
 //! ```
-//! (R. Becker and R. Rannacher, *An optimal control approach to a posteriori error estimation in finite element methods*,
-//! Acta Numerica 2001: the residual weighted by the inverse Hessian, here 2×2.) The lack is taken at the force it leads to,
-//! in a few rounds: one is enough for a taut span; in a slack one, whose horizontal force is a small part of its tension,
-//! what is left after one is no longer small beside that.
+//! (R. Becker and R. Rannacher, *An optimal control approach to a posteriori error estimation in
+//! finite element methods*, Acta Numerica 2001: the residual weighted by the inverse Hessian, here
+//! 2×2.) The lack is taken at the force it leads to, in a few rounds: one is enough for a taut
+//! span; in a slack one, whose horizontal force is a small part of its tension, what is left after
+//! one is no longer small beside that.
 //!
-//! What is estimated is the error of the whole force vector beside every stop, in parts of the greatest tension: a slack span
-//! may have its greatest tension right to many digits and its horizontal force wrong in the third.
+//! What is estimated is the error of the whole force vector beside every stop, in parts of the
+//! greatest tension: a slack span may have its greatest tension right to many digits and its
+//! horizontal force wrong in the third.
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::beam::equilibrium::Beam;
@@ -20,30 +22,33 @@ use crate::model::fem::free::pulley_balance::Network;
 use crate::model::fem::free::results::Point;
 use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
-use crate::model::fem::free::stations::Layout;
+use crate::model::fem::free::stations::{Layout, SpanEnds};
 
-/// Rounds of the correction, and the part of it below which another round changes nothing that shows.
+/// Rounds of the correction, and the part of it below which another round changes nothing that
+/// shows.
 const ROUNDS: usize = 8;
-const SETTLED: f64 = 0.01;
-/// By how much finer elements are made where the lack of the present ones says nothing, and how often at most: 4⁵ = 1024 times.
-const FINER: usize = 4;
+const CORRECTION_TOLERANCE: f64 = 0.01;
+/// By how much finer elements are made where the lack of the present ones says nothing, and how
+/// often at most: 4⁵ = 1024 times.
+const REFINEMENT_FACTOR: usize = 4;
 const MOST_FINER: usize = 5;
 /// Most elements of a span that is only solved for its error: some milliseconds.
 const MOST_CELLS: usize = 1 << 15;
-/// Rounding errors of a span's closure, in units of the last place of its length. Measured against the closed form: up to 5,
-/// of two answers.
+/// Rounding errors of a span's closure, in units of the last place of its length. Measured against
+/// the closed form: up to 5, of two answers.
 const ROUNDING: f64 = 8.0;
 
-/// Part of the greatest tension to which friction is known that remembers many steps: where rounding stops Newton a balance is
-/// accepted at 1e-8, and what that leaves adds up. Less: one in ten histories of stiff cables is farther from that of `spans`
-/// (up to 8e-8 in 300); more: nobody asks for less.
+/// Part of the greatest tension to which friction is known that remembers many steps: where
+/// rounding stops Newton a balance is accepted at 1e-8, and what that leaves adds up. Less: one in
+/// ten histories of stiff cables is farther from that of `spans` (up to 8e-8 in 300); more: nobody
+/// asks for less.
 const MEMORY: f64 = 1e-7;
 
 /// Arc lengths that differ by less are those of one node of two meshes, m.
-const SAME_PLACE: f64 = 1e-9;
+const NODE_TOLERANCE_M: f64 = 1e-9;
 
 /// The same without friction: tensions of stiff cables beside pulleys agree to that.
-const BALANCE: f64 = 1e-10;
+const SMOOTH_PULLEY_TOLERANCE: f64 = 1e-10;
 
 /// Estimated error of the force vector on any stop, in parts of the greatest tension.
 #[must_use]
@@ -60,17 +65,18 @@ pub fn relative_error(network: &mut Network) -> f64 {
     }
     let memory = match (network.pulleys().is_empty(), network.rubs()) {
         (true, _) => 0.0,
-        (false, false) => BALANCE * largest,
+        (false, false) => SMOOTH_PULLEY_TOLERANCE * largest,
         (false, true) => MEMORY * largest,
     };
     let error = error + rounding(network) + memory;
     // In parts of what the greatest tension is at least.
     let least = if error < 0.5 * largest { largest - error } else { largest };
     let share = if least > 0.0 { error / least } else { error };
-    share * (1.0 + SETTLED)
+    share * (1.0 + CORRECTION_TOLERANCE)
 }
 
-/// Estimated error of the shape, m: what the chords up to a node lack in all, and what the force that closes the span moves its end.
+/// Estimated error of the shape, m: what the chords up to a node lack in all, and what the force
+/// that closes the span moves its end.
 #[must_use]
 pub fn position_error(network: &mut Network) -> f64 {
     let changes = force_errors(network);
@@ -80,7 +86,7 @@ pub fn position_error(network: &mut Network) -> f64 {
         elements(&network.material, layout, ends, span.force, |ds, f| {
             lack += network.material.chord_error(ds, f).norm();
         });
-        let closing = changes.get(ends.0).map_or(0.0, |c| (span.walk.compliance * c[1]).norm());
+        let closing = changes.get(ends.first).map_or(0.0, |c| (span.walk.compliance * c[1]).norm());
         most = larger(most, lack + closing);
     }
     most + ROUNDING * f64::EPSILON * layout.length
@@ -91,8 +97,8 @@ pub fn position_error(network: &mut Network) -> f64 {
 pub fn apart(some: &[Point], others: &[Point]) -> f64 {
     let mut most = 0.0;
     for p in some {
-        let k = others.partition_point(|o| o.arc_length < p.arc_length - SAME_PLACE);
-        if let Some(o) = others.get(k).filter(|o| (o.arc_length - p.arc_length).abs() <= SAME_PLACE) {
+        let k = others.partition_point(|o| o.arc_length < p.arc_length - NODE_TOLERANCE_M);
+        if let Some(o) = others.get(k).filter(|o| (o.arc_length - p.arc_length).abs() <= NODE_TOLERANCE_M) {
             most = larger(most, (o.at - p.at).norm());
         }
     }
@@ -102,7 +108,7 @@ pub fn apart(some: &[Point], others: &[Point]) -> f64 {
 /// What rounding of lengths does to the stiffest span, N.
 fn rounding(network: &Network) -> f64 {
     let mut most = 0.0;
-    for (&(first, last), span) in network.ends.iter().zip(&network.spans) {
+    for (&SpanEnds { first, last }, span) in network.ends.iter().zip(&network.spans) {
         let length = network.layout.stops[last].arc_length - network.layout.stops[first].leaves();
         let stiffness = span.walk.compliance.try_inverse().map_or(0.0, |k| k.norm());
         most = larger(most, stiffness * length * ROUNDING * f64::EPSILON);
@@ -115,8 +121,8 @@ fn force_errors(network: &mut Network) -> Vec<[Vec2; 2]> {
     let mut errors = vec![[Vec2::zeros(); 2]; network.layout.stops.len()];
     for (&ends, span) in network.ends.iter().zip(&network.spans) {
         let off = closing_force(network, ends, span);
-        errors[ends.0][1] = off;
-        errors[ends.1][0] = off;
+        errors[ends.first][1] = off;
+        errors[ends.last][0] = off;
     }
     if network.rubbing.is_empty() {
         let_pulleys_follow(network, &mut errors);
@@ -126,26 +132,27 @@ fn force_errors(network: &mut Network) -> Vec<[Vec2; 2]> {
     errors
 }
 
-/// By how much more force at its start the exact catenary would close a span, N. Where a fold lies in one element its lack says
-/// nothing about the force: the span is solved on finer elements until it does.
-fn closing_force(network: &Network, ends: (usize, usize), span: &Span) -> Vec2 {
+/// By how much more force at its start the exact catenary would close a span, N. Where a fold lies
+/// in one element its lack says nothing about the force: the span is solved on finer elements until
+/// it does.
+fn closing_force(network: &Network, ends: SpanEnds, span: &Span) -> Vec2 {
     let (material, goal) = (&network.material, span.walk.reach);
-    if let Some(off) = correction(material, &network.layout, ends, (span.force, goal)) {
+    if let Some(off) = correction(material, &network.layout, ends, span.force, goal) {
         return off;
     }
     let mut layout = network.layout.clone();
     let mut force = span.force;
     for _ in 0..MOST_FINER {
-        layout.stops[ends.0..ends.1].iter_mut().for_each(|s| s.cells *= FINER);
-        if layout.stops[ends.0..ends.1].iter().map(|s| s.cells).sum::<usize>() > MOST_CELLS {
+        layout.stops[ends.first..ends.last].iter_mut().for_each(|s| s.cells *= REFINEMENT_FACTOR);
+        if layout.stops[ends.first..ends.last].iter().map(|s| s.cells).sum::<usize>() > MOST_CELLS {
             break;
         }
         let guess = span::first_guess(material, &layout, ends, goal);
         let solve = |start| span::solve(material, &layout, ends, goal, start);
         let Some(fine) = solve(force).or_else(|| solve(guess)) else { continue };
         force = fine.force;
-        if let Some(off) = correction(material, &layout, ends, (force, goal)) {
-            return (force + off - span.force) * (1.0 + SETTLED);
+        if let Some(off) = correction(material, &layout, ends, force, goal) {
+            return (force + off - span.force) * (1.0 + CORRECTION_TOLERANCE);
         }
     }
     // What is known is how far the finest is from it.
@@ -153,7 +160,7 @@ fn closing_force(network: &Network, ends: (usize, usize), span: &Span) -> Vec2 {
 }
 
 /// The same by rounds of the correction; None where they do not settle.
-fn correction(material: &Material, layout: &Layout, ends: (usize, usize), (force, goal): (Vec2, Vec2)) -> Option<Vec2> {
+fn correction(material: &Material, layout: &Layout, ends: SpanEnds, force: Vec2, goal: Vec2) -> Option<Vec2> {
     let (mut off, mut before) = (Vec2::zeros(), f64::INFINITY);
     for _ in 0..ROUNDS {
         let mut lack = Vec2::zeros();
@@ -165,15 +172,16 @@ fn correction(material: &Material, layout: &Layout, ends: (usize, usize), (force
             return None;
         }
         before = change.norm();
-        if before <= SETTLED * off.norm() {
-            return Some(off * (1.0 + SETTLED));
+        if before <= CORRECTION_TOLERANCE * off.norm() {
+            return Some(off * (1.0 + CORRECTION_TOLERANCE));
         }
     }
     None
 }
 
-/// Greatest difference of a force on a stop between a network and the same on half as long bars, in parts of the greatest tension,
-/// for an error of fourth order: sixteen fifteenths of it is the error of the coarser.
+/// Greatest difference of a force on a stop between a network and the same on half as long bars, in
+/// parts of the greatest tension, for an error of fourth order: sixteen fifteenths of it is the
+/// error of the coarser.
 #[must_use]
 pub fn difference(coarse: &Network, fine: &Network) -> f64 {
     let (mut largest, mut off) = (0.0, 0.0);
@@ -185,8 +193,8 @@ pub fn difference(coarse: &Network, fine: &Network) -> f64 {
     if largest > 0.0 { off / (0.9375 * largest) } else { off }
 }
 
-/// Adds what frictionless pulleys do to small changes of the forces beside the stops: they slide until the tensions
-/// agree again.
+/// Adds what frictionless pulleys do to small changes of the forces beside the stops: they slide
+/// until the tensions agree again.
 fn let_pulleys_follow(network: &Network, changes: &mut [[Vec2; 2]]) {
     let pulleys = network.pulleys();
     let faults: Vec<Option<f64>> = pulleys
@@ -207,7 +215,8 @@ fn let_pulleys_follow(network: &Network, changes: &mut [[Vec2; 2]]) {
     }
 }
 
-/// Estimated relative error of the largest tension on the finer of two meshes, fourth order: a fifteenth of the change.
+/// Estimated relative error of the largest tension on the finer of two meshes, fourth order: a
+/// fifteenth of the change.
 #[must_use]
 pub fn halving_error(coarse: &Beam, fine: &Beam) -> f64 {
     let (mut largest, mut change) = (fine.bending_force(), 0.0);

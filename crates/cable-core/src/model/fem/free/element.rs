@@ -1,23 +1,24 @@
 //! The corrected bar is one element of a free cable: it goes from its force to its chord.
 //!
-//! Between two nodes acts the body force q (N per metre of arc length, any direction), so the tension force
-//! varies as F(s) = F − q s about the middle. A perfectly flexible cable points along it:
+//! Between two nodes acts the body force q (N per metre of arc length, any direction), so the
+//! tension force varies as F(s) = F − q s about the middle. A perfectly flexible cable points along
+//! it:
 //! ```text
 //! chord = ∂Ψ/∂F,   Ψ(F) = ∫ θ (|F(s)| + |F(s)|²/2EA) ds       (complementary energy, convex)
 //! ```
-//! A straight bar takes |F(s)| at the middle, and its chord is 2nd order. The *corrected* bar takes the two Gauss
-//! points s = ±Δs/(2√3):
+//! A straight bar takes |F(s)| at the middle, and its chord is 2nd order. The *corrected* bar takes
+//! the two Gauss points s = ±Δs/(2√3):
 //! ```text
 //! g = q Δs/(2√3),   l₀ = θ Δs,   u(F) = F/|F|
 //! chord = l₀/2 [u(F+g) + u(F−g)] + (l₀/EA) F
 //! ∂chord/∂F = l₀/2 Σ (I − u uᵀ)/|F±g| + (l₀/EA) I
 //! ```
-//! Expanded in Δs its first term is the shift −(l₀³/24T²)[q_n² t + 2 q_t q_n n] of the straight chord, so it is 4th
-//! order at the cost of two square roots. Unlike that shift it stays bounded as T → 0: the chord of a slack
-//! element is never longer than its material, at any mesh.
+//! Expanded in Δs its first term is the shift −(l₀³/24T²)[q_n² t + 2 q_t q_n n] of the straight
+//! chord, so it is 4th order at the cost of two square roots. Unlike that shift it stays bounded as
+//! T → 0: the chord of a slack element is never longer than its material, at any mesh.
 //!
-//! The whole of Ψ is the dual of the cable's potential energy (M. Irvine, *Cable Structures*, MIT Press 1981, for the
-//! exact chord below).
+//! The whole of Ψ is the dual of the cable's potential energy (M. Irvine, *Cable Structures*, MIT
+//! Press 1981, for the exact chord below).
 
 use crate::math::{Mat2, Vec2, cross};
 
@@ -33,8 +34,8 @@ pub struct Material {
     pub thermal_stretch: f64,
     /// Weight and wind, N per metre of arc length.
     pub body: Vec2,
-    /// Tension below which directions are smoothed, N. Too large: bends become round; 0: a fold of the cable in one
-    /// Gauss point divides by zero.
+    /// Tension below which directions are smoothed, N. Too large: bends become round; 0: a fold of
+    /// the cable in one Gauss point divides by zero.
     pub smoothing: f64,
 }
 
@@ -56,7 +57,8 @@ impl Material {
         (size, force / size)
     }
 
-    /// Chord (m), compliance and energy of `ds` metres of cable whose middle carries the tension force `force` (N).
+    /// Chord (m), compliance and energy of `ds` metres of cable whose middle carries the tension
+    /// force `force` (N).
     #[must_use]
     pub fn respond(&self, ds: f64, force: Vec2) -> Response {
         let rest = self.thermal_stretch * ds;
@@ -87,8 +89,8 @@ impl Material {
         (side(1.0) + side(-1.0)) * half + force * (self.thermal_stretch / self.axial_stiffness)
     }
 
-    /// What the chord lacks to that of the exact elastic catenary, m: the element's local error. With e = −q/|q|,
-    /// H = F across e, V = F along e and both ends a, b:
+    /// What the chord lacks to that of the exact elastic catenary, m: the element's local error.
+    /// With e = −q/|q|, H = F across e, V = F along e and both ends a, b:
     /// ```text
     /// across: (H/|q|)(asinh(V_b/H) − asinh(V_a/H)) = H Δs · 2/(T_a + T_b) · atanh(r)/r,   r = |q| Δs/(T_a + T_b)
     /// along:  (T_b − T_a)/|q|                      = Δs (V_a + V_b)/(T_a + T_b)
@@ -111,7 +113,8 @@ impl Material {
     }
 }
 
-/// The angle from one tension force to another, rad, and how it changes with each: ∂φ/∂F = perp(F)/|F|².
+/// The angle from one tension force to another, rad, and how it changes with each: ∂φ/∂F =
+/// perp(F)/|F|².
 #[must_use]
 pub fn turn_between(before: Vec2, after: Vec2) -> f64 {
     cross(before, after).atan2(before.dot(&after))

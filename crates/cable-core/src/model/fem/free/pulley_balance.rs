@@ -1,38 +1,40 @@
 //! The pulley balance finds how much cable lies on each side of the pulleys that join the spans.
 //!
-//! Each span is solved for itself (`span`); what joins them is the arc length `s` at each pulley. With the tension
-//! before and after a pulley, ρ = ln(T_after/T_before), and the bounds of Coulomb's law (capstan: ±μ·turn):
+//! Each span is solved for itself (`span`); what joins them is the arc length `s` at each pulley.
+//! With the tension before and after a pulley, ρ = ln(T_after/T_before), and the bounds of
+//! Coulomb's law (capstan: ±μ·turn):
 //! ```text
 //! frictionless   ρ = 0
 //! stick          s = s_old,      −μφ ≤ ρ ≤ μφ
 //! slip           ρ = −μφ where s grew (the cable went to the side before), ρ = +μφ where it shrank
 //! ```
-//! ρ is the slope of the energy in `s` but for a positive factor, so a resting place is stable where ∂ρ/∂s is
-//! positive: the pivots of the (tridiagonal) Newton matrix must be. When Newton stalls or ends at an unstable place,
-//! each pulley in turn is bisected for a change of ρ from − to +, which only stable places have.
-//! Wheels with a radius are in `wheel`.
+//! ρ is the slope of the energy in `s` but for a positive factor, so a resting place is stable
+//! where ∂ρ/∂s is positive: the pivots of the (tridiagonal) Newton matrix must be. When Newton
+//! stalls or ends at an unstable place, each pulley in turn is bisected for a change of ρ from −
+//! to +, which only stable places have. Wheels with a radius are in `wheel`.
 
 use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
 use crate::model::fem::free::pulley_friction::Rubbing;
 use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
-use crate::model::fem::free::stations::{Hold, Layout, Wheel};
+use crate::model::fem::free::stations::{Hold, Layout, SpanEnds, Wheel};
 
 /// Newton steps for the pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
-/// Powers of ten by which a fold is rounded off at first: to a tenth of the load, where any start converges.
-const ROUNDED: i32 = 6;
+/// Powers of ten by which a fold is rounded off at first: to a tenth of the load, where any start
+/// converges.
+const FOLD_ROUNDING_DECADES: i32 = 6;
 /// Rounds of bisection.
 const MAX_ROUNDS: usize = 60;
 /// Tensions at a pulley agree when ln of their ratio is off by less than this.
-const BALANCED: f64 = 1e-12;
+const BALANCE_TOLERANCE: f64 = 1e-12;
 /// As above where no step makes it smaller (a stiff cable: ρ has lost its last digits).
-const BALANCED_AT_LEAST: f64 = 1e-8;
+const BALANCE_LIMIT: f64 = 1e-8;
 /// Part of the room to the next stop that a step may take.
-const ROOM: f64 = 0.4;
+const STEP_ROOM_FRACTION: f64 = 0.4;
 /// Least cable between a pulley and the next stop, in parts of the cable.
-const LEAST: f64 = 1e-7;
+const END_CABLE_FRACTION: f64 = 1e-7;
 
 /// Why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,7 +57,7 @@ pub struct Network {
     /// What the elements share.
     pub material: Material,
     /// The stops at each span's ends.
-    pub ends: Vec<(usize, usize)>,
+    pub ends: Vec<SpanEnds>,
     /// The spans' answers, as `ends`.
     pub spans: Vec<Span>,
     /// Tension force just before and just after each stop, N.
@@ -67,7 +69,8 @@ pub struct Network {
     /// Arc length at each stop before anything slid (friction remembers it), m.
     held_at: Vec<f64>,
     warm: bool,
-    /// Every pulley with what friction remembers of it, in order; empty until it was asked for (`rubbing`).
+    /// Every pulley with what friction remembers of it, in order; empty until it was asked for
+    /// (`rubbing`).
     pub rubbing: Vec<Rubbing>,
 }
 
@@ -140,15 +143,16 @@ impl Network {
     }
 
     fn solve_span(&mut self, i: usize) -> Result<(), Failure> {
-        let (first, last) = self.ends[i];
+        let ends = self.ends[i];
+        let SpanEnds { first, last } = ends;
         let (Some(a), Some(b)) = (self.layout.stops[first].point(1), self.layout.stops[last].point(0)) else {
             return Err(Failure::Span(first, f64::NAN));
         };
         let d = b - a;
-        let solve = |guess| span::solve(&self.material, &self.layout, (first, last), d, guess);
+        let solve = |guess| span::solve(&self.material, &self.layout, ends, d, guess);
         let warm = if self.warm || self.spans[i].steps > 0 { solve(self.spans[i].force) } else { None };
-        let guess = span::first_guess(&self.material, &self.layout, (first, last), d);
-        let span = warm.or_else(|| solve(guess)).or_else(|| self.unfold((first, last), d, guess));
+        let guess = span::first_guess(&self.material, &self.layout, ends, d);
+        let span = warm.or_else(|| solve(guess)).or_else(|| self.unfold(ends, d, guess));
         let span = span.ok_or(Failure::Span(first, f64::NAN))?;
         self.steps += span.steps;
         self.residual = larger(self.residual, span.residual);
@@ -158,11 +162,11 @@ impl Network {
         Ok(())
     }
 
-    /// A span folded so sharply that one element turns round in itself: where its tension vanishes D has a kink, which is
-    /// rounded off and then sharpened tenfold at a time.
-    fn unfold(&self, ends: (usize, usize), d: Vec2, guess: Vec2) -> Option<Span> {
+    /// A span folded so sharply that one element turns round in itself: where its tension vanishes
+    /// D has a kink, which is rounded off and then sharpened tenfold at a time.
+    fn unfold(&self, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
         let (mut force, mut steps) = (guess, 0);
-        for power in (0..=ROUNDED).rev() {
+        for power in (0..=FOLD_ROUNDING_DECADES).rev() {
             let material = Material { smoothing: self.material.smoothing * 10f64.powi(power), ..self.material };
             let span = span::solve(&material, &self.layout, ends, d, force)?;
             (force, steps) = (span.force, steps + span.steps);
@@ -181,7 +185,8 @@ impl Network {
         self.forces[end][1] = Vec2::zeros();
         if first > 0 {
             let start = -self.layout.stops[0].load;
-            self.forces[first][0] = elements(&self.material, &self.layout, (0, first), start, |_, _| ());
+            self.forces[first][0] =
+                elements(&self.material, &self.layout, SpanEnds { first: 0, last: first }, start, |_, _| ());
         }
         if last < end {
             let stops = &self.layout.stops;
@@ -208,19 +213,21 @@ impl Network {
         let ratio = (after.norm() / before.norm()).ln();
         if wheel.radius > 0.0 {
             let clockwise = self.clockwise_at(stop, wheel);
-            let law = [-1.0, 0.0, 1.0].map(|sign| self.round_wheel(wheel, (before, clockwise), sign));
+            let law = [-1.0, 0.0, 1.0].map(|sign| self.round_wheel(wheel, before, clockwise, sign));
             return Balance { ratio, law };
         }
         let bound = wheel.friction * turn_between(before, after).abs();
         Balance { ratio, law: [-bound, 0.0, bound] }
     }
 
-    /// How far the arc length at a pulley has moved since friction last held, m (the middle of a wheel's arc).
+    /// How far the arc length at a pulley has moved since friction last held, m (the middle of a
+    /// wheel's arc).
     fn slid(&self, stop: usize) -> f64 {
         self.layout.stops[stop].arc_length + 0.5 * self.layout.stops[stop].lap - self.held_at[stop]
     }
 
-    /// What is wrong at a pulley: 0 where it rests, else positive where the arc length must shrink. `None`: held.
+    /// What is wrong at a pulley: 0 where it rests, else positive where the arc length must shrink.
+    /// `None`: held.
     pub(in crate::model::fem) fn fault(&self, stop: usize, wheel: &Wheel) -> Option<f64> {
         let b = self.law(stop, wheel);
         if !(wheel.friction > 0.0) {
@@ -277,7 +284,7 @@ impl Network {
         let mut now = faults(self);
         for _ in 0..MAX_STEPS {
             let (step, stable) = self.newton_step(pulleys, &now);
-            if size(&now) <= BALANCED {
+            if size(&now) <= BALANCE_TOLERANCE {
                 self.residual =
                     pulleys.iter().map(|&k| self.unbalance(k)).fold(self.residual, |a, b| if b <= a { a } else { b });
                 return stable;
@@ -300,13 +307,14 @@ impl Network {
             }
             if !better {
                 self.move_pulleys(pulleys, &from, &step, 0.0);
-                return self.solve_spans().is_ok() && stable && size(&now) <= BALANCED_AT_LEAST;
+                return self.solve_spans().is_ok() && stable && size(&now) <= BALANCE_LIMIT;
             }
         }
         false
     }
 
-    /// Moves every pulley by `alpha` of its step, within its room, and not beyond where friction held it.
+    /// Moves every pulley by `alpha` of its step, within its room, and not beyond where friction
+    /// held it.
     fn move_pulleys(&mut self, pulleys: &[usize], from: &[f64], step: &[f64], alpha: f64) {
         for (i, &k) in pulleys.iter().enumerate() {
             self.layout.stops[k].arc_length = from[i];
@@ -314,8 +322,8 @@ impl Network {
         let mut limited = Vec::with_capacity(pulleys.len());
         for (i, &k) in pulleys.iter().enumerate() {
             let stops = &self.layout.stops;
-            let down = ROOM * (from[i] - stops[k - 1].leaves());
-            let up = ROOM * (stops[k + 1].arc_length - from[i] - stops[k].lap);
+            let down = STEP_ROOM_FRACTION * (from[i] - stops[k - 1].leaves());
+            let up = STEP_ROOM_FRACTION * (stops[k + 1].arc_length - from[i] - stops[k].lap);
             let mut move_by = bounded(alpha * step[i], -down, up);
             let slid = self.slid(k);
             let friction = self.wheel(k).is_some_and(|w| w.friction > 0.0);
@@ -367,21 +375,22 @@ impl Network {
         (right, stable)
     }
 
-    /// ∂(force before, force after the pulley at stop `k`)/∂(arc length at the pulley of stop `of`).
+    /// ∂(force before, force after the pulley at stop `k`)/∂(arc length at the pulley of stop
+    /// `of`).
     pub(in crate::model::fem) fn rates_at(&self, k: usize, of: usize) -> [Vec2; 2] {
         let mut rates = [Vec2::zeros(); 2];
         for (span, &ends) in self.spans.iter().zip(&self.ends) {
-            let by_end = if ends.1 == of {
+            let by_end = if ends.last == of {
                 true
-            } else if ends.0 == of {
+            } else if ends.first == of {
                 false
             } else {
                 continue;
             };
-            if ends.1 == k {
+            if ends.last == k {
                 rates[0] += span.force_rates(&self.material, &self.layout, ends, by_end)[1];
             }
-            if ends.0 == k {
+            if ends.first == k {
                 rates[1] += span.force_rates(&self.material, &self.layout, ends, by_end)[0];
             }
         }
@@ -413,7 +422,8 @@ impl Network {
         let turn = turn_between(before, after);
         let turning =
             perp(after).dot(&rates[1]) / after.norm_squared() - perp(before).dot(&rates[0]) / before.norm_squared();
-        // The bound that holds: the lower one where ρ lies below it or the pulley gave cable to the side before.
+        // The bound that holds: the lower one where ρ lies below it or the pulley gave cable to the
+        // side before.
         let lower = (after.norm() / before.norm()).ln() - fault < 0.0;
         let sign = if lower { -1.0 } else { 1.0 };
         ratio - sign * wheel.friction * turn.signum() * turning
@@ -439,7 +449,7 @@ impl Network {
         let held = if wheel.friction > 0.0 { start - self.slid(stop) } else { start };
         self.try_at(stop, held)?;
         let Some(fault) = self.fault(stop, &wheel) else { return Ok(()) };
-        let least = LEAST * self.layout.length;
+        let least = END_CABLE_FRACTION * self.layout.length;
         let limit = if fault < 0.0 {
             self.layout.stops[stop + 1].arc_length - self.layout.stops[stop].lap - least
         } else {
@@ -469,7 +479,7 @@ impl Network {
     fn try_at(&mut self, stop: usize, arc_length: f64) -> Result<(), Failure> {
         self.layout.stops[stop].arc_length = arc_length;
         for i in 0..self.ends.len() {
-            if self.ends[i].0 == stop || self.ends[i].1 == stop {
+            if self.ends[i].first == stop || self.ends[i].last == stop {
                 self.solve_span(i)?;
             }
         }
@@ -477,7 +487,8 @@ impl Network {
         Ok(())
     }
 
-    /// A pulley that wants beyond the stop beside it: past a load the load changes sides, past an end it runs out.
+    /// A pulley that wants beyond the stop beside it: past a load the load changes sides, past an
+    /// end it runs out.
     fn pass(&mut self, stop: usize, up: bool) -> Result<(), Failure> {
         let other = if up { stop + 1 } else { stop - 1 };
         let inner = other > 0 && other + 1 < self.layout.stops.len();
@@ -491,7 +502,7 @@ impl Network {
         self.layout.stops.swap(stop, other);
         self.held_at.swap(stop, other);
         (self.layout.stops[stop].cells, self.layout.stops[other].cells) = cells;
-        let least = 2.0 * LEAST * self.layout.length * if up { 1.0 } else { -1.0 };
+        let least = 2.0 * END_CABLE_FRACTION * self.layout.length * if up { 1.0 } else { -1.0 };
         let load_at = self.layout.stops[stop].arc_length;
         self.layout.stops[other].arc_length = load_at + least - if up { 0.0 } else { self.layout.stops[other].lap };
         self.ends = self.layout.spans().collect();

@@ -1,17 +1,19 @@
 //! This module balances all pulleys with friction together, with what friction remembers of each.
 //!
-//! What is unknown at a wheel are the angles p₁, p₂ at which the cable meets and leaves it and the material s₁, s₂ there; at a point
-//! only the material. The spans between follow from these (`span`), so the equations are few:
+//! What is unknown at a wheel are the angles p₁, p₂ at which the cable meets and leaves it and the
+//! material s₁, s₂ there; at a point only the material. The spans between follow from these
+//! (`span`), so the equations are few:
 //!
 //! ```text
 //! wheel    t(p₁) × F₁ = 0,  t(p₂) × F₂ = 0,  and the two of the friction on it (`spans::contact::wheel_friction`)
 //! point    holds: s = s_old,    slides with m: ln(T₂/T₁) = m·turn
 //! ```
 //!
-//! Slip is complementary to friction: a pulley that holds lies within its cone, one that slides has moved against its friction since the
-//! last step *at points fixed to the wheel*. The middle of the arc is no such point: it wanders by half the radius times what the
-//! directions turn, which is more than a stiff cable gives by, so that friction could be found the other way round.
-//! Newton with a line search for one set of modes, then the modes are asked.
+//! Slip is complementary to friction: a pulley that holds lies within its cone, one that slides has
+//! moved against its friction since the last step *at points fixed to the wheel*. The middle of the
+//! arc is no such point: it wanders by half the radius times what the directions turn, which is
+//! more than a stiff cable gives by, so that friction could be found the other way round. Newton
+//! with a line search for one set of modes, then the modes are asked.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -28,21 +30,23 @@ const MAX_STEPS: usize = 40;
 const MAX_HALVINGS: usize = 14;
 /// Sets of modes for each pulley.
 const MAX_MODES: usize = 12;
-/// The equations are solved when none is off by more than this part: of a tension, an angle, and of [`MATERIAL`] of the cable.
-const BALANCED: f64 = 1e-13;
+/// The equations are solved when none is off by more than this part: of a tension, an angle, and of
+/// [`MATERIAL`] of the cable.
+const RESIDUAL_TOLERANCE: f64 = 1e-13;
 /// The same where no step makes it smaller, as in `network`.
-const BALANCED_AT_LEAST: f64 = 1e-8;
-/// Part of the cable's length that weighs as much as the whole tension. More: steps are judged by tension alone; less: by material.
+const RESIDUAL_LIMIT: f64 = 1e-8;
+/// Part of the cable's length that weighs as much as the whole tension. More: steps are judged by
+/// tension alone; less: by material.
 const MATERIAL: f64 = 0.01;
 /// Farthest that an end may go round its wheel in a step, rad: more comes out on the other side.
 const MOST_TURN: f64 = 0.5;
 /// Part of what lies between two stops that a step may take.
-const ROOM: f64 = 0.4;
+const STEP_ROOM_FRACTION: f64 = 0.4;
 /// Part of the cone or the length by which a mode is left: how many roundings.
-const PATIENCE: f64 = 30.0;
+const MODE_CHANGE_ROUNDINGS: f64 = 30.0;
 /// A point pulley's cone (in ln T) and the part of the cable that is no slip: rounding.
-const CONE: f64 = 1e-12;
-const STILL: f64 = 1e-13;
+const CONE_ROUNDING: f64 = 1e-12;
+const STEP_TOLERANCE: f64 = 1e-13;
 /// A node of an answer that is no farther than this from a wheel, of its radius, lies on it.
 const ON_WHEEL: f64 = 1e-9;
 
@@ -72,7 +76,8 @@ pub struct Rubbing {
     s: [f64; 2],
 }
 
-/// What can be varied at a pulley: the angle and the material at its side 0 or 1; the material of a point at both.
+/// What can be varied at a pulley: the angle and the material at its side 0 or 1; the material of a
+/// point at both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Unknown {
     Angle(usize),
@@ -127,7 +132,8 @@ impl Network {
         self.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.friction > 0.0))
     }
 
-    /// Begins the memory of every pulley with the balance found; on each wheel friction is shared evenly.
+    /// Begins the memory of every pulley with the balance found; on each wheel friction is shared
+    /// evenly.
     pub fn remember(&mut self) {
         let on = self.on_wheel();
         self.rubbing = Vec::new();
@@ -146,7 +152,8 @@ impl Network {
         }
     }
 
-    /// Begins the memory of every pulley with an answer of another model; false where that does not say enough.
+    /// Begins the memory of every pulley with an answer of another model; false where that does not
+    /// say enough.
     pub fn remember_answer(&mut self, answer: &CableSolution) -> bool {
         let on = self.on_wheel();
         let mut found = Vec::new();
@@ -340,7 +347,7 @@ impl Network {
         let mut out = Vec::with_capacity(4);
         let both = unknown == Unknown::Both;
         for side in 0..2 {
-            let span = self.ends.iter().position(|e| if side == 0 { e.1 == k } else { e.0 == k });
+            let span = self.ends.iter().position(|e| if side == 0 { e.last == k } else { e.first == k });
             let material = both || unknown == Unknown::Material(side);
             let Some(i) = span else {
                 if material && (if side == 0 { k > 0 } else { k + 1 < self.layout.stops.len() }) {
@@ -361,8 +368,8 @@ impl Network {
             } else {
                 continue;
             };
-            out.push((ends.0, 1, slopes[0]));
-            out.push((ends.1, 0, slopes[1]));
+            out.push((ends.first, 1, slopes[0]));
+            out.push((ends.last, 0, slopes[1]));
         }
         out
     }
@@ -393,7 +400,7 @@ impl Network {
             let worst = e.residual.amax();
             let tension = self.forces.iter().flatten().fold(0.0, |m, f| larger(m, f.norm()));
             self.residual = larger(self.residual, worst * tension);
-            if worst <= BALANCED {
+            if worst <= RESIDUAL_TOLERANCE {
                 return Ok(());
             }
             let failure = Failure::Unbalanced(first, worst * tension);
@@ -418,11 +425,11 @@ impl Network {
             if !better {
                 self.move_unknowns(&from, &step, 0.0);
                 self.take_unknowns(pulleys)?;
-                return if worst <= BALANCED_AT_LEAST { Ok(()) } else { Err(failure) };
+                return if worst <= RESIDUAL_LIMIT { Ok(()) } else { Err(failure) };
             }
         }
         let worst = e.residual.amax();
-        if worst <= BALANCED_AT_LEAST { Ok(()) } else { Err(Failure::Unbalanced(first, worst)) }
+        if worst <= RESIDUAL_LIMIT { Ok(()) } else { Err(Failure::Unbalanced(first, worst)) }
     }
 
     /// The longest part of a step that keeps the order of the stops and the side of the wheels.
@@ -439,8 +446,8 @@ impl Network {
                 let by = step[column];
                 column += 1;
                 let room = |side: usize| match side {
-                    0 if k > 0 => ROOM * (stops[k].arc_length - stops[k - 1].leaves()),
-                    1 if k + 1 < stops.len() => ROOM * (stops[k + 1].arc_length - stops[k].leaves()),
+                    0 if k > 0 => STEP_ROOM_FRACTION * (stops[k].arc_length - stops[k - 1].leaves()),
+                    1 if k + 1 < stops.len() => STEP_ROOM_FRACTION * (stops[k + 1].arc_length - stops[k].leaves()),
                     _ => f64::INFINITY,
                 };
                 match unknown {
@@ -483,15 +490,17 @@ impl Network {
             let ends = self.ends_at(k, r);
             let [before, after] = self.forces[k];
             changed |= match &mut r.law {
-                Law::Wheel(w) => w.change_mode(&on, &ends, PATIENCE),
+                Law::Wheel(w) => w.change_mode(&on, &ends, MODE_CHANGE_ROUNDINGS),
                 Law::Point { friction, stands, held } if *friction > 0.0 => {
                     let ratio = (ends.t[1] / ends.t[0]).ln();
                     let over = ratio.abs() - *friction * turn_between(before, after).abs();
                     let slid = r.s[0] - *held;
                     let next = match *stands {
-                        Point::Holds if over > CONE => Point::Slides(*friction * ratio.signum()),
+                        Point::Holds if over > CONE_ROUNDING => Point::Slides(*friction * ratio.signum()),
                         // With m = +μ material goes on to the side after: less of it lies before.
-                        Point::Slides(m) if m * slid > 0.0 && slid.abs() > STILL * self.layout.length => Point::Holds,
+                        Point::Slides(m) if m * slid > 0.0 && slid.abs() > STEP_TOLERANCE * self.layout.length => {
+                            Point::Holds
+                        }
                         same => same,
                     };
                     let differs = next != *stands;

@@ -1,8 +1,9 @@
-//! This module leads a cable round the wheels of its pulleys.
+//! This module finds the arcs of a cable on the wheels of its pulleys.
 //!
-//! The cable runs from where it meets a wheel to where it leaves it, tangent at both; these contact points follow the
-//! forces of the spans beside (a few rounds, each gains the ratio of radius to span). Along the arc, with t the direction
-//! and n the outward normal, dT = −q·t ds ± μ (T dα − q·n ds): the capstan with the weight on the wheel.
+//! The cable runs from where it meets a wheel to where it leaves it, tangent at both; these contact
+//! points follow the forces of the spans beside (a few rounds, each gains the ratio of radius to
+//! span). Along the arc, with t the direction and n the outward normal, dT = −q·t ds ± μ (T dα −
+//! q·n ds): the capstan with the weight on the wheel.
 
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
@@ -12,16 +13,18 @@ use crate::scene::PulleySide;
 
 /// Steps of the integration round a wheel.
 const WHEEL_STEPS: usize = 16;
-/// Rounds to find where a cable meets and leaves its wheels; each gains the ratio of radius to span.
+/// Rounds to find where a cable meets and leaves its wheels; each gains the ratio of radius to
+/// span.
 const WHEEL_ROUNDS: usize = 80;
 /// Rounds of wheels end when no contact point moves by more than this angle, rad.
-const WHEEL_STILL: f64 = 1e-12;
+const CONTACT_ANGLE_TOLERANCE: f64 = 1e-12;
 /// As above where round-off allows no better.
-const WHEEL_STILL_AT_LEAST: f64 = 1e-8;
+const CONTACT_ANGLE_LIMIT: f64 = 1e-8;
 
 impl Network {
-    /// ln(T_after/T_before) round a wheel, passed `clockwise` (+1) or the other way (−1), with friction pulling along (`sign` +1) or against.
-    pub(in crate::model::fem) fn round_wheel(&self, wheel: &Wheel, (before, clockwise): (Vec2, f64), sign: f64) -> f64 {
+    /// ln(T_after/T_before) round a wheel, passed `clockwise` (+1) or the other way (−1), with
+    /// friction pulling along (`sign` +1) or against.
+    pub(in crate::model::fem) fn round_wheel(&self, wheel: &Wheel, before: Vec2, clockwise: f64, sign: f64) -> f64 {
         let m = &self.material;
         let [meets, leaves] = wheel.contact;
         let turn = arc(meets, leaves, clockwise);
@@ -93,9 +96,11 @@ impl Network {
             self.balance()?;
             let (moved, lifted) = self.meet_wheels();
             match lifted {
-                Some(k) if moved <= WHEEL_STILL || round == WHEEL_ROUNDS => return Err(Failure::LeavesWheel(k)),
-                None if moved <= WHEEL_STILL => break,
-                None if round == WHEEL_ROUNDS && !(moved <= WHEEL_STILL_AT_LEAST) => {
+                Some(k) if moved <= CONTACT_ANGLE_TOLERANCE || round == WHEEL_ROUNDS => {
+                    return Err(Failure::LeavesWheel(k));
+                }
+                None if moved <= CONTACT_ANGLE_TOLERANCE => break,
+                None if round == WHEEL_ROUNDS && !(moved <= CONTACT_ANGLE_LIMIT) => {
                     return Err(Failure::Unbalanced(self.pulleys().first().copied().unwrap_or(0), self.residual));
                 }
                 _ => {}
@@ -104,9 +109,10 @@ impl Network {
         Ok(())
     }
 
-    /// Moves the contact points to where the forces say; returns the largest move, rad, and a wheel the cable would
-    /// leave at these forces. On the way to an answer that may pass (a span too slack yet hangs clear of the wheel's
-    /// side): it is left touching in one point between the two directions.
+    /// Moves the contact points to where the forces say; returns the largest move, rad, and a wheel
+    /// the cable would leave at these forces. On the way to an answer that may pass (a span too
+    /// slack yet hangs clear of the wheel's side): it is left touching in one point between the two
+    /// directions.
     fn meet_wheels(&mut self) -> (f64, Option<usize>) {
         let (mut largest, mut lifted) = (0.0, None);
         for k in self.pulleys() {
@@ -158,11 +164,12 @@ pub fn turn(wheel: &Wheel, before: Vec2) -> f64 {
     }
 }
 
-/// Friction over a wheel that adds less than this part of the tension adds evenly: the difference is its square, and the quotient of two
-/// small numbers is not formed.
-const EVEN: f64 = 1e-6;
+/// Friction over a wheel that adds less than this part of the tension adds evenly: the difference
+/// is its square, and the quotient of two small numbers is not formed.
+const EVEN_FRICTION_FRACTION: f64 = 1e-6;
 
-/// Tension at a fraction of the arc, N: weight and wind along the way from the first contact, and what friction adds.
+/// Tension at a fraction of the arc, N: weight and wind along the way from the first contact, and
+/// what friction adds.
 #[must_use]
 pub fn tension(wheel: &Wheel, material: &Material, [before, after]: [Vec2; 2], fraction: f64) -> f64 {
     let (first, last) = (before.norm(), after.norm());
@@ -173,7 +180,7 @@ pub fn tension(wheel: &Wheel, material: &Material, [before, after]: [Vec2; 2], f
     let rubbed = last - first + carried(wheel.contact[1]);
     // Coulomb friction adds in proportion to what the tension is already: T e^{mφ}.
     let whole = (first + rubbed) / first;
-    let even = !(whole > 0.0 && whole.is_finite() && (whole - 1.0).abs() > EVEN);
+    let even = !(whole > 0.0 && whole.is_finite() && (whole - 1.0).abs() > EVEN_FRICTION_FRACTION);
     let share = if even { fraction } else { (whole.powf(fraction) - 1.0) / (whole - 1.0) };
     first - carried(Vec2::new(angle.cos(), angle.sin())) + share * rubbed
 }

@@ -5,7 +5,7 @@ use crate::model::arc_nodes;
 use crate::model::fem::free::pulley_balance::Network;
 use crate::model::fem::free::pulley_wheels;
 use crate::model::fem::free::span::elements;
-use crate::model::fem::free::stations::{Hold, Layout, Stop};
+use crate::model::fem::free::stations::{Hold, Layout, SpanEnds, Stop};
 use crate::problem::Problem;
 use crate::solution::{Node, SupportReaction};
 
@@ -16,7 +16,8 @@ pub struct Point {
     pub arc_length: f64,
     /// Where it is, m.
     pub at: Vec2,
-    /// Tension, N: the larger of those beside it, the one that breaks the cable. A stiff cable may push: less than zero.
+    /// Tension, N: the larger of those beside it, the one that breaks the cable. A stiff cable may
+    /// push: less than zero.
     pub tension: f64,
     /// d(angle)/d(arc length), 1/m.
     pub curvature: f64,
@@ -44,7 +45,8 @@ impl Point {
     }
 }
 
-/// All points of a solved network in order of arc length, of a cable of a radius (m), appended to `out`.
+/// All points of a solved network in order of arc length, of a cable of a radius (m), appended to
+/// `out`.
 pub fn points(network: &Network, cable_radius: f64, out: &mut Vec<Point>) {
     out.clear();
     let layout = &network.layout;
@@ -53,19 +55,21 @@ pub fn points(network: &Network, cable_radius: f64, out: &mut Vec<Point>) {
     if first > 0 {
         let force = -layout.stops[0].load;
         let mut reach = Vec2::zeros();
-        elements(&network.material, layout, (0, first), force, |ds, f| reach += network.material.respond(ds, f).chord);
+        elements(&network.material, layout, SpanEnds { first: 0, last: first }, force, |ds, f| {
+            reach += network.material.respond(ds, f).chord
+        });
         let anchor = layout.stops[first].point(0).unwrap_or_default();
-        run(network, (0, first), anchor - reach, force, out);
+        run(network, SpanEnds { first: 0, last: first }, anchor - reach, force, out);
     }
     for (&ends, span) in network.ends.iter().zip(&network.spans) {
-        let start = layout.stops[ends.0].point(1).unwrap_or_default();
-        anchor(network, ends.0, cable_radius, out);
+        let start = layout.stops[ends.first].point(1).unwrap_or_default();
+        anchor(network, ends.first, cable_radius, out);
         run(network, ends, start, span.force, out);
     }
     anchor(network, last, cable_radius, out);
     if last < end {
         let start = layout.stops[last].point(1).unwrap_or_default();
-        run(network, (last, end), start, network.forces[last][1], out);
+        run(network, SpanEnds { first: last, last: end }, start, network.forces[last][1], out);
         let load = layout.stops[end].load;
         let tip = out.last().map_or(start, |p| p.at) + last_chord(network, end);
         out.push(Point { arc_length: layout.length, at: tip, tension: load.norm(), curvature: 0.0, force: load });
@@ -85,7 +89,7 @@ fn free_curvature(force: Vec2, body: Vec2, smoothing: f64) -> f64 {
 }
 
 /// The points between two stops; of the two only the first, and only where it does not anchor.
-fn run(network: &Network, (first, last): (usize, usize), start: Vec2, force: Vec2, out: &mut Vec<Point>) {
+fn run(network: &Network, SpanEnds { first, last }: SpanEnds, start: Vec2, force: Vec2, out: &mut Vec<Point>) {
     let (layout, material) = (&network.layout, &network.material);
     let (mut at, mut force) = (start, force);
     for k in first..last {
@@ -160,7 +164,8 @@ fn anchor(network: &Network, k: usize, cable_radius: f64, out: &mut Vec<Point>) 
     }
 }
 
-/// Outward normal, arc length (m) and tension (N) at a fraction of the arc of a wheel whose friction remembers them.
+/// Outward normal, arc length (m) and tension (N) at a fraction of the arc of a wheel whose
+/// friction remembers them.
 fn remembered(network: &Network, stop: usize, fraction: f64) -> Option<(Vec2, f64, f64)> {
     let k = network.pulleys().iter().position(|&k| k == stop)?;
     let pulley = network.rubbing.get(k)?;
@@ -168,8 +173,8 @@ fn remembered(network: &Network, stop: usize, fraction: f64) -> Option<(Vec2, f6
     Some((normal, pulley.material_at(network, fraction)?, tension))
 }
 
-/// Force of the cable on a stop, N: it is pulled back along the cable before it and on along the cable after it, and
-/// carries the load that acts there, and the cable on its wheel.
+/// Force of the cable on a stop, N: it is pulled back along the cable before it and on along the
+/// cable after it, and carries the load that acts there, and the cable on its wheel.
 #[must_use]
 pub fn reaction(stop: &Stop, [before, after]: [Vec2; 2], body: Vec2) -> Vec2 {
     match stop.hold {

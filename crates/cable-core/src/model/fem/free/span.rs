@@ -1,17 +1,17 @@
 //! A span consists of the elements between two anchors; it is solved for the force at its start.
 //!
-//! Node by node the tension force is known once it is known at the start: F drops by q Δs along an element and by
-//! the load at a stop. What is left are two unknowns however many elements there are, and their equation is the
-//! minimum of a convex function (the dual of the potential energy):
+//! Node by node the tension force is known once it is known at the start: F drops by q Δs along an
+//! element and by the load at a stop. What is left are two unknowns however many elements there
+//! are, and their equation is the minimum of a convex function (the dual of the potential energy):
 //! ```text
 //! minimise  D(F₀) = Σ Ψₑ(Fₑ) − F₀·d,     ∇D = Σ chordₑ − d,     ∇²D = Σ ∂chordₑ/∂Fₑ
 //! ```
-//! Every minimum is an equilibrium in tension: compression and unstable states have no place in it. Newton with a
-//! line search; accepted on the gradient where D itself has no digits left.
+//! Every minimum is an equilibrium in tension: compression and unstable states have no place in it.
+//! Newton with a line search; accepted on the gradient where D itself has no digits left.
 
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::free::element::Material;
-use crate::model::fem::free::stations::Layout;
+use crate::model::fem::free::stations::{Layout, SpanEnds};
 
 /// Newton steps a span may take. Measured: 3 to 14, up to 40 for a span folded on itself.
 const MAX_STEPS: usize = 200;
@@ -19,13 +19,15 @@ const MAX_STEPS: usize = 200;
 const MAX_HALVINGS: usize = 40;
 /// Fraction of the promised decrease a step must give (Armijo). Any small number will do.
 const ARMIJO: f64 = 1e-4;
-/// A span is closed when the gap is this part of its length; a few rounding errors of a sum over its elements.
-const CLOSED: f64 = 4e-16;
-/// Gap, in parts of the length, that is still taken for closed when Newton no longer halves it: the gap of taut stiff
-/// spans stops at about 1e-13. Newton is quadratic here, so a step that does not halve it meets rounding.
-const CLOSED_AT_LEAST: f64 = 1e-10;
+/// A span is closed when the gap is this part of its length; a few rounding errors of a sum over
+/// its elements.
+const CLOSURE_TOLERANCE: f64 = 4e-16;
+/// Gap, in parts of the length, that is still taken for closed when Newton no longer halves it: the
+/// gap of taut stiff spans stops at about 1e-13. Newton is quadratic here, so a step that does not
+/// halve it meets rounding.
+const CLOSURE_LIMIT: f64 = 1e-10;
 /// A step this small, in parts of the force, changes nothing any more.
-const SAME_FORCE: f64 = 1e-15;
+const FORCE_ROUNDING: f64 = 1e-15;
 
 /// What a span looks like under a start force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -54,20 +56,22 @@ pub struct Span {
 }
 
 impl Span {
-    /// How the forces at both ends change with the arc length at an end (`by_end`: the last stop, else the first).
+    /// How the forces at both ends change with the arc length at an end (`by_end`: the last stop,
+    /// else the first).
     #[must_use]
-    pub fn force_rates(&self, material: &Material, layout: &Layout, ends: (usize, usize), by_end: bool) -> [Vec2; 2] {
+    pub fn force_rates(&self, material: &Material, layout: &Layout, ends: SpanEnds, by_end: bool) -> [Vec2; 2] {
         let rate = reach_rate(material, layout, ends, self.force, by_end);
         let start = self.walk.compliance.try_inverse().map_or(Vec2::repeat(f64::NAN), |k| -(k * rate));
         [start, start + material.body * if by_end { -1.0 } else { 1.0 }]
     }
 }
 
-/// Runs over the elements between two stops: `each(ds, middle force)`; returns the force before the last stop.
+/// Runs over the elements between two stops: `each(ds, middle force)`; returns the force before the
+/// last stop.
 pub fn elements(
     material: &Material,
     layout: &Layout,
-    (first, last): (usize, usize),
+    SpanEnds { first, last }: SpanEnds,
     start: Vec2,
     mut each: impl FnMut(f64, Vec2),
 ) -> Vec2 {
@@ -89,7 +93,7 @@ pub fn elements(
 
 /// The shape of a span under a start force.
 #[must_use]
-pub fn walk(material: &Material, layout: &Layout, ends: (usize, usize), start: Vec2) -> Walk {
+pub fn walk(material: &Material, layout: &Layout, ends: SpanEnds, start: Vec2) -> Walk {
     let mut w = Walk::default();
     w.end_force = elements(material, layout, ends, start, |ds, force| {
         let r = material.respond(ds, force);
@@ -101,7 +105,13 @@ pub fn walk(material: &Material, layout: &Layout, ends: (usize, usize), start: V
 }
 
 /// ∂reach/∂(arc length at one end), at a constant start force.
-fn reach_rate(material: &Material, layout: &Layout, (first, last): (usize, usize), start: Vec2, by_end: bool) -> Vec2 {
+fn reach_rate(
+    material: &Material,
+    layout: &Layout,
+    SpanEnds { first, last }: SpanEnds,
+    start: Vec2,
+    by_end: bool,
+) -> Vec2 {
     let (moving, sign) = if by_end { (last - 1, 1.0) } else { (first, -1.0) };
     let mut rate = Vec2::zeros();
     let mut force = start;
@@ -128,16 +138,17 @@ fn reach_rate(material: &Material, layout: &Layout, (first, last): (usize, usize
 }
 
 /// The whole load on a span, N, and its length, m of arc length.
-fn load_and_length(material: &Material, layout: &Layout, (first, last): (usize, usize)) -> (Vec2, f64) {
+fn load_and_length(material: &Material, layout: &Layout, SpanEnds { first, last }: SpanEnds) -> (Vec2, f64) {
     let length = layout.stops[last].arc_length - layout.stops[first].leaves();
     let loads: Vec2 = layout.stops[first + 1..last].iter().map(|s| s.load).sum();
     (material.body * length + loads, length)
 }
 
-/// A start force near the answer: the parabola where the span is taut, else the catenary's own first guess (A. Peyrot
-/// and A. Goulois, *Analysis of cable structures*, Computers & Structures 1979), point loads spread evenly.
+/// A start force near the answer: the parabola where the span is taut, else the catenary's own
+/// first guess (A. Peyrot and A. Goulois, *Analysis of cable structures*, Computers & Structures
+/// 1979), point loads spread evenly.
 #[must_use]
-pub fn first_guess(material: &Material, layout: &Layout, ends: (usize, usize), d: Vec2) -> Vec2 {
+pub fn first_guess(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2) -> Vec2 {
     let (load, length) = load_and_length(material, layout, ends);
     let rest = length * material.thermal_stretch;
     let (chord, weight) = (d.norm(), load.norm());
@@ -148,7 +159,7 @@ pub fn first_guess(material: &Material, layout: &Layout, ends: (usize, usize), d
     let up = -load / weight;
     let rise = d.dot(&up);
     let across = d - up * rise;
-    if strain < SLACK || chord == 0.0 {
+    if strain < SLACK_STRAIN || chord == 0.0 {
         let width = across.norm();
         let lambda = if width > 1e-6 * rest {
             (3.0 * ((rest * rest - rise * rise) / (width * width) - 1.0)).max(0.0).sqrt()
@@ -163,10 +174,11 @@ pub fn first_guess(material: &Material, layout: &Layout, ends: (usize, usize), d
     let direction = d / chord;
     let sideways = load - direction * load.dot(&direction);
     let beta = sideways.norm_squared() / 24.0;
-    if strain <= 0.0 && beta.sqrt() <= STEEP * weight {
+    if strain <= 0.0 && beta.sqrt() <= CROSS_LOAD_FRACTION * weight {
         return load * 0.5;
     }
-    // Taut: T/EA − β/T² = strain, β = (load across the chord)²/24. Concave and rising: Newton from the left is monotone.
+    // Taut: T/EA − β/T² = strain, β = (load across the chord)²/24. Concave and rising: Newton from
+    // the left is monotone.
     let ea = material.axial_stiffness;
     let mut tension = if strain > 0.0 { (ea * strain).max((beta * ea).cbrt()) } else { (beta * ea).cbrt() };
     for _ in 0..12 {
@@ -182,14 +194,15 @@ pub fn first_guess(material: &Material, layout: &Layout, ends: (usize, usize), d
 }
 
 /// Strain below which a span counts as slack for the first guess: both guesses are good about here.
-const SLACK: f64 = -0.02;
+const SLACK_STRAIN: f64 = -0.02;
 
 /// Part of the load that must act across the chord for the parabola to mean anything.
-const STEEP: f64 = 1e-6;
+const CROSS_LOAD_FRACTION: f64 = 1e-6;
 
-/// Solves a span between points `d` apart (m) from a start force. `None` when Newton fails (a number blew up).
+/// Solves a span between points `d` apart (m) from a start force. `None` when Newton fails (a
+/// number blew up).
 #[must_use]
-pub fn solve(material: &Material, layout: &Layout, ends: (usize, usize), d: Vec2, guess: Vec2) -> Option<Span> {
+pub fn solve(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
     let (load, length) = load_and_length(material, layout, ends);
     let size = length.max(d.norm());
     let mut force = guess;
@@ -202,7 +215,7 @@ pub fn solve(material: &Material, layout: &Layout, ends: (usize, usize), d: Vec2
             return None;
         }
         let done = |w: Walk, force: Vec2| Some(Span { force, walk: w, steps, residual: step.norm() });
-        if gap.norm() <= CLOSED * size || step.norm() <= SAME_FORCE * (force.norm() + load.norm()) {
+        if gap.norm() <= CLOSURE_TOLERANCE * size || step.norm() <= FORCE_ROUNDING * (force.norm() + load.norm()) {
             return done(w, force);
         }
         let (value, slope) = (w.energy - force.dot(&d), gap.dot(&step));
@@ -222,11 +235,11 @@ pub fn solve(material: &Material, layout: &Layout, ends: (usize, usize), d: Vec2
         match taken {
             Some((f, t)) => {
                 (force, w) = (f, t);
-                if gap.norm() <= CLOSED_AT_LEAST * size && (t.reach - d).norm() > 0.5 * gap.norm() {
+                if gap.norm() <= CLOSURE_LIMIT * size && (t.reach - d).norm() > 0.5 * gap.norm() {
                     return done(w, force);
                 }
             }
-            None if gap.norm() <= CLOSED_AT_LEAST * size => return done(w, force),
+            None if gap.norm() <= CLOSURE_LIMIT * size => return done(w, force),
             None => return None,
         }
     }

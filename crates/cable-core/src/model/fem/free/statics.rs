@@ -1,11 +1,13 @@
-//! `Statics` finds the equilibrium of a cable that touches nothing but its supports, and follows it quasi-statically.
+//! `Statics` finds the equilibrium of a cable that touches nothing but its supports, and follows it
+//! quasi-statically.
 //!
-//! A flexible cable is solved span by span (`span`, `network`): no start can fail, and what is found is in tension and
-//! stable by construction. The mesh follows the error estimate where the scene does not give one.
+//! A flexible cable is solved span by span (`span`, `network`): no start can fail, and what is
+//! found is in tension and stable by construction. The mesh follows the error estimate where the
+//! scene does not give one.
 
 use std::sync::Arc;
 
-use crate::error::{Place, SolveError};
+use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::beam::equilibrium::{Beam, Outcome};
 use crate::model::fem::free::dual_weighted_residual;
@@ -24,31 +26,34 @@ use crate::state::State;
 
 /// Elements to start with where nothing says how many: 1e-6 for a usual span, and 50 µs.
 const FIRST_SEGMENTS: usize = 40;
-/// Most elements the error estimate may ask for. Beyond, rounding grows faster than the error falls.
+/// Most elements the error estimate may ask for. Beyond, rounding grows faster than the error
+/// falls.
 const MOST_SEGMENTS: usize = 4000;
 /// Part of the tolerance the estimate must stay below.
-const SAFETY: f64 = 0.5;
+const ESTIMATE_FRACTION: f64 = 0.5;
 /// Order of the corrected bar.
 const ORDER: f64 = 4.0;
 /// Rounds of mesh refinement.
 const MAX_MESHES: usize = 6;
-/// Weight given to a weightless cable without loads, in parts of EA: far below the strain that rounding hides.
+/// Weight given to a weightless cable without loads, in parts of EA: far below the strain that
+/// rounding hides.
 const HINT_OF_WEIGHT_UNLOADED: f64 = 1e-18;
 /// Weight given to a weightless cable, in parts of its loads: where it is slack it has no shape
 /// of its own, this gives it that of a very light one. Far below any tension asked for.
 const HINT_OF_WEIGHT: f64 = 1e-12;
-/// Smoothing tension in parts of the load, see [`Material::smoothing`]. Seen only where the tension falls to it; at 1e-9
-/// a fold at EA 1e9 closed to 1e-8 m only, for want of digits of the force.
+/// Smoothing tension in parts of the load, see [`Material::smoothing`]. Seen only where the tension
+/// falls to it; at 1e-9 a fold at EA 1e9 closed to 1e-8 m only, for want of digits of the force.
 const SMOOTHING: f64 = 1e-7;
-/// Longest move of a support in one slow step where friction must remember the way, in parts of the cable length.
+/// Longest move of a support in one slow step where friction must remember the way, in parts of the
+/// cable length.
 const SLOW_MOVE: f64 = 0.01;
 /// Most slow steps in one call.
 const MAX_SLOW_STEPS: f64 = 400.0;
 /// How often a slow step may be halved.
 const MAX_HALVINGS: usize = 8;
 
-/// The balance of pulleys without friction. On wheels it is found with the material on them by a mean of the tension (to 1e-7 of it),
-/// and then exactly.
+/// The balance of pulleys without friction. On wheels it is found with the material on them by a
+/// mean of the tension (to 1e-7 of it), and then exactly.
 fn solve_smooth(network: &mut Network) -> Result<bool, Failure> {
     network.solve()?;
     if network.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.radius > 0.0)) {
@@ -72,7 +77,8 @@ pub struct Statics {
     slid: Vec<Option<f64>>,
     /// The flexible cable of the last answer: where the next one starts.
     network: Option<Network>,
-    /// The same on a finer mesh where pulleys rub: it tells what the mesh does to what friction remembers.
+    /// The same on a finer mesh where pulleys rub: it tells what the mesh does to what friction
+    /// remembers.
     finer: Option<Network>,
     /// The stops of the last answer and the tension forces before and after them, N.
     rested: Option<(Layout, Vec<[Vec2; 2]>)>,
@@ -143,7 +149,8 @@ impl Statics {
         self.points.push(point(layout.length, at(stops.len() - 1)));
     }
 
-    /// Finds the resting place at the present time; `dragged` are the hand-set support positions, m.
+    /// Finds the resting place at the present time; `dragged` are the hand-set support positions,
+    /// m.
     ///
     /// # Errors
     /// A typed reason when there is none, or none was found.
@@ -206,7 +213,7 @@ impl Statics {
         let adaptive = self.settings.segments.or(self.problem.cable.segments).is_none();
         let mut layout = Layout::new(&self.problem, time, dragged, &self.slid);
         if layout.stops.len() < 2 || layout.anchored().is_none() {
-            return Err(SolveError::NoRestingPlace { why: "nothing holds the cable".to_owned() });
+            return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
         let (material, hinted) = self.material(time, &layout);
         let (mut segments, mut iterations) = (self.segments, 0);
@@ -221,17 +228,17 @@ impl Statics {
         iterations += network.steps;
         if self.problem.bending_stiffness > 0.0 {
             if self.problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) {
-                let feature = "bending stiffness over pulleys".to_owned();
+                let feature = Unsupported::BendingOverPulleys;
                 return Err(SolveError::Unsupported { model: Model::Fem, feature });
             }
             return self.bend(network, time, hinted);
         }
         let mut estimate = dual_weighted_residual::relative_error(&mut network);
         for _ in 0..MAX_MESHES {
-            if !(adaptive && estimate > SAFETY * self.settings.tolerance && segments < MOST_SEGMENTS) {
+            if !(adaptive && estimate > ESTIMATE_FRACTION * self.settings.tolerance && segments < MOST_SEGMENTS) {
                 break;
             }
-            let factor = (estimate / (SAFETY * self.settings.tolerance)).powf(1.0 / ORDER);
+            let factor = (estimate / (ESTIMATE_FRACTION * self.settings.tolerance)).powf(1.0 / ORDER);
             segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
             network.layout.cut(segments);
             if network.rubbing.is_empty() { network.solve() } else { network.rub() }
@@ -240,7 +247,7 @@ impl Statics {
             estimate = dual_weighted_residual::relative_error(&mut network);
         }
         if rubs {
-            estimate += self.follow_finer(&network, (time, dragged), first);
+            estimate += self.follow_finer(&network, time, dragged, first);
             network.commit_friction();
             // What friction remembers is as wrong as the steps it remembers were.
             let before = if first { None } else { self.estimate };
@@ -264,7 +271,8 @@ impl Statics {
         Ok(StepReport { cost, warnings: self.warnings(hinted) })
     }
 
-    /// The balance of pulleys that rub: from what they remember, else as the cable was laid; whether it was laid anew.
+    /// The balance of pulleys that rub: from what they remember, else as the cable was laid;
+    /// whether it was laid anew.
     fn begin_rubbing(&self, network: &mut Network, dragged: &[Option<Vec2>]) -> Result<bool, Failure> {
         if let Some(old) = &self.network
             && network.remember_from(old)
@@ -273,7 +281,7 @@ impl Statics {
         }
         if self.time == 0.0
             && !self.adopted
-            && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, (dragged, None))
+            && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, dragged, None)
         {
             let mut laid = network.clone();
             if laid.remember_answer(&lay.answer) && laid.rub().is_ok() {
@@ -286,11 +294,11 @@ impl Statics {
         network.rub().map(|()| true)
     }
 
-    /// Goes the same way with bars half as long in steps half as long and with a memory of its own: by how much the forces differ, in
-    /// parts of the greatest. What mesh and steps do to friction adds up in what friction remembers, of which the present balance
-    /// knows nothing.
-    fn follow_finer(&mut self, network: &Network, (time, dragged): (f64, &[Option<Vec2>]), first: bool) -> f64 {
-        let Some(finer) = self.finer(network, (time, dragged), first) else {
+    /// Goes the same way with bars half as long in steps half as long and with a memory of its own:
+    /// by how much the forces differ, in parts of the greatest. What mesh and steps do to friction
+    /// adds up in what friction remembers, of which the present balance knows nothing.
+    fn follow_finer(&mut self, network: &Network, time: f64, dragged: &[Option<Vec2>], first: bool) -> f64 {
+        let Some(finer) = self.finer(network, time, dragged, first) else {
             // It begins anew from here.
             self.finer = None;
             return 0.0;
@@ -300,7 +308,7 @@ impl Statics {
         off
     }
 
-    fn finer(&self, network: &Network, (time, dragged): (f64, &[Option<Vec2>]), first: bool) -> Option<Network> {
+    fn finer(&self, network: &Network, time: f64, dragged: &[Option<Vec2>], first: bool) -> Option<Network> {
         let segments: usize = network.layout.stops.iter().map(|s| s.cells).sum();
         let cut = |mut layout: Layout| {
             layout.cut(2 * segments);
@@ -340,7 +348,8 @@ impl Statics {
         Some(finer)
     }
 
-    /// Where a support was in the last answer, of a wheel its centre (where the cable meets it is no move of the support), m.
+    /// Where a support was in the last answer, of a wheel its centre (where the cable meets it is
+    /// no move of the support), m.
     fn support_at(&self, support: usize) -> Option<Vec2> {
         let stop = self.network.as_ref()?.layout.stops.iter().find(|s| s.support == Some(support))?;
         match stop.hold {
@@ -349,8 +358,8 @@ impl Statics {
         }
     }
 
-    /// Rest with bending stiffness, from the flexible cable: on a mesh and on that of half the bars, whose difference
-    /// tells the error (fourth order: a fifteenth of it is left).
+    /// Rest with bending stiffness, from the flexible cable: on a mesh and on that of half the
+    /// bars, whose difference tells the error (fourth order: a fifteenth of it is left).
     fn bend(&mut self, network: Network, time: f64, hinted: bool) -> Result<StepReport, SolveError> {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         // A stiff cable has a shape of its own: it needs no hint of weight.
@@ -367,12 +376,13 @@ impl Statics {
             estimate = Some(found);
             moved = Some(2.0 / 15.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
             coarse = fine;
-            if found <= SAFETY * self.settings.tolerance {
+            if found <= ESTIMATE_FRACTION * self.settings.tolerance {
                 break;
             }
         }
         if given && outcome == Outcome::Stable {
-            // The given mesh is kept; the finer one only tells its error, sixteen fifteenths of the change.
+            // The given mesh is kept; the finer one only tells its error, sixteen fifteenths of the
+            // change.
             let mut fine = coarse.halved();
             if fine.solve() == Outcome::Stable {
                 estimate = Some(16.0 * dual_weighted_residual::halving_error(&coarse, &fine));
@@ -461,11 +471,11 @@ impl Statics {
         match failure {
             Failure::Span(k, residual) | Failure::Unbalanced(k, residual) => not_converged(k, residual),
             Failure::RunsOut(k) => {
-                SolveError::NoRestingPlace { why: format!("the cable runs out through pulley `{}`", name(k)) }
+                SolveError::NoRestingPlace { why: NoEquilibrium::RunsOut { pulley: name(k).to_owned() } }
             }
-            Failure::LeavesWheel(k) => SolveError::NoRestingPlace {
-                why: format!("the cable does not press on the wheel of pulley `{}` on the side it runs on", name(k)),
-            },
+            Failure::LeavesWheel(k) => {
+                SolveError::NoRestingPlace { why: NoEquilibrium::LeavesWheel { pulley: name(k).to_owned() } }
+            }
         }
     }
 
@@ -482,7 +492,7 @@ impl Statics {
             && state.arc_length_m.first().is_some_and(|s| s.abs() <= near)
             && state.arc_length_m.last().is_some_and(|s| (s - self.problem.length).abs() <= near);
         if !fits {
-            let feature = "a state of a cable of another length".to_owned();
+            let feature = Unsupported::StateOfOtherLength;
             return Err(SolveError::Unsupported { model: Model::Fem, feature });
         }
         self.time = state.time_s;
@@ -513,6 +523,7 @@ impl Statics {
             arc_length_m: self.points.iter().map(|p| p.arc_length).collect(),
             position_m: self.points.iter().map(|p| p.at).collect(),
             velocity_m_per_s: vec![Vec2::zeros(); self.points.len()],
+            in_motion: false,
         }
     }
 

@@ -1,8 +1,9 @@
 //! Stations are supports and point loads in order of arc length, with the elements between them.
 //!
-//! A stop either anchors the cable (held, or a pulley it slides through) or carries a load on a free point. The
-//! elements between two stops follow them when the arc length at a pulley changes, so a pulley needs no new mesh:
-//! node arc lengths are the stops' ones and fixed fractions in between.
+//! A stop either anchors the cable (held, or a pulley it slides through) or carries a load on a
+//! free point. The elements between two stops follow them when the arc length at a pulley changes,
+//! so a pulley needs no new mesh: node arc lengths are the stops' ones and fixed fractions in
+//! between.
 
 use crate::math::Vec2;
 use crate::model::fem::system::assembly::bars_between;
@@ -78,6 +79,15 @@ impl Stop {
     }
 }
 
+/// The stops at both ends of a span.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SpanEnds {
+    /// Index of the stop at its start.
+    pub first: usize,
+    /// Index of the stop at its end.
+    pub last: usize,
+}
+
 /// The stops of one cable at a time, first and last at its ends.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
@@ -88,8 +98,9 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// The stops at a time (s). `slid` gives the arc length at each support where it is known (pulleys after the first
-    /// answer); the others are laid: the cable's material spread evenly along the way through its supports.
+    /// The stops at a time (s). `slid` gives the arc length at each support where it is known
+    /// (pulleys after the first answer); the others are laid: the cable's material spread evenly
+    /// along the way through its supports.
     #[must_use]
     pub fn new(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>], slid: &[Option<f64>]) -> Self {
         let gravity =
@@ -153,9 +164,9 @@ impl Layout {
     }
 
     /// The spans: runs of stops from one anchor to the next.
-    pub fn spans(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+    pub fn spans(&self) -> impl Iterator<Item = SpanEnds> + '_ {
         let anchors = self.stops.iter().enumerate().filter(|(_, s)| s.anchors()).map(|(k, _)| k);
-        anchors.clone().zip(anchors.skip(1))
+        anchors.clone().zip(anchors.skip(1)).map(|(first, last)| SpanEnds { first, last })
     }
 
     /// The first and last anchor.
@@ -178,12 +189,13 @@ pub fn place(problem: &Problem, support: usize, time_s: f64, dragged: &[Option<V
     Some(dragged.get(support).copied().flatten().unwrap_or(own))
 }
 
-/// The least share of the cable that is left to a hanging end when the way to the last support is longer than the
-/// cable. Any value in (0, 1) will do: it is where a search starts.
+/// The least share of the cable that is left to a hanging end when the way to the last support is
+/// longer than the cable. Any value in (0, 1) will do: it is where a search starts.
 const LEAST_TAIL: f64 = 0.05;
 
-/// Arc length at every support with the material spread evenly along the route, or along the straight way where
-/// there is none. What the way between the outer anchors does not take is left to hanging ends.
+/// Arc length at every support with the material spread evenly along the route, or along the
+/// straight way where there is none. What the way between the outer anchors does not take is left
+/// to hanging ends.
 fn lay(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>]) -> Vec<f64> {
     let count = problem.supports.len();
     let places: Vec<Option<Vec2>> = (0..count).map(|k| place(problem, k, time_s, dragged)).collect();

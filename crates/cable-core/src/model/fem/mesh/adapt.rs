@@ -1,16 +1,18 @@
 //! The mesh adapts between steps: sliding nodes come and go, and nodes beside them make room.
 //!
 //! After every accepted step
-//! - a sliding node that no longer presses on its corner is let go (the round is as far out as the barrier reaches,
-//!   so nothing jumps);
+//! - a sliding node that no longer presses on its corner is let go (the round is as far out as the
+//!   barrier reaches, so nothing jumps);
 //! - a corner or circle that presses on a bar or a node gets a sliding node;
-//! - marks are moved to the middle of the arc, long arcs get more nodes (friction acts at them), passed ones lose theirs;
+//! - marks are moved to the middle of the arc, long arcs get more nodes (friction acts at them),
+//!   passed ones lose theirs;
 //! - bars that grew too long are cut, nodes that came too near a sliding one are taken out.
 //!
 //! Material, place and momentum of what stays are left as they are.
 
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp, smaller};
+use crate::model::Inertia;
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Load, Seat, SlidingNode, StickSlip, round_of};
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
@@ -18,58 +20,64 @@ use crate::model::fem::newton::step_setup::load_scale;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::floor_friction;
 
-/// Corners that turn by less (rad) are left to the barrier: there a chain jerks by less than 1e-3 of its tension.
+/// Corners that turn by less (rad) are left to the barrier: there a chain jerks by less than 1e-3
+/// of its tension.
 pub(in crate::model::fem) const LEAST_TURN: f64 = 0.05;
 
-/// Bars beside sliding nodes are kept between these parts of an even bar. Tighter: nodes come and go all the time;
-/// wider: the bars beside a corner are coarse.
-const SHORT: f64 = 0.35;
-/// See `SHORT`.
-const LONG: f64 = 1.6;
+/// Bars beside sliding nodes are kept between these parts of an even bar. Tighter: nodes come and
+/// go all the time; wider: the bars beside a corner are coarse.
+const SHORTEST_BAR_FRACTION: f64 = 0.35;
+/// See `SHORTEST_BAR_FRACTION`.
+const LONGEST_BAR_FRACTION: f64 = 1.6;
 
 /// A node this near (in even bars) to a new sliding node is in its way.
-pub(in crate::model::fem) const NEAR: f64 = 0.1;
+pub(in crate::model::fem) const NODE_REMOVAL_FRACTION: f64 = 0.1;
 
-/// Tension in weights of an even bar from which a corner gets a sliding node, and below which it loses it: a slack
-/// cable lies on corners with its nodes, and the barrier carries it as well.
-const TAUT: f64 = 4.0;
-/// See `TAUT`.
-const SLACK: f64 = 2.0;
+/// Tension in weights of an even bar from which a corner gets a sliding node, and below which it
+/// loses it: a slack cable lies on corners with its nodes, and the barrier carries it as well.
+const SLIDING_NODE_TENSION: f64 = 4.0;
+/// See `SLIDING_NODE_TENSION`.
+const MATERIAL_NODE_TENSION: f64 = 2.0;
 
-/// Turn (rad) the wrong way round a corner that a step may end with. The node leaves after the step; with more, its
-/// tangents would lie inside the obstacle.
-const WRONG_TURN: f64 = 0.02;
+/// Turn (rad) the wrong way round a corner that a step may end with. The node leaves after the
+/// step; with more, its tangents would lie inside the obstacle.
+const REVERSE_TURN_LIMIT: f64 = 0.02;
 
-/// √(EI/T), in even bars, beyond which a cable's bend is seen by the mesh. Less: chains jerk at corners, node by node; more: what a corner's bend
-/// costs is left out where it need not be.
-const BENT_OVER: f64 = 0.5;
+/// √(EI/T), in even bars, beyond which a cable's bend is seen by the mesh. Less: chains jerk at
+/// corners, node by node; more: what a corner's bend costs is left out where it need not be.
+const RESOLVED_BEND_BARS: f64 = 0.5;
 
 /// Half of the turn (rad) up to which a slack cable may leave a round with one node.
 const MOST_BEND: f64 = 1.0;
 
-/// Half of the turn (rad) up to which the node that takes the place of a sliding one goes where the tangents meet.
-const SHARPEST: f64 = 1.4;
+/// Half of the turn (rad) up to which the node that takes the place of a sliding one goes where the
+/// tangents meet.
+const TANGENT_NODE_HALF_TURN: f64 = 1.4;
 
-/// Turn (rad) below which a node that leaves its corner is taken out; else it becomes a node of the cable.
-const NEARLY_STRAIGHT: f64 = 0.3;
+/// Turn (rad) below which a node that leaves its corner is taken out; else it becomes a node of the
+/// cable.
+const REMOVED_CORNER_TURN: f64 = 0.3;
 
 /// Plain nodes whose two bars are together shorter than this (in even bars) are taken out.
-const SPARE: f64 = 1.3;
+const SPARE_NODE_BARS: f64 = 1.3;
 
-/// Length of the sum of the directions before and after a node below which the cable counts as folded there.
-const FOLDED: f64 = 0.2;
+/// Length of the sum of the directions before and after a node below which the cable counts as
+/// folded there.
+const FOLD_DIRECTION_SUM: f64 = 0.2;
 
-/// Tension of a taut cable in motion, in units of EA (v/c)^(4/3): something that it hits across at a speed v makes 0.63 of it. Less: sliding nodes come and go
-/// where a falling cable strikes; more: a cable drawn fast over corners jerks at them.
+/// Tension of a taut cable in motion, in units of EA (v/c)^(4/3): something that it hits across at
+/// a speed v makes 0.63 of it. Less: sliding nodes come and go where a falling cable strikes; more:
+/// a cable drawn fast over corners jerks at them.
 const IMPACT: f64 = 3.0;
 
 /// How far from a corner (m of arc length) its speed is looked at.
 const NEIGHBOURHOOD: f64 = 0.3;
 
 /// Part by which a change of the mesh may change tension in motion.
-const CHANGED_TENSION: f64 = 0.05;
+const TENSION_CHANGE_LIMIT: f64 = 0.05;
 
-/// Part of the cable's weight that counts as tension there: what is nearly slack may change by as much.
+/// Part of the cable's weight that counts as tension there: what is nearly slack may change by as
+/// much.
 const WEIGHT_PART: f64 = 0.1;
 
 /// Least part of the material between two nodes on each side of a node put between them.
@@ -88,8 +96,9 @@ struct Share {
 }
 
 impl Share {
-    /// Ways (m), how much each bar is stretched (length over unstretched length), and the unstretched length of both (m). What is stretched
-    /// keeps its strain and takes what it needs for that from what is slack; where that is not enough both are stretched by as much more.
+    /// Ways (m), how much each bar is stretched (length over unstretched length), and the
+    /// unstretched length of both (m). What is stretched keeps its strain and takes what it needs
+    /// for that from what is slack; where that is not enough both are stretched by as much more.
     fn of(ways: [f64; 2], stretch: [f64; 2], whole: f64) -> Self {
         let needs = [0, 1].map(|j| if stretch[j] > 1.0 { ways[j] / stretch[j] } else { ways[j] });
         let sum = needs[0] + needs[1];
@@ -114,16 +123,18 @@ pub(in crate::model::fem) struct Remeshed {
 }
 
 impl Dynamics {
-    /// Adapts the mesh to what the cable runs over, at rest or in motion.
-    pub(in crate::model::fem) fn remesh(&mut self, rests: bool) -> Remeshed {
+    /// Adapts the mesh to what the cable runs over, without inertia or with it.
+    pub(in crate::model::fem) fn remesh(&mut self, inertia: Inertia) -> Remeshed {
+        let rests = inertia == Inertia::QuasiStatic;
         if self.contacts.own.shape.is_on() {
             return Remeshed::default();
         }
         let mut changed = self.let_go(&[], rests);
         let taken = self.take_hold(rests);
         if !taken.is_empty() {
-            // What took hold may lift its neighbour off. Itself it waits for a step where inertia does not count: it took over weight of the
-            // nodes beside it, which under a corner pulls it away until they have moved.
+            // What took hold may lift its neighbour off. Itself it waits for a step where inertia
+            // does not count: it took over weight of the nodes beside it, which under a corner
+            // pulls it away until they have moved.
             self.let_go(if rests { &taken } else { &[] }, rests);
             changed = true;
         }
@@ -142,7 +153,7 @@ impl Dynamics {
 
     /// Length of an even bar, m of arc length.
     pub(in crate::model::fem) fn even(&self) -> f64 {
-        self.problem.length / self.even_bars as f64
+        self.problem.length / self.meshing.even_bars as f64
     }
 
     /// How far outside of contact the cable runs round a corner or circle, m: as far as the barrier
@@ -194,17 +205,18 @@ impl Dynamics {
             let per_m = friction::at(slid, rough * normal, self.contacts.slip).1;
             floor_friction::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
         });
-        let load = Load::new(node, straight, [&path[0], &path[1]], (body, share));
+        let load = Load::new(node, straight, [&path[0], &path[1]], body, share);
         // Between steps the task may be of another mesh, and nothing is balanced.
         let at_material = slide.map_or(load.pull, |slide| {
             [k - 1, k]
-                .map(|e| crate::model::fem::system::bar_energy::pull_at_slide((mesh, &self.task), e, k - e, x, slide))
+                .map(|e| crate::model::fem::system::bar_energy::pull_at_slide(mesh, &self.task, e, k - e, x, slide))
         });
         let lifted = [0, 1].map(|j| tension[j] + body.dot(&(weight[j].center - x[k])));
         Some(Load { floor, lifted, at_material, ..load })
     }
 
-    /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether there were any.
+    /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether
+    /// there were any.
     fn let_go(&mut self, kept: &[Seat], rests: bool) -> bool {
         let mut changed = false;
         let mut k = 1;
@@ -256,11 +268,13 @@ impl Dynamics {
         self.contacts.floor_slid[k] = floor_friction::as_slide(self.contacts.floor_slid[k], along);
     }
 
-    /// A sliding node becomes one that moves with its material: something else is in the way of a bar in its place.
+    /// A sliding node becomes one that moves with its material: something else is in the way of a
+    /// bar in its place.
     ///
-    /// It goes where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars lie where they lay. The material there is
-    /// not that of its mark, unless that was in the middle of the arc: see [`Share`]. (A mark 0.08 mm off gave a slack cable of 2 MN
-    /// 2000 N there, and broke it.)
+    /// It goes where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars lie
+    /// where they lay. The material there is not that of its mark, unless that was in the middle of
+    /// the arc: see [`Share`]. (A mark 0.08 mm off gave a slack cable of 2 MN 2000 N there, and
+    /// broke it.)
     pub(in crate::model::fem) fn settle_down(&mut self, k: usize) -> bool {
         match self.mesh.sliding.get(k).copied().flatten() {
             Some(node) => self.as_of(node.seat, |d| d.take_off_seat(k)),
@@ -272,12 +286,12 @@ impl Dynamics {
         self.keep_answer();
         let before = [k - 1, k].map(|e| self.mesh.path(e, &self.motion.x).length / self.mesh.rest_length[e]);
         let half = (0.5 * self.turn(k)).abs();
-        let out = 1.0 / if half < SHARPEST { half.cos() } else { SHARPEST.cos() };
+        let out = 1.0 / if half < TANGENT_NODE_HALF_TURN { half.cos() } else { TANGENT_NODE_HALF_TURN.cos() };
         let Some(end) = self.mesh.sliding[k].map(|s| s.end) else { return false };
         let x = &self.motion.x;
         let along = self.mesh.path(k - 1, x).direction + self.mesh.path(k, x).direction;
         let outward = perp(along) * -end.sense;
-        let outward = if outward.norm() > FOLDED { outward.normalize() } else { end.mark };
+        let outward = if outward.norm() > FOLD_DIRECTION_SUM { outward.normalize() } else { end.mark };
         let (sliding, place) = (self.mesh.sliding[k].take(), self.motion.x[k]);
         self.motion.x[k] = end.center + outward * (end.radius * out);
         if ![k - 1, k].into_iter().all(|e| self.is_clear(e)) {
@@ -304,12 +318,15 @@ impl Dynamics {
         true
     }
 
-    /// Whether a sliding node on an obstacle is pulled away from it, or is in the way of a node that has to pass.
+    /// Whether a sliding node on an obstacle is pulled away from it, or is in the way of a node
+    /// that has to pass.
     fn lifts_off(&self, k: usize) -> bool {
         let Some(node) = self.mesh.sliding[k] else { return false };
         let beside = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
         let fixed = |j: usize| self.mesh.sliding[j].is_none() && !self.removable(j);
-        let blocked = [k - 1, k + 1].into_iter().any(|j| fixed(j) && self.bar_between(j, k) < NEAR * self.even());
+        let blocked = [k - 1, k + 1]
+            .into_iter()
+            .any(|j| fixed(j) && self.bar_between(j, k) < NODE_REMOVAL_FRACTION * self.even());
         if blocked {
             return true;
         }
@@ -321,7 +338,7 @@ impl Dynamics {
         load.normal < 0.0
             || turn < 0.0
             || self.beyond_its_corner(k, &self.motion.x)
-            || (tension < SLACK * self.bar_weight && turn < 2.0 * MOST_BEND)
+            || (tension < MATERIAL_NODE_TENSION * self.meshing.bar_weight && turn < 2.0 * MOST_BEND)
     }
 
     /// Angle through which the bars beside node `k` turn, in the sense of a sliding node, rad.
@@ -329,10 +346,10 @@ impl Dynamics {
         self.turn_at(k, &self.motion.x)
     }
 
-    /// The sliding nodes of obstacles that the cable, at positions `x` (m), turns round the wrong way: there a corner would
-    /// have to pull.
+    /// The sliding nodes of obstacles that the cable, at positions `x` (m), turns round the wrong
+    /// way: there a corner would have to pull.
     pub(in crate::model::fem) fn pulled(&self, x: &[Vec2]) -> Option<usize> {
-        self.pulled_by(x, WRONG_TURN)
+        self.pulled_by(x, REVERSE_TURN_LIMIT)
     }
 
     /// See `pulled`; `wrong`: the turn (rad) the wrong way from which it counts.
@@ -356,7 +373,7 @@ impl Dynamics {
 
     /// Whether a bar in the place of node `k` is nearly the way it lies now.
     fn runs_straight(&self, k: usize) -> bool {
-        self.turn(k).abs() < NEARLY_STRAIGHT
+        self.turn(k).abs() < REMOVED_CORNER_TURN
     }
 
     /// Arc length between two nodes, m.
@@ -367,10 +384,10 @@ impl Dynamics {
     /// Puts sliding nodes where corners and circles press; returns their seats.
     fn take_hold(&mut self, rests: bool) -> Vec<Seat> {
         let mut taken = Vec::new();
-        if self.problem.world.is_empty() || !self.slides {
+        if self.problem.world.is_empty() || !self.meshing.slides {
             return taken;
         }
-        let mut touches = std::mem::take(&mut self.touches);
+        let mut touches = std::mem::take(&mut self.solver.touches);
         for _ in 0..MAX_CHANGES {
             self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
             let found = touches.iter().find_map(|t| {
@@ -378,7 +395,7 @@ impl Dynamics {
                     t.pair.weight > 0.0 && t.load(&self.contacts.barrier) > 0.0 && t.pair.gap.feature % 2 == 1;
                 let (bar, arc_length, sliding) =
                     if pressed { self.seat_for(t.node, t.on_segment, &t.pair.gap)? } else { return None };
-                let near = NEAR * self.even();
+                let near = NODE_REMOVAL_FRACTION * self.even();
                 let node = [bar, bar + 1]
                     .into_iter()
                     .find(|&k| self.removable(k) && (self.mesh.arc_length[k] - arc_length).abs() < near);
@@ -401,12 +418,13 @@ impl Dynamics {
             self.clear_around(node.unwrap_or(bar + 1));
             taken.push(sliding.seat);
         }
-        self.touches = touches;
+        self.solver.touches = touches;
         taken
     }
 
-    /// How the material between two nodes is shared by a cable in motion where a sliding node comes between them; None where the cable is
-    /// not taut, pulled by less than what its own speed across, hitting something, would make of it, or where the node would stretch it.
+    /// How the material between two nodes is shared by a cable in motion where a sliding node comes
+    /// between them; None where the cable is not taut, pulled by less than what its own speed
+    /// across, hitting something, would make of it, or where the node would stretch it.
     fn share_of_sliding(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> Option<Share> {
         let (mesh, x) = (&self.mesh, &self.motion.x);
         let ways =
@@ -435,7 +453,7 @@ impl Dynamics {
         let lengths = [k - 1, k].map(|e| mesh.path(e, x).length);
         let stretch = [0, 1].map(|j| lengths[j] / mesh.rest_length[k - 1 + j]);
         let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
-        half < SHARPEST
+        half < TANGENT_NODE_HALF_TURN
             && self.may_change(self.least_tension(stretch), &Share::of(lengths.map(|l| l + longer), stretch, whole))
     }
 
@@ -448,10 +466,11 @@ impl Dynamics {
     /// Whether a change of the mesh adds so little to a tension (N) that it does not show.
     fn may_change(&self, tension: f64, share: &Share) -> bool {
         let weight = load_scale(&self.problem).0 * self.problem.length;
-        self.mesh.axial_stiffness * share.added_strain < CHANGED_TENSION * (tension + WEIGHT_PART * weight)
+        self.mesh.axial_stiffness * share.added_strain < TENSION_CHANGE_LIMIT * (tension + WEIGHT_PART * weight)
     }
 
-    /// Whether a sliding node between two nodes would bend the cable the right way and its bars would meet nothing.
+    /// Whether a sliding node between two nodes would bend the cable the right way and its bars
+    /// would meet nothing.
     fn fits(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> bool {
         let x = &self.motion.x;
         let paths = [
@@ -468,15 +487,18 @@ impl Dynamics {
         // Nor may it turn a neighbour the wrong way.
         let beside = |k: usize, arc: f64, e: usize, j: usize| {
             self.mesh.sliding[k].is_none_or(|s| {
-                s.feature().is_none() || s.shares_round(sliding) || arc + self.mesh.path(e, x).arcs[j] > -WRONG_TURN
+                s.feature().is_none()
+                    || s.shares_round(sliding)
+                    || arc + self.mesh.path(e, x).arcs[j] > -REVERSE_TURN_LIMIT
             })
         };
         let sides = (before == 0 || beside(before, paths[0].arcs[0], before - 1, 1))
             && (after + 1 == self.mesh.nodes() || beside(after, paths[1].arcs[1], after, 0));
-        turn > -WRONG_TURN && sides && (0..2).all(|j| self.way_is_clear(&paths[j], nodes[j]))
+        turn > -REVERSE_TURN_LIMIT && sides && (0..2).all(|j| self.way_is_clear(&paths[j], nodes[j]))
     }
 
-    /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc length and itself.
+    /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc
+    /// length and itself.
     fn seat_for(&self, node: usize, on_segment: bool, gap: &crate::contact::Gap) -> Option<(usize, f64, SlidingNode)> {
         let (mesh, x, last) = (&self.mesh, &self.motion.x, self.mesh.nodes() - 1);
         let (center, radius) =
@@ -489,9 +511,9 @@ impl Dynamics {
         let path = mesh.path(bar, x);
         let along = if on_segment { path.direction } else { path.direction + mesh.path(node, x).direction };
         let sense = if gap.normal.dot(&perp(along)) > 0.0 { -1.0 } else { 1.0 };
-        // A cable folded back on itself at an obstacle runs neither way round it, one that is bent away from it hits it
-        // with a node.
-        if !on_segment && (along.norm() < FOLDED || self.turn(node) * sense < 0.0) {
+        // A cable folded back on itself at an obstacle runs neither way round it, one that is bent
+        // away from it hits it with a node.
+        if !on_segment && (along.norm() < FOLD_DIRECTION_SUM || self.turn(node) * sense < 0.0) {
             return None;
         }
         // Seen from beyond the bar the cable must bend round the corner, and be taut.
@@ -499,11 +521,11 @@ impl Dynamics {
         let beyond = (bar + 1).min(last - 1);
         let wrap = sense * angle_between(mesh.path(first, x).direction, mesh.path(beyond, x).direction);
         let tension = mesh.bar(bar).tension(path.length);
-        if !(wrap > 0.0 && tension > TAUT * self.bar_weight) {
+        if !(wrap > 0.0 && tension > SLIDING_NODE_TENSION * self.meshing.bar_weight) {
             return None;
         }
         let s = [mesh.arc_length[bar], mesh.arc_length[bar + 1]];
-        let near = NEAR * self.even();
+        let near = NODE_REMOVAL_FRACTION * self.even();
         // The ends of a cable and what hangs on it stay clear of corners.
         let from_start = fraction * (s[1] - s[0]);
         let from_end = (1.0 - fraction) * (s[1] - s[0]);
@@ -530,17 +552,19 @@ impl Dynamics {
         Some((bar, arc_length, sliding))
     }
 
-    /// Whether the bend of a cable under a tension (N) is longer than bars are: then nodes that move with their material show it, and a
-    /// sliding node, which carries no moment, would leave it out.
+    /// Whether the bend of a cable under a tension (N) is longer than bars are: then nodes that
+    /// move with their material show it, and a sliding node, which carries no moment, would leave
+    /// it out.
     pub(in crate::model::fem) fn bends_visibly(&self, tension: f64) -> bool {
         let stiffness = self.mesh.bending_stiffness;
-        let least = self.bar_weight + stiffness / (self.problem.length * self.problem.length);
-        stiffness > 0.0 && (stiffness / if tension > least { tension } else { least }).sqrt() > BENT_OVER * self.even()
+        let least = self.meshing.bar_weight + stiffness / (self.problem.length * self.problem.length);
+        stiffness > 0.0
+            && (stiffness / if tension > least { tension } else { least }).sqrt() > RESOLVED_BEND_BARS * self.even()
     }
 
     /// Takes out plain nodes in the way of a new sliding node.
     fn clear_around(&mut self, k: usize) {
-        let near = SHORT * self.even();
+        let near = SHORTEST_BAR_FRACTION * self.even();
         let straight = |d: &Self, e: usize| d.mesh.path(e, &d.motion.x).straight;
         if k + 2 < self.mesh.nodes() && self.removable(k + 1) && straight(self, k) < near && self.clear_without(k + 1) {
             self.remove(k + 1);
@@ -564,11 +588,11 @@ impl Dynamics {
             }
             let (before, after) = (self.mesh.sliding[k - 1], self.mesh.sliding[k + 1]);
             let straight = |e: usize| self.mesh.path(e, &self.motion.x).straight;
-            let crowded =
-                (before.is_some() && straight(k - 1) < SHORT * even) || (after.is_some() && straight(k) < SHORT * even);
+            let crowded = (before.is_some() && straight(k - 1) < SHORTEST_BAR_FRACTION * even)
+                || (after.is_some() && straight(k) < SHORTEST_BAR_FRACTION * even);
             let spare = before.is_none()
                 && after.is_none()
-                && self.bar_between(k - 1, k + 1) < SPARE * even
+                && self.bar_between(k - 1, k + 1) < SPARE_NODE_BARS * even
                 && self.runs_straight(k);
             let enclosed = matches!((before, after), (Some(a), Some(b)) if a.shares_round(&b));
             if (crowded || enclosed || spare) && self.clear_without(k) {
@@ -584,8 +608,9 @@ impl Dynamics {
             let x = &self.motion.x;
             let path = self.mesh.path(e, x);
             let unwound = path.arcs.iter().any(|&a| a < -0.1);
-            if length > LONG * even && path.straight > 0.8 * LONG * even && !unwound {
-                // Even pieces, the straight part permitting; beside a sliding node the odd piece is its.
+            if length > LONGEST_BAR_FRACTION * even && path.straight > 0.8 * LONGEST_BAR_FRACTION * even && !unwound {
+                // Even pieces, the straight part permitting; beside a sliding node the odd piece is
+                // its.
                 let slides = [e, e + 1].map(|k| self.mesh.sliding[k].is_some());
                 let part = match slides {
                     [false, true] => even,
@@ -613,7 +638,7 @@ impl Dynamics {
         k > 0
             && k + 1 < self.mesh.nodes()
             && self.mesh.is_free(k)
-            && !self.support_node.contains(&Some(k))
-            && self.loads.iter().all(|l| l.0 != k)
+            && !self.meshing.support_node.contains(&Some(k))
+            && self.meshing.loads.iter().all(|l| l.0 != k)
     }
 }

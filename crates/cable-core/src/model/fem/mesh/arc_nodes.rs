@@ -2,25 +2,27 @@
 
 use crate::math::{Vec2, smaller};
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::adapt::{MAX_CHANGES, NEAR};
+use crate::model::fem::mesh::adapt::{MAX_CHANGES, NODE_REMOVAL_FRACTION};
 use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::mesh::tangent_path::End;
 
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
-const STILL: f64 = 1e-9;
+const MARK_TOLERANCE: f64 = 1e-9;
 
-/// An arc of more than this (rad) from the tangent to the first mark gets another mark, in the middle of it.
-pub(in crate::model::fem) const WIDE: f64 = 0.8;
+/// An arc of more than this (rad) from the tangent to the first mark gets another mark, in the
+/// middle of it.
+pub(in crate::model::fem) const MARKED_ARC_LIMIT: f64 = 0.8;
 
 /// Rounds with less than this part of an even bar on them keep one mark.
-pub(in crate::model::fem) const SMALL: f64 = 0.3;
+pub(in crate::model::fem) const ONE_MARK_BAR_FRACTION: f64 = 0.3;
 
 /// Logarithm of two tensions below which the next term of the series (x³/720) is rounding.
-const EVEN: f64 = 1e-4;
+const SERIES_LOG_RATIO: f64 = 1e-4;
 
 impl Dynamics {
-    /// Moves the mark of a round with one node to where the arc is strained as a whole as friction would strain it: in its middle where
-    /// nothing rubs. In motion the material between the old mark and the new one is that of the bar that it leaves, whose strain stays.
+    /// Moves the mark of a round with one node to where the arc is strained as a whole as friction
+    /// would strain it: in its middle where nothing rubs. In motion the material between the old
+    /// mark and the new one is that of the bar that it leaves, whose strain stays.
     pub(in crate::model::fem) fn move_marks(&mut self, rests: bool) -> bool {
         let mut moved = false;
         for k in 1..self.mesh.nodes().saturating_sub(1) {
@@ -34,7 +36,7 @@ impl Dynamics {
             let tensions = [0, 1].map(|j| self.mesh.bar(k - 1 + j).tension(paths[j].length));
             let whole = paths[0].arcs[1] + paths[1].arcs[0];
             let shift = part_before(tensions) * whole - paths[0].arcs[1];
-            if !(shift.abs() * node.end.radius > STILL) {
+            if !(shift.abs() * node.end.radius > MARK_TOLERANCE) {
                 continue;
             }
             let bars = if rests {
@@ -47,7 +49,7 @@ impl Dynamics {
             let sum = |of: &dyn Fn(usize) -> f64| bars.clone().map(of).sum::<f64>();
             let stretch = sum(&|e| paths[e + 1 - k].length) / sum(&|e| self.mesh.rest_length[e]);
             let material = shift * node.end.radius / (stretch * self.mesh.thermal_stretch);
-            let room = NEAR * NEAR * self.even();
+            let room = NODE_REMOVAL_FRACTION * NODE_REMOVAL_FRACTION * self.even();
             let s = &self.mesh.arc_length;
             if s[k] + material < s[k - 1] + room || s[k] + material > s[k + 1] - room {
                 continue;
@@ -87,9 +89,11 @@ impl Dynamics {
             let shared = [k - 1, k + 1].map(|j| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
             let x = &self.motion.x;
             let arcs = [self.mesh.path(k - 1, x).arcs[1], self.mesh.path(k, x).arcs[0]];
-            // On a large round the marks of a cable at rest are as far apart as nodes elsewhere: what friction holds is known between marks only.
-            let spacing = if rests { smaller(0.5 * WIDE, even / node.end.radius) } else { 0.5 * WIDE };
-            let big = |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > SMALL * even;
+            // On a large round the marks of a cable at rest are as far apart as nodes elsewhere:
+            // what friction holds is known between marks only.
+            let spacing =
+                if rests { smaller(0.5 * MARKED_ARC_LIMIT, even / node.end.radius) } else { 0.5 * MARKED_ARC_LIMIT };
+            let big = |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > ONE_MARK_BAR_FRACTION * even;
             changes += 1;
             if (!shared[0] && shared[1] && arcs[0] < 0.0) || (!shared[1] && shared[0] && arcs[1] < 0.0) {
                 self.remove(k);
@@ -123,14 +127,15 @@ impl Dynamics {
     }
 }
 
-/// The part of an arc before its mark: with the tension T₁ of one bar before it and T₂ of the other behind it the arc is as long as with a
-/// tension whose logarithm changes evenly, T₁ e^{−xu}, 0 ≤ u ≤ 1:
+/// The part of an arc before its mark: with the tension T₁ of one bar before it and T₂ of the other
+/// behind it the arc is as long as with a tension whose logarithm changes evenly, T₁ e^{−xu}, 0 ≤ u
+/// ≤ 1:
 /// ```text
 /// f T₁ + (1 − f) T₂ = T₁ (1 − e^{−x})/x,   x = ln T₁/T₂,      f = 1/x − 1/(eˣ − 1)
 /// ```
 fn part_before([before, after]: [f64; 2]) -> f64 {
     let x = if before > 0.0 && after > 0.0 { (before / after).ln() } else { 0.0 };
-    if x.abs() < EVEN { 0.5 - x / 12.0 } else { 1.0 / x - 1.0 / x.exp_m1() }
+    if x.abs() < SERIES_LOG_RATIO { 0.5 - x / 12.0 } else { 1.0 / x - 1.0 / x.exp_m1() }
 }
 
 /// A vector turned by an angle (rad), counter-clockwise.

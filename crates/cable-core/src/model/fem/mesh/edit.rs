@@ -1,4 +1,5 @@
-//! An edit puts a node into a mesh or takes one out: material, place and momentum of what stays do not change.
+//! An edit puts a node into a mesh or takes one out: material, place and momentum of what stays do
+//! not change.
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;
@@ -55,7 +56,7 @@ impl Dynamics {
         m.w.insert(k, w);
         m.w_before.insert(k, w_before);
         m.s_before.insert(k, arc_length - (w + w_before) * (0.5 * h));
-        self.reaction.insert(k, Vec2::zeros());
+        self.answers.reaction.insert(k, Vec2::zeros());
         self.contacts.floor_slid.insert(k, between);
         self.renumber(|node| Some(if node >= k { node + 1 } else { node }));
     }
@@ -68,7 +69,8 @@ impl Dynamics {
         }
     }
 
-    /// Takes a node out that moves with its material. Its neighbours, where they are free, go on with its momentum, now and before.
+    /// Takes a node out that moves with its material. Its neighbours, where they are free, go on
+    /// with its momentum, now and before.
     fn remove_plain(&mut self, k: usize) {
         let beside = [k - 1, k + 1].map(|j| self.mesh.sliding.get(j).copied().flatten());
         let Some(round) = beside.into_iter().flatten().next() else { return self.merge(k) };
@@ -123,7 +125,7 @@ impl Dynamics {
         m.w.remove(k);
         m.w_before.remove(k);
         m.s_before.remove(k);
-        self.reaction.remove(k);
+        self.answers.reaction.remove(k);
         self.contacts.floor_slid.remove(k);
         self.renumber(|node| match node.cmp(&k) {
             std::cmp::Ordering::Less => Some(node),
@@ -133,10 +135,10 @@ impl Dynamics {
     }
 
     fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
-        for node in &mut self.support_node {
+        for node in &mut self.meshing.support_node {
             *node = node.and_then(&change);
         }
-        for (node, _) in &mut self.loads {
+        for (node, _) in &mut self.meshing.loads {
             *node = change(*node).unwrap_or(*node);
         }
         for clamp in &mut self.mesh.clamps {

@@ -1,16 +1,18 @@
-//! Sliding nodes are points in space over which the cable runs, and for which no mesh has to be fine enough.
+//! Sliding nodes are points in space over which the cable runs, and for which no mesh has to be
+//! fine enough.
 //!
-//! A chain of bars that is drawn over a sharp corner jerks at every node, and no refinement removes it. So where the
-//! cable bends round a corner, a post or a pulley, the mesh has a node that stays there while the material slides
-//! through (Sueda, Jones, Levin, Pai, "Large-scale dynamic simulation of highly constrained strands", ACM TOG 2011):
-//! its unknown is not where it is but which arc length s is there. With T₁ before and T₂ after, Coulomb's law is
+//! A chain of bars that is drawn over a sharp corner jerks at every node, and no refinement removes
+//! it. So where the cable bends round a corner, a post or a pulley, the mesh has a node that stays
+//! there while the material slides through (Sueda, Jones, Levin, Pai, "Large-scale dynamic
+//! simulation of highly constrained strands", ACM TOG 2011): its unknown is not where it is but
+//! which arc length s is there. With T₁ before and T₂ after, Coulomb's law is
 //! ```text
 //! stick   e^{−μφ} ≤ T₂/T₁ ≤ e^{μφ}            slide > 0 (s grows)   T₁ = T₂ e^{μφ}        slide < 0   T₂ = T₁ e^{μφ}
 //! ```
-//! Slipping is written without giving up the energy: multiply the energy of everything after the node by γ = e^{±μφ},
-//! and the slope of the sum by s is −T₁ + γT₂. The equations of the nodes beyond are only scaled by this, and the
-//! matrix stays symmetric. What is balanced is Θ = T + T²/2EA, the slope of a bar's energy by its own length, so γ
-//! is corrected by Θ(γT)/Θ(T)/γ.
+//! Slipping is written without giving up the energy: multiply the energy of everything after the
+//! node by γ = e^{±μφ}, and the slope of the sum by s is −T₁ + γT₂. The equations of the nodes
+//! beyond are only scaled by this, and the matrix stays symmetric. What is balanced is Θ = T +
+//! T²/2EA, the slope of a bar's energy by its own length, so γ is corrected by Θ(γT)/Θ(T)/γ.
 
 use crate::contact::geometry::Geometry;
 use crate::math::Vec2;
@@ -58,9 +60,11 @@ pub struct SlidingNode {
     pub factor: f64,
     /// μφ with the turn last seen.
     pub exponent: f64,
-    /// Plan view: the floor's friction as the scaled energy sees it, in parts of its own size (see `floor_friction.rs`).
+    /// Plan view: the floor's friction as the scaled energy sees it, in parts of its own size (see
+    /// `floor_friction.rs`).
     pub floor_factor: f64,
-    /// Parts of the weight of the bars before and after it on rounds that act there; less than 1 where they are nearly slack (see `bar_weight.rs`).
+    /// Parts of the weight of the bars before and after it on rounds that act there; less than 1
+    /// where they are nearly slack (see `bar_weight.rs`).
     pub lies: [f64; 2],
     /// What friction acted between in the last step with inertia. None at rest and of a new node.
     pub balanced: Option<Balanced>,
@@ -95,11 +99,12 @@ impl SlidingNode {
     }
 }
 
-/// What friction acted between at a sliding node in a step with inertia: tensions as they are reported lack the loss of the bars, and nothing says how
-/// what slides speeds up.
+/// What friction acted between at a sliding node in a step with inertia: tensions as they are
+/// reported lack the loss of the bars, and nothing says how what slides speeds up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balanced {
-    /// Pull where the cable comes on to the round, less the inertia of what slides, and where it leaves it, N.
+    /// Pull where the cable comes on to the round, less the inertia of what slides, and where it
+    /// leaves it, N.
     pub pull: [f64; 2],
     /// Angle through which the cable turned round it, rad.
     pub turn: f64,
@@ -112,36 +117,42 @@ pub struct Load {
     pub tension: [f64; 2],
     /// The same as the energy's slope sees it: along the bars, not along the sagging cable, N.
     pub pull: [f64; 2],
-    /// The same as friction acts on it: the tension in the middle of each bar, and what it takes to lift the weight from there to the node's mark, N.
+    /// The same as friction acts on it: the tension in the middle of each bar, and what it takes to
+    /// lift the weight from there to the node's mark, N.
     pub lifted: [f64; 2],
     /// The same at its material, as the slope of the bars' energy by the slide sees it, N.
     pub at_material: [f64; 2],
-    /// Angle through which the cable turns round it, rad: normal force over tension. Negative: it wants to leave.
+    /// Angle through which the cable turns round it, rad: normal force over tension. Negative: it
+    /// wants to leave.
     pub turn: f64,
     /// Normal force, N.
     pub normal: f64,
     /// Internal force just before and just after, N.
     pub force: [Vec2; 2],
-    /// Change of the internal force there, N: the opposite of what it runs over does to the cable, with the floor of a plan view.
+    /// Change of the internal force there, N: the opposite of what it runs over does to the cable,
+    /// with the floor of a plan view.
     pub jump: Vec2,
-    /// Plan view: the floor's friction before, on and after the round, N; positive where the cable runs towards its start.
+    /// Plan view: the floor's friction before, on and after the round, N; positive where the cable
+    /// runs towards its start.
     pub floor: [f64; 3],
 }
 
 impl Load {
-    /// The load between two bars with middle tensions `tension` (N) and ways `path`; `body` is the force per metre
-    /// (N/m) and `share` the metres of cable from the middle of each bar to the node.
+    /// The load between two bars with middle tensions `tension` (N) and ways `path`; `body` is the
+    /// force per metre (N/m) and `share` the metres of cable from the middle of each bar to the
+    /// node.
     ///
-    /// dF/ds = −b: the tension force at the node is that of the bar's middle ∓ b·share, and the turn is from one to
-    /// the other.
+    /// dF/ds = −b: the tension force at the node is that of the bar's middle ∓ b·share, and the
+    /// turn is from one to the other.
     #[must_use]
-    pub fn new(node: &SlidingNode, tension: [f64; 2], path: [&Path; 2], (body, share): (Vec2, [f64; 2])) -> Self {
+    pub fn new(node: &SlidingNode, tension: [f64; 2], path: [&Path; 2], body: Vec2, share: [f64; 2]) -> Self {
         let t = [path[0].direction, path[1].direction];
         let force = [t[0] * tension[0] - body * share[0], t[1] * tension[1] + body * share[1]];
         let ends = [force[0].norm(), force[1].norm()];
         let pull = [force[0].dot(&t[0]), force[1].dot(&t[1])];
         let turn = if node.end.radius > 0.0 {
-            // No force has no direction: the angle to zeros is half a turn where the sign of one of them is lost.
+            // No force has no direction: the angle to zeros is half a turn where the sign of one of
+            // them is lost.
             let between =
                 |a: Vec2, b: Vec2| if a == Vec2::zeros() || b == Vec2::zeros() { 0.0 } else { angle_between(a, b) };
             // Nor does what pushes: at the round the cable hangs straight down then.
@@ -164,15 +175,18 @@ impl Load {
         }
     }
 
-    /// Pull where the cable comes on to the round and where it leaves it, N: what the floor takes of the straight halves is not the round's.
+    /// Pull where the cable comes on to the round and where it leaves it, N: what the floor takes
+    /// of the straight halves is not the round's.
     #[must_use]
     pub fn at_round(&self) -> [f64; 2] {
         [self.lifted[0] - self.floor[0], self.lifted[1] + self.floor[2]]
     }
 
-    /// What the law says of the grip: `slid` is how far the arc length moved in this step (m), `inertia` the force
-    /// (N) that its inertia adds to the slope, `stiffness` is EA (N). A node holds or slips by the very slope that the step balances: with
-    /// another, however near to it, one that is about to slip is said to slip where it holds and to hold where it slips, for ever.
+    /// What the law says of the grip: `slid` is how far the arc length moved in this step (m),
+    /// `inertia` the force (N) that its inertia adds to the slope, `stiffness` is EA (N). A node
+    /// holds or slips by the very slope that the step balances: with another, however near to it,
+    /// one that is about to slip is said to slip where it holds and to hold where it slips, for
+    /// ever.
     #[must_use]
     pub fn grip(&self, node: &SlidingNode, slid: f64, [inertia, slack]: [f64; 2], stiffness: f64) -> StickSlip {
         let cone = node.exponent.exp();
@@ -211,11 +225,12 @@ impl Load {
     }
 }
 
-/// The round a corner or circle makes for the centre line, `clear` (m) above contact; None where the feature is no
-/// convex corner that turns by more than `least` (rad).
+/// The round a corner or circle makes for the centre line, `clear` (m) above contact; None where
+/// the feature is no convex corner that turns by more than `least` (rad).
 #[must_use]
 pub fn round_of(geometry: &Geometry, feature: usize, clear: f64, least: f64) -> Option<(Vec2, f64)> {
-    // On what moves a sliding node would come and go all the time; the barrier carries a cable there as well.
+    // On what moves a sliding node would come and go all the time; the barrier carries a cable
+    // there as well.
     let body = geometry.body_of(feature).filter(|b| !b.moves())?;
     if let Some(center) = body.center {
         return Some((center, body.offset + clear));

@@ -1,19 +1,21 @@
 //! The path of a bar is straight between two points, or tangent to the rounds at its ends.
 //!
-//! A round is a circle (centre C, radius r) passed in a sense σ (+1 counter-clockwise, −1 clockwise); a point is a
-//! round of radius 0. The outward normal where a tangent of direction t touches it is n = −σ perp(t), so that with
-//! D = C₂ − C₁, ρ = σ₂r₂ − σ₁r₁ and the straight length l
+//! A round is a circle (centre C, radius r) passed in a sense σ (+1 counter-clockwise, −1
+//! clockwise); a point is a round of radius 0. The outward normal where a tangent of direction t
+//! touches it is n = −σ perp(t), so that with D = C₂ − C₁, ρ = σ₂r₂ − σ₁r₁ and the straight length
+//! l
 //! ```text
 //! D = l t + ρ perp(t),   l = √(D² − ρ²),   angle(t) = angle(D) − atan2(ρ, l)
 //! P = r₁β₁ + l + r₂β₂,   β₁ = σ₁(angle(n₁) − α₁),   β₂ = σ₂(α₂ − angle(n₂))
 //! ```
-//! where α is the angle at which a round's material is counted. Whatever the rounds, ∂P/∂(end point) = ∓t and
-//! ∂²P/∂(end point)² = (I − t tᵀ)/l: the arc pays out what the straight part takes up.
+//! where α is the angle at which a round's material is counted. Whatever the rounds, ∂P/∂(end
+//! point) = ∓t and ∂²P/∂(end point)² = (I − t tᵀ)/l: the arc pays out what the straight part takes
+//! up.
 
 use crate::math::{Vec2, cross, perp};
 
 /// Rounds with centres nearer than this part of their radius are one and the same.
-const SAME: f64 = 1e-9;
+const COINCIDENT_CENTRE_FRACTION: f64 = 1e-9;
 
 /// One end of a bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +37,8 @@ impl End {
         Self { center: at, radius: 0.0, mark: Vec2::x(), sense: 1.0 }
     }
 
-    /// ∫r ds over the arc from the mark on through an angle (rad; negative: back), m². Its length counts negative where the angle times its direction does.
+    /// ∫r ds over the arc from the mark on through an angle (rad; negative: back), m². Its length
+    /// counts negative where the angle times its direction does.
     #[must_use]
     pub fn arc(&self, angle: f64) -> Vec2 {
         let (sin, cos) = (0.5 * self.sense * angle).sin_cos();
@@ -78,7 +81,11 @@ impl Path {
     #[must_use]
     pub fn between(a: &End, b: &End) -> Self {
         let d = b.center - a.center;
-        if a.radius > 0.0 && b.radius > 0.0 && d.norm() <= SAME * a.radius && a.sense * b.sense > 0.0 {
+        if a.radius > 0.0
+            && b.radius > 0.0
+            && d.norm() <= COINCIDENT_CENTRE_FRACTION * a.radius
+            && a.sense * b.sense > 0.0
+        {
             return Self::round(a, b);
         }
         let rho = b.sense * b.radius - a.sense * a.radius;
@@ -129,8 +136,9 @@ mod tests {
 
     #[test]
     fn over_a_wheel_the_way_is_two_tangents_and_an_arc() {
-        // A wheel of radius 1 at the origin, passed clockwise over its top, from (−2, 0) to (2, 0): the tangents are
-        // √3 long and meet it 60° before and after the top... of 120° in all, 60° wrapped.
+        // A wheel of radius 1 at the origin, passed clockwise over its top, from (−2, 0) to (2, 0):
+        // the tangents are √3 long and meet it 60° before and after the top... of 120° in all, 60°
+        // wrapped.
         let wheel = End { center: Vec2::zeros(), radius: 1.0, mark: Vec2::y(), sense: -1.0 };
         let first = Path::between(&End::point(Vec2::new(-2.0, 0.0)), &wheel);
         let last = Path::between(&wheel, &End::point(Vec2::new(2.0, 0.0)));

@@ -1,47 +1,52 @@
 //! The active set predicts the contacts that a Newton step is about to make.
 //!
-//! The barrier is felt from a gap of d̂ on only. A Newton step that knows nothing of what lies beyond runs into it, is cut
-//! where the first node would touch, and the next runs into the next node: where a cable comes down on the ground a step
-//! took as many iterations as nodes landed. So what the step δ would carry past its landing gap g* is made to stop there,
-//! and the step is found again:
+//! The barrier acts only at gaps below d̂. A Newton step that ignores farther obstacles runs into
+//! them, is cut where the first node would touch, and the next step runs into the next node: where
+//! a cable lands on the ground a step took as many iterations as nodes landed. Therefore contacts
+//! that the step δ would carry past their landing gap g* become constraints, and the step is solved
+//! again:
 //! ```text
 //! min ½ δᵀHδ + gᵀδ   subject to   n·δc + r ≥ −(g − g*)    for each contact ahead, c its point
 //! ```
-//! with the violated constraints as stiff springs, added until there are no more. r is what the gap changes beside its slope
-//! (`stop`), taken at the step found last: a bar that slides along a corner turns, and straight on it would run into the corner however
-//! much its gap opens at first (a second-order correction: N. Maratos, "Exact penalty function algorithms for finite
-//! dimensional and control optimization problems", thesis, University of London, 1978; R. Fletcher, "Second order
-//! corrections for non-differentiable optimization", Lecture Notes in Mathematics 912, 1982). Without it a taut cable that a hand draws
-//! round a corner goes a hundredth of its way in each iteration. With r = 0 the step δ = 0 keeps every constraint, so what is found goes
-//! downhill; with r it may not, and the step without constraints is then taken as far as it is free.
+//! with the violated constraints as stiff springs, added until there are no more. r is what the gap
+//! changes beside its slope (`stop`), taken at the step found last: a bar that slides along a
+//! corner turns, and straight on it would run into the corner however much its gap opens at first
+//! (a second-order correction: N. Maratos, "Exact penalty function algorithms for finite
+//! dimensional and control optimization problems", thesis, University of London, 1978; R. Fletcher,
+//! "Second order corrections for non-differentiable optimization", Lecture Notes in Mathematics
+//! 912, 1982). Without it a taut cable that a hand draws round a corner goes a hundredth of its way
+//! in each iteration. With r = 0 the step δ = 0 keeps every constraint, so what is found goes
+//! downhill; with r it may not, and the step without constraints is then taken as far as it is
+//! free.
 
 use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::Vec2;
 use crate::model::fem::newton::gap_constraint::Stop;
-use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::minimize::{StepContext, Workspace};
 use crate::model::fem::newton::step_bound::longest;
 use crate::model::fem::newton::step_input::Pose;
-use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
+use crate::model::fem::system::assembly::System;
+use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::Coupling;
-use crate::problem::Problem;
 
-/// Rounds of adding constraints. More find nothing new where a front of contact runs along the cable.
+/// Rounds of adding constraints. More find nothing new where a front of contact runs along the
+/// cable.
 const MAX_ROUNDS: usize = 6;
 
 /// Part of a Newton step that may be free without looking for what is in its way.
-const FREE_ENOUGH: f64 = 0.99;
+const FREE_STEP_FRACTION: f64 = 0.99;
 
-/// Least descent of a step held by contacts ahead, part of that of the free one. Less: steps that only bend round corners and gain nothing;
-/// more: good ones are given up.
-const DOWNHILL: f64 = 0.1;
+/// Least descent of a step held by contacts ahead, part of that of the free one. Less: steps that
+/// only bend round corners and gain nothing; more: good ones are given up.
+const LEAST_DESCENT_FRACTION: f64 = 0.1;
 
 /// Landing gap, part of the barrier's reach: about where the barrier holds a node that lands.
-const LANDING: f64 = 0.5;
+const LANDING_GAP_FRACTION: f64 = 0.5;
 
-/// Part of its gap that a contact within the barrier may lose in one step: less than the search of the step lets it.
-const CLOSER: f64 = 0.45;
+/// Part of its gap that a contact within the barrier may lose in one step: less than the search of
+/// the step lets it.
+const GAP_LOSS_FRACTION: f64 = 0.45;
 
 /// What a step is about to touch.
 #[derive(Clone, Debug)]
@@ -52,6 +57,16 @@ pub struct PredictedContacts {
     order: SortedNodes,
     right: Vec<f64>,
     step: Vec<f64>,
+}
+
+/// The linear equations of a Newton iteration, pinned at held nodes.
+pub(in crate::model::fem) struct Equations<'a> {
+    /// Gradient and Hessian.
+    pub system: &'a mut System,
+    /// The Hessian's factor.
+    pub factor: &'a mut BandFactor,
+    /// What couples nodes that are far apart along the cable.
+    pub coupling: &'a mut Coupling,
 }
 
 impl PredictedContacts {
@@ -75,13 +90,9 @@ impl PredictedContacts {
     }
 
     /// Stops each node of a step at its landing gap, whatever its neighbours do.
-    pub fn stop(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        (contacts, x): (&ContactSet, &[Vec2]),
-        direction: &mut [f64],
-    ) {
-        self.look((problem, mesh), (contacts, x), direction);
+    pub(in crate::model::fem) fn stop(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &mut [f64]) {
+        let StepContext { mesh, contacts, .. } = *step;
+        self.look(step, x, direction);
         for touch in self.touches.iter().filter(|t| !t.on_segment && t.pair.weight > 0.0 && mesh.is_free(t.node)) {
             let (n, k) = (touch.pair.gap.normal, 2 * touch.node);
             let least = landing(touch.pair.gap.gap_m, contacts.barrier.reach);
@@ -94,28 +105,31 @@ impl PredictedContacts {
     }
 
     /// Finds all that a step of this size could touch.
-    fn look(&mut self, (problem, mesh): (&Problem, &Mesh), (contacts, x): (&ContactSet, &[Vec2]), step: &[f64]) {
-        contacts.find_within(problem, mesh, x, contacts.barrier.reach + longest(step), &mut self.touches);
+    fn look(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &[f64]) {
+        let StepContext { problem, mesh, contacts, .. } = *step;
+        contacts.find_within(problem, mesh, x, contacts.barrier.reach + longest(direction), &mut self.touches);
     }
 
-    /// Solves again, with contacts ahead as constraints; `system` is pinned, and `direction` the step that ran into them.
-    /// Where that fails `direction` stays as it is.
-    pub fn solve(
+    /// Solves again, with contacts ahead as constraints; `system` is pinned, and `direction` the
+    /// step that ran into them. Where that fails `direction` stays as it is.
+    pub(in crate::model::fem) fn solve(
         &mut self,
-        (system, factor, coupling): (&mut System, &mut BandFactor, &mut Coupling),
-        (problem, mesh): (&Problem, &Mesh),
-        (contacts, x): (&ContactSet, &[Vec2]),
+        context: &StepContext<'_>,
+        equations: Equations<'_>,
+        x: &[Vec2],
         direction: &mut [f64],
     ) {
-        self.look((problem, mesh), (contacts, x), direction);
+        let StepContext { mesh, contacts, .. } = *context;
+        let Equations { system, factor, coupling } = equations;
+        self.look(context, x, direction);
         let reach = contacts.barrier.reach;
         self.stops.clear();
         for touch in self.touches.iter().filter(|t| t.pair.weight > 0.0) {
-            self.stops.push(Stop::of(touch, (mesh, system), landing(touch.pair.gap.gap_m, reach)));
+            self.stops.push(Stop::of(touch, mesh, system, landing(touch.pair.gap.gap_m, reach)));
         }
         if contacts.own.shape.is_on() {
             let within = reach + 2.0 * longest(direction);
-            contacts.own.shape.pairs((x, &mesh.arc_length), within, &mut self.order, &mut self.pairs);
+            contacts.own.shape.pairs(x, &mesh.arc_length, within, &mut self.order, &mut self.pairs);
             for pair in self.pairs.iter().filter(|p| p.weight > 0.0) {
                 self.stops.push(Stop::of_own(pair, system, landing(pair.gap_m, reach)));
             }
@@ -126,7 +140,7 @@ impl PredictedContacts {
         for _ in 0..MAX_ROUNDS {
             let (mut stiffer, mut changed) = (false, false);
             for stop in stops.iter_mut() {
-                let [new, moved] = stop.hold((system, coupling, right), mesh, (x, step));
+                let [new, moved] = stop.hold(system, coupling, right, mesh, x, step);
                 stiffer |= new;
                 changed |= moved;
             }
@@ -158,32 +172,27 @@ impl Workspace {
     }
 
     /// Finds the direction again if something is in its way; returns how much of it is free.
-    pub(in crate::model::fem) fn look_ahead(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        pose: &Pose,
-    ) -> f64 {
-        let free = self.free_from_here((problem, mesh), contacts, pose, 1.0);
-        if free >= FREE_ENOUGH {
+    pub(in crate::model::fem) fn look_ahead(&mut self, step: &StepContext<'_>, pose: &Pose) -> f64 {
+        let free = self.free_from_here(step, pose, 1.0);
+        if free >= FREE_STEP_FRACTION {
             return free;
         }
         let downhill = self.slope();
         self.plain.clone_from(&self.direction);
-        let equations = (&mut self.system, &mut self.factor, &mut self.coupling);
-        self.ahead.solve(equations, (problem, mesh), (contacts, &pose.x), &mut self.direction);
-        // In a hurry nothing is asked of the energy.
-        if self.carried.is_empty() && !(self.slope() <= DOWNHILL * downhill) {
+        let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
+        self.ahead.solve(step, equations, &pose.x, &mut self.direction);
+        // The undamped Newton does not use the energy.
+        if self.carried.is_empty() && !(self.slope() <= LEAST_DESCENT_FRACTION * downhill) {
             self.direction.clone_from(&self.plain);
             return free;
         }
-        self.free_from_here((problem, mesh), contacts, pose, 1.0)
+        self.free_from_here(step, pose, 1.0)
     }
 }
 
 /// The gap at which a step is stopped.
 fn landing(gap: f64, reach: f64) -> f64 {
-    if gap > reach { LANDING * reach } else { (1.0 - CLOSER) * gap }
+    if gap > reach { LANDING_GAP_FRACTION * reach } else { (1.0 - GAP_LOSS_FRACTION) * gap }
 }
 
 /// How far the touching point goes in a step.
@@ -204,8 +213,8 @@ mod tests {
 
     const STEP: f64 = 1.0 / 240.0;
 
-    /// A loose cable of 10 m and 100 bars in the air, in a slight wave above a floor, at 5 m/s downwards: it lands all along
-    /// its length in the next step, here sooner and there later.
+    /// A loose cable of 10 m and 100 bars in the air, in a slight wave above a floor, at 5 m/s
+    /// downwards: it lands all along its length in the next step, here sooner and there later.
     fn about_to_land() -> Dynamics {
         let mut scene = catalog::hanging_span();
         let shape = Shape::Terrain { points_m: vec![[-5.0, 0.0], [15.0, 0.0]] };
@@ -233,7 +242,7 @@ mod tests {
         d.begin_step(STEP, &[]);
         let mut pose = d.still_pose();
         let mut memory = Workspace::new(&d.mesh).unwrap();
-        let done = memory.descend((&d.problem, &d.mesh), &d.contacts, &d.task, &mut pose).unwrap();
+        let done = memory.descend(&d.step_context(), &mut pose).unwrap();
         let landed = memory.touches.len();
         println!("{} iterations, {landed} nodes landed", done.iterations);
         assert!(landed > 90 && done.iterations <= 8, "{landed} {}", done.iterations);

@@ -6,12 +6,12 @@ use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::{Coupling, couple};
 
-/// Stiffness of a constraint in units of the largest stiffness at its nodes. Softer: nodes still run into the barrier; much
-/// harder: rounding.
+/// Stiffness of a constraint in units of the largest stiffness at its nodes. Softer: nodes still
+/// run into the barrier; much harder: rounding.
 const HARDNESS: f64 = 1e5;
 
 /// Change of the way a constraint leaves, in gaps left, that is not followed.
-const SETTLED: f64 = 0.05;
+const DIRECTION_CHANGE_TOLERANCE: f64 = 0.05;
 
 /// What a bar turns about.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,7 @@ pub struct Stop {
 
 impl Stop {
     /// The contact of an obstacle.
-    pub fn of(touch: &ContactPair, (mesh, system): (&Mesh, &System), least: f64) -> Self {
+    pub fn of(touch: &ContactPair, mesh: &Mesh, system: &System, least: f64) -> Self {
         let (gap, [a, b]) = (&touch.pair.gap, touch.shares());
         let next = touch.node + usize::from(touch.on_segment);
         let turns = touch.on_segment && [touch.node, next].iter().all(|&k| mesh.sliding[k].is_none());
@@ -79,7 +79,8 @@ impl Stop {
         self.shares.iter().map(|&(k, part)| self.normal.dot(&at(k)) * part).sum()
     }
 
-    /// How much more than that it opens, m: a bar that turns while it slides along a corner comes nearer to it.
+    /// How much more than that it opens, m: a bar that turns while it slides along a corner comes
+    /// nearer to it.
     ///
     /// With e = b − a the distance of p from the line is ± e × (p − a)/|e|, whatever the step.
     fn bend(&self, x: &[Vec2], step: &[f64]) -> f64 {
@@ -101,13 +102,16 @@ impl Stop {
         (then - now) * now.signum() - self.opening(step)
     }
 
-    /// Holds a contact that a step would pass, by a spring ½ K (n·δc − way)²; a held one follows what the step bends. Returns whether
-    /// the matrix changed, and whether anything did.
+    /// Holds a contact that a step would pass, by a spring ½ K (n·δc − way)²; a held one follows
+    /// what the step bends. Returns whether the matrix changed, and whether anything did.
     pub fn hold(
         &mut self,
-        (system, coupling, right): (&mut System, &mut Coupling, &mut [f64]),
+        system: &mut System,
+        coupling: &mut Coupling,
+        right: &mut [f64],
         mesh: &Mesh,
-        (x, step): (&[Vec2], &[f64]),
+        x: &[Vec2],
+        step: &[f64],
     ) -> [bool; 2] {
         let bend = self.bend(x, step);
         let new = self.held_to.is_none();
@@ -120,7 +124,7 @@ impl Stop {
             way -= part * self.normal.dot(&Vec2::new(step[2 * k], step[2 * k + 1]));
         }
         let change = way - self.held_to.unwrap_or(0.0);
-        if !new && change.abs() <= SETTLED * self.least {
+        if !new && change.abs() <= DIRECTION_CHANGE_TOLERANCE * self.least {
             return [false, false];
         }
         self.held_to = Some(way);
@@ -185,7 +189,7 @@ mod tests {
             let after = touch(&then).unwrap();
             // The gap has no sign: what is crossed is left to the sweep.
             prop_assume!(after.pair.gap.normal.dot(&before.pair.gap.normal) > 0.0);
-            let stop = Stop::of(&before, (&d.mesh, &System::new(&d.mesh)), 0.0);
+            let stop = Stop::of(&before, &d.mesh, &System::new(&d.mesh), 0.0);
             let change = stop.opening(&moves) + stop.bend(&x, &moves);
             prop_assert!((after.pair.gap.gap_m - before.pair.gap.gap_m - change).abs() < 1e-12);
         }
@@ -199,7 +203,7 @@ mod tests {
             let arc = [0.0, 1.0, 2.0, 3.0, 4.0];
             let pair = |x: &[Vec2]| {
                 let mut found = Vec::new();
-                SelfContact { diameter: 0.01 }.pairs((x, &arc), 0.2, &mut SortedNodes::default(), &mut found);
+                SelfContact { diameter: 0.01 }.pairs(x, &arc, 0.2, &mut SortedNodes::default(), &mut found);
                 found.into_iter().find(|p| (p.node, p.segment) == (4, 0)).unwrap()
             };
             let (before, after) = (pair(&x), pair(&then));

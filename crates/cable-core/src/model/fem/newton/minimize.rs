@@ -1,11 +1,13 @@
-//! This solver minimises the energy of one implicit step by Newton's method with a banded factor and steps that cross nothing.
+//! This solver minimises the energy of one implicit step by Newton's method with a banded factor
+//! and steps that cross nothing.
 //!
 //! ```text
 //! Φ(x) = ½ Σ mᵢ a² |xᵢ − x̃ᵢ|² + E(x) − Σ fᵢ·xᵢ + Σ w B(g(x)) + Σ D(y(x))
 //! ```
-//! with a = α₀/h of the integrator and x̃ what its history predicts (a = 0 for a step without inertia), and, where the cable can touch
-//! nothing, −½ mₑ a² |(x₂ − x₁) − (x̃₂ − x̃₁)|² for each bar (see `mass`). Damping
-//! of a bar with time constant τ is a second bar of stiffness EA τ a whose rest length is the one predicted.
+//! with a = α₀/h of the integrator and x̃ what its history predicts (a = 0 for a step without
+//! inertia), and, where the cable can touch nothing, −½ mₑ a² |(x₂ − x₁) − (x̃₂ − x̃₁)|² for each
+//! bar (see `mass`). Damping of a bar with time constant τ is a second bar of stiffness EA τ a
+//! whose rest length is the one predicted.
 
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
@@ -14,7 +16,7 @@ use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
 use crate::model::fem::newton::active_set::PredictedContacts;
-use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
+use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose, StepInput, WorkBudget};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::contact_energy::{add_floor, add_rubs, add_touch};
@@ -29,30 +31,44 @@ const DECREASE: f64 = 1e-4;
 /// Line search halvings before the step is given up.
 const MAX_HALVINGS: usize = 30;
 
-/// Unbalanced force, in tolerances, that is accepted where iterating gains nothing more: 3e-5 of the whole load.
-const ENOUGH: f64 = 30.0;
+/// Unbalanced force, in tolerances, that is accepted where iterating gains nothing more: 3e-5 of
+/// the whole load.
+const STALLED_RESIDUAL_TOLERANCES: f64 = 30.0;
 
 /// Energies are trusted to this part of the sum of their magnitudes.
 const ENERGY_NOISE: f64 = 1e-13;
 
-/// Part of force times coordinate that counts as magnitude: times `ENERGY_NOISE` four roundings of the coordinate. With
-/// none, a stiff pendulum's last iteration is lost in the rounding of 98 N times 1 m and its step is halved for nothing.
-pub const ROUNDED: f64 = 0.01;
+/// Part of force times coordinate that counts as magnitude: times `ENERGY_NOISE` four roundings of
+/// the coordinate. With none, a stiff pendulum's last iteration is lost in the rounding of 98 N
+/// times 1 m and its step is halved for nothing.
+pub const WORK_MAGNITUDE_FRACTION: f64 = 0.01;
 
-/// Rounding of a gap, part of the coordinates it is worked out from. Smaller: a cable squeezed to a gap of 1e-7 m fails for
-/// 0.01 N in 1e6; larger: contact forces are known worse than they could be.
+/// Rounding of a gap, part of the coordinates it is worked out from. Smaller: a cable squeezed to a
+/// gap of 1e-7 m fails for 0.01 N in 1e6; larger: contact forces are known worse than they could
+/// be.
 const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Unbalanced force of a stretch of cable at rest, in tolerances: those of its nodes add up. More: the laws, which ask this of stretches to 1e-5 of
-/// the forces, refuse steps; less: iterations for nothing that shows.
+/// Unbalanced force of a stretch of cable at rest, in tolerances: those of its nodes add up. More:
+/// the laws, which ask this of stretches to 1e-5 of the forces, refuse steps; less: iterations for
+/// nothing that shows.
 pub(in crate::model::fem) const DRIFT: f64 = 4.0;
 
-/// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag that could have got there;
-/// more: iterations spent on what the next step does as well.
+/// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag
+/// that could have got there; more: iterations spent on what the next step does as well.
 const MAX_PUSHES: usize = 12;
 
-/// Why a search ends that has spent its work.
-pub(in crate::model::fem) const WORK_SPENT: &str = "the work for one resting place is spent";
+/// What the solve of a step reads: cable, mesh, contacts, and the input of the step.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::fem) struct StepContext<'a> {
+    /// The cable and its obstacles.
+    pub problem: &'a Problem,
+    /// Its nodes and bars.
+    pub mesh: &'a Mesh,
+    /// The barrier, and friction as it is frozen for the step.
+    pub contacts: &'a ContactSet,
+    /// Forces, inertia and targets of the step.
+    pub task: &'a StepInput,
+}
 
 /// What is left unbalanced at the worst node.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +78,8 @@ pub(in crate::model::fem) struct Residual {
     pub(in crate::model::fem) node: usize,
     /// In parts of what is accepted there.
     pub(in crate::model::fem) excess: f64,
-    /// The greatest force (N) that adds up along a stretch, in parts of what may add up for one force left at a node.
+    /// The greatest force (N) that adds up along a stretch, in parts of what may add up for one
+    /// force left at a node.
     drift: f64,
 }
 
@@ -71,9 +88,9 @@ pub(in crate::model::fem) struct Residual {
 pub(in crate::model::fem) struct Rounding {
     /// Rounding of the largest force by its stiffness, N.
     pub(in crate::model::fem) noise: f64,
-    /// The force that opening the gap by its rounding relieves, N, where it is more than the tolerance.
-    /// It is never all of the force: a step in motion that had come to a gap below its own rounding
-    /// was taken for balanced, with 2e11 N of contact and nothing to hold them.
+    /// The force that opening the gap by its rounding relieves, N, where it is more than the
+    /// tolerance. It is never all of the force: a step in motion that had come to a gap below its
+    /// own rounding was taken for balanced, with 2e11 N of contact and nothing to hold them.
     relief: f64,
     /// Unbalanced force accepted in any case, N.
     tolerance: f64,
@@ -114,16 +131,28 @@ pub struct Workspace {
     pub(in crate::model::fem) ahead: PredictedContacts,
     /// Pulls carried as unknowns; empty: those of the present lengths.
     pub(in crate::model::fem) carried: Vec<bar_energy::Carried>,
-    /// Branches of the friction of `rubs`, where that is being found out; empty: those of the present pose.
+    /// Branches of the friction of `rubs`, where that is being found out; empty: those of the
+    /// present pose.
     pub(in crate::model::fem) branches: Vec<friction::Branch>,
     /// How far each has slid before an iteration, m.
     pub(in crate::model::fem) slid: Vec<f64>,
     pub(in crate::model::fem) begun: Pose,
     pub(in crate::model::fem) near_enough: bool,
     /// Iterations times nodes that may still be spent.
-    pub(in crate::model::fem) work_left: usize,
-    /// Iterations in a hurry of this step.
-    pub(in crate::model::fem) hurried: usize,
+    pub(in crate::model::fem) work_left: WorkBudget,
+    /// Iterations of the undamped Newton in this step.
+    pub(in crate::model::fem) undamped_iterations: usize,
+}
+
+/// Where a line search begins.
+#[derive(Clone, Copy, Debug)]
+struct Descent {
+    /// Φ, J.
+    value: f64,
+    /// How fast it changes along the direction, J.
+    slope: f64,
+    /// Held nodes are still on the way to their targets: that may cost energy.
+    supports_move: bool,
 }
 
 impl Workspace {
@@ -151,14 +180,15 @@ impl Workspace {
             slid: Vec::with_capacity(mesh.nodes()),
             begun: Pose::default(),
             near_enough: false,
-            work_left: usize::MAX,
-            hurried: 0,
+            work_left: WorkBudget::Unlimited,
+            undamped_iterations: 0,
             system,
             factor,
         })
     }
 
-    /// Gradient of the last assembly, N: at a held node minus the force of the cable on what holds it.
+    /// Gradient of the last assembly, N: at a held node minus the force of the cable on what holds
+    /// it.
     #[must_use]
     pub fn gradient_at(&self, node: usize) -> Vec2 {
         self.system.gradient_at(node)
@@ -171,14 +201,8 @@ impl Workspace {
     }
 
     /// Φ with gradient and Hessian at a pose.
-    pub fn assemble(
-        &mut self,
-        problem: &Problem,
-        mesh: &Mesh,
-        contacts: &ContactSet,
-        (task, pose): (&StepInput, &Pose),
-        curvature: Curvature,
-    ) -> f64 {
+    pub(in crate::model::fem) fn assemble(&mut self, step: &StepContext<'_>, pose: &Pose, curvature: Curvature) -> f64 {
+        let StepContext { problem, mesh, contacts, task } = *step;
         let x = &pose.x;
         let mut touches = std::mem::take(&mut self.touches);
         contacts.find(problem, mesh, x, &mut touches);
@@ -188,11 +212,11 @@ impl Workspace {
         let mut value = 0.0;
         self.magnitude = 0.0;
         let mut round = Rounding { tolerance: task.tolerance, ..Rounding::default() };
-        // In a hurry nobody asks how well the energy is known.
+        // The undamped Newton does not use the energy, so its round-off is not estimated.
         let measured = self.carried.is_empty();
         for e in 0..mesh.rest_length.len() {
             let carried = self.carried.get(e).copied();
-            let (energy, size) = bar_energy::add(s, (mesh, task), (e, pose), curvature, carried);
+            let (energy, size) = bar_energy::add(s, mesh, task, e, pose, curvature, carried);
             value += energy;
             self.magnitude += size;
         }
@@ -202,7 +226,7 @@ impl Workspace {
         if mesh.bending_stiffness > 0.0 {
             value += s.add_bending(mesh, x, curvature);
             if task.bending_damping > 0.0 {
-                value += s.add_bends(mesh, (task.bending_damping, Some(&task.start)), x, curvature);
+                value += s.add_bends(mesh, task.bending_damping, Some(&task.start), x, curvature);
             }
         }
         self.magnitude += value.abs();
@@ -216,12 +240,14 @@ impl Workspace {
             } else {
                 let away = x[i] - task.predicted[i];
                 if measured {
-                    self.magnitude += scale * ROUNDED * (k * away.norm() + task.force[i].norm()) * x[i].norm();
+                    self.magnitude +=
+                        scale * WORK_MAGNITUDE_FRACTION * (k * away.norm() + task.force[i].norm()) * x[i].norm();
                 }
                 s.add_gradient(i, (away * k - task.force[i]) * scale);
                 s.hessian.add(2 * i, 2 * i, k * scale);
                 s.hessian.add(2 * i + 1, 2 * i + 1, k * scale);
-                // Work is measured from the start of the step, so that its size is that of the change.
+                // Work is measured from the start of the step, so that its size is that of the
+                // change.
                 (0.5 * k * away.norm_squared(), task.force[i].dot(&(x[i] - task.start[i])))
             };
             value += scale * (kinetic - work);
@@ -229,20 +255,19 @@ impl Workspace {
         }
         for touch in &touches {
             let scale = task.scale.get(touch.node).copied().unwrap_or(node_scale(task, touch.node));
-            let (energy, stiffness) = add_touch(s, mesh, (touch, scale), contacts, x, curvature);
+            let (energy, stiffness) = add_touch(s, mesh, touch, scale, contacts, x, curvature);
             value += energy;
             let rounding = GAP_ROUNDING * x[touch.node].norm();
             round.add(&contacts.barrier, touch.pair.gap.gap_m, stiffness, rounding);
         }
-        value += add_rubs(s, (mesh, task), contacts, &self.branches, x);
-        value += add_floor(s, (mesh, task), contacts, pose);
+        value += add_rubs(s, mesh, task, contacts, &self.branches, x);
+        value += add_floor(s, mesh, task, contacts, pose);
         self.touches = touches;
         if contacts.own.shape.is_on() {
-            let place = (x.as_slice(), mesh.arc_length.as_slice());
-            contacts.own.shape.pairs(place, contacts.barrier.reach, &mut self.order, &mut self.own_pairs);
+            contacts.own.shape.pairs(x, &mesh.arc_length, contacts.barrier.reach, &mut self.order, &mut self.own_pairs);
             self.coupling.clear();
             let (energy, size) =
-                self_contact::add((&mut self.system, &mut self.coupling), contacts, (&self.own_pairs, x), curvature);
+                self_contact::add(&mut self.system, &mut self.coupling, contacts, &self.own_pairs, x, curvature);
             value += energy;
             self.magnitude += size;
             for pair in &self.own_pairs {
@@ -254,11 +279,13 @@ impl Workspace {
         value
     }
 
-    /// The unbalanced force (N) that is farthest beyond what is accepted, where, and by how many times: the tolerance, or where contact forces are
-    /// known no better their rounding. At rest what is left at the nodes of a stretch adds up to a force of its own.
+    /// The unbalanced force (N) that is farthest beyond what is accepted, where, and by how many
+    /// times: the tolerance, or where contact forces are known no better their rounding. At rest
+    /// what is left at the nodes of a stretch adds up to a force of its own.
     pub(in crate::model::fem) fn residual(&self, mesh: &Mesh, task: &StepInput) -> Residual {
         let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
-        // On the way to a rest any force may be hidden, for what is laid in touch begins there, and where an outline squeezes the cable.
+        // On the way to a rest any force may be hidden, for what is laid in touch begins there, and
+        // where an outline squeezes the cable.
         let hidden = if task.moves && !task.outlined { self.rounding.relief } else { self.rounding.noise };
         let known = smaller(hidden, task.most_noise);
         let accepted = larger(task.tolerance, known);
@@ -284,7 +311,7 @@ impl Workspace {
     }
 
     /// Sets `direction` to the Newton step; false if the matrix is not positive definite.
-    pub(in crate::model::fem) fn solve(&mut self, mesh: &Mesh, task: &StepInput, (x, shift): (&[Vec2], f64)) -> bool {
+    pub(in crate::model::fem) fn solve(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2], shift: f64) -> bool {
         let s = &mut self.system;
         for (d, g) in self.direction.iter_mut().zip(&s.gradient) {
             *d = -g;
@@ -340,24 +367,24 @@ impl Workspace {
     /// With the worst node and its unbalanced force.
     pub(in crate::model::fem) fn descend(
         &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        task: &StepInput,
+        step: &StepContext<'_>,
         pose: &mut Pose,
     ) -> Result<Converged, Failure> {
+        let StepContext { mesh, task, .. } = *step;
         self.goal.clone_from(&task.target);
         let mut shift = task.shift;
         let mut pushes = 0;
         let mut done = Converged::default();
-        let mut value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
+        let mut value = self.assemble(step, pose, Curvature::Exact);
         loop {
             let Residual { force: residual, node, excess, drift } = self.residual(mesh, task);
             let failed = |cause| Err(Failure { node, residual, cause });
             if !value.is_finite() || !residual.is_finite() {
-                return failed("the energy is not finite");
+                return failed(FailureCause::EnergyNotFinite);
             }
             let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != pose.x[k]);
-            // A support that squeezes the cable harder than numbers can tell has come as far as it can.
+            // A support that squeezes the cable harder than numbers can tell has come as far as it
+            // can.
             let squeezed = left && task.may_lag && self.rounding.noise > task.tolerance;
             if squeezed {
                 self.goal.clone_from(&pose.x);
@@ -367,41 +394,41 @@ impl Workspace {
             if excess <= 1.0 && !left {
                 return Ok(done);
             }
-            let enough = larger(residual, drift) <= ENOUGH * task.tolerance && !left;
+            let enough = larger(residual, drift) <= STALLED_RESIDUAL_TOLERANCES * task.tolerance && !left;
             if done.iterations >= task.max_iterations && enough {
                 return Ok(done);
             }
             if done.iterations >= task.max_iterations {
-                return failed("too many iterations");
+                return failed(FailureCause::TooManyIterations);
             }
-            if self.work_left == 0 {
-                return failed(WORK_SPENT);
+            if self.work_left.is_spent() {
+                return failed(FailureCause::WorkSpent);
             }
-            self.work_left = self.work_left.saturating_sub(mesh.nodes());
+            self.work_left.spend(mesh.nodes());
             done.iterations += 1;
             // The gradient is needed after pinning overwrote the Hessian only, so it stays valid.
-            if !self.solve(mesh, task, (&pose.x, shift)) {
+            if !self.solve(mesh, task, &pose.x, shift) {
                 let mut tries = 0;
                 loop {
-                    self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);
-                    if self.solve(mesh, task, (&pose.x, shift)) {
+                    self.assemble(step, pose, Curvature::Clipped);
+                    if self.solve(mesh, task, &pose.x, shift) {
                         break;
                     }
                     shift = grow(shift, task);
                     tries += 1;
                     if tries > 40 {
-                        return failed("the tangent is not positive definite");
+                        return failed(FailureCause::TangentIndefinite);
                     }
                 }
             }
             if task.moves {
-                self.look_ahead((problem, mesh), contacts, pose);
+                self.look_ahead(step, pose);
             }
             let mut slope = self.slope();
             if !(slope < 0.0) && !left {
                 slope = 0.0;
             }
-            match self.search((problem, mesh), contacts, (task, left), (pose, value, slope)) {
+            match self.search(step, pose, Descent { value, slope, supports_move: left }) {
                 Some((new_value, fraction)) => {
                     value = new_value;
                     if fraction > 0.5 {
@@ -415,7 +442,7 @@ impl Workspace {
                     if left && fraction < 0.5 {
                         pushes += 1;
                         if pushes > MAX_PUSHES && !task.may_lag {
-                            return failed("a support cannot reach its place");
+                            return failed(FailureCause::SupportShort);
                         } else if pushes > MAX_PUSHES {
                             self.goal.clone_from(&pose.x);
                         }
@@ -427,48 +454,44 @@ impl Workspace {
                         return Ok(done);
                     }
                     if shift > 1e12 * task.shift.max(1e-6) {
-                        return failed("no descent");
+                        return failed(FailureCause::NoDescent);
                     }
                     shift = grow(shift, task);
-                    value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);
+                    value = self.assemble(step, pose, Curvature::Clipped);
                 }
             }
         }
     }
 
-    /// Moves `pose` along the direction as far as is free and lowers Φ; None if nothing does. Returns Φ and the part of
-    /// the step taken; the system is assembled there.
-    fn search(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        (task, moving): (&StepInput, bool),
-        (pose, value, slope): (&mut Pose, f64, f64),
-    ) -> Option<(f64, f64)> {
+    /// Moves `pose` along the direction as far as is free and lowers Φ; None if nothing does.
+    /// Returns Φ and the part of the step taken; the system is assembled there.
+    fn search(&mut self, step: &StepContext<'_>, pose: &mut Pose, descent: Descent) -> Option<(f64, f64)> {
+        let StepContext { mesh, task, .. } = *step;
+        let Descent { value, slope, supports_move } = descent;
         let n = mesh.nodes();
         let whole = self.whole(task);
-        let mut fraction = self.free_from_here((problem, mesh), contacts, pose, whole);
+        let mut fraction = self.free_from_here(step, pose, whole);
         let noise = ENERGY_NOISE * (self.magnitude.abs() + value.abs());
         for _ in 0..MAX_HALVINGS {
             let mut trial = std::mem::take(&mut self.trial);
             for k in 0..n {
-                let step = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * fraction;
+                let moves = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * fraction;
                 if mesh.sliding[k].is_some() {
-                    trial.slide[k] = pose.slide[k] + step.x;
+                    trial.slide[k] = pose.slide[k] + moves.x;
                     trial.x[k] = pose.x[k];
                     continue;
                 }
                 trial.slide[k] = 0.0;
-                trial.x[k] = pose.x[k] + step;
+                trial.x[k] = pose.x[k] + moves;
                 // A full step ends exactly on target.
                 if mesh.held[k] && fraction == 1.0 {
                     trial.x[k] = self.goal[k];
                 }
             }
-            let new_value = self.assemble(problem, mesh, contacts, (task, &trial), Curvature::Exact);
+            let new_value = self.assemble(step, &trial, Curvature::Exact);
             self.trial = trial;
             let lower = new_value <= value + DECREASE * fraction * slope + noise;
-            if new_value.is_finite() && (moving || lower) {
+            if new_value.is_finite() && (supports_move || lower) {
                 std::mem::swap(pose, &mut self.trial);
                 return Some((new_value, fraction));
             }
@@ -478,7 +501,8 @@ impl Workspace {
     }
 }
 
-/// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and Hessian, returns the energy, J.
+/// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and
+/// Hessian, returns the energy, J.
 #[inline(never)]
 fn add_coupling(s: &mut System, task: &StepInput, x: &[Vec2]) -> f64 {
     let mut value = 0.0;

@@ -1,89 +1,98 @@
-//! This solver takes a step in contact by Newton's method with the pulls of the bars as unknowns, without line search.
+//! This solver takes a step in contact by Newton's method with the pulls of the bars as unknowns,
+//! without line search.
 //!
-//! As in [`crate::model::fem::newton::mixed_free`] a pull Q follows its linear equation, so that the stiffness across a bar is that of the tension to come
-//! and not of a bar stretched for a moment: the iterations no longer grow with the number of bars. The energy may rise on the
-//! way, so nothing is asked of it (a watchdog: R. Chamberlain, M. Powell, C. Lemarechal, H. Pedersen, "The watchdog
-//! technique for forcing convergence in algorithms for constrained optimization", Mathematical Programming Study 16, 1982). Only gaps
-//! are watched, and that none becomes so small that its force drowns in rounding: nothing else keeps a node from creeping up to an
-//! obstacle by a part of its gap in every iteration. What has not converged after a few iterations is left to the minimiser, from the same start.
-//! Where the cable meets itself the minimiser goes first, and what it does not find is tried in a hurry.
+//! As in [`crate::model::fem::newton::mixed_free`] a pull Q follows its linear equation, so that
+//! the stiffness across a bar is that of the tension to come and not of a bar stretched for a
+//! moment: the iterations no longer grow with the number of bars. The energy may rise on the way,
+//! so nothing is asked of it (a watchdog: R. Chamberlain, M. Powell, C. Lemarechal, H. Pedersen,
+//! "The watchdog technique for forcing convergence in algorithms for constrained optimization",
+//! Mathematical Programming Study 16, 1982). Only gaps are watched, and that none becomes so small
+//! that its force drowns in rounding: nothing else keeps a node from creeping up to an obstacle by
+//! a part of its gap in every iteration. What has not converged after a few iterations is left to
+//! the minimiser, from the same start. Where the cable meets itself the minimiser goes first, and
+//! the undamped Newton is tried where it finds nothing.
 
 use crate::contact::friction::Branch;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::minimize::{StepContext, Workspace};
 use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::friction_state::ContactSet;
-use crate::problem::Problem;
 
-/// Iterations before the minimiser is asked. Fewer: one of its iterations costs as much as five of these, and with 24 eleven steps of a
-/// cable of 1000 bars dropped on a floor came to it, of 336; more: where it is needed after all they are lost.
+/// Iterations before the minimiser is asked. Fewer: one of its iterations costs as much as five of
+/// these, and with 24 eleven steps of a cable of 1000 bars dropped on a floor came to it, of 336;
+/// more: where it is needed after all they are lost.
 const MAX_STEPS: usize = 40;
 
-/// Parts of the push of bars that are counted where all of it makes the matrix indefinite, one after the other. Iterations of a
-/// cable of 1000 bars that drops, over 24 drops, with none of it at once: 15 % more; with 0.5 and none: 2 % more.
+/// Parts of the push of bars that are counted where all of it makes the matrix indefinite, one
+/// after the other. Iterations of a cable of 1000 bars that drops, over 24 drops, with none of it
+/// at once: 15 % more; with 0.5 and none: 2 % more.
 const PUSH_PARTS: [f64; 3] = [0.7, 0.4, 0.0];
 
-/// Part of the first residual with which what was reached is handed on; with more the minimiser begins anew.
-const NEAR_ENOUGH: f64 = 1e-2;
+/// Part of the first residual with which what was reached is handed on; with more the minimiser
+/// begins anew.
+const HANDED_ON_RESIDUAL_FRACTION: f64 = 1e-2;
 
 /// Strain that counts as none.
 const ROUNDING: f64 = 1e-12;
 
-/// Part of the sliding at which friction changes from holding to slipping that counts as none: of friction as much.
+/// Part of the sliding at which friction changes from holding to slipping that counts as none: of
+/// friction as much.
 const BRANCH_ROUNDING: f64 = 1e-14;
+
+/// Whether a solve goes on where the cable comes within reach of itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::fem) enum SelfTouch {
+    /// It gives up.
+    Avoid,
+    /// It goes on.
+    Allow,
+}
 
 impl Workspace {
     /// Minimises Φ from `pose`, which becomes the answer; on failure it is where it got to.
     ///
     /// # Errors
     /// With the worst node and its unbalanced force.
-    pub fn minimise(
+    pub(in crate::model::fem) fn minimise(
         &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        task: &StepInput,
+        step: &StepContext<'_>,
         pose: &mut Pose,
     ) -> Result<Converged, Failure> {
-        if !task.moves {
-            return self.descend((problem, mesh), contacts, task, pose);
+        if !step.task.moves {
+            return self.descend(step, pose);
         }
-        if let Some(done) = self.rush((problem, mesh), contacts, (task, false), pose) {
+        if let Some(done) = self.undamped_newton(step, SelfTouch::Avoid, pose) {
             return Ok(done);
         }
-        let mut in_a_hurry = self.hurried;
-        let mut done = self.descend((problem, mesh), contacts, task, pose);
+        let mut undamped = self.undamped_iterations;
+        let mut done = self.descend(step, pose);
         if done.is_err() && self.near_enough {
             self.go_back(pose);
-            done = self.descend((problem, mesh), contacts, task, pose);
+            done = self.descend(step, pose);
         }
-        if done.is_err() && contacts.own.shape.is_on() {
+        if done.is_err() && step.contacts.own.shape.is_on() {
             self.go_back(pose);
-            if let Some(found) = self.rush((problem, mesh), contacts, (task, true), pose) {
+            if let Some(found) = self.undamped_newton(step, SelfTouch::Allow, pose) {
                 done = Ok(found);
             } else {
-                in_a_hurry += self.hurried;
+                undamped += self.undamped_iterations;
             }
         }
-        done.map(|d| Converged { iterations: d.iterations + in_a_hurry, ..d })
+        done.map(|d| Converged { iterations: d.iterations + undamped, ..d })
     }
 
-    /// The pose at the end of a step; None where this does not find it, the pose then as it was or not far from it. Unless it
-    /// `meets` itself the cable must not come within reach of itself on the way.
-    fn rush(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        (task, meets): (&StepInput, bool),
-        pose: &mut Pose,
-    ) -> Option<Converged> {
+    /// The pose at the end of a step; None where this does not find it, the pose then as it was or
+    /// not far from it. Unless that is allowed the cable must not come within reach of itself on
+    /// the way.
+    fn undamped_newton(&mut self, step: &StepContext<'_>, self_touch: SelfTouch, pose: &mut Pose) -> Option<Converged> {
         self.begun.x.clone_from(&pose.x);
         self.begun.slide.clone_from(&pose.slide);
-        self.goal.clone_from(&task.target);
-        self.carry_pulls(mesh, pose);
-        let done = self.rush_on((problem, mesh), contacts, (task, meets), pose);
+        self.goal.clone_from(&step.task.target);
+        self.carry_pulls(step.mesh, pose);
+        let done = self.iterate_undamped(step, self_touch, pose);
         self.carried.clear();
         self.branches.clear();
         if done.is_none() && !self.near_enough {
@@ -108,14 +117,10 @@ impl Workspace {
         }
     }
 
-    /// Moves a pose that is still where the step began to where its speed carries it, as far as nothing is in the way.
-    fn move_on(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        task: &StepInput,
-        pose: &mut Pose,
-    ) {
+    /// Moves a pose that is still where the step began to where its speed carries it, as far as
+    /// nothing is in the way.
+    fn move_on(&mut self, step: &StepContext<'_>, pose: &mut Pose) {
+        let StepContext { mesh, task, .. } = *step;
         if pose.x != task.begins() {
             return;
         }
@@ -127,28 +132,28 @@ impl Workspace {
             };
             (d[0], d[1]) = (to.x - pose.x[k].x, to.y - pose.x[k].y);
         }
-        self.ahead.stop((problem, mesh), (contacts, &pose.x), &mut self.direction);
+        self.ahead.stop(step, &pose.x, &mut self.direction);
         let whole = self.whole(task);
-        let free = self.free_way((problem, mesh), contacts, pose, whole);
+        let free = self.free_way(step, pose, whole);
         self.place(mesh, pose, free);
     }
 
-    fn rush_on(
+    fn iterate_undamped(
         &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        (task, meets): (&StepInput, bool),
+        step: &StepContext<'_>,
+        self_touch: SelfTouch,
         pose: &mut Pose,
     ) -> Option<Converged> {
-        self.move_on((problem, mesh), contacts, task, pose);
+        let StepContext { mesh, contacts, task, .. } = *step;
+        self.move_on(step, pose);
         self.branches.clear();
         self.branches.extend(contacts.rubs.iter().map(|r| Branch::at(r.sliding(&pose.x), contacts.slip)));
         let mut first = f64::NAN;
         self.near_enough = false;
         for iterations in 0..=MAX_STEPS {
-            self.hurried = iterations;
-            let value = self.assemble(problem, mesh, contacts, (task, pose), Curvature::Exact);
-            if !meets && !self.coupling.is_empty() {
+            self.undamped_iterations = iterations;
+            let value = self.assemble(step, pose, Curvature::Exact);
+            if self_touch == SelfTouch::Avoid && !self.coupling.is_empty() {
                 self.near_enough = false;
                 return None;
             }
@@ -161,17 +166,17 @@ impl Workspace {
             if sound && residual <= task.tolerance && !left && self.flags_hold(mesh, contacts, &pose.x) {
                 return Some(Converged { iterations, residual });
             }
-            self.near_enough = sound && residual < NEAR_ENOUGH * first;
+            self.near_enough = sound && residual < HANDED_ON_RESIDUAL_FRACTION * first;
             if iterations == MAX_STEPS || !sound {
                 return None;
             }
-            if !self.solve(mesh, task, (&pose.x, task.shift)) && !self.ease(mesh, task, &pose.x) {
-                self.assemble(problem, mesh, contacts, (task, pose), Curvature::Clipped);
-                if !self.solve(mesh, task, (&pose.x, task.shift)) {
+            if !self.solve(mesh, task, &pose.x, task.shift) && !self.ease(mesh, task, &pose.x) {
+                self.assemble(step, pose, Curvature::Clipped);
+                if !self.solve(mesh, task, &pose.x, task.shift) {
                     return None;
                 }
             }
-            let free = self.look_ahead((problem, mesh), contacts, pose);
+            let free = self.look_ahead(step, pose);
             let whole = self.whole(task);
             self.slid.clear();
             self.slid.extend(contacts.rubs.iter().map(|r| r.sliding(&pose.x)));
@@ -183,9 +188,10 @@ impl Workspace {
         None
     }
 
-    /// The direction again where bars that push make the matrix indefinite: with less and less of their push counted, until it is
-    /// definite. None of it is what the minimiser takes, but that is a different matrix, far from the equations, and what it finds
-    /// goes to and fro. False where that does not help; the system is pinned, and what it held is lost.
+    /// The direction again where bars that push make the matrix indefinite: with less and less of
+    /// their push counted, until it is definite. None of it is what the minimiser takes, but that
+    /// is a different matrix, far from the equations, and what it finds goes to and fro. False
+    /// where that does not help; the system is pinned, and what it held is lost.
     fn ease(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2]) -> bool {
         if !self.coupling.is_empty() || mesh.bending_stiffness > 0.0 {
             return false;
@@ -223,7 +229,8 @@ impl Workspace {
         false
     }
 
-    /// Whether the bars that count as stretched are those that are, and friction holds and slips where it is taken to.
+    /// Whether the bars that count as stretched are those that are, and friction holds and slips
+    /// where it is taken to.
     fn flags_hold(&self, mesh: &Mesh, contacts: &ContactSet, x: &[Vec2]) -> bool {
         let rubs = contacts.rubs.iter().zip(&self.branches);
         let slip = contacts.slip;
@@ -242,7 +249,7 @@ impl Workspace {
         for (e, carried) in self.carried.iter_mut().enumerate() {
             let d = pose.x[e + 1] - pose.x[e];
             let p = d.norm();
-            let (now, slope) = bar_energy::pull(mesh, task, (e, carried.taut), p);
+            let (now, slope) = bar_energy::pull(mesh, task, e, carried.taut, p);
             let along = if p > 0.0 { d.dot(&(step(e + 1) - step(e))) / p } else { 0.0 };
             *carried = bar_energy::Carried { pull: now + slope * along, taut: p + along >= mesh.rest_length[e] };
         }
@@ -313,9 +320,11 @@ mod tests {
         d
     }
 
-    /// Landing nodes are thrown together along the floor with forces of kN: where friction was not found by branches, 14 of these
-    /// steps went to and fro until the minimiser was asked. A step in which a node lands is balanced twice, as friction follows the normal forces of
-    /// its own step: 495 iterations and 17 steps of a dozen or more, below 380 and none where friction was that of the step before.
+    /// Landing nodes are thrown together along the floor with forces of kN: where friction was not
+    /// found by branches, 14 of these steps went to and fro until the minimiser was asked. A step
+    /// in which a node lands is balanced twice, as friction follows the normal forces of its own
+    /// step: 495 iterations and 17 steps of a dozen or more, below 380 and none where friction was
+    /// that of the step before.
     #[test]
     fn a_landing_front_is_found_without_the_minimiser() {
         let mut d = dropped(1.0, 100);
@@ -329,7 +338,7 @@ mod tests {
         assert!(long < 24 && whole < 560, "{whole} {long}");
     }
 
-    /// Which steps find no answer in a hurry is chance: over many drops it is not.
+    /// Which steps the undamped Newton does not solve is chance: over many drops it is not.
     #[test]
     fn bars_that_buckle_where_they_land_take_few_iterations() {
         let (mut whole, mut long) = (0, 0);
@@ -341,8 +350,9 @@ mod tests {
             }
         }
         println!("{whole} iterations, {long} steps left to the minimiser");
-        // Measured: 7087 and 10, as a landing is balanced twice since friction follows the normal forces of its own step. With those of the step before
-        // 4429 and none, from another first rest 4731 and 3; and 6702 and 19 where contacts were thrown across holding.
+        // Measured: 7087 and 10, as a landing is balanced twice since friction follows the normal
+        // forces of its own step. With those of the step before 4429 and none, from another first
+        // rest 4731 and 3; and 6702 and 19 where contacts were thrown across holding.
         assert!(whole < 7800 && long < 16, "{whole} iterations, {long} steps left to the minimiser");
     }
 
@@ -359,9 +369,9 @@ mod tests {
                 let mut expected = trial.still_pose();
                 trial.contacts.prepare(&trial.problem, &trial.mesh, &expected.x, &trial.motion.x);
                 let mut memory = Workspace::new(&trial.mesh).unwrap();
-                let (setting, mut found) = ((&*trial.problem, &trial.mesh), expected.clone());
-                let rushed = memory.rush(setting, &trial.contacts, (&trial.task, false), &mut found).is_some();
-                if rushed && memory.descend(setting, &trial.contacts, &trial.task, &mut expected).is_ok() {
+                let (step, mut found) = (trial.step_context(), expected.clone());
+                let found_undamped = memory.undamped_newton(&step, SelfTouch::Avoid, &mut found).is_some();
+                if found_undamped && memory.descend(&step, &mut expected).is_ok() {
                     let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm());
                     worst = off.fold(worst, larger);
                     compared += 1;

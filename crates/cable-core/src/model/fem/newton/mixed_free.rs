@@ -1,19 +1,22 @@
-//! This solver takes one implicit step of a flexible cable that can touch nothing, with the pulls of the bars as unknowns.
+//! This solver takes one implicit step of a flexible cable that can touch nothing, with the pulls
+//! of the bars as unknowns.
 //!
-//! With positions alone, a node moved across its bars by δ lengthens them by δ²/2l, which a stiff bar answers with EA δ²/2l²:
-//! the finer the mesh, the more iterations (6, 18 and 47 a step at 100, 1000 and 10 000 bars). Carried as unknowns, the
-//! pulls Q change only as the linear equations say, and the count stays at 2 to 4:
+//! With positions alone, a node moved across its bars by δ lengthens them by δ²/2l, which a stiff
+//! bar answers with EA δ²/2l²: the finer the mesh, the more iterations (6, 18 and 47 a step at 100,
+//! 1000 and 10 000 bars). Carried as unknowns, the pulls Q change only as the linear equations say,
+//! and the count stays at 2 to 4:
 //! ```text
 //! mᵢ a² (x − x̃) − f + Σ ± Q t = 0,     Q = k (P − L) + c (P − P̂),     k = EA/L,  c = EA τ a/L or that of `loss`
 //! [A + Bᵀ(k + c)B] δx = −(residual with Q of the present lengths),     Q ← Q(P) + (k + c) t·δ(x₂ − x₁)
 //! A = m a² + Q/P (I − t tᵀ)
 //! ```
-//! with the mass m as it is spread over the bars (see `mass`).
-//! (Q < 0 is taken for 0 where the matrix is not positive definite with it.) The same matrix as Newton in positions but
-//! for the Q in it (the multiplier, as in the augmented Lagrangian methods: R.
-//! Glowinski and P. Le Tallec, *Augmented Lagrangian and operator-splitting methods in nonlinear mechanics*, SIAM 1989).
-//! It is block tridiagonal and needs no general sparse factor. Where this fails (a cable that is slack and stiff at
-//! once, say) the minimiser of contact steps takes over from the same start.
+//! with the mass m as it is spread over the bars (see `mass`). (Q < 0 is taken for 0 where the
+//! matrix is not positive definite with it.) The same matrix as Newton in positions but for the Q
+//! in it (the multiplier, as in the augmented Lagrangian methods: R. Glowinski and P. Le
+//! Tallec, *Augmented Lagrangian and operator-splitting methods in nonlinear mechanics*, SIAM
+//! 1989). It is block tridiagonal and needs no general sparse factor. Where this fails (a cable
+//! that is slack and stiff at once, say) the minimiser of contact steps takes over from the same
+//! start.
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
@@ -21,7 +24,8 @@ use crate::model::fem::newton::step_input::{Converged, Pose, StepInput};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 
-/// Iterations before the minimiser is asked. Measured: 2 to 5 in a swing, up to 12 where a slack chain snaps taut.
+/// Iterations before the minimiser is asked. Measured: 2 to 5 in a swing, up to 12 where a slack
+/// chain snaps taut.
 const MAX_STEPS: usize = 16;
 
 /// Roundings of a coordinate that a bar's length may be off by.
@@ -59,7 +63,8 @@ struct Balance {
 }
 
 impl FreeStep {
-    /// Finds the pose at the end of a step; None (and the pose as it was) where it does not converge.
+    /// Finds the pose at the end of a step; None (and the pose as it was) where it does not
+    /// converge.
     pub fn solve(&mut self, mesh: &Mesh, task: &StepInput, pose: &mut Pose) -> Option<Converged> {
         self.start.clone_from(&pose.x);
         self.make_room(mesh);
@@ -70,7 +75,8 @@ impl FreeStep {
         done
     }
 
-    /// Unbalanced force on a node after a solve, N: on a held one minus the force of the cable on what holds it.
+    /// Unbalanced force on a node after a solve, N: on a held one minus the force of the cable on
+    /// what holds it.
     #[must_use]
     pub fn gradient_at(&self, node: usize) -> Vec2 {
         self.gradient.get(node).copied().unwrap_or_default()
@@ -115,7 +121,8 @@ impl FreeStep {
         None
     }
 
-    /// The pulls with which the step begins: nearer to those it ends with than those of bars moved on each by itself.
+    /// The pulls with which the step begins: nearer to those it ends with than those of bars moved
+    /// on each by itself.
     fn begin(&mut self, mesh: &Mesh, task: &StepInput) {
         for (e, (pull, taut)) in self.pull.iter_mut().zip(&mut self.taut).enumerate() {
             let strain = (task.start[e + 1] - task.start[e]).norm() / mesh.rest_length[e] - 1.0;
@@ -124,8 +131,8 @@ impl FreeStep {
         }
     }
 
-    /// Gradient with the pulls carried into `gradient`, matrix into the blocks, the force of the present lengths (the right
-    /// side) into `step`.
+    /// Gradient with the pulls carried into `gradient`, matrix into the blocks, the force of the
+    /// present lengths (the right side) into `step`.
     fn assemble(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2], curvature: Curvature) -> Balance {
         for i in 0..x.len() {
             let (k, away) = (task.inertia[i], x[i] - task.predicted[i]);
@@ -139,7 +146,7 @@ impl FreeStep {
             let (d, l) = (x[e + 1] - x[e], mesh.rest_length[e]);
             let p = d.norm();
             let elastic = bar_energy::stiffness(mesh, self.taut[e]) / l;
-            let (loss, slope) = task.loss_at((e, self.taut[e] || !mesh.is_flexible()), l, p);
+            let (loss, slope) = task.loss_at(e, self.taut[e] || !mesh.is_flexible(), l, p);
             let (stiffness, now) = (elastic + slope, elastic * (p - l) + loss);
             let t = if p > 0.0 { d / p } else { Vec2::x() };
             let pull = self.pull[e];
@@ -170,7 +177,8 @@ impl FreeStep {
         balance
     }
 
-    /// Block elimination from the first node on: D ← D − C D₋⁻¹ C, then back. False where a block is not positive definite.
+    /// Block elimination from the first node on: D ← D − C D₋⁻¹ C, then back. False where a block
+    /// is not positive definite.
     fn factor_and_solve(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2]) -> bool {
         let n = x.len();
         for k in 0..n {
@@ -254,7 +262,7 @@ fn product(a: &Symmetric, b: &Symmetric) -> [f64; 4] {
 mod tests {
     use super::*;
     use crate::model::fem::dynamics::Dynamics;
-    use crate::model::fem::newton::minimize::Workspace;
+    use crate::model::fem::newton::minimize::{StepContext, Workspace};
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Support, SupportKind, catalog};
@@ -273,7 +281,8 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
-        /// The equations are those of the minimiser: so is the answer, for any history, and the forces on what holds it.
+        /// The equations are those of the minimiser: so is the answer, for any history, and the
+        /// forces on what holds it.
         #[test]
         fn the_pose_is_that_of_the_minimiser(
             log_stiffness in 4.0f64..7.0, loose in any::<bool>(), waves in prop::collection::vec(-1.0f64..1.0, 6), a in 300.0f64..700.0,
@@ -295,7 +304,8 @@ mod tests {
             let Some(done) = free.solve(&d.mesh, &task, &mut found) else { return Err(TestCaseError::fail("not solved")) };
             prop_assert!(done.residual <= 1e-7 && done.iterations <= 12, "{done:?}");
             let (mut general, mut expected) = (Workspace::new(&d.mesh).unwrap(), start);
-            prop_assert!(general.minimise((&d.problem, &d.mesh), &d.contacts, &task, &mut expected).is_ok());
+            let step = StepContext { task: &task, ..d.step_context() };
+            prop_assert!(general.minimise(&step, &mut expected).is_ok());
             let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
             prop_assert!(off < 1e-7, "{off}");
             let scale = 1e-4 * (1.0 + general.gradient_at(0).norm());

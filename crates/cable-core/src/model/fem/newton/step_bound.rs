@@ -1,23 +1,23 @@
-//! The step bound keeps a step of all nodes short: no node goes too far, nothing is crossed, some cable stays beside sliding nodes.
+//! The step bound keeps a step of all nodes short: no node goes too far, nothing is crossed, some
+//! cable stays beside sliding nodes.
 
 use crate::contact::sweep::Sweep;
 use crate::math::{Vec2, larger};
 use crate::model::fem::mesh::tangent_path::{End, Path};
-use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::minimize::{StepContext, Workspace};
 use crate::model::fem::newton::step_input::{Pose, StepInput};
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::friction_state::ContactSet;
-use crate::problem::Problem;
 
-/// Part of each gap that a Newton step leaves. Smaller: gaps shrink faster than Newton opens them again (with 0.2 twice as many
-/// steps of ends thrown about are halved, five times as many where the cable meets itself); larger: more steps.
-const KEEP: f64 = 0.5;
+/// Part of each gap that a Newton step leaves. Smaller: gaps shrink faster than Newton opens them
+/// again (with 0.2 twice as many steps of ends thrown about are halved, five times as many where
+/// the cable meets itself); larger: more steps.
+const KEPT_GAP_FRACTION: f64 = 0.5;
 
-/// The same for gaps wider than the barrier's reach, in reaches: a little less than where foreseen contacts land.
-const KEEP_REACH: f64 = 0.45;
+/// The same for gaps wider than the barrier's reach, in reaches: a little less than where foreseen
+/// contacts land.
+const KEPT_REACH_FRACTION: f64 = 0.45;
 
 /// Least part of the cable between a sliding node and its neighbour that one iteration leaves.
-const LEAVE: f64 = 0.3;
+const KEPT_CABLE_FRACTION: f64 = 0.3;
 
 impl Workspace {
     /// The part of the direction in which no node moves too far.
@@ -26,18 +26,13 @@ impl Workspace {
         if largest > task.max_move { task.max_move / largest } else { 1.0 }
     }
 
-    /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some cable between sliding
-    /// nodes and their neighbours.
-    pub(in crate::model::fem) fn free_way(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        pose: &Pose,
-        fraction: f64,
-    ) -> f64 {
+    /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some
+    /// cable between sliding nodes and their neighbours.
+    pub(in crate::model::fem) fn free_way(&mut self, step: &StepContext<'_>, pose: &Pose, fraction: f64) -> f64 {
+        let StepContext { problem, mesh, contacts, .. } = *step;
         let (direction, geometry) = (&self.direction, problem.world.geometry());
-        let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
-        let most = KEEP_REACH * contacts.barrier.reach;
+        let move_of = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
+        let most = KEPT_REACH_FRACTION * contacts.barrier.reach;
         let mut free = fraction;
         for e in 0..mesh.rest_length.len() {
             let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());
@@ -47,8 +42,8 @@ impl Workspace {
                 let whole = mesh.rest_length[e] / mesh.thermal_stretch + pose.slide[e + 1] - pose.slide[e];
                 let straight = mesh.path(e, &pose.x).straight;
                 let length = if straight > 0.0 && straight < whole { straight } else { whole };
-                if change < 0.0 && -change * free > (1.0 - LEAVE) * length {
-                    free = (1.0 - LEAVE) * length / -change;
+                if change < 0.0 && -change * free > (1.0 - KEPT_CABLE_FRACTION) * length {
+                    free = (1.0 - KEPT_CABLE_FRACTION) * length / -change;
                 }
             }
             if problem.world.is_empty() || slides == [true, true] {
@@ -57,42 +52,38 @@ impl Workspace {
             let x = &pose.x;
             let from = mesh.straight(e, x);
             let to = if slides == [false, false] {
-                [from[0] + step(e) * free, from[1] + step(e + 1) * free]
+                [from[0] + move_of(e) * free, from[1] + move_of(e + 1) * free]
             } else {
-                let end = |k: usize| mesh.sliding[k].as_ref().map_or(End::point(x[k] + step(k) * free), |s| s.end);
+                let end = |k: usize| mesh.sliding[k].as_ref().map_or(End::point(x[k] + move_of(k) * free), |s| s.end);
                 Path::between(&end(e), &end(e + 1)).ends
             };
-            let sweep = Sweep::new(from, to, KEEP).at_most(most);
+            let sweep = Sweep::new(from, to, KEPT_GAP_FRACTION).at_most(most);
             free *= match contacts.near.of(e, [from, to], sweep.margin) {
                 Some([]) => 1.0,
                 Some(parts) => geometry.free_fraction_among(parts.iter().copied(), &sweep, mesh.rounds(e)),
                 None => geometry.free_fraction_round(&sweep, mesh.rounds(e)),
             };
         }
-        let limits = [KEEP, most, free];
-        contacts.own.shape.free_fraction((&pose.x, &mesh.arc_length), &step, limits, &mut self.order)
+        let limits = [KEPT_GAP_FRACTION, most, free];
+        contacts.own.shape.free_fraction(&pose.x, &mesh.arc_length, &move_of, limits, &mut self.order)
     }
 
-    /// The same from where the system was assembled last. A step shorter than every gap leaves, whichever way it goes, is free:
-    /// nearly all last iterations are, and sweeps of every bar cost as much as the rest of one.
-    pub(in crate::model::fem) fn free_from_here(
-        &mut self,
-        (problem, mesh): (&Problem, &Mesh),
-        contacts: &ContactSet,
-        pose: &Pose,
-        fraction: f64,
-    ) -> f64 {
+    /// The same from where the system was assembled last. A step shorter than every gap leaves,
+    /// whichever way it goes, is free: nearly all last iterations are, and sweeps of every bar cost
+    /// as much as the rest of one.
+    pub(in crate::model::fem) fn free_from_here(&mut self, step: &StepContext<'_>, pose: &Pose, fraction: f64) -> f64 {
+        let StepContext { mesh, contacts, .. } = *step;
         let still = |k: usize| self.direction[2 * k] == 0.0 && self.direction[2 * k + 1] == 0.0;
         let plain = !contacts.own.shape.is_on()
             && (0..mesh.nodes()).all(|k| mesh.sliding[k].is_none() && (!mesh.held[k] || still(k)));
         if plain {
             let gaps = self.touches.iter().map(|t| t.pair.gap.gap_m);
             let least = gaps.fold(contacts.barrier.reach, |a, b| if b < a { b } else { a });
-            if fraction * longest(&self.direction) <= (1.0 - KEEP) * least {
+            if fraction * longest(&self.direction) <= (1.0 - KEPT_GAP_FRACTION) * least {
                 return fraction;
             }
         }
-        self.free_way((problem, mesh), contacts, pose, fraction)
+        self.free_way(step, pose, fraction)
     }
 }
 
@@ -111,7 +102,8 @@ mod tests {
     use crate::scene::{Obstacle, Shape, Support, catalog};
     use proptest::prelude::*;
 
-    /// A cable that lies in a shallow dip, its ends let go. On corners that jut out there would be sliding nodes, which are always looked at.
+    /// A cable that lies in a shallow dip, its ends let go. On corners that jut out there would be
+    /// sliding nodes, which are always looked at.
     fn lying() -> Dynamics {
         let mut scene = catalog::hanging_span();
         let points_m = vec![[-4.0, 0.0], [3.0, -0.1], [11.0, 0.1]];
@@ -140,8 +132,8 @@ mod tests {
             let pose = d.still_pose();
             d.contacts.prepare(&d.problem, &d.mesh, &pose.x, &d.motion.x);
             let mut memory = Workspace::new(&d.mesh).unwrap();
-            let setting = (&*d.problem, &d.mesh);
-            memory.assemble(&d.problem, &d.mesh, &d.contacts, (&d.task, &pose), Curvature::Exact);
+            let step = d.step_context();
+            memory.assemble(&step, &pose, Curvature::Exact);
             prop_assert!(memory.touches.len() > 10, "{} touch", memory.touches.len());
             let gaps = memory.touches.iter().map(|t| t.pair.gap.gap_m);
             let least = gaps.fold(f64::INFINITY, |a, b| if b < a { b } else { a });
@@ -149,8 +141,8 @@ mod tests {
                 for (k, (way, s)) in memory.direction.iter_mut().zip(&seed).enumerate() {
                     *way = gaps * least * (s - if k % 2 == 1 { down } else { 0.0 });
                 }
-                let looked = memory.free_way(setting, &d.contacts, &pose, 1.0);
-                let told = memory.free_from_here(setting, &d.contacts, &pose, 1.0);
+                let looked = memory.free_way(&step, &pose, 1.0);
+                let told = memory.free_from_here(&step, &pose, 1.0);
                 prop_assert!(told == looked, "{} free where {} is", told, looked);
             }
         }

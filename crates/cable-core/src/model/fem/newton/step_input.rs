@@ -1,5 +1,6 @@
 //! The step input says what a step is about; beside it stand its unknowns and how it ended.
 
+pub use crate::error::FailureCause;
 use crate::math::Vec2;
 
 /// The unknowns of a step.
@@ -24,15 +25,18 @@ pub struct StepInput {
     pub inertia: Vec<f64>,
     /// x̃, m.
     pub predicted: Vec<Vec2>,
-    /// Of each bar what couples the inertia of its nodes (m a², N/m) and its predicted chord (m); empty: nothing does.
+    /// Of each bar what couples the inertia of its nodes (m a², N/m) and its predicted chord (m);
+    /// empty: nothing does.
     pub coupling: Vec<(f64, Vec2)>,
-    /// Stiffness of the loss of each bar where it is taut, and where it is slack, N: EA τ a of a viscous one (0: no loss).
+    /// Stiffness of the loss of each bar where it is taut, and where it is slack, N: EA τ a of a
+    /// viscous one (0: no loss).
     pub loss: Vec<[f64; 2]>,
     /// EI τ/h, N m² (0: no damping).
     pub bending_damping: f64,
     /// Predicted length of each bar, m.
     pub predicted_length: Vec<f64>,
-    /// Nodes that hands hold by springs, with the stiffness (N/m) and place (m) that these have in this step: a part of inertia and prediction there.
+    /// Nodes that hands hold by springs, with the stiffness (N/m) and place (m) that these have in
+    /// this step: a part of inertia and prediction there.
     pub hands: Vec<(usize, f64, Vec2)>,
     /// External force on each node, N.
     pub force: Vec<Vec2>,
@@ -44,7 +48,8 @@ pub struct StepInput {
     pub outlined: bool,
     /// Where the step began, m.
     pub start: Vec<Vec2>,
-    /// Where the iteration begins, m, where that is not where the step begins: an outline moved; else empty.
+    /// Where the iteration begins, m, where that is not where the step begins: an outline moved;
+    /// else empty.
     pub laid: Vec<Vec2>,
     /// Plan view: largest friction force of each node, N (empty otherwise).
     pub floor_limit: Vec<f64>,
@@ -65,10 +70,11 @@ pub struct StepInput {
 }
 
 impl StepInput {
-    /// What the loss of bar `e` of rest length `l` pulls with at a length `p` (m), and its slope by that, N and N/m: c (P − P̂)/L, and where it
-    /// is slack that of P = L with the slope of a slack bar from there on.
+    /// What the loss of bar `e` of rest length `l` pulls with at a length `p` (m), and its slope by
+    /// that, N and N/m: c (P − P̂)/L, and where it is slack that of P = L with the slope of a slack
+    /// bar from there on.
     #[must_use]
-    pub fn loss_at(&self, (e, taut): (usize, bool), l: f64, p: f64) -> (f64, f64) {
+    pub fn loss_at(&self, e: usize, taut: bool, l: f64, p: f64) -> (f64, f64) {
         let [c, slack] = self.loss.get(e).copied().unwrap_or_default();
         let late = self.predicted_length[e];
         if taut || c == slack {
@@ -80,7 +86,7 @@ impl StepInput {
 
     /// The energy of which that is the slope, J.
     #[must_use]
-    pub fn loss_energy(&self, (e, taut): (usize, bool), l: f64, p: f64) -> f64 {
+    pub fn loss_energy(&self, e: usize, taut: bool, l: f64, p: f64) -> f64 {
         let [c, slack] = self.loss.get(e).copied().unwrap_or_default();
         let late = self.predicted_length[e];
         if taut || c == slack {
@@ -102,6 +108,30 @@ impl StepInput {
     }
 }
 
+/// The work that a search may still do: iterations times nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WorkBudget {
+    /// The caller bounds the work in another way.
+    Unlimited,
+    /// So many more.
+    Left(usize),
+}
+
+impl WorkBudget {
+    /// Whether nothing is left.
+    #[must_use]
+    pub fn is_spent(self) -> bool {
+        self == Self::Left(0)
+    }
+
+    /// Takes one iteration of so many nodes off it.
+    pub fn spend(&mut self, nodes: usize) {
+        if let Self::Left(left) = self {
+            *left = left.saturating_sub(nodes);
+        }
+    }
+}
+
 /// Why a step failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Failure {
@@ -109,8 +139,8 @@ pub struct Failure {
     pub node: usize,
     /// Its unbalanced force, N.
     pub residual: f64,
-    /// In words.
-    pub cause: &'static str,
+    /// Why.
+    pub cause: FailureCause,
 }
 
 /// What a step did.

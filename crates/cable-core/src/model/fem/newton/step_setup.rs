@@ -1,10 +1,11 @@
-//! The setup of a step collects forces, targets, inertia, damping and stick-slip states at an instant.
+//! The setup of a step collects forces, targets, inertia, damping and stick-slip states at an
+//! instant.
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::{Dynamics, INNER_STEP, REACH};
 use crate::model::fem::mesh::sliding_node::Seat;
-use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::step_input::{Converged, Failure, Pose};
+use crate::model::fem::newton::minimize::{StepContext, Workspace};
+use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose};
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::floor_friction;
 use crate::model::input_filter::MAX_SPEED;
@@ -14,27 +15,30 @@ use crate::scene::SupportKind;
 /// Unbalanced force accepted, part of the whole load.
 const TOLERANCE: f64 = 1e-6;
 
-/// Time constant of material damping, s, of a cable that may rub, where its own damping ratio does not ask for more. Without it
-/// a soft cable (EA 1e5 N) shows 11 % of axial noise in a drag. A cable that can touch nothing has its own damping alone: of what
-/// a weight that swings 9 times a second pulls beyond itself this would take a twelfth.
+/// Time constant of material damping, s, of a cable that may rub, where its own damping ratio does
+/// not ask for more. Without it a soft cable (EA 1e5 N) shows 11 % of axial noise in a drag. A
+/// cable that can touch nothing has its own damping alone: of what a weight that swings 9 times a
+/// second pulls beyond itself this would take a twelfth.
 const MATERIAL_DAMPING: f64 = 1e-3;
 
 /// Newton iterations of a dynamic step.
 const STEP_ITERATIONS: usize = 120;
 
 /// Factors of sliding nodes count as found when they change by less than this.
-const SAME_FACTOR: f64 = 1e-9;
+const SCALE_TOLERANCE: f64 = 1e-9;
 
-/// Friction of the floor for a node counts as found when it changes by less than this part. More: the cones of a report are not those that were
-/// solved for (the checker asks for 1e-3); less: rounds of what moves by rounding.
-const SAME_FLOOR: f64 = 1e-6;
+/// Friction of the floor for a node counts as found when it changes by less than this part. More:
+/// the cones of a report are not those that were solved for (the checker asks for 1e-3); less:
+/// rounds of what moves by rounding.
+const FLOOR_FRICTION_TOLERANCE: f64 = 1e-6;
 
-/// Forces at a sliding node within this part of each other are equal: the law is read off bars, whose tension is
-/// known to the residual only.
+/// Forces at a sliding node within this part of each other are equal: the law is read off bars,
+/// whose tension is known to the residual only.
 const EVEN_FORCE: f64 = 1e-7;
 
-/// Part of the greatest friction of a sliding node by which its friction may differ from that of its turn and grip after a step. Less: rounds for
-/// nothing that shows; more: friction beyond its cone (the checker asks for 1e-3 of the normal force).
+/// Part of the greatest friction of a sliding node by which its friction may differ from that of
+/// its turn and grip after a step. Less: rounds for nothing that shows; more: friction beyond its
+/// cone (the checker asks for 1e-3 of the normal force).
 const LAWFUL: f64 = 2e-4;
 
 /// What a pose says of the friction of sliding nodes with which it was found.
@@ -59,14 +63,20 @@ impl StickSlipChanges {
 }
 
 impl Dynamics {
-    /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go where `dragged` says.
+    /// What the solve of the present step reads.
+    pub(in crate::model::fem) fn step_context(&self) -> StepContext<'_> {
+        StepContext { problem: &self.problem, mesh: &self.mesh, contacts: &self.contacts, task: &self.task }
+    }
+
+    /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go
+    /// where `dragged` says.
     pub(in crate::model::fem) fn prepare_task(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
         self.prepare_step([to, to], dragged);
     }
 
     /// The same for a step from one time to another (s): what holds at its start holds to its end.
     pub(in crate::model::fem) fn prepare_step(&mut self, [from, to]: [f64; 2], dragged: Option<&[Option<Vec2>]>) {
-        self.stepped = None;
+        self.answers.stepped = None;
         let (problem, mesh, task) = (&self.problem, &mut self.mesh, &mut self.task);
         let n = mesh.nodes();
         let body = problem.body_force(to);
@@ -76,7 +86,7 @@ impl Dynamics {
         task.to = to;
         task.force.clear();
         task.force.extend((0..n).map(|k| body * mesh.share(k)));
-        for (node, force) in &self.loads {
+        for (node, force) in &self.meshing.loads {
             task.force[*node] += force.at(to);
         }
         task.start.clone_from(&self.motion.x);
@@ -85,7 +95,7 @@ impl Dynamics {
         task.hands.clear();
         mesh.held.fill(false);
         mesh.clamps.clear();
-        for (k, (s, node)) in problem.supports.iter().zip(&self.support_node).enumerate() {
+        for (k, (s, node)) in problem.supports.iter().zip(&self.meshing.support_node).enumerate() {
             let Some(node) = *node else { continue };
             if s.kind == SupportKind::Pulley {
                 continue;
@@ -99,7 +109,8 @@ impl Dynamics {
             {
                 let drawn = dragged.and_then(|d| d.get(k).copied().flatten());
                 let at = self.motion.followers[k].map_or(drawn.unwrap_or(at), |f| f.position());
-                // What was stopped and is free again catches up no faster than this beyond its own motion, which is followed exactly.
+                // What was stopped and is free again catches up no faster than this beyond its own
+                // motion, which is followed exactly.
                 let own = s.place_at(from).map_or(0.0, |(before, _)| (at - before).norm());
                 let most = if self.motion.followers[k].is_some() { 0.0 } else { own } + MAX_SPEED * (to - from);
                 let at = if to > from { within(self.motion.x[node], at, most) } else { at };
@@ -107,8 +118,8 @@ impl Dynamics {
                 if self.motion.hands[k].is_none() {
                     mesh.held[node] = true;
                     task.target[node] = clear_way(problem, self.motion.x[node], at);
-                    if task.target[node] != at && !self.held_back.contains(&k) {
-                        self.held_back.push(k);
+                    if task.target[node] != at && !self.answers.held_back.contains(&k) {
+                        self.answers.held_back.push(k);
                     }
                 }
                 if let Some(angle) = s.angle
@@ -165,7 +176,8 @@ impl Dynamics {
         self.motion.x = x;
     }
 
-    /// Plan view: the friction that the floor has for each node where the cable lies now; returns whether any of it changed.
+    /// Plan view: the friction that the floor has for each node where the cable lies now; returns
+    /// whether any of it changed.
     fn press_on_floor(&mut self, x: &[Vec2], slide: Option<&[f64]>) -> bool {
         let Some((friction, normal)) = self.problem.floor_friction else {
             self.task.floor_limit.clear();
@@ -177,7 +189,7 @@ impl Dynamics {
         for (k, limit) in limits.iter_mut().enumerate() {
             let reach: f64 = floor_friction::reaches(mesh, k, x, slide).iter().sum();
             let now = friction * normal * reach;
-            changed |= !((now - *limit).abs() <= SAME_FLOOR * (now + *limit));
+            changed |= !((now - *limit).abs() <= FLOOR_FRICTION_TOLERANCE * (now + *limit));
             *limit = now;
         }
         changed
@@ -195,13 +207,14 @@ impl Dynamics {
         }
     }
 
-    /// Reads turn and grip of every sliding node off a pose and says how that differs from what the pose was found with. Where `one` is set
-    /// only the first of the grips that are wrong is changed, and turns half of the way: nearly slack bars hang from a round, and turn over it by the
-    /// more the less they pull.
+    /// Reads turn and grip of every sliding node off a pose and says how that differs from what the
+    /// pose was found with. Where `one` is set only the first of the grips that are wrong is
+    /// changed, and turns half of the way: nearly slack bars hang from a round, and turn over it by
+    /// the more the less they pull.
     ///
     /// What slid the wrong way until its grip was seen to be wrong has not slid at all.
     pub(in crate::model::fem) fn update_grips(&mut self, pose: &mut Pose, one: bool) -> StickSlipChanges {
-        if self.never_slides {
+        if self.meshing.never_slides {
             return StickSlipChanges::FOUND;
         }
         let mut grips =
@@ -235,7 +248,7 @@ impl Dynamics {
             if next.sticks() && !node.sticks() {
                 pose.slide[k] = 0.0;
             }
-            let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME_FACTOR;
+            let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SCALE_TOLERANCE;
             grips.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);
             let off = ((load.factor(node.grip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
             grips.lawful &= off <= LAWFUL * pulls * exponent + slack;
@@ -245,19 +258,21 @@ impl Dynamics {
         grips
     }
 
-    /// Parts of the weight of the bars beside sliding node `k` on rounds that may act there, at positions (m).
+    /// Parts of the weight of the bars beside sliding node `k` on rounds that may act there, at
+    /// positions (m).
     fn parts_that_lie(&self, k: usize, x: &[Vec2]) -> [f64; 2] {
         let mesh = &self.mesh;
         [k - 1, k].map(|e| {
             let path = mesh.path(e, x);
             let tension = mesh.axial_stiffness * (path.length / mesh.rest_length[e] - 1.0);
-            bar_weight::may_lie(mesh, e, &path, (self.task.body, tension))
+            bar_weight::may_lie(mesh, e, &path, self.task.body, tension)
         })
     }
 
-    /// Whether the cable is flexible and nothing but its supports can touch it on the way to places `to` (m).
+    /// Whether the cable is flexible and nothing but its supports can touch it on the way to places
+    /// `to` (m).
     fn moves_freely(&self, to: &[Vec2]) -> bool {
-        let slides = !self.never_slides && self.mesh.sliding.iter().any(Option::is_some);
+        let slides = !self.meshing.never_slides && self.mesh.sliding.iter().any(Option::is_some);
         !slides
             && self.problem.floor_friction.is_none()
             && self.mesh.bending_stiffness == 0.0
@@ -272,35 +287,35 @@ impl Dynamics {
 
     pub(in crate::model::fem) fn minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
         if self.moves_freely(&pose.x)
-            && let Some(done) = self.free.solve(&self.mesh, &self.task, pose)
+            && let Some(done) = self.solver.free.solve(&self.mesh, &self.task, pose)
         {
             if self.is_out_of_reach(&pose.x) {
-                for (k, reaction) in self.reaction.iter_mut().enumerate() {
-                    *reaction = -self.free.gradient_at(k);
+                for (k, reaction) in self.answers.reaction.iter_mut().enumerate() {
+                    *reaction = -self.solver.free.gradient_at(k);
                 }
-                self.freely = true;
+                self.meshing.freely = true;
                 return Ok(done);
             }
             // It would have met something: from the start again, with contact.
             *pose = self.still_pose();
         }
-        let mut memory = match self.memory.0.take() {
+        let mut memory = match self.solver.memory.0.take() {
             Some(m) if m.nodes() == self.mesh.nodes() => m,
             _ => Box::new(Workspace::new(&self.mesh).map_err(|_| Failure {
                 node: 0,
                 residual: f64::NAN,
-                cause: "there is no memory for it",
+                cause: FailureCause::OutOfMemory,
             })?),
         };
-        memory.work_left = self.work_left;
-        self.freely = false;
-        let done = memory.minimise((&self.problem, &self.mesh), &self.contacts, &self.task, pose);
-        self.work_left = memory.work_left;
+        memory.work_left = self.solver.work_left;
+        self.meshing.freely = false;
+        let done = memory.minimise(&self.step_context(), pose);
+        self.solver.work_left = memory.work_left;
         for k in 0..self.mesh.nodes() {
             let scale = self.task.scale.get(k.saturating_sub(1)).copied().unwrap_or(1.0);
-            self.reaction[k] = -memory.gradient_at(k) / scale;
+            self.answers.reaction[k] = -memory.gradient_at(k) / scale;
         }
-        self.memory.0 = Some(memory);
+        self.solver.memory.0 = Some(memory);
         done
     }
 }
@@ -311,15 +326,15 @@ fn within(from: Vec2, to: Vec2, most: f64) -> Vec2 {
     if distance > most { from + way * (most / distance) } else { to }
 }
 
-/// Gap (m) that a support keeps from what it is driven against. The bar beside it presses there with hardly a lever: nearer,
-/// and its normal force, 1e14 N at 1e-8 m, is all that Newton sees.
-const STAND_OFF: f64 = 0.2 * REACH;
+/// Gap (m) that a support keeps from what it is driven against. The bar beside it presses there
+/// with hardly a lever: nearer, and its normal force, 1e14 N at 1e-8 m, is all that Newton sees.
+const SUPPORT_GAP: f64 = 0.2 * REACH;
 
 /// Rounding of a gap, m.
-const TOUCHING: f64 = 1e-9;
+const GAP_ROUNDING: f64 = 1e-9;
 
 /// Part of its gap that a support keeps in one step.
-const KEEP_GAP: f64 = 0.2;
+const KEPT_SUPPORT_GAP_FRACTION: f64 = 0.2;
 
 /// Halvings of the way of a support that comes too near, before it stays where it is.
 const STAND_OFF_TRIES: usize = 4;
@@ -329,10 +344,11 @@ pub(in crate::model::fem) fn clear_way(problem: &Problem, from: Vec2, to: Vec2) 
     if problem.world.is_empty() || from == to {
         return to;
     }
-    let gap = |p: Vec2| problem.world.signed_gap(p, STAND_OFF).map_or(STAND_OFF, |g| g.gap_m);
-    // A support that the scene puts on a surface may stay on it; none may come nearer than it stands.
-    let least = gap(from) - TOUCHING;
-    let free = problem.world.free_fraction([from, from], [to, to], KEEP_GAP);
+    let gap = |p: Vec2| problem.world.signed_gap(p, SUPPORT_GAP).map_or(SUPPORT_GAP, |g| g.gap_m);
+    // A support that the scene puts on a surface may stay on it; none may come nearer than it
+    // stands.
+    let least = gap(from) - GAP_ROUNDING;
+    let free = problem.world.free_fraction([from, from], [to, to], KEPT_SUPPORT_GAP_FRACTION);
     let mut part = if free >= 1.0 { 1.0 } else { free };
     for _ in 0..STAND_OFF_TRIES {
         let at = if part >= 1.0 { to } else { from + (to - from) * part };
@@ -359,8 +375,9 @@ pub(in crate::model::fem) fn tolerance(problem: &Problem, whole: f64) -> f64 {
     (TOLERANCE * whole).max(rounding)
 }
 
-/// Time constant of viscous loss, s: that of the damping ratio at the first axial mode of the whole cable, and where it `rubs` no less than
-/// [`MATERIAL_DAMPING`]. Taut bars of a cable that can touch nothing have relaxation branches in its place (`loss`).
+/// Time constant of viscous loss, s: that of the damping ratio at the first axial mode of the whole
+/// cable, and where it `rubs` no less than [`MATERIAL_DAMPING`]. Taut bars of a cable that can
+/// touch nothing have relaxation branches in its place (`loss`).
 pub(in crate::model::fem) fn damping_time(problem: &Problem, rubs: bool) -> f64 {
     let wave = (problem.axial_stiffness / problem.linear_density).sqrt();
     let first_mode = std::f64::consts::PI * wave / problem.damped_length;

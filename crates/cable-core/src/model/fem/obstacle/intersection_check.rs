@@ -1,9 +1,10 @@
 //! This check finds whether the cable, as a mesh has it, runs through obstacles.
 //!
-//! The search of a step crosses nothing (`contact/sweep.rs`). What is looked at here is what nobody searched: ways that change when a
-//! node is put in, moved or taken out beside a corner, and states that come from elsewhere. A bar that is tangent to the round of a
-//! corner is nearer to the corner's edges than the barrier at that end, always; there it is the tangent point that must not
-//! lie over an edge.
+//! The step search is collision-free by construction (`contact/sweep.rs`). This check covers the
+//! two cases that it does not: bars that change when a node is inserted, moved or removed beside a
+//! corner, and adopted states. A bar that is tangent to the round of a corner is always nearer to
+//! the corner's edges than the barrier's reach at that end; there the tangent point must not lie
+//! over an edge.
 
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
@@ -12,7 +13,8 @@ use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::Path;
 
-/// Gap (parts of the barrier's reach) that a bar must have when a node is taken out: less, and the barrier throws it.
+/// Gap (parts of the barrier's reach) that a bar must have when a node is taken out: less, and the
+/// barrier throws it.
 const LEAST_GAP: f64 = 0.05;
 
 impl Dynamics {
@@ -21,16 +23,17 @@ impl Dynamics {
         self.way_is_clear(&self.mesh.path(e, &self.motion.x), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))
     }
 
-    /// Whether the cable meets or leaves the round of a corner where that is over one of the corner's edges: it has folded back
-    /// and would run through the edge.
+    /// Whether the cable meets or leaves the round of a corner where that is over one of the
+    /// corner's edges: it has folded back and would run through the edge.
     pub(in crate::model::fem) fn beyond_its_corner(&self, k: usize, x: &[Vec2]) -> bool {
         let Some(node) = self.mesh.sliding[k] else { return false };
         let meets = [self.mesh.path(k - 1, x).ends[1], self.mesh.path(k, x).ends[0]];
         meets.into_iter().any(|p| self.is_over_an_edge(&node, p, 0.0))
     }
 
-    /// Whether a point on the round of a corner lies over one of the corner's edges, nearer to it than `least` (parts of the
-    /// barrier's reach): a way that is tangent there runs through the edge.
+    /// Whether a point on the round of a corner lies over one of the corner's edges, nearer to it
+    /// than `least` (parts of the barrier's reach): a way that is tangent there runs through the
+    /// edge.
     pub(in crate::model::fem) fn is_over_an_edge(&self, node: &SlidingNode, p: Vec2, least: f64) -> bool {
         let geometry = self.problem.world.geometry();
         let body = node.feature().and_then(|f| Some((f, geometry.body_of(f)?)));
@@ -42,7 +45,8 @@ impl Dynamics {
         into.into_iter().flatten().any(|(t, n)| from.dot(&t) > 0.0 && from.dot(&n).abs() < least)
     }
 
-    /// Whether the straight part of a way between two nodes meets nothing, nor the edges of the corners it is tangent to.
+    /// Whether the straight part of a way between two nodes meets nothing, nor the edges of the
+    /// corners it is tangent to.
     pub(in crate::model::fem) fn way_is_clear(&self, way: &Path, nodes: [Option<&SlidingNode>; 2]) -> bool {
         let geometry = self.problem.world.geometry();
         let rounds = nodes.map(|s| s.and_then(SlidingNode::feature));
@@ -60,8 +64,8 @@ impl Dynamics {
         self.way_is_clear(&way, [k - 1, k + 1].map(|j| self.mesh.sliding[j].as_ref()))
     }
 
-    /// A bar tangent to a corner or circle that runs through something: with all others watched by the search of the step, proof
-    /// that the cable crosses nothing.
+    /// A bar tangent to a corner or circle that runs through something: with all others watched by
+    /// the search of the step, proof that the cable crosses nothing.
     pub(in crate::model::fem) fn crossing(&self) -> Option<usize> {
         let (mesh, geometry) = (&self.mesh, self.problem.world.geometry());
         (0..mesh.rest_length.len()).find(|&e| {
@@ -78,7 +82,8 @@ impl Dynamics {
         })
     }
 
-    /// Refuses to go on from where a node is inside an obstacle. A bar that only cuts a corner is left to the rest to come.
+    /// Refuses to go on from where a node is inside an obstacle. A bar that only cuts a corner is
+    /// left to the rest to come.
     pub(in crate::model::fem) fn refuse_buried(&self) -> Result<(), SolveError> {
         let (mesh, x, world) = (&self.mesh, &self.motion.x, &self.problem.world);
         if world.is_empty() {

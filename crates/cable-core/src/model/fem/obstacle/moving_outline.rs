@@ -1,16 +1,20 @@
-//! The outline of a robot moves among the obstacles of a cable, from where it is to where it is led.
+//! The outline of a robot moves among the obstacles of a cable, from where it is to where it is
+//! led.
 //!
-//! Within a step it stands where it will be at the end of it. What it moved into is pushed out of its way first, and the step
-//! is worked out from there: histories, inertia and anchors stay those of where the cable was, so what pushes is the barrier
-//! and nothing else. The place to begin from is found in three parts:
+//! Within a step it stands where it will be at the end of it. What it moved into is pushed out of
+//! its way first, and the step is worked out from there: histories, inertia and anchors stay those
+//! of where the cable was, so what pushes is the barrier and nothing else. The place to begin from
+//! is found in three parts:
 //! - bars near the outline go with it as if they were a part of it, so none of them is passed;
-//! - gaps g of the nodes and bars that went, to what stands and to the outline, that would be lost are given back: with u the
-//!   way from where each was (for the outline: from where it went with it), one after the other until
+//! - gaps g of the nodes and bars that went, to what stands and to the outline, that would be lost
+//!   are given back: with u the way from where each was (for the outline: from where it went with
+//!   it), one after the other until
 //!   ```text
 //!   n·u ≥ −(1 − κ) g
 //!   ```
-//! - the way there is swept, past what stands as seen from the ground and past the outline as seen from it: where it is not
-//!   free the outline goes half as far, and where it cannot go at all it stays.
+//! - the way there is swept, past what stands as seen from the ground and past the outline as seen
+//!   from it: where it is not free the outline goes half as far, and where it cannot go at all it
+//!   stays.
 
 use std::sync::Arc;
 
@@ -30,24 +34,28 @@ use crate::model::fem::system::friction_state::ContactPair;
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 
-/// Bars nearer than this (m), and four ways of the outline, go with it. Nearer: bars just beyond are folded against those that
-/// go; farther: what lies on the ground some way off is moved for nothing.
+/// Bars nearer than this (m), and four ways of the outline, go with it. Nearer: bars just beyond
+/// are folded against those that go; farther: what lies on the ground some way off is moved for
+/// nothing.
 const GOES_ALONG_M: f64 = 0.02;
 
 /// Longest way of the outline in a step without inertia, m.
 const LONGEST_WAY_M: f64 = 5e-3;
 
-/// Parts of its way that are tried. Fewer: it stops before it must; more: a cable squeezed against a wall is asked again.
+/// Parts of its way that are tried. Fewer: it stops before it must; more: a cable squeezed against
+/// a wall is asked again.
 const PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.0625];
 
-/// Part of a gap that is left when what stands in the way pushes back (κ); the sweep asks for less, for rounding.
-const KEEP: [f64; 2] = [0.1, 0.05];
+/// Part of a gap that is left when what stands in the way pushes back (κ); the sweep asks for less,
+/// for rounding.
+const KEPT_GAP_FRACTIONS: [f64; 2] = [0.1, 0.05];
 
-/// Rounds of giving gaps back. A node in a corner between outline and ground needs a few; a squeezed one never ends.
+/// Rounds of giving gaps back. A node in a corner between outline and ground needs a few; a
+/// squeezed one never ends.
 const ROUNDS: usize = 40;
 
 /// Part of the time of a way that counts as nothing.
-const ARRIVED: f64 = 1e-9;
+const ARRIVAL_TOLERANCE: f64 = 1e-9;
 
 /// A hitch that a wall stopped is left behind by so much, m; then the outline waits for it.
 const LEFT_BEHIND_M: f64 = 0.06;
@@ -58,8 +66,9 @@ const STANDS_M: f64 = 1e-12;
 /// A lack of a gap that counts as none, m.
 const NONE: f64 = 1e-13;
 
-/// Whether a segment that moves evenly stays clear of an edge because its ends stay on one side of the edge's line: a cable
-/// drawn along the ground is told so at once, where the sweep asks again after each gap's breadth.
+/// Returns whether a segment that moves evenly stays clear of an edge because its ends stay on one
+/// side of the edge's line. For a cable that is drawn along the ground this decides at once, where
+/// the sweep advances by one gap's width at a time.
 fn is_passed_by(geometry: &Geometry, part: Part, from: [Vec2; 2], to: [Vec2; 2]) -> bool {
     let Some(body) = geometry.bodies().get(part.body) else { return false };
     let Some(edge) = part.edge.and_then(|k| body.edges.get(k)) else { return false };
@@ -127,7 +136,7 @@ impl MovingOutline {
     fn goal(&self, time: f64) -> RigidPose {
         let (whole, left) = (self.to.0 - self.from.0, self.to.0 - time);
         // Sums of steps come as near to their end as rounding lets them.
-        if left > ARRIVED * whole { self.from.1.towards(&self.to.1, 1.0 - left / whole) } else { self.to.1 }
+        if left > ARRIVAL_TOLERANCE * whole { self.from.1.towards(&self.to.1, 1.0 - left / whole) } else { self.to.1 }
     }
 
     /// How many steps without inertia its way takes at least.
@@ -221,7 +230,7 @@ impl Dynamics {
     /// Node of the hitch.
     fn hitch(&self) -> Option<usize> {
         let of_robot = |(s, node): (&SupportPoint, &Option<usize>)| node.filter(|_| s.kind == SupportKind::Robot);
-        let node = self.problem.supports.iter().zip(&self.support_node).find_map(of_robot)?;
+        let node = self.problem.supports.iter().zip(&self.meshing.support_node).find_map(of_robot)?;
         self.mesh.held[node].then_some(node)
     }
 
@@ -234,7 +243,8 @@ impl Dynamics {
         }
         let far = |p: Vec2| (p - on_it).norm();
         let now = self.task.start[k];
-        // One that was stopped by a wall stays there until the robot is as far from it as it may be left behind.
+        // One that was stopped by a wall stays there until the robot is as far from it as it may be
+        // left behind.
         let gap =
             |p: Vec2| self.problem.world.signed_gap(p, self.problem.radius).map_or(self.problem.radius, |g| g.gap_m);
         if far(now) <= LEFT_BEHIND_M && gap(self.task.target[k]) < gap(now) {
@@ -249,7 +259,8 @@ impl Dynamics {
         self.place_outline();
     }
 
-    /// Where the nodes go out of the way of the outline; `ends` are those of the bars before it moved. None where they cannot.
+    /// Where the nodes go out of the way of the outline; `ends` are those of the bars before it
+    /// moved. None where they cannot.
     fn laid(&self, carriage: &OutlineMotion, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
         let Some(rider) = &self.rider else { return Some(Vec::new()) };
         let way = rider.shape.max_displacement(&carriage.from, &carriage.to);
@@ -270,7 +281,7 @@ impl Dynamics {
             x[k] = self.task.target[k];
         }
         self.give_back(carriage, larger(2.0 * way, self.contacts.barrier.reach), &mut x);
-        self.is_free_way(carriage, (ends, &x), &near).then_some(x)
+        self.is_free_way(carriage, ends, &x, &near).then_some(x)
     }
 
     /// Whether a bar is nearer to the outline than `within`, m.
@@ -299,7 +310,7 @@ impl Dynamics {
             let mut worst = 0.0;
             for (touch, from) in &kept {
                 let gap = &touch.pair.gap;
-                let least = if gap.gap_m > 0.0 { -(1.0 - KEEP[0]) * gap.gap_m } else { 0.0 };
+                let least = if gap.gap_m > 0.0 { -(1.0 - KEPT_GAP_FRACTIONS[0]) * gap.gap_m } else { 0.0 };
                 let lack = least - gap.normal.dot(&(touch.interpolate(x) - from));
                 let shares = touch.shares();
                 let free = [0, 1].map(|j| match shares[j] > 0.0 && mesh.is_free(touch.node + j) {
@@ -321,13 +332,14 @@ impl Dynamics {
         }
     }
 
-    /// Whether nothing is passed on the way to `x`: neither what stands nor, seen from it, the outline.
-    fn is_free_way(&self, carriage: &OutlineMotion, (ends, x): (&[[Vec2; 2]], &[Vec2]), near: &[bool]) -> bool {
+    /// Whether nothing is passed on the way to `x`: neither what stands nor, seen from it, the
+    /// outline.
+    fn is_free_way(&self, carriage: &OutlineMotion, ends: &[[Vec2; 2]], x: &[Vec2], near: &[bool]) -> bool {
         let (mesh, geometry) = (&self.mesh, self.problem.world.geometry());
         let own = geometry.bodies().len().saturating_sub(1);
         let swept = |e: usize, from: [Vec2; 2], of_outline: bool| {
             let to = mesh.straight(e, x);
-            let sweep = Sweep::new(from, to, KEEP[1]);
+            let sweep = Sweep::new(from, to, KEPT_GAP_FRACTIONS[1]);
             let parts = geometry.parts(sweep.low, sweep.high, sweep.margin);
             let parts = parts.filter(|p: &Part| (p.body == own) == of_outline && !is_passed_by(geometry, *p, from, to));
             geometry.free_fraction_among(parts, &sweep, mesh.rounds(e)) >= 1.0
@@ -340,7 +352,13 @@ impl Dynamics {
         let step = |k: usize| x[k] - self.task.start[k];
         let arc = mesh.arc_length.as_slice();
         let own_way = |order: &mut SortedNodes| {
-            self.contacts.own.shape.free_fraction((&self.task.start, arc), &step, [KEEP[1], f64::INFINITY, 1.0], order)
+            self.contacts.own.shape.free_fraction(
+                &self.task.start,
+                arc,
+                &step,
+                [KEPT_GAP_FRACTIONS[1], f64::INFINITY, 1.0],
+                order,
+            )
         };
         clear && own_way(&mut SortedNodes::default()) >= 1.0
     }

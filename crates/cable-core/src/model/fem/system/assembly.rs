@@ -1,9 +1,9 @@
 //! The system assembles the energies of a mesh into value, gradient and banded Hessian.
 //!
-//! Unknowns are node positions, `2·node + axis`. Bars reach one node away (half-bandwidth 3), bending two (5).
-//! Nodes that are held keep their rows: `System::pin_held` turns these into rows of the identity, so the band
-//! and the numbering never change. Before pinning, minus the gradient at a held node is the force of the cable
-//! on its support.
+//! Unknowns are node positions, `2·node + axis`. Bars reach one node away (half-bandwidth 3),
+//! bending two (5). Nodes that are held keep their rows: `System::pin_held` turns these into rows
+//! of the identity, so the band and the numbering never change. Before pinning, minus the gradient
+//! at a held node is the force of the cable on its support.
 
 use crate::energy::axial::Bar;
 use crate::energy::bending::{BendingEnergy, ClampBend, turn};
@@ -48,8 +48,9 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// Cuts a cable into about `segments` bars with a node at each of `breaks` (arc lengths, m, increasing, the
-    /// ends among them) and even bars in between. All nodes are free. `spreads`: whether its mass is spread over the bars.
+    /// Cuts a cable into about `segments` bars with a node at each of `breaks` (arc lengths, m,
+    /// increasing, the ends among them) and even bars in between. All nodes are free. `spreads`:
+    /// whether its mass is spread over the bars.
     #[must_use]
     pub fn new(problem: &Problem, breaks: &[f64], segments: usize, spreads: bool) -> Self {
         let mut arc_length: Vec<f64> = Vec::with_capacity(segments + breaks.len());
@@ -75,7 +76,8 @@ impl Mesh {
         }
     }
 
-    /// Becomes a copy without new memory where there is room; `slides`: whether there can be sliding nodes to copy.
+    /// Becomes a copy without new memory where there is room; `slides`: whether there can be
+    /// sliding nodes to copy.
     pub fn copy_from(&mut self, other: &Self, slides: bool) {
         let Self { arc_length, rest_length, held, clamps, sliding, spread, .. } = other;
         self.arc_length.clone_from(arc_length);
@@ -148,8 +150,9 @@ impl Mesh {
         Bar { rest_length: self.rest_length[e], stiffness: self.axial_stiffness }
     }
 
-    /// Arc length that belongs to a node (half of the bars beside it, at rest temperature, and what of them is spread), m:
-    /// weight, wind and what momentum a node has are this times their value per metre.
+    /// Arc length that belongs to a node (half of the bars beside it, at rest temperature, and what
+    /// of them is spread), m: weight, wind and what momentum a node has are this times their value
+    /// per metre.
     #[must_use]
     pub fn share(&self, node: usize) -> f64 {
         let s = &self.arc_length;
@@ -167,7 +170,8 @@ impl Mesh {
     }
 }
 
-/// Whether the turn at an inner node bends the cable: not where it or a neighbour slides over something.
+/// Whether the turn at an inner node bends the cable: not where it or a neighbour slides over
+/// something.
 fn bends(mesh: &Mesh, node: usize) -> bool {
     mesh.sliding[node - 1..=node + 1].iter().all(Option::is_none)
 }
@@ -198,8 +202,8 @@ impl System {
         }
     }
 
-    /// Adds a 2×2 block; a block on the diagonal (`i == j`) must be symmetric, and of a pair (i, j), (j, i) with
-    /// `i != j` only one is to be added.
+    /// Adds a 2×2 block; a block on the diagonal (`i == j`) must be symmetric, and of a pair (i,
+    /// j), (j, i) with `i != j` only one is to be added.
     pub fn add_block(&mut self, i: usize, j: usize, block: &Mat2) {
         let b = block;
         if i <= j {
@@ -221,8 +225,8 @@ impl System {
         Vec2::new(self.gradient[2 * node], self.gradient[2 * node + 1])
     }
 
-    /// Sets gradient and Hessian to those of stretching and bending at `x` (m), less the external forces `force`
-    /// (N a node); returns the energy less the work of the external forces, J.
+    /// Sets gradient and Hessian to those of stretching and bending at `x` (m), less the external
+    /// forces `force` (N a node); returns the energy less the work of the external forces, J.
     #[cfg(test)]
     pub fn assemble(&mut self, mesh: &Mesh, x: &[Vec2], force: &[Vec2], curvature: Curvature) -> f64 {
         self.hessian.clear();
@@ -262,15 +266,17 @@ impl System {
 
     /// Adds the bending energy at `x` (m); returns its value, J.
     pub fn add_bending(&mut self, mesh: &Mesh, x: &[Vec2], curvature: Curvature) -> f64 {
-        self.add_bends(mesh, (mesh.bending_stiffness, None), x, curvature)
+        self.add_bends(mesh, mesh.bending_stiffness, None, x, curvature)
     }
 
-    /// Bends of this stiffness (N m²), measured from those at `from` (m), if there is such; returns their energy, J. With EI τ/h and where
-    /// a step of h began it is the loss of bending, as that of stretch is.
+    /// Bends of this stiffness (N m²), measured from those at `from` (m), if there is such; returns
+    /// their energy, J. With EI τ/h and where a step of h began it is the loss of bending, as that
+    /// of stretch is.
     pub fn add_bends(
         &mut self,
         mesh: &Mesh,
-        (stiffness, from): (f64, Option<&[Vec2]>),
+        stiffness: f64,
+        from: Option<&[Vec2]>,
         x: &[Vec2],
         curvature: Curvature,
     ) -> f64 {

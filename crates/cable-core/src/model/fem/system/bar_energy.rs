@@ -1,26 +1,28 @@
-//! The energy of a bar in a step consists of stretching, damping, and the weight that its material carries along.
+//! The energy of a bar in a step consists of stretching, damping, and the weight that its material
+//! carries along.
 //!
 //! With P the length of its way and L its unstretched length, ε = P/L − 1:
 //! ```text
 //! E = ½ EA L ε²,     ∂E/∂P = T = EA ε,      ∂E/∂L = −Θ = −(T + ½ T ε),
 //! ∂²E/∂P² = EA/L,    ∂²E/∂P∂L = −EA P/L²,   ∂²E/∂L² = EA P²/L³
 //! ```
-//! At a node that moves with the material P depends on where the node is; at a sliding node L depends on its slide.
-//! The weight of the bar acts at the centroid c of its way (`bar_weight.rs`), so a change δL of the material adds −b·(c − x₀) δL, with x₀
-//! the sliding node it came through.
-//! Viscous loss with time constant τ is a second bar of stiffness EA τ a whose strain is measured from the one predicted; so is that of
-//! relaxation branches in a taut bar (`loss.rs`).
+//! At a node that moves with the material P depends on where the node is; at a sliding node L
+//! depends on its slide. The weight of the bar acts at the centroid c of its way (`bar_weight.rs`),
+//! so a change δL of the material adds −b·(c − x₀) δL, with x₀ the sliding node it came through.
+//! Viscous loss with time constant τ is a second bar of stiffness EA τ a whose strain is measured
+//! from the one predicted; so is that of relaxation branches in a taut bar (`loss.rs`).
 
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::newton::minimize::ROUNDED;
+use crate::model::fem::newton::minimize::WORK_MAGNITUDE_FRACTION;
 use crate::model::fem::newton::step_input::{Pose, StepInput};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::bar_weight::Weight;
 
-/// EA with which a bar resists at its length, N: a flexible one only pulls, as it gives way sideways between its nodes instead of
-/// pushing. With any part of EA slack cables stand in arches on the ground and push their supports (a hundredth: 5.7 kN of a power
-/// cable that lies loose). A cable with bending stiffness does push.
+/// EA with which a bar resists at its length, N: a flexible one only pulls, as it gives way
+/// sideways between its nodes instead of pushing. With any part of EA slack cables stand in arches
+/// on the ground and push their supports (a hundredth: 5.7 kN of a power cable that lies loose). A
+/// cable with bending stiffness does push.
 #[must_use]
 pub fn stiffness(mesh: &Mesh, stretched: bool) -> f64 {
     if stretched || !mesh.is_flexible() { mesh.axial_stiffness } else { 0.0 }
@@ -41,21 +43,22 @@ pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
     mesh.rest_length[e] + mesh.thermal_stretch * (slide[e + 1] - slide[e])
 }
 
-/// What a bar pulls at the material of the sliding node at its start (`j` 0) or end (1), as the slope of its energy by the slide of that node
-/// sees it (without the factor of its energy), N: Θ, the loss, and the weight that comes over with the material.
+/// What a bar pulls at the material of the sliding node at its start (`j` 0) or end (1), as the
+/// slope of its energy by the slide of that node sees it (without the factor of its energy), N: Θ,
+/// the loss, and the weight that comes over with the material.
 #[must_use]
-pub fn pull_at_slide((mesh, task): (&Mesh, &StepInput), e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
+pub fn pull_at_slide(mesh: &Mesh, task: &StepInput, e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
     let strain = p / l - 1.0;
     let ratio = task.predicted_length[e] / mesh.rest_length[e];
     let loss = task.damping(e) / mesh.rest_length[e] * (p - ratio * l) * ratio;
     let tension = stiffness(mesh, !(strain < 0.0)) * strain;
-    mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted((mesh, task.body), (e, j), x)
+    mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted(mesh, task.body, e, j, x)
 }
 
 /// What a bar with a sliding node at an end pulls with along its way, N.
 #[must_use]
-pub fn pull_on((mesh, task): (&Mesh, &StepInput), e: usize, x: &[Vec2], slide: &[f64]) -> f64 {
+pub fn pull_on(mesh: &Mesh, task: &StepInput, e: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
     let strain = p / l - 1.0;
     let ratio = task.predicted_length[e] / mesh.rest_length[e];
@@ -64,38 +67,42 @@ pub fn pull_on((mesh, task): (&Mesh, &StepInput), e: usize, x: &[Vec2], slide: &
 
 /// What it takes to lift the weight from the centroid of a bar to its start (`j` 0) or end (1), N.
 #[must_use]
-pub fn lifted((mesh, body): (&Mesh, Vec2), (e, j): (usize, usize), x: &[Vec2]) -> f64 {
+pub fn lifted(mesh: &Mesh, body: Vec2, e: usize, j: usize, x: &[Vec2]) -> f64 {
     body.dot(&(Weight::of(mesh, e, &mesh.path(e, x), body).center - x[e + j]))
 }
 
-/// The pull at the present length P of a bar between nodes that move with the material, and its slope by P, N and N/m.
+/// The pull at the present length P of a bar between nodes that move with the material, and its
+/// slope by P, N and N/m.
 #[must_use]
-pub fn pull(mesh: &Mesh, task: &StepInput, (e, taut): (usize, bool), p: f64) -> (f64, f64) {
+pub fn pull(mesh: &Mesh, task: &StepInput, e: usize, taut: bool, p: f64) -> (f64, f64) {
     let l = mesh.rest_length[e];
     let stiffness = stiffness(mesh, taut);
-    let (loss, slope) = task.loss_at((e, taut || !mesh.is_flexible()), l, p);
+    let (loss, slope) = task.loss_at(e, taut || !mesh.is_flexible(), l, p);
     (stiffness * (p / l - 1.0) + loss, stiffness / l + slope)
 }
 
-/// Adds the bar `e`; returns its energy and the size of what was summed (its rounding counted in), J. The stiffness across
-/// the bar is that of the pull `carried`, if there is one, not that of its present length.
+/// Adds the bar `e`; returns its energy and the size of what was summed (its rounding counted in),
+/// J. The stiffness across the bar is that of the pull `carried`, if there is one, not that of its
+/// present length.
 pub fn add(
     s: &mut System,
-    (mesh, task): (&Mesh, &StepInput),
-    (e, pose): (usize, &Pose),
+    mesh: &Mesh,
+    task: &StepInput,
+    e: usize,
+    pose: &Pose,
     curvature: Curvature,
     carried: Option<Carried>,
 ) -> (f64, f64) {
     if mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
-        return add_sliding(s, (mesh, task), (e, pose), curvature);
+        return add_sliding(s, mesh, task, e, pose, curvature);
     }
     let d = pose.x[e + 1] - pose.x[e];
     let (p, l, scale) = (d.norm(), mesh.rest_length[e], task.scale[e]);
     let t = if p > 0.0 { d / p } else { Vec2::x() };
     let taut = carried.map_or(!(p < l), |c| c.taut);
     let stiffness = stiffness(mesh, taut) / l;
-    let lossy = (e, taut || !mesh.is_flexible());
-    let (loss, c) = task.loss_at(lossy, l, p);
+    let lossy = taut || !mesh.is_flexible();
+    let (loss, c) = task.loss_at(e, lossy, l, p);
     let pull = stiffness * (p - l) + loss;
     let across = carried.map_or(pull, |c| c.pull);
     let clip = curvature == Curvature::Clipped && across < 0.0;
@@ -104,17 +111,20 @@ pub fn add(
     s.add_gradient(e, -t * (pull * scale));
     s.add_gradient(e + 1, t * (pull * scale));
     s.hessian.add_spring(2 * e, [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric]);
-    let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + 2.0 * task.loss_energy(lossy, l, p));
-    // In a hurry nobody asks how well the energy is known.
-    let rounding = if carried.is_some() { 0.0 } else { scale * ROUNDED * pull.abs() * pose.x[e].norm() };
+    let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + 2.0 * task.loss_energy(e, lossy, l, p));
+    // The undamped Newton does not use the energy, so its round-off is not estimated.
+    let rounding =
+        if carried.is_some() { 0.0 } else { scale * WORK_MAGNITUDE_FRACTION * pull.abs() * pose.x[e].norm() };
     (energy, energy + rounding)
 }
 
 /// The same for a bar that has a sliding node at one end or both.
 fn add_sliding(
     s: &mut System,
-    (mesh, task): (&Mesh, &StepInput),
-    (e, pose): (usize, &Pose),
+    mesh: &Mesh,
+    task: &StepInput,
+    e: usize,
+    pose: &Pose,
     curvature: Curvature,
 ) -> (f64, f64) {
     let path = mesh.path(e, &pose.x);
@@ -141,11 +151,12 @@ fn add_sliding(
     }
     let elastic = 0.5 * stiffness * l * strain * strain;
     let viscous = 0.5 * c * late * late;
-    let rounding = ROUNDED * pull.abs() * pose.x[e].norm();
+    let rounding = WORK_MAGNITUDE_FRACTION * pull.abs() * pose.x[e].norm();
     let carried = mesh.thermal_stretch;
     let hung = Weight::of(mesh, e, &path, task.body);
     let sign = [-1.0, 1.0];
-    // Work is measured from the sliding node itself: with friction the two sides of it count differently.
+    // Work is measured from the sliding node itself: with friction the two sides of it count
+    // differently.
     let weight = [0, 1].map(|j| if slides[j] { task.body.dot(&(hung.center - pose.x[e + j])) } else { 0.0 });
     // Generalised directions of P and of L, and of the weight's lever, at both ends.
     let along = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { t * sign[j] });
@@ -172,7 +183,7 @@ fn add_sliding(
             if curvature == Curvature::Exact {
                 block -= (lever[j] * hung.slope[k].transpose() + hung.slope[j] * lever[k].transpose()) * scale;
                 if j == k && !slides[j] {
-                    block -= Weight::bend(mesh, (e, j), (&path, pose.x[e + j]), task.body) * ((held + change) * scale);
+                    block -= Weight::bend(mesh, e, j, &path, pose.x[e + j], task.body) * ((held + change) * scale);
                 }
             }
             s.add_block(e + j, e + k, &block);

@@ -1,17 +1,20 @@
 //! The weight of a bar that lies on a round in part acts at the centroid of its path.
 //!
-//! A bar is strained evenly, so its material is spread evenly over its way, of length P: with C = ∫r over the way, the weight of L metres
-//! does the work L b·C/P. A free end x of the bar beyond a round draws the straight part (length l, middle m, direction u away from
-//! the round) along and turns it:
+//! A bar is strained evenly, so its material is spread evenly over its way, of length P: with C =
+//! ∫r over the way, the weight of L metres does the work L b·C/P. A free end x of the bar beyond a
+//! round draws the straight part (length l, middle m, direction u away from the round) along and
+//! turns it:
 //! ```text
 //! dC = ½ l dx + (u·dx) m,   dP = u·dx,   c = C/P,
 //! ∂(b·c)/∂x = ½ (l/P) b + u b·(m − c)/P
 //! ```
-//! So the end carries half the weight of the straight part, and what lies on the round acts there. The pull in the middle of the straight part is
-//! T − L b·(m − c)/P, with T the pull of the bar as a whole. A bar that lies on nothing has c = m and l = P: half at each end.
+//! So the end carries half the weight of the straight part, and what lies on the round acts there.
+//! The pull in the middle of the straight part is T − L b·(m − c)/P, with T the pull of the bar as
+//! a whole. A bar that lies on nothing has c = m and l = P: half at each end.
 //!
-//! Where that pull would be a push the bar is slack, and its material is not spread evenly: only so much of the weight on the round acts there
-//! that nothing pushes, and of the rest half at each end. How much is found from the pose in which a step begins: sought within the step, it goes to
+//! Where that pull would be a push the bar is slack, and its material is not spread evenly: only so
+//! much of the weight on the round acts there that nothing pushes, and of the rest half at each
+//! end. How much is found from the pose in which a step begins: sought within the step, it goes to
 //! and fro where a bar is nearly slack.
 
 use crate::math::{Mat2, Vec2, larger, perp, smaller};
@@ -25,9 +28,11 @@ pub struct Weight {
     pub center: Vec2,
     /// ∂(b·c)/∂x at a free end, N/m; nothing at a sliding one.
     pub slope: [Vec2; 2],
-    /// L (m) times this (N/m) is the pull that the bar as a whole has more than the middle of its straight part: b·(m − c)/P.
+    /// L (m) times this (N/m) is the pull that the bar as a whole has more than the middle of its
+    /// straight part: b·(m − c)/P.
     pub excess: f64,
-    /// Parts of the material that lie on the round of the first node, on the straight part, and on the round of the second.
+    /// Parts of the material that lie on the round of the first node, on the straight part, and on
+    /// the round of the second.
     pub parts: [f64; 3],
 }
 
@@ -37,7 +42,7 @@ impl Weight {
     pub fn of(mesh: &Mesh, e: usize, path: &Path, body: Vec2) -> Self {
         let full = Self::spread_evenly(mesh, e, path, body);
         let lies = lies(mesh, e);
-        if lies == 1.0 { full } else { full.lying(lies, mesh, e, (path, body)) }
+        if lies == 1.0 { full } else { full.lying(lies, mesh, e, path, body) }
     }
 
     /// The same if its material is spread evenly over its way.
@@ -73,8 +78,9 @@ impl Weight {
         Self { center, slope, excess, parts }
     }
 
-    /// The same where only a part of the weight on rounds (0 to 1) acts there, and of the rest half at each end of the bar.
-    fn lying(self, part: f64, mesh: &Mesh, e: usize, (path, body): (&Path, Vec2)) -> Self {
+    /// The same where only a part of the weight on rounds (0 to 1) acts there, and of the rest half
+    /// at each end of the bar.
+    fn lying(self, part: f64, mesh: &Mesh, e: usize, path: &Path, body: Vec2) -> Self {
         let at = |j: usize| mesh.sliding[e + j].map_or(path.ends[j], |s| s.position());
         let slide = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
         let half = slide.map(|slides| if slides { Vec2::zeros() } else { body * 0.5 });
@@ -89,7 +95,7 @@ impl Weight {
 
     /// ∂²(b·c)/∂x² at the free end `j` (0 or 1) of bar `e`, N/m².
     #[must_use]
-    pub fn bend(mesh: &Mesh, (e, j): (usize, usize), (path, at): (&Path, Vec2), body: Vec2) -> Mat2 {
+    pub fn bend(mesh: &Mesh, e: usize, j: usize, path: &Path, at: Vec2, body: Vec2) -> Mat2 {
         let Some(round) = mesh.sliding[e + 1 - j].map(|s| s.end).filter(|end| end.radius > 0.0) else {
             return Mat2::zeros();
         };
@@ -111,15 +117,16 @@ impl Weight {
         (bend + bend.transpose()) * (0.5 * lies(mesh, e) / path.length)
     }
 
-    /// Pull in the middle of the straight part of a bar of `material` (m) that as a whole has the pull `tension`, N: one that only pulls
-    /// (`flexible`) pushes nowhere.
+    /// Pull in the middle of the straight part of a bar of `material` (m) that as a whole has the
+    /// pull `tension`, N: one that only pulls (`flexible`) pushes nowhere.
     #[must_use]
     pub fn in_the_middle(&self, tension: f64, material: f64, flexible: bool) -> f64 {
         let pull = tension - material * self.excess;
         if flexible && !(pull > 0.0) { 0.0 } else { pull }
     }
 
-    /// Metres of `material` that are carried at the first end and at the second: half of the straight part, and what lies on its round.
+    /// Metres of `material` that are carried at the first end and at the second: half of the
+    /// straight part, and what lies on its round.
     #[must_use]
     pub fn carried(&self, material: f64) -> [f64; 2] {
         let [first, straight, second] = self.parts;
@@ -127,8 +134,9 @@ impl Weight {
     }
 }
 
-/// Whether the round of a sliding node has several marks: what lies on a small one is little, and its friction is found as if it hung beside it.
-/// (A mesh of one bar stands for a part of a longer one.)
+/// Whether the round of a sliding node has several marks: what lies on a small one is little, and
+/// its friction is found as if it hung beside it. (A mesh of one bar stands for a part of a longer
+/// one.)
 fn is_large(mesh: &Mesh, k: usize) -> bool {
     let shares = |j: Option<usize>| {
         let beside = j.and_then(|j| mesh.sliding.get(j)?.as_ref());
@@ -145,18 +153,19 @@ fn lies(mesh: &Mesh, e: usize) -> f64 {
     smaller(of(e, 1), of(e + 1, 0))
 }
 
-/// The part of the weight of bar `e` on rounds that may act there while the bar as a whole pulls with `tension` (N): the middle of its straight part
-/// would push beyond.
+/// The part of the weight of bar `e` on rounds that may act there while the bar as a whole pulls
+/// with `tension` (N): the middle of its straight part would push beyond.
 #[must_use]
-pub fn may_lie(mesh: &Mesh, e: usize, path: &Path, (body, tension): (Vec2, f64)) -> f64 {
+pub fn may_lie(mesh: &Mesh, e: usize, path: &Path, body: Vec2, tension: f64) -> f64 {
     let excess = Weight::spread_evenly(mesh, e, path, body).excess * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
     let pull = larger(tension, 0.0);
     if !mesh.is_flexible() || pull >= excess { 1.0 } else { pull / excess }
 }
 
-/// The weight of bar `e` that acts on its first end and on its second with the slides `slide` (m), N; what no free end carries acts on rounds.
+/// The weight of bar `e` that acts on its first end and on its second with the slides `slide` (m),
+/// N; what no free end carries acts on rounds.
 #[must_use]
-pub fn on_ends(mesh: &Mesh, e: usize, (x, slide): (&[Vec2], Option<&[f64]>), body: Vec2) -> [Vec2; 2] {
+pub fn on_ends(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>, body: Vec2) -> [Vec2; 2] {
     let slid = slide.map_or(0.0, |s| s[e + 1] - s[e]);
     let material = mesh.arc_length[e + 1] - mesh.arc_length[e] + slid;
     match [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()] {
@@ -179,8 +188,8 @@ pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
     if (k.saturating_sub(1)..=(k + 1).min(last)).all(|j| mesh.sliding[j].is_none()) {
         return body * mesh.share(k);
     }
-    let before = if k > 0 { on_ends(mesh, k - 1, (x, None), body)[1] } else { Vec2::zeros() };
-    let after = if k < last { on_ends(mesh, k, (x, None), body)[0] } else { Vec2::zeros() };
+    let before = if k > 0 { on_ends(mesh, k - 1, x, None, body)[1] } else { Vec2::zeros() };
+    let after = if k < last { on_ends(mesh, k, x, None, body)[0] } else { Vec2::zeros() };
     before + after
 }
 
@@ -213,8 +222,9 @@ mod tests {
         }
     }
 
-    /// A bar with its mark on a round at the origin at one end (`j` the free one), and a mark at an angle from its tangent point.
-    fn bar(j: usize, at: Vec2, (radius, sense, lap): (f64, f64, f64)) -> (Mesh, Vec<Vec2>) {
+    /// A bar with its mark on a round at the origin at one end (`j` the free one), and a mark at an
+    /// angle from its tangent point.
+    fn bar(j: usize, at: Vec2, radius: f64, sense: f64, lap: f64) -> (Mesh, Vec<Vec2>) {
         let round = |mark: Vec2| End { center: Vec2::zeros(), radius, mark, sense };
         let ends = |mark: Vec2| if j == 1 { [round(mark), End::point(at)] } else { [End::point(at), round(mark)] };
         let [a, b] = ends(Vec2::x());
@@ -247,7 +257,7 @@ mod tests {
             lies in 0.0f64..1.5,
         ) {
             let (j, sense) = (usize::from(first), if round.1 { 1.0 } else { -1.0 });
-            let (mut mesh, x) = bar(j, unit(place.1) * place.0, (round.0, sense, round.2));
+            let (mut mesh, x) = bar(j, unit(place.1) * place.0, round.0, sense, round.2);
             let path = mesh.path(0, &x);
             prop_assume!(path.length > 0.1);
             if let Some(node) = &mut mesh.sliding[1 - j] {
@@ -274,13 +284,14 @@ mod tests {
                 x[j] += d;
                 (weight(&mesh, &x), BODY.dot(&weight(&mesh, &x).center))
             };
-            let bend = Weight::bend(&mesh, (0, j), (&path, x[j]), BODY);
+            let bend = Weight::bend(&mesh, 0, j, &path, x[j], BODY);
             for axis in [Vec2::x(), Vec2::y()] {
                 let ((plus, up), (minus, down)) = (at(axis * h), at(-axis * h));
                 prop_assert!(((up - down) / (2.0 * h) - w.slope[j].dot(&axis)).abs() < 1e-6);
                 prop_assert!(((plus.slope[j] - minus.slope[j]) / (2.0 * h) - bend * axis).norm() < 1e-5);
             }
-            // The end carries half of the straight part along with what the pull of the bar has more than its middle.
+            // The end carries half of the straight part along with what the pull of the bar has
+            // more than its middle.
             let [_, carried] = w.carried(1.0);
             prop_assert!((w.carried(1.0)[0] + carried - 1.0).abs() < 1e-12);
         }
@@ -295,7 +306,7 @@ mod tests {
             use crate::model::fem::newton::step_input::{Pose, StepInput};
             use crate::energy::Curvature;
             let (j, sense) = (usize::from(first), if round.1 { 1.0 } else { -1.0 });
-            let (mut mesh, x) = bar(j, unit(place.1) * place.0, (round.0, sense, round.2));
+            let (mut mesh, x) = bar(j, unit(place.1) * place.0, round.0, sense, round.2);
             // Taut, and far from where it is not.
             mesh.rest_length = vec![0.8 * mesh.path(0, &x).length];
             mesh.arc_length[1] = mesh.rest_length[0];
@@ -304,7 +315,7 @@ mod tests {
             let energy = |x: &[Vec2], slide: &[f64]| {
                 let mut s = System::new(&mesh);
                 let pose = Pose { x: x.to_vec(), slide: slide.to_vec() };
-                (bar_energy::add(&mut s, (&mesh, &task), (0, &pose), Curvature::Exact, None).0, s)
+                (bar_energy::add(&mut s, &mesh, &task, 0, &pose, Curvature::Exact, None).0, s)
             };
             let mut slides = [0.0; 2];
             slides[1 - j] = slide;

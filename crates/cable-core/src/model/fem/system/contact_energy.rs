@@ -25,8 +25,9 @@ pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &ContactPair, gradient: Vec2
     }
 }
 
-/// The barrier of one touch; returns its energy (J) and its stiffness where it weighs one (N/m). Its distance d from the corner has curvature (θ the turn of the segment, u its
-/// direction, c the touching point, all linear in the nodes):
+/// The barrier of one touch; returns its energy (J) and its stiffness where it weighs one (N/m).
+/// Its distance d from the corner has curvature (θ the turn of the segment, u its direction, c the
+/// touching point, all linear in the nodes):
 /// ```text
 /// node:     ∇²d = (I − n nᵀ)/d  at a corner, 0 at an edge
 /// segment:  ∇²d = −(θ qᵀ + q θᵀ) − d θ θᵀ,   q = u·δc,   θ = n·(δb − δa)/l
@@ -34,7 +35,8 @@ pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &ContactPair, gradient: Vec2
 pub fn add_touch(
     s: &mut System,
     mesh: &Mesh,
-    (touch, scale): (&ContactPair, f64),
+    touch: &ContactPair,
+    scale: f64,
     contacts: &ContactSet,
     x: &[Vec2],
     curvature: Curvature,
@@ -78,10 +80,12 @@ pub fn add_touch(
     (b.value * weight, b.curvature)
 }
 
-/// Friction of the contacts with obstacles, on these branches or, where there are none, where it is; returns its energy, J.
+/// Friction of the contacts with obstacles, on these branches or, where there are none, where it
+/// is; returns its energy, J.
 pub fn add_rubs(
     s: &mut System,
-    (mesh, task): (&Mesh, &StepInput),
+    mesh: &Mesh,
+    task: &StepInput,
     contacts: &ContactSet,
     branches: &[Branch],
     x: &[Vec2],
@@ -102,7 +106,7 @@ pub fn add_rubs(
 }
 
 /// Plan view: friction of every node on the floor; returns its energy, J.
-pub fn add_floor(s: &mut System, (mesh, task): (&Mesh, &StepInput), contacts: &ContactSet, pose: &Pose) -> f64 {
+pub fn add_floor(s: &mut System, mesh: &Mesh, task: &StepInput, contacts: &ContactSet, pose: &Pose) -> f64 {
     let mut value = 0.0;
     for (i, &limit) in task.floor_limit.iter().enumerate() {
         let scale = node_scale(task, i);

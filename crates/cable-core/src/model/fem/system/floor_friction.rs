@@ -1,9 +1,11 @@
-//! The floor of a plan view rubs on what runs over a round.
+//! In plan view the floor has friction with cable that slides over a round.
 //!
-//! A node that moves with its material takes the floor's friction of the straight halves of the bars beside it as a force on itself. What a
-//! sliding node answers for lies before its round, on it and after it, and the floor's friction f₀, f, f₂ on each is no friction of the round. With A and B
-//! the tensions where the cable comes on to the round and leaves it, positive friction that of a cable that runs towards its start, and
-//! the floor's friction on the round spread evenly over its turn φ,
+//! A node that moves with its material takes the floor's friction of the straight halves of the
+//! bars beside it as a force on itself. What a sliding node answers for lies before its round, on
+//! it and after it, and the floor's friction f₀, f, f₂ on each is no friction of the round. With A
+//! and B the tensions where the cable comes on to the round and leaves it, positive friction that
+//! of a cable that runs towards its start, and the floor's friction on the round spread evenly over
+//! its turn φ,
 //! ```text
 //! T₁ = A + f₀,   T₂ = B − f₂,   −dT/dφ = mT + f/φ,   A = B e^{mφ} + f (e^{mφ} − 1)/mφ,   |m| ≤ μ
 //! ```
@@ -12,10 +14,12 @@
 use crate::math::Vec2;
 use crate::model::fem::system::assembly::Mesh;
 
-/// Iterations for the rate at which tension grows over a round: Newton's method on a function that is convex and near to an exponential.
+/// Iterations for the rate at which tension grows over a round: Newton's method on a function that
+/// is convex and near to an exponential.
 const RATE_ITERATIONS: usize = 30;
 
-/// Material of a bar (m) that its ends answer for: on the round at its start, half of the straight part, on the round at its end.
+/// Material of a bar (m) that its ends answer for: on the round at its start, half of the straight
+/// part, on the round at its end.
 fn shares(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] {
     let path = mesh.path(e, x);
     let rest = slide.map_or(mesh.rest_length[e], |s| crate::model::fem::system::bar_energy::rest_length(mesh, e, s))
@@ -33,8 +37,8 @@ fn shares(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] 
     [rest * laps[0] / whole, 0.5 * rest * path.straight / whole, rest * laps[1] / whole]
 }
 
-/// Material before, on and after the round of a node for which the floor takes its friction there, m: half of the straight part of each
-/// bar beside it, and all that lies on its round.
+/// Material before, on and after the round of a node for which the floor takes its friction there,
+/// m: half of the straight part of each bar beside it, and all that lies on its round.
 pub(in crate::model::fem) fn reaches(mesh: &Mesh, k: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] {
     let [_, before, on] = if k > 0 { shares(mesh, k - 1, x, slide) } else { [0.0; 3] };
     let [lies, after, _] = if k + 1 < mesh.nodes() { shares(mesh, k, x, slide) } else { [0.0; 3] };
@@ -66,7 +70,8 @@ pub(in crate::model::fem) struct OverRound {
 }
 
 impl OverRound {
-    /// Between two tensions, N; None where friction cannot make one of the other: the cable is slack.
+    /// Between two tensions, N; None where friction cannot make one of the other: the cable is
+    /// slack.
     pub fn between([comes, leaves]: [f64; 2], floor: f64) -> Option<Self> {
         if !(comes > 0.0 && leaves > 0.0 && comes - floor > 0.0) {
             return None;
@@ -103,7 +108,8 @@ impl OverRound {
     }
 }
 
-/// Slide (m) of a sliding node for which the floor does what it does to a node that was moved by `slid` (m) on a way in direction `along`.
+/// Slide (m) of a sliding node for which the floor does what it does to a node that was moved by
+/// `slid` (m) on a way in direction `along`.
 pub(in crate::model::fem) fn as_slide(slid: Vec2, along: Vec2) -> Vec2 {
     Vec2::new(-slid.dot(&along), 0.0)
 }

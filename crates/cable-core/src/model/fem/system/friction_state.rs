@@ -10,16 +10,18 @@ use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::self_contact::Own;
 use crate::problem::Problem;
 
-/// Sliding at which friction is fully mobilised (ε) in motion, and the most of it at rest, m. 1e-6 costs half as many iterations
-/// again, 1e-4 creeps.
+/// Sliding at which friction is fully mobilised (ε) in motion, and the most of it at rest, m. 1e-6
+/// costs half as many iterations again, 1e-4 creeps.
 pub const SLIDE: f64 = 1e-5;
 
-/// ε at rest in parts of what the cable stretches under its weight or its greatest tension: where holding ground gives way by as
-/// much as the cable stretches, nothing shows that it holds. Of the tension where a pull has turned round 1e-3 loses up to 3 %,
-/// 1e-4 up to 0.9 %; smaller costs iterations.
+/// ε at rest in parts of what the cable stretches under its weight or its greatest tension: where
+/// holding ground gives way by as much as the cable stretches, nothing shows that it holds. Of the
+/// tension where a pull has turned round 1e-3 loses up to 3 %, 1e-4 up to 0.9 %; smaller costs
+/// iterations.
 const SLIDE_PART: f64 = 1e-4;
 
-/// Least ε, m: friction of newtons is then a spring of 1e9 N/m, and the rounding of a coordinate of 10 m still a millionth of ε.
+/// Least ε, m: friction of newtons is then a spring of 1e9 N/m, and the rounding of a coordinate of
+/// 10 m still a millionth of ε.
 const LEAST_SLIDE: f64 = 1e-9;
 
 /// ε of a cable at rest under a greatest force of `force` (N), m.
@@ -30,11 +32,12 @@ pub fn slip_at_rest(problem: &Problem, force: f64) -> f64 {
     bounded(SLIDE_PART * stretch, LEAST_SLIDE, SLIDE)
 }
 
-/// Steps for which a contact without load is remembered: fewer and trembling contacts creep; many more and a cable
-/// that was lifted and put back is held as if it had stayed.
-const REMEMBERED: usize = 8;
+/// Steps for which a contact without load is remembered: fewer and trembling contacts creep; many
+/// more and a cable that was lifted and put back is held as if it had stayed.
+const MEMORY_STEPS: usize = 8;
 
-/// Steps for which lists of what is near are made. Fewer: they are made more often; more: they are longer.
+/// Steps for which lists of what is near are made. Fewer: they are made more often; more: they are
+/// longer.
 const STEPS_AHEAD: f64 = 4.0;
 
 /// Move of a node (m) that lists of what is near allow beside the one expected.
@@ -86,7 +89,8 @@ impl ContactPair {
 }
 
 impl ContactSet {
-    /// Renumbers what friction remembers: `change` gives the new number of a node, None if it is gone.
+    /// Renumbers what friction remembers: `change` gives the new number of a node, None if it is
+    /// gone.
     pub fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
         self.rubs.clear();
         let old = std::mem::take(&mut self.memory);
@@ -106,7 +110,8 @@ struct Memory {
     age: usize,
 }
 
-/// Friction of one contact during a step: the normal force and direction are frozen, the sliding is not.
+/// Friction of one contact during a step: the normal force and direction are frozen, the sliding is
+/// not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrictionContact {
     /// The contact.
@@ -190,7 +195,8 @@ impl ContactSet {
     pub fn copy_from(&mut self, other: &Self) {
         let Self { barrier, slip, rubs, memory, floor_slid, own, carriage, .. } = other;
         (self.barrier, self.slip) = (*barrier, *slip);
-        // With room for as many, so that a front of contact that runs on asks for none; and no more, or each copy would double it.
+        // With room for as many, so that a front of contact that runs on asks for none; and no
+        // more, or each copy would double it.
         self.rubs.clear();
         self.rubs.reserve_exact(rubs.capacity());
         self.rubs.extend_from_slice(rubs);
@@ -202,7 +208,8 @@ impl ContactSet {
         self.carriage = *carriage;
     }
 
-    /// Friction is from now on fully mobilised at a sliding of `slip` (m); every contact keeps its force.
+    /// Friction is from now on fully mobilised at a sliding of `slip` (m); every contact keeps its
+    /// force.
     pub fn set_slip(&mut self, slip: f64) {
         let part = slip / self.slip;
         if part == 1.0 {
@@ -230,7 +237,8 @@ impl ContactSet {
         self.memory.sort_by_key(|m| m.node);
     }
 
-    /// Finds the contacts of the mesh at `x` (m), in order of arc length. Held nodes push on nothing.
+    /// Finds the contacts of the mesh at `x` (m), in order of arc length. Held nodes push on
+    /// nothing.
     pub fn find(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], out: &mut Vec<ContactPair>) {
         self.find_within(problem, mesh, x, self.barrier.reach, out);
     }
@@ -283,8 +291,8 @@ impl ContactSet {
         })
     }
 
-    /// Lists what each bar can come near to while its nodes move from `x` by no more than `most` says, with room to spare,
-    /// unless the lists at hand are good for that.
+    /// Lists what each bar can come near to while its nodes move from `x` by no more than `most`
+    /// says, with room to spare, unless the lists at hand are good for that.
     pub fn look_around(&mut self, problem: &Problem, mesh: &Mesh, x: &[Vec2], most: impl Fn(usize) -> f64) {
         if problem.world.is_empty() {
             return;
@@ -306,7 +314,8 @@ impl ContactSet {
         }
     }
 
-    /// Sets up friction for a step that began at `start`: contacts and normal forces as at `now` (m).
+    /// Sets up friction for a step that began at `start`: contacts and normal forces as at `now`
+    /// (m).
     pub fn prepare(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
         self.own.prepare(&self.barrier, mesh, now, start);
         self.rub(problem, mesh, now, start);
@@ -335,11 +344,13 @@ impl ContactSet {
         self.scratch = touches;
     }
 
-    /// Takes the normal forces of friction as they are at `now` (m) in a step that began at `start`, unless with them each contact can carry what
-    /// it could before: `same` tells that of the greatest change and of the most that one can carry (N). Returns whether it took them.
+    /// Takes the normal forces of friction as they are at `now` (m) in a step that began at
+    /// `start`, unless with them each contact can carry what it could before: `same` tells that of
+    /// the greatest change and of the most that one can carry (N). Returns whether it took them.
     pub fn renew(
         &mut self,
-        (problem, mesh): (&Problem, &Mesh),
+        problem: &Problem,
+        mesh: &Mesh,
         [now, start]: [&[Vec2]; 2],
         same: impl Fn(f64, f64) -> bool,
     ) -> bool {
@@ -384,8 +395,9 @@ impl ContactSet {
         rub.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
     }
 
-    /// Takes the friction of every contact by a `part` of the way from what it had `before` to what it has now, none where it was not or is no
-    /// longer; returns by how much it was off at most, N.
+    /// Takes the friction of every contact by a `part` of the way from what it had `before` to what
+    /// it has now, none where it was not or is no longer; returns by how much it was off at most,
+    /// N.
     pub fn ease(&mut self, before: &[FrictionContact], part: f64) -> f64 {
         let gone =
             |now: &[FrictionContact], b: &FrictionContact| !of_node(now, b.touch.node).any(|n| n.is_of(&b.touch));
@@ -402,8 +414,9 @@ impl ContactSet {
         off
     }
 
-    /// The sliding a contact starts with: its own, else that of the same material on the same obstacle (it crossed
-    /// a corner), else that of a neighbour at the same feature (the material moved past it), else none.
+    /// The sliding a contact starts with: its own, else that of the same material on the same
+    /// obstacle (it crossed a corner), else that of a neighbour at the same feature (the material
+    /// moved past it), else none.
     fn remembered(&self, touch: &ContactPair) -> f64 {
         let low = self.memory.partition_point(|m| m.node + 2 < touch.node);
         let near = self.memory[low..].iter().take_while(|m| m.node <= touch.node + 2);
@@ -424,11 +437,13 @@ impl ContactSet {
         best.1
     }
 
-    /// Accepts the step from `start` to `end` (m): anchors follow what slid; `slide` is that of sliding nodes (m).
+    /// Accepts the step from `start` to `end` (m): anchors follow what slid; `slide` is that of
+    /// sliding nodes (m).
     pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {
         self.prepare(problem, mesh, end, start);
         self.own.commit(end);
-        // A contact that trembles loses its load now and then: forgetting it each time would let it creep by ε a step.
+        // A contact that trembles loses its load now and then: forgetting it each time would let it
+        // creep by ε a step.
         let mut old = std::mem::take(&mut self.memory);
         let mut all = std::mem::take(&mut self.spare);
         all.clear();
@@ -444,7 +459,7 @@ impl ContactSet {
             });
         }
         let now = all.len();
-        for m in old.iter().filter(|m| m.age < REMEMBERED) {
+        for m in old.iter().filter(|m| m.age < MEMORY_STEPS) {
             let same = |n: &Memory| (n.node, n.on_segment, n.feature) == (m.node, m.on_segment, m.feature);
             let low = all[..now].partition_point(|n| n.node < m.node);
             if !all[low..now].iter().take_while(|n| n.node == m.node).any(same) {
@@ -452,7 +467,8 @@ impl ContactSet {
             }
         }
         old.clear();
-        merge(all.split_at(now), &mut old);
+        let (known, lost) = all.split_at(now);
+        merge(known, lost, &mut old);
         (self.memory, self.spare) = (old, all);
         if problem.floor_friction.is_some() {
             for (k, (slid, (e, s))) in self.floor_slid.iter_mut().zip(end.iter().zip(start)).enumerate() {
@@ -469,7 +485,7 @@ impl ContactSet {
 }
 
 /// Merges two lists, each by node, into one: of one node those of the first list come first.
-fn merge((first, second): (&[Memory], &[Memory]), out: &mut Vec<Memory>) {
+fn merge(first: &[Memory], second: &[Memory], out: &mut Vec<Memory>) {
     let mut rest = second.iter().peekable();
     for m in first {
         while let Some(n) = rest.next_if(|n| n.node < m.node) {

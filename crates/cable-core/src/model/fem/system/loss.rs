@@ -1,42 +1,48 @@
 //! The material loses the same part of its energy of stretching at every frequency.
 //!
-//! Beside the spring EA a bar has relaxation branches, each a spring EA y in series with a dashpot of relaxation time θ (generalised
-//! Maxwell body: H. Emmerich, M. Korn, "Incorporation of attenuation into time-domain computations of seismic wave fields", Geophysics
-//! 52(9), 1987; J. Blanch, J. Robertsson, W. Symes, "Modeling of a constant Q: methodology and algorithm for an efficient and optimally
-//! inexpensive viscoelastic technique", Geophysics 60(1), 1995):
+//! Beside the spring EA a bar has relaxation branches, each a spring EA y in series with a dashpot
+//! of relaxation time θ (generalised Maxwell body: H. Emmerich, M. Korn, "Incorporation of
+//! attenuation into time-domain computations of seismic wave fields", Geophysics 52(9), 1987; J.
+//! Blanch, J. Robertsson, W. Symes, "Modeling of a constant Q: methodology and algorithm for an
+//! efficient and optimally inexpensive viscoelastic technique", Geophysics 60(1), 1995):
 //! ```text
 //! T = EA ε + Σ q,   q̇ = −q/θ + EA y ε̇,   M(ω) = EA (1 + Σ y iωθ/(1 + iωθ)),   loss factor = Im M/Re M = 2ζ
 //! ```
-//! EA is the relaxed stiffness, that of slow motion. A constant loss stiffens with frequency (causality), by (4ζ/π) ln(ω/ω₀) beyond the
-//! lowest frequency ω₀: at ζ = 0.02 by 6 % a decade.
+//! EA is the relaxed stiffness, that of slow motion. A constant loss stiffens with frequency
+//! (causality), by (4ζ/π) ln(ω/ω₀) beyond the lowest frequency ω₀: at ζ = 0.02 by 6 % a decade.
 //!
-//! A step takes the strain as linear in time, for which the branches have an exact solution, with d = e^{−h/θ} and g = (1 − d) θ/h:
+//! A step takes the strain as linear in time, for which the branches have an exact solution, with
+//! d = e^{−h/θ} and g = (1 − d) θ/h:
 //! ```text
 //! q = d q₀ + EA y g (ε − ε₀),   T = EA ε + C (ε − ε₀) + Q,   C = EA Σ y g,   Q = Σ d q₀
 //! ```
-//! which is a spring of stiffness C whose strain is measured from ε₀ − Q/C: what the viscous loss of a step is, too.
+//! which is a spring of stiffness C whose strain is measured from ε₀ − Q/C: what the viscous loss
+//! of a step is, too.
 //!
-//! A bar of a flexible cable that goes slack gives way sideways: its material keeps the strain 0, and its branches relax. A bar that was slack
-//! when a step began has the viscous loss of its slackness in that step. Branches are strained in steps only in which their
-//! force acts, so that what they give back has been put in.
+//! A bar of a flexible cable that goes slack gives way sideways: its material keeps the strain 0,
+//! and its branches relax. A bar that was slack when a step began has the viscous loss of its
+//! slackness in that step. Branches are strained in steps only in which their force acts, so that
+//! what they give back has been put in.
 
 use crate::math::{Vec2, bounded};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::newton::step_setup::damping_time;
 use crate::problem::Problem;
 
-/// Lowest frequency of constant loss, rad/s (0.1 Hz). Lower: more branches, and a cable that stiffens more; higher: slow swings have less loss.
-const LOWEST: f64 = 0.2 * std::f64::consts::PI;
+/// Lowest frequency of constant loss, rad/s (0.1 Hz). Lower: more branches, and a cable that
+/// stiffens more; higher: slow swings have less loss.
+const LOWEST_LOSS_FREQUENCY: f64 = 0.2 * std::f64::consts::PI;
 
-/// Ratio of the frequencies of neighbouring branches at most. Greater: the loss factor waves by more than 5 % between them; smaller: more
-/// branches.
+/// Ratio of the frequencies of neighbouring branches at most. Greater: the loss factor waves by
+/// more than 5 % between them; smaller: more branches.
 const RATIO: f64 = 10.0;
 
-/// Damping ratio up to which loss is constant. With more the cable would stiffen manyfold (at 0.1 by 5 in four decades): what is asked
-/// beyond is viscous, and of the first axial mode.
-const MOST: f64 = 0.1;
+/// Damping ratio up to which loss is constant. With more the cable would stiffen manyfold (at 0.1
+/// by 5 in four decades): what is asked beyond is viscous, and of the first axial mode.
+const CONSTANT_LOSS_RATIO_LIMIT: f64 = 0.1;
 
-/// Width of the band at most, decades. Less: the shortest bars of stiff cables ring with less loss; more: branches that no step sees.
+/// Width of the band at most, decades. Less: the shortest bars of stiff cables ring with less loss;
+/// more: branches that no step sees.
 const MOST_DECADES: f64 = 9.0;
 
 /// Rounds of the fit. Fewer: up to 1 % off at the greatest ratio.
@@ -71,12 +77,12 @@ impl Loss {
     /// Of a cable of even bars of length `bar` (m): constant up to the highest frequency of these.
     pub(in crate::model::fem) fn of(problem: &Problem, bar: f64) -> Self {
         let ratio = problem.cable.damping_ratio;
-        let lowest = LOWEST / problem.time_scale;
+        let lowest = LOWEST_LOSS_FREQUENCY / problem.time_scale;
         let highest = 2.0 * (problem.axial_stiffness / problem.linear_density).sqrt() / bar;
         if !(ratio > 0.0 && highest.is_finite()) {
             return Self::default();
         }
-        let even = if ratio > MOST { MOST } else { ratio };
+        let even = if ratio > CONSTANT_LOSS_RATIO_LIMIT { CONSTANT_LOSS_RATIO_LIMIT } else { ratio };
         Self {
             branches: fit(2.0 * even, [lowest, highest]),
             viscous: damping_time(problem, false) * (1.0 - even / ratio),
@@ -86,8 +92,9 @@ impl Loss {
 
 /// Branches of a loss factor from the lowest to the highest frequency (rad/s).
 ///
-/// They begin as those of a power law ω^γ, γ = (2/π) atan(loss factor), and are then each multiplied by what the loss factor lacks at its own
-/// frequency, again and again, which keeps them positive.
+/// They begin as those of a power law ω^γ, γ = (2/π) atan(loss factor), and are then each
+/// multiplied by what the loss factor lacks at its own frequency, again and again, which keeps them
+/// positive.
 fn fit(factor: f64, [lowest, highest]: [f64; 2]) -> Vec<Branch> {
     let decades = bounded((highest / lowest).ln() / RATIO.ln(), 0.0, MOST_DECADES);
     let steps = if decades > 1.0 { decades.ceil() } else { 1.0 };
@@ -123,10 +130,12 @@ fn strain(d: &Dynamics, e: usize, x: &[Vec2]) -> f64 {
 }
 
 impl Dynamics {
-    /// Whether the bars have branches: those of a cable that can touch nothing and slides over nothing.
+    /// Whether the bars have branches: those of a cable that can touch nothing and slides over
+    /// nothing.
     ///
-    /// In contact, with the viscous loss in slack bars and those beside sliding nodes only, the tank of the catalogue costs 1.14 times as much, but
-    /// the greatest tension of a drop on rubble is 555 and 771 N with 84 and 168 bars at 1/960 s and 1105 N with 168 at 1/3840 s, where the
+    /// In contact, with the viscous loss in slack bars and those beside sliding nodes only, the
+    /// tank of the catalogue costs 1.14 times as much, but the greatest tension of a drop on rubble
+    /// is 555 and 771 N with 84 and 168 bars at 1/960 s and 1105 N with 168 at 1/3840 s, where the
     /// viscous loss of 1 ms in all bars has 409, 455 and 479 N.
     pub(in crate::model::fem) fn has_branches(&self) -> bool {
         !self.loss.branches.is_empty() && !self.mesh.spread.is_lumped()
@@ -137,7 +146,8 @@ impl Dynamics {
         strain >= 0.0 || !self.mesh.is_flexible()
     }
 
-    /// Puts the loss of the branches in the place of the viscous one in a step of `h` (s), whose rates are `rate` (1/s) times differences.
+    /// Puts the loss of the branches in the place of the viscous one in a step of `h` (s), whose
+    /// rates are `rate` (1/s) times differences.
     pub(in crate::model::fem) fn add_branches(&mut self, h: f64, rate: f64) {
         if !self.has_branches() {
             return;
@@ -145,7 +155,7 @@ impl Dynamics {
         let (count, bars, ea) = (self.loss.branches.len(), self.mesh.rest_length.len(), self.problem.axial_stiffness);
         let viscous = ea * self.loss.viscous * rate;
         let mut stiffness = viscous;
-        let mut decay = std::mem::take(&mut self.decay);
+        let mut decay = std::mem::take(&mut self.solver.decay);
         decay.clear();
         decay.extend(self.loss.branches.iter().map(|b| b.in_step(h)[0]));
         stiffness += self.loss.branches.iter().map(|b| ea * b.in_step(h)[1]).sum::<f64>();
@@ -166,7 +176,7 @@ impl Dynamics {
             self.task.predicted_length[e] = part * late + (1.0 - part) * l * (1.0 + before) - l * kept / stiffness;
             self.task.loss[e][0] = stiffness;
         }
-        self.decay = decay;
+        self.solver.decay = decay;
     }
 
     /// The branches after a step of `h` (s) to places `x` (m), before the motion is there.
@@ -214,10 +224,10 @@ mod tests {
     /// The least and the greatest loss factor over a band, in parts of that asked for.
     #[test]
     fn the_loss_factor_is_constant_from_the_lowest_frequency_to_the_highest() {
-        for (ratio, highest) in [(0.005, 20.0), (0.02, 1e4), (0.05, 1e6), (MOST, 1e5)] {
-            let branches = fit(2.0 * ratio, [LOWEST, highest]);
+        for (ratio, highest) in [(0.005, 20.0), (0.02, 1e4), (0.05, 1e6), (CONSTANT_LOSS_RATIO_LIMIT, 1e5)] {
+            let branches = fit(2.0 * ratio, [LOWEST_LOSS_FREQUENCY, highest]);
             for k in 0..=200 {
-                let omega = LOWEST * (highest / LOWEST).powf(f64::from(k) / 200.0);
+                let omega = LOWEST_LOSS_FREQUENCY * (highest / LOWEST_LOSS_FREQUENCY).powf(f64::from(k) / 200.0);
                 let found = loss_factor(&branches, omega) / (2.0 * ratio);
                 assert!((0.92..1.09).contains(&found), "{ratio}, {omega} rad/s: {found} of what was asked");
             }
@@ -228,7 +238,7 @@ mod tests {
     /// Cycles of strain through the exact update lose what the loss factor says.
     #[test]
     fn steps_lose_what_the_law_says() {
-        let branches = fit(0.04, [LOWEST, 1e4]);
+        let branches = fit(0.04, [LOWEST_LOSS_FREQUENCY, 1e4]);
         for omega in [2.0f64, 30.0, 400.0] {
             let h = std::f64::consts::TAU / omega / 200.0;
             let mut q = vec![0.0; branches.len()];

@@ -1,26 +1,31 @@
 //! The mass matrix of straight bars is of fourth order in the frequencies of free motion.
 //!
-//! A chain with the mass in its nodes has an action that differs from that of the cable in the order h². Put the true motion x(s, t)
-//! into both: the trapezoidal sums of motion and weight are off by h²/12 of what their slopes change along each bar, and the bar is
-//! shorter than its curve, |Δx|/h = |x'| + h² t·x‴/24. With the equation of motion F' = ρ (ẍ − g) and parts in s and t all that is
-//! left, whatever the tension and the law of the bar, is
+//! A chain with the mass in its nodes has an action that differs from that of the cable in the
+//! order h². Put the true motion x(s, t) into both: the trapezoidal sums of motion and weight are
+//! off by h²/12 of what their slopes change along each bar, and the bar is shorter than its
+//! curve, |Δx|/h = |x'| + h² t·x‴/24. With the equation of motion F' = ρ (ẍ − g) and parts in s and
+//! t all that is left, whatever the tension and the law of the bar, is
 //! ```text
 //! h²/24 { ∫ ρ |ẋ'|² ds + [ρ (ẋ·ẋ' + g·x')] }
 //! ```
-//! with the bracket over each stretch of even bars: what hangs or is held at its ends may turn the cable there. The action is
-//! stationary at the motion, so that what is taken from it here is taken from frequencies and support forces:
-//! - the integral by the mean of the lumped and the consistent mass of every bar (a string's [1 10 1]/12: G. L. Goudreau,
-//!   R. L. Taylor, "Evaluation of numerical integration methods in elastodynamics", Computer Methods in Applied Mechanics and
-//!   Engineering 2, 1973);
-//! - the bracket by end weights, half of J. Gregory's for the trapezoidal rule: it is ½ d/ds of ρ|ẋ|² + 2 ρ g·x, so that it takes
-//!   mass as it takes weight. Gravity stays an acceleration, and the whole mass stays what it is.
+//! with the bracket over each stretch of even bars: what hangs or is held at its ends may turn the
+//! cable there. The action is stationary at the motion, so that what is taken from it here is taken
+//! from frequencies and support forces:
+//! - the integral by the mean of the lumped and the consistent mass of every bar (a string's [1 10
+//!   1]/12: G. L. Goudreau, R. L. Taylor, "Evaluation of numerical integration methods in
+//!   elastodynamics", Computer Methods in Applied Mechanics and Engineering 2, 1973);
+//! - the bracket by end weights, half of J. Gregory's for the trapezoidal rule: it is ½ d/ds of
+//!   ρ|ẋ|² + 2 ρ g·x, so that it takes mass as it takes weight. Gravity stays an acceleration, and
+//!   the whole mass stays what it is.
 //!
-//! End weights pull at the last two bars with p₁ hρẍ and p₂ hρẍ, p₁ = (3 + 2α)/48, p₂ = (1 + 2α)/48. These give way by that times h/T
-//! and take ½ h³ (p₁² + p₂²) |ρẍ|²/T into the action, with ρẍ = T x″ at an end that is pulled ½ h³ (p₁² + p₂²) ρ ẍ·x″. The weights
-//! with α and a part −α/12 more of the last bar's coupling are −α/24 h³ ρ ẍ·x″ beyond those of α = 0, and take it out again where
-//! −α = 12 (p₁² + p₂²), which is 8 α² + 208 α + 10 = 0.
+//! End weights pull at the last two bars with p₁ hρẍ and p₂ hρẍ, p₁ = (3 + 2α)/48, p₂ = (1 +
+//! 2α)/48. These give way by that times h/T and take ½ h³ (p₁² + p₂²) |ρẍ|²/T into the action, with
+//! ρẍ = T x″ at an end that is pulled ½ h³ (p₁² + p₂²) ρ ẍ·x″. The weights with α and a part −α/12
+//! more of the last bar's coupling are −α/24 h³ ρ ẍ·x″ beyond those of α = 0, and take it out again
+//! where −α = 12 (p₁² + p₂²), which is 8 α² + 208 α + 10 = 0.
 //!
-//! All of it is positive definite, as rows keep more on the diagonal than beside it, and as narrow as the stiffness.
+//! All of it is positive definite, as rows keep more on the diagonal than beside it, and as narrow
+//! as the stiffness.
 
 /// α, −13 + √167.75.
 const END: f64 = -0.048_166_153_011_381_5;
@@ -33,7 +38,8 @@ const MEAN: f64 = 1.0 / 12.0;
 pub struct Spread {
     /// What a node has beyond half of the bars beside it, m of arc length.
     pub more: Vec<f64>,
-    /// Length (m) whose mass m couples the nodes of each bar: it moves with −½ m |v₁ − v₂|² beside the masses of the nodes.
+    /// Length (m) whose mass m couples the nodes of each bar: it moves with −½ m |v₁ − v₂|² beside
+    /// the masses of the nodes.
     pub coupling: Vec<f64>,
 }
 
@@ -142,7 +148,8 @@ mod tests {
         Both,
     }
 
-    /// Frequencies of small motion across bars with the tension of each (or along them with EA), per √density, from the lowest on.
+    /// Frequencies of small motion across bars with the tension of each (or along them with EA),
+    /// per √density, from the lowest on.
     fn frequencies(stretches: &[(usize, f64)], held: Held, tension: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
         let (diagonal, beside) = rows(stretches);
         let n = diagonal.len();
@@ -170,7 +177,8 @@ mod tests {
         squares.iter().map(|w| w.sqrt()).collect()
     }
 
-    /// Each of the `modes` (number and frequency) of a cable of length 1: the order from each mesh to the next.
+    /// Each of the `modes` (number and frequency) of a cable of length 1: the order from each mesh
+    /// to the next.
     fn orders(name: &str, modes: &[(usize, f64)], bars: [usize; 4], found: impl Fn(usize) -> Vec<f64>) {
         let found = bars.map(found);
         for &(mode, exact) in modes {

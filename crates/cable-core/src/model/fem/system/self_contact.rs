@@ -1,6 +1,7 @@
 //! The cable touches itself in a step: this module has the friction, its memory, and landing.
 //!
-//! As with obstacles the normal force of friction is that of the step before, and sliding is measured from an anchor.
+//! As with obstacles the normal force of friction is that of the step before, and sliding is
+//! measured from an anchor.
 
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
@@ -63,13 +64,14 @@ impl Own {
         self.rubs.clear();
     }
 
-    /// Sets up friction for a step that began at `start`: contacts and normal forces as at `now` (m).
+    /// Sets up friction for a step that began at `start`: contacts and normal forces as at `now`
+    /// (m).
     pub fn prepare(&mut self, barrier: &Barrier, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
         self.rubs.clear();
         if !self.shape.is_on() {
             return;
         }
-        self.shape.pairs((now, &mesh.arc_length), barrier.reach, &mut self.order, &mut self.scratch);
+        self.shape.pairs(now, &mesh.arc_length, barrier.reach, &mut self.order, &mut self.scratch);
         for pair in &self.scratch {
             let load = -barrier.at(pair.gap_m).slope * pair.weight;
             if load > 0.0 {
@@ -101,17 +103,21 @@ impl Own {
 /// Entries (row, column, value) of the Hessian outside its band, one of each symmetric pair.
 pub type Coupling = Vec<(usize, usize, f64)>;
 
-/// Adds barrier and friction of the cable on itself at `x` (m); returns the energy and the size of what was summed, J.
+/// Adds barrier and friction of the cable on itself at `x` (m); returns the energy and the size of
+/// what was summed, J.
 ///
-/// A pair's distance d = m·(p − c) has, with u along the segment of length l, the curvature (as in `contact_step`)
+/// A pair's distance d = m·(p − c) has, with u along the segment of length l, the curvature (as in
+/// `contact_step`)
 /// ```text
 /// inside:  ∇²d = −(θ qᵀ + q θᵀ) − d θ θᵀ,   θ = m·(δb − δa)/l,   q = u·(δp − δc)
 /// joint:   ∇²d = (I − m mᵀ)/d on δp − δc
 /// ```
 pub fn add(
-    (s, coupling): (&mut System, &mut Coupling),
+    s: &mut System,
+    coupling: &mut Coupling,
     contacts: &ContactSet,
-    (pairs, x): (&[SelfPair], &[Vec2]),
+    pairs: &[SelfPair],
+    x: &[Vec2],
     curvature: Curvature,
 ) -> (f64, f64) {
     let (own, exact) = (&contacts.own, curvature == Curvature::Exact);
@@ -174,10 +180,11 @@ impl Dynamics {
         self.problem.world.is_empty() && !self.contacts.own.shape.is_on()
     }
 
-    /// Takes the normal speed out of contacts of the cable with itself that are faster than `quiet` (m/s); momentum is kept.
+    /// Takes the normal speed out of contacts of the cable with itself that are faster than `quiet`
+    /// (m/s); momentum is kept.
     pub(in crate::model::fem) fn land_on_itself(&mut self, quiet: f64, [h, a]: [f64; 2]) {
         let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-        let mass = |k: usize| mass_with((&self.problem, &self.mesh, &self.support_node), k);
+        let mass = |k: usize| mass_with(&self.problem, &self.mesh, &self.meshing.support_node, k);
         let m = &mut self.motion;
         for rub in &self.contacts.own.rubs {
             let n = rub.pair.normal;
@@ -233,7 +240,8 @@ impl Dynamics {
             }
             if let Some(report) = out.last_mut() {
                 let force = pair.normal * load - pair.tangent() * rubbing;
-                // The other side of the contact feels the opposite: the force on the whole cable is nothing.
+                // The other side of the contact feels the opposite: the force on the whole cable is
+                // nothing.
                 for (node, part) in pair.shares() {
                     report.samples.push(ContactSample::new(self.mesh.arc_length[node], force * part));
                 }

@@ -1,4 +1,5 @@
-//! These tests compare friction, landing, corners and thrown ends with closed forms, and ask that nothing is crossed.
+//! These tests compare friction, landing, corners and thrown ends with closed forms, and ask that
+//! nothing is crossed.
 
 use std::sync::Arc;
 
@@ -26,8 +27,8 @@ fn build(scene: &Scene) -> Dynamics {
     Dynamics::new(Arc::clone(&problems(scene).unwrap()[0]), Settings::default()).unwrap()
 }
 
-/// A cable of 12 m on a floor, its end pulled along it at the height at which the barrier carries its weight
-/// (an end held at the surface itself pulls its neighbour down: +0.3 % at this mesh).
+/// A cable of 12 m on a floor, its end pulled along it at the height at which the barrier carries
+/// its weight (an end held at the surface itself pulls its neighbour down: +0.3 % at this mesh).
 fn drag(segments: usize) -> Scene {
     let height = RADIUS + 0.87 * crate::model::fem::dynamics::REACH;
     let pull = Motion { times_s: vec![0.0, 6.0], points_m: vec![[12.0, height], [13.5, height]] };
@@ -50,7 +51,8 @@ fn weight_per_m() -> f64 {
 #[test]
 fn dragging_along_a_floor_takes_the_friction_of_its_weight() {
     let expected = 0.5 * weight_per_m() * 12.0;
-    // With inertia the start leaves an axial wave that dies out in 1.5 s (material damping of 1e-3 s): its mean is read.
+    // With inertia the start leaves an axial wave that dies out in 1.5 s (material damping of 1e-3
+    // s): its mean is read.
     for (inertia, from, until, within) in [(Inertia::QuasiStatic, 0.8, 1.0, 1e-3), (Inertia::Dynamic, 2.0, 4.0, 5e-3)] {
         let mut d = build(&drag(60));
         d.settle(&[]).unwrap();
@@ -121,7 +123,8 @@ fn a_load_over_a_corner_rests_and_stays() {
     assert!(moved < 1e-3, "{moved}");
 }
 
-/// A steel-stiff cable drawn to 1e5 N over a post, without sliding nodes: the barrier alone carries it.
+/// A steel-stiff cable drawn to 1e5 N over a post, without sliding nodes: the barrier alone carries
+/// it.
 fn taut_over_a_post() -> Dynamics {
     let post = Shape::Circle { center_m: [0.0, 0.0], radius_m: 0.2 };
     let scene = scene(
@@ -134,7 +137,7 @@ fn taut_over_a_post() -> Dynamics {
         vec![Obstacle { name: "post".to_owned(), shape: post, friction: Some(0.3) }],
     );
     let mut d = build(&scene);
-    d.slides = false;
+    d.meshing.slides = false;
     d
 }
 
@@ -149,7 +152,8 @@ fn a_barrier_as_stiff_as_the_cable_is_taut_keeps_a_gap_that_numbers_can_tell() {
         let pull = d.solution().supports[1].reaction_x_n.abs();
         println!("{gap:e} m under {pull:.0} N, {halved} halved");
         assert!(pull > 5e4, "{pull}");
-        // A hundredth of the tension turns at a node here: φ'(u) = −0.2 of the barrier's stiffness, at u = 0.7.
+        // A hundredth of the tension turns at a node here: φ'(u) = −0.2 of the barrier's stiffness,
+        // at u = 0.7.
         assert!(
             gap > 0.2 * crate::model::fem::dynamics::REACH && halved == 0,
             "{gap:e} m under {pull} N, {halved} halved"
@@ -205,7 +209,8 @@ fn a_cable_dropped_on_rubble_loses_no_step_and_never_penetrates() {
     }
     let state = d.state();
     let highest = state.position_m.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
-    // Of 960 inner steps one may not find which corners hold and which slip, and is taken again in halves (1 in 1000 of violent scenes is).
+    // Of 960 inner steps one may not find which corners hold and which slip, and is taken again in
+    // halves (1 in 1000 of violent scenes is).
     assert!(halved <= 1, "{halved}");
     assert!(highest < 0.6, "{highest} m: it has not landed after 4 s");
 }
@@ -234,7 +239,8 @@ fn the_answer_lists_the_floor() {
     assert_eq!(s.contacts[0].obstacle, "floor");
 }
 
-/// A floor carries all of a cable that lies on it, the halves at its held ends too: the supports pull only along it.
+/// A floor carries all of a cable that lies on it, the halves at its held ends too: the supports
+/// pull only along it.
 #[test]
 fn a_floor_carries_what_lies_on_it_up_to_the_held_ends() {
     for friction in [0.0, 0.3] {
@@ -263,9 +269,9 @@ fn a_floor_carries_what_lies_on_it_up_to_the_held_ends() {
     }
 }
 
-/// Drops that differ by a millimetre land anywhere. A fold of a few slack bars that stands up between two stones swings on
-/// like the linkage it is: without bending stiffness nothing damps it. Of 300 such drops 223 slept after 20 s, and in 10 more than three
-/// nodes still moved.
+/// Drops that differ by a millimetre land anywhere. A fold of a few slack bars that stands up
+/// between two stones swings on like the linkage it is: without bending stiffness nothing damps it.
+/// Of 300 such drops 223 slept after 20 s, and in 10 more than three nodes still moved.
 #[test]
 fn a_cable_dropped_on_rubble_comes_to_rest() {
     let (mut asleep, mut restless) = (0, 0);
@@ -290,7 +296,8 @@ fn a_cable_dropped_on_rubble_comes_to_rest() {
         let moved = |(a, b): &(&Vec2, &Vec2)| (*a - *b).norm() > 1e-3;
         restless += usize::from(start.position_m.iter().zip(&end.position_m).filter(moved).count() > 3);
     }
-    // By these rates one set of drops in three hundred has fewer asleep, one in two hundred more that move.
+    // By these rates one set of drops in three hundred has fewer asleep, one in two hundred more
+    // that move.
     assert!(asleep >= 5 && restless <= 2, "{asleep} of 12 came to rest, {restless} do not come near it");
 }
 
@@ -326,7 +333,8 @@ fn a_cable_that_lands_stays_on_the_ground() {
     );
     let mut d = build(&scene);
     d.settle(&[]).unwrap();
-    // Thrown down flat with 2.4 m/s from 5 cm: a barrier without landing throws it back at half of that, 7 cm up.
+    // Thrown down flat with 2.4 m/s from 5 cm: a barrier without landing throws it back at half of
+    // that, 7 cm up.
     for (x, v) in d.motion.x.iter_mut().zip(&mut d.motion.v) {
         (x.y, v.y) = (x.y + 0.05, -2.4);
     }

@@ -1,4 +1,5 @@
-//! These tests draw cables over corners, posts and pulleys and compare them with the capstan law and their own ripple.
+//! These tests draw cables over corners, posts and pulleys and compare them with the capstan law
+//! and their own ripple.
 
 use std::sync::Arc;
 
@@ -30,7 +31,8 @@ fn beam(friction: f64) -> Obstacle {
     Obstacle { name: "beam".to_owned(), shape, friction: Some(friction) }
 }
 
-/// A load hangs down the left side of a beam; the cable is pulled away over its top, which it leaves at `slope`.
+/// A load hangs down the left side of a beam; the cable is pulled away over its top, which it
+/// leaves at `slope`.
 fn over_a_beam(friction: f64, segments: usize, pull: f64) -> Scene {
     let end = |by: f64| [2.0 + by, RADIUS + 0.8];
     scene(
@@ -71,7 +73,8 @@ fn a_load_drawn_over_a_corner_follows_the_capstan_without_ripple() {
         let motion = Motion { times_s: vec![0.0, 2.0], points_m: vec![[0.0, 0.0], [0.6, 0.0]] };
         for (k, ratio) in ratios.iter().enumerate() {
             let by = motion.at(0.5 + (k as f64 + 1.0) / 60.0).0.x;
-            // From straight up to the tangent that ends at the support: the cable leaves the top at once.
+            // From straight up to the tangent that ends at the support: the cable leaves the top at
+            // once.
             let (x, y) = (2.0 + by, RADIUS + 0.8);
             let turn = std::f64::consts::FRAC_PI_2 - (y.atan2(x) - (round / x.hypot(y)).asin());
             let expected = (friction * turn).exp();
@@ -90,7 +93,8 @@ fn refining_changes_nothing_at_a_corner() {
 }
 
 fn round_a_post(friction: f64, turn: f64, pull: f64) -> Scene {
-    // Plan view: from (−2, R) along +x, clockwise round a post at the origin, and away after `turn` (rad).
+    // Plan view: from (−2, R) along +x, clockwise round a post at the origin, and away after `turn`
+    // (rad).
     let r = 0.2 + RADIUS;
     let steps = (turn / 0.3).ceil();
     let on = |a: f64| [1.05 * r * a.sin(), 1.05 * r * a.cos()];
@@ -209,8 +213,8 @@ fn thrown_off_a_beam(speed: f64) -> Dynamics {
 fn a_corner_never_pulls_at_what_is_thrown_off_it() {
     let mut d = thrown_off_a_beam(16.0);
     d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
-    // The node at the corner stood still and is drawn along by its neighbours, 7 cm up by then; held for the step, it would
-    // lie at the corner.
+    // The node at the corner stood still and is drawn along by its neighbours, 7 cm up by then;
+    // held for the step, it would lie at the corner.
     let nodes = d.solution().nodes;
     let i = nodes.partition_point(|n| n.x_m < 0.0);
     let (a, b) = (&nodes[i - 1], &nodes[i]);
@@ -238,13 +242,14 @@ fn a_cable_that_folds_back_at_a_corner_does_not_run_through_its_edge() {
     let k = d.mesh.sliding.iter().position(Option::is_some).unwrap();
     let mut x = d.motion.x.clone();
     assert_eq!(d.pulled(&x), None);
-    // It comes up the left side of the beam, and now goes back there: round the corner and through the top.
+    // It comes up the left side of the beam, and now goes back there: round the corner and through
+    // the top.
     x[k + 1] = d.mesh.sliding[k].unwrap().end.center - crate::math::Vec2::new(0.5, 0.5);
     assert_eq!(d.pulled(&x), Some(k));
 }
 
-/// A mark that is not in the middle of its arc: the node that takes its place must not stretch one bar and squeeze the other. Of
-/// that a slack cable of 2 MN once broke.
+/// A mark that is not in the middle of its arc: the node that takes its place must not stretch one
+/// bar and squeeze the other. Of that a slack cable of 2 MN once broke.
 #[test]
 fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
     let shape = Shape::Polygon { points_m: vec![[-1.0, -0.2], [1.0, -0.2], [0.0, 0.0]] };

@@ -1,77 +1,83 @@
 //! This module takes one step of implicit dynamics (BDF2) of a cable in contact.
 //!
-//! BDF2 with a step ratio ω = h/h₋ (Hairer, Wanner, "Solving ordinary differential equations II", 1996): with
-//! α₀ = (1 + 2ω)/(1 + ω) and the history x̂ = ((1 + ω) x₀ − ω²/(1 + ω) x₋)/α₀,
+//! BDF2 with a step ratio ω = h/h₋ (Hairer, Wanner, "Solving ordinary differential equations II",
+//! 1996): with α₀ = (1 + 2ω)/(1 + ω) and the history x̂ = ((1 + ω) x₀ − ω²/(1 + ω) x₋)/α₀,
 //! ```text
 //! v = a (x − x̂),  a = α₀/h,   v̂ likewise,   m a² (x − x̃) + ∂E/∂x − f = 0,   x̃ = x̂ + v̂/a
 //! ```
-//! Where the cable can touch nothing, steps that are even and smooth take a part β of the next order, BDF3: α₀ = (9 + 2β)/6 and
-//! x̂ = ((2 + β) x₀ − (½ + β) x₋ + (β/3) x₌)/α₀ at the same cost. Of a vibration ω BDF2 makes one that is slower by (ωh)²/3 and loses
-//! ω⁴h³/4 of its amplitude a second; this 1 − β and 1 − 2β of that.
+//! Where the cable can touch nothing, steps that are even and smooth take a part β of the next
+//! order, BDF3: α₀ = (9 + 2β)/6 and x̂ = ((2 + β) x₀ − (½ + β) x₋ + (β/3) x₌)/α₀ at the same cost.
+//! Of a vibration ω BDF2 makes one that is slower by (ωh)²/3 and loses ω⁴h³/4 of its amplitude a
+//! second; this 1 − β and 1 − 2β of that.
 //!
-//! After each step contacts are made plastic: the barrier is a spring and would throw a landing cable back at
-//! 0.4 to 0.8 of its speed.
+//! After each step contacts are made plastic: the barrier is a spring and would throw a landing
+//! cable back at 0.4 to 0.8 of its speed.
 
 use crate::math::{Vec2, bounded, larger, perp};
+use crate::model::Inertia;
 use crate::model::fem::dynamics::{Dynamics, STIFFNESS_CHANGE};
 use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
-use crate::model::fem::newton::step_input::{Converged, Failure, Pose};
+use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose};
 use crate::model::fem::newton::step_setup::damping_time;
 use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::time::history::Motion;
 use crate::model::fem::time::momentum::mass_with;
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
-const QUIET: f64 = 0.05;
+const PLASTIC_SPEED_LIMIT: f64 = 0.05;
 
-/// What a plastic contact takes of the speed along its normal (m/s, positive away from it), of which its force made so much in the step.
+/// What a plastic contact takes of the speed along its normal (m/s, positive away from it), of
+/// which its force made so much in the step.
 pub(in crate::model::fem) fn plastic(speed: f64, made: f64) -> f64 {
     if speed > made { made } else { speed }
 }
 
-/// What a contact of this normal and friction goes on giving against what other forces give, the opposite of `against`, N s.
+/// What a contact of this normal and friction goes on giving against what other forces give, the
+/// opposite of `against`, N s.
 pub(in crate::model::fem) fn carried_on(against: Vec2, normal: Vec2, friction: f64) -> Vec2 {
     let (pressed, along) = (against.dot(&normal), perp(normal));
     let pressed = if pressed > 0.0 { pressed } else { 0.0 };
     normal * pressed + along * bounded(against.dot(&along), -friction * pressed, friction * pressed)
 }
 
-/// Why a step is tried again without a sliding node.
-pub(in crate::model::fem) const PULLED: &str = "a corner would have to pull";
-
-/// Why a step is halved in which it was not found which sliding nodes hold and which slip.
-pub(in crate::model::fem) const NOT_FOUND: &str =
-    "it was not found which corners hold the cable and over which it slips";
-
-/// Rounds of finding that out in which no fewer grips are wrong than before, until they are changed one at a time; and rounds beside those for each
-/// sliding node. Fewer: steps of a few nodes that free each other in turn take longer, or are halved.
+/// Rounds of finding that out in which no fewer grips are wrong than before, until they are changed
+/// one at a time; and rounds beside those for each sliding node. Fewer: steps of a few nodes that
+/// free each other in turn take longer, or are halved.
 const GRIP_ROUNDS: usize = 6;
 
-/// Rounds for each sliding node. Fewer: steps in which many begin to slip one after the other are halved; more: what does not end costs more.
+/// Rounds for each sliding node. Fewer: steps in which many begin to slip one after the other are
+/// halved; more: what does not end costs more.
 pub(in crate::model::fem) const ROUNDS_EACH: usize = 3;
 
-/// Rounds in which friction follows its normal forces. With none the greatest tension of a stiff cable (1 N m²) that drops on rubble is 537, 352 and
-/// 789 N with 84, 168 and 336 bars at 1/960 s, with one 427, 399 and 463 N; a second changes that by 2 %, and costs as much as the step (a pile: 1.5 s, 0.9 with one).
+/// Rounds in which friction follows its normal forces. With none the greatest tension of a stiff
+/// cable (1 N m²) that drops on rubble is 537, 352 and 789 N with 84, 168 and 336 bars at 1/960 s,
+/// with one 427, 399 and 463 N; a second changes that by 2 %, and costs as much as the step (a
+/// pile: 1.5 s, 0.9 with one).
 const RUB_ROUNDS: usize = 1;
 
-/// Change of a friction force that is none, in parts of the greatest; and one of the weight of a bar is none. Less: sliding costs twice as much and
-/// changes by nothing that shows; more: impacts rub late.
+/// Change of a friction force that is none, in parts of the greatest; and one of the weight of a
+/// bar is none. Less: sliding costs twice as much and changes by nothing that shows; more: impacts
+/// rub late.
 const RUB_CHANGE: f64 = 0.05;
 
-/// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they are coarse.
+/// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they
+/// are coarse.
 const ROUNDING: f64 = 16.0;
 
-/// Part of BDF3 in a step of a cable that can touch nothing. It is A-stable up to ½; 0.48 is V. N. Vatsa's, M. H. Carpenter's and
-/// D. P. Lockard's ("Re-evaluation of an optimized second order backward difference (BDF2OPT) scheme for unsteady flow applications",
-/// AIAA 2010-122). Less: vibrations are slower, up to twice, and damped, up to 25 times; more: what bars ring is not damped at all.
+/// Part of BDF3 in a step of a cable that can touch nothing. It is A-stable up to ½; 0.48 is V. N.
+/// Vatsa's, M. H. Carpenter's and D. P. Lockard's ("Re-evaluation of an optimized second order
+/// backward difference (BDF2OPT) scheme for unsteady flow applications", AIAA 2010-122). Less:
+/// vibrations are slower, up to twice, and damped, up to 25 times; more: what bars ring is not
+/// damped at all.
 const THIRD: f64 = 0.48;
 
 /// Part by which steps may differ and count as even.
-const EVEN: f64 = 1e-9;
+const EVEN_STEP_TOLERANCE: f64 = 1e-9;
 
-/// Even steps whose bars all pulled before BDF3 has its part: as many as its differences of velocities reach back. With less of a
-/// bar's snap in them chains whose bars rattle gain energy, half of mgL in a fold of 41 bars.
-const SMOOTH: usize = 3;
+/// Even steps whose bars all pulled before BDF3 has its part: as many as its differences of
+/// velocities reach back. With less of a bar's snap in them chains whose bars rattle gain energy,
+/// half of mgL in a fold of 41 bars.
+const STEPS_BEFORE_BDF3: usize = 3;
 
 /// What a step makes of its history: v = a (x − x̂), x̂ = now x₀ − past x₋ + older x₌.
 #[derive(Clone, Copy, Debug)]
@@ -113,17 +119,21 @@ impl Weights {
 }
 
 impl Dynamics {
-    /// Makes contacts plastic: what still comes nearer stops, and what goes away goes no faster than without the force of the contact, as
-    /// nothing presses on what leaves (J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", in: Nonsmooth
-    /// Mechanics and Applications, CISM 302, 1988). What was drawn away by the cable itself keeps its speed: stopped in each step, it would stay
-    /// until one step carries it out of the barrier's reach, and finer steps would hold it harder.
+    /// Makes contacts plastic: what still comes nearer stops, and what goes away goes no faster
+    /// than without the force of the contact, as nothing presses on what leaves (J. J. Moreau,
+    /// "Unilateral contact and dry friction in finite freedom dynamics", in: Nonsmooth Mechanics
+    /// and Applications, CISM 302, 1988). What was drawn away by the cable itself keeps its speed:
+    /// stopped in each step, it would stay until one step carries it out of the barrier's reach,
+    /// and finer steps would hold it harder.
     ///
-    /// An impact is over with its step: the history of nodes that change has what the other forces gave them, and of the contact what holds against those
-    /// ([`carried_on`]). With all of the contact in it a third of an impact would come after it and throw the cable back; with none of it contacts would
-    /// press by half too much in the next step; without what the others gave BDF2 would give two thirds of their next impulse only.
+    /// An impact is over with its step: the history of nodes that change has what the other forces
+    /// gave them, and of the contact what holds against those ([`carried_on`]). With all of the
+    /// contact in it a third of an impact would come after it and throw the cable back; with none
+    /// of it contacts would press by half too much in the next step; without what the others gave
+    /// BDF2 would give two thirds of their next impulse only.
     fn land(&mut self, h: f64, a: f64) {
         let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-        let mass = |k: usize| mass_with((&self.problem, &self.mesh, &self.support_node), k);
+        let mass = |k: usize| mass_with(&self.problem, &self.mesh, &self.meshing.support_node, k);
         let m = &mut self.motion;
         for (touch, load) in self.contacts.pressing() {
             let n = touch.pair.gap.normal;
@@ -142,7 +152,7 @@ impl Dynamics {
             // Impulses: what the contact gave in the step, and what is taken of it.
             let made = load / a;
             let taken = plastic(speed, made * sum) / sum;
-            if speed.abs() < QUIET {
+            if speed.abs() < PLASTIC_SPEED_LIMIT {
                 continue;
             }
             let change = touch.interpolate(&m.v) - touch.interpolate(&m.v_before);
@@ -165,19 +175,24 @@ impl Dynamics {
     /// The weights of the history in a step of `h` (s).
     fn weights(&self, h: f64) -> Weights {
         let m = &self.motion;
-        if m.even_steps >= SMOOTH && self.is_even(h) { Weights::blended(h) } else { Weights::bdf2(h, m.step_before) }
+        if m.even_steps >= STEPS_BEFORE_BDF3 && self.is_even(h) {
+            Weights::blended(h)
+        } else {
+            Weights::bdf2(h, m.step_before)
+        }
     }
 
     /// Whether a step of `h` (s) is as long as the one before.
     fn is_even(&self, h: f64) -> bool {
-        (h - self.motion.step_before).abs() <= EVEN * h
+        (h - self.motion.step_before).abs() <= EVEN_STEP_TOLERANCE * h
     }
 
-    /// Counts a step of `h` (s). Where contact may change what was, history is not looked for so far back.
+    /// Counts a step of `h` (s). Where contact may change what was, history is not looked for so
+    /// far back.
     fn note_step(&mut self, h: f64) {
         let count = if self.is_even(h) { self.motion.even_steps } else { 0 };
-        let smooth = !self.mesh.spread.is_lumped() && self.gauged.bars.iter().all(|tension| *tension > 0.0);
-        self.motion.even_steps = if smooth { (count + 1).min(SMOOTH) } else { 0 };
+        let smooth = !self.mesh.spread.is_lumped() && self.answers.gauged.bars.iter().all(|tension| *tension > 0.0);
+        self.motion.even_steps = if smooth { (count + 1).min(STEPS_BEFORE_BDF3) } else { 0 };
         self.motion.step_before = h;
     }
 
@@ -210,7 +225,7 @@ impl Dynamics {
         self.task.tolerance = exact;
         let done = done?;
         if let Some(node) = self.pulled(&pose.x) {
-            return Err(Failure { node, residual: done.residual, cause: PULLED });
+            return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
         }
         self.note_lag(&pose);
         self.note_hands(&pose);
@@ -236,23 +251,23 @@ impl Dynamics {
             m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
         }
         self.slide(&pose.slide);
-        self.account_for_step(weights, given, (slid, &pose.slide));
-        self.pose = pose;
+        self.account_for_step(weights, given, slid, &pose.slide);
+        self.solver.pose = pose;
         self.motion.time += h;
         self.gauge_tension();
         self.note_step(h);
         self.note_pace(h);
         self.land(h, a);
-        self.land_on_itself(QUIET, [h, a]);
+        self.land_on_itself(PLASTIC_SPEED_LIMIT, [h, a]);
         self.close_account();
         self.contacts.carriage = None;
-        if !self.never_slides {
-            self.keeps = self.motion.time >= self.due * (1.0 - f64::EPSILON);
-            self.remesh(false);
-            self.keeps = false;
-            self.stepped = self.kept.take();
+        if !self.meshing.never_slides {
+            self.answers.keeps = self.motion.time >= self.pacing.due * (1.0 - f64::EPSILON);
+            self.remesh(Inertia::Dynamic);
+            self.answers.keeps = false;
+            self.answers.stepped = self.answers.kept.take();
             if let Some(node) = self.crossing() {
-                return Err(Failure { node, residual: done.residual, cause: "the cable would run through a corner" });
+                return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerCrossed });
             }
         }
         Ok(done)
@@ -278,12 +293,13 @@ impl Dynamics {
         }
     }
 
-    /// Supports that could not get where they were to be: said, and their hands start again from there.
+    /// Supports that could not get where they were to be: said, and their hands start again from
+    /// there.
     fn note_lag(&mut self, pose: &Pose) {
-        for (support, node) in self.support_node.iter().enumerate() {
+        for (support, node) in self.meshing.support_node.iter().enumerate() {
             let Some(k) = node.filter(|&k| self.mesh.held[k]) else { continue };
-            if pose.x[k] != self.task.target[k] && !self.held_back.contains(&support) {
-                self.held_back.push(support);
+            if pose.x[k] != self.task.target[k] && !self.answers.held_back.contains(&support) {
+                self.answers.held_back.push(support);
             }
             if let Some(f) = &mut self.motion.followers[support]
                 && f.position() != pose.x[k]
@@ -293,33 +309,36 @@ impl Dynamics {
         }
     }
 
-    /// The present pose moved on at its velocities for `h` (s), where nothing can be in the way. Newton then starts nearer
-    /// by a factor of the step, and what it leaves is smaller and not always on the same side.
+    /// The present pose moved on at its velocities for `h` (s), where nothing can be in the way.
+    /// Newton then starts nearer by a factor of the step, and what it leaves is smaller and not
+    /// always on the same side.
     fn moving_pose(&mut self, h: f64) -> Pose {
         let mut pose = self.still_pose();
         for (k, (x, v)) in pose.x.iter_mut().zip(&self.motion.v).enumerate() {
             if self.mesh.is_free(k) {
                 *x += v * h;
             } else if self.mesh.held[k] {
-                // Short bars beside a support would have to turn by large angles if it stayed behind.
+                // Short bars beside a support would have to turn by large angles if it stayed
+                // behind.
                 *x = self.task.target[k];
             }
         }
         if self.is_out_of_reach(&pose.x) {
             pose
         } else {
-            self.pose = pose;
+            self.solver.pose = pose;
             self.still_pose()
         }
     }
 
-    /// Minimises until contacts rub by the normal forces that the step itself has. By those at its start an impact would rub in the step after it, by
-    /// a force that is no longer there: up to nine times the cone, along the cable.
+    /// Minimises until contacts rub by the normal forces that the step itself has. By those at its
+    /// start an impact would rub in the step after it, by a force that is no longer there: up to
+    /// nine times the cone, along the cable.
     fn rub_and_minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
         let mut done = self.grip_and_minimise(pose)?;
         for _ in 0..RUB_ROUNDS {
-            let same = |change: f64, most: f64| change <= larger(RUB_CHANGE * most, self.bar_weight);
-            if !self.contacts.renew((&self.problem, &self.mesh), [&pose.x, &self.motion.x], same) {
+            let same = |change: f64, most: f64| change <= larger(RUB_CHANGE * most, self.meshing.bar_weight);
+            if !self.contacts.renew(&self.problem, &self.mesh, [&pose.x, &self.motion.x], same) {
                 break;
             }
             let more = self.grip_and_minimise(pose)?;
@@ -328,10 +347,12 @@ impl Dynamics {
         Ok(done)
     }
 
-    /// Minimises until the law holds at every sliding node: what slips, and with what friction, is part of the step, not found out after it.
+    /// Minimises until the law holds at every sliding node: what slips, and with what friction, is
+    /// part of the step, not found out after it.
     ///
-    /// All grips that are wrong are changed at once while that makes them fewer; then one at a time (J. Júdice, F. Pires, "A block principal
-    /// pivoting algorithm for large-scale strictly monotone linear complementarity problems", Computers & Operations Research 21, 1994).
+    /// All grips that are wrong are changed at once while that makes them fewer; then one at a time
+    /// (J. Júdice, F. Pires, "A block principal pivoting algorithm for large-scale strictly
+    /// monotone linear complementarity problems", Computers & Operations Research 21, 1994).
     fn grip_and_minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
         let mut done = self.minimise(pose)?;
         let sliding = self.mesh.sliding.iter().flatten().count();
@@ -350,11 +371,12 @@ impl Dynamics {
             done = Converged { iterations: done.iterations + more.iterations, ..more };
         }
         let node = self.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
-        Err(Failure { node, residual: done.residual, cause: NOT_FOUND })
+        Err(Failure { node, residual: done.residual, cause: FailureCause::StickSlipUndecided })
     }
 
-    /// Unbalanced force to reach in a step with inertia, N: not below the rounding of m a² (x − x̃). That grows as the
-    /// step shrinks: 5 kg at 20 m and 1/4000 s know their force to 1e-6 N only.
+    /// Unbalanced force to reach in a step with inertia, N: not below the rounding of m a² (x −
+    /// x̃). That grows as the step shrinks: 5 kg at 20 m and 1/4000 s know their force to 1e-6 N
+    /// only.
     fn rounded_tolerance(&self) -> f64 {
         let mut tolerance = self.task.tolerance;
         for (inertia, x) in self.task.inertia.iter().zip(&self.motion.x) {
@@ -368,13 +390,14 @@ impl Dynamics {
 
     /// Inertia and damping of a step of `h` (s).
     ///
-    /// Where velocities jump between two steps (a plastic impulse, a change of the mesh) the rate of a length has no history: two steps
-    /// extrapolate through the jump and add ½ EA τ Δv/l₀ to the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may
-    /// touch something is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a small force, ¾ τ/h of that which
-    /// BDF2 makes of a vibration.
+    /// Where velocities jump between two steps (a plastic impulse, a change of the mesh) the rate
+    /// of a length has no history: two steps extrapolate through the jump and add ½ EA τ Δv/l₀ to
+    /// the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may touch something
+    /// is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a small force,
+    /// ¾ τ/h of that which BDF2 makes of a vibration.
     fn set_inertia(&mut self, weights: Weights, h: f64) {
         let Weights { now, past, a, .. } = weights;
-        let rubs = !(self.meets_nothing() && self.never_slides && self.problem.floor_friction.is_none());
+        let rubs = !(self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none());
         let jumps = !self.meets_nothing();
         let (m, task, mesh) = (&self.motion, &mut self.task, &self.mesh);
         for k in 0..m.x.len() {
@@ -392,12 +415,12 @@ impl Dynamics {
             let chord = predicted[e + 1] - predicted[e];
             (self.problem.linear_density * length * a * a, chord)
         }));
-        for (s, node) in self.problem.supports.iter().zip(&self.support_node) {
+        for (s, node) in self.problem.supports.iter().zip(&self.meshing.support_node) {
             if let Some(k) = node {
                 task.inertia[*k] += s.mass * a * a;
             }
         }
-        for (hand, node) in m.hands.iter().zip(&self.support_node) {
+        for (hand, node) in m.hands.iter().zip(&self.meshing.support_node) {
             let (Some(hand), Some(k)) = (hand, *node) else { continue };
             let (stiffness, at) = hand.pull(h, m.x[k]);
             let (inertia, both) = (task.inertia[k], task.inertia[k] + stiffness);
@@ -423,7 +446,7 @@ impl Dynamics {
 
     /// The present pose.
     pub(in crate::model::fem) fn still_pose(&mut self) -> Pose {
-        let mut pose = std::mem::take(&mut self.pose);
+        let mut pose = std::mem::take(&mut self.solver.pose);
         pose.x.clear();
         pose.x.extend_from_slice(self.task.begins());
         pose.slide.clear();

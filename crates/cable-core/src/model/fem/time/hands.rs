@@ -1,4 +1,5 @@
-//! Hands draw supports in a step with inertia: by a spring, which is a force on a node, or the support itself.
+//! Hands draw supports in a step with inertia: by a spring, which is a force on a node, or the
+//! support itself.
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;
@@ -12,18 +13,18 @@ impl Dynamics {
     pub(in crate::model::fem) fn follow_hands(&mut self, h: f64, dragged: &[Option<Vec2>]) {
         for (k, target) in dragged.iter().enumerate() {
             let (Some(target), Some(at)) = (*target, self.support_position(k)) else { continue };
-            let fastest = self.hand_speed;
+            let fastest = self.hand_drive.hand_speed;
             if is_led(&self.problem, k) {
-                let left = self.due - self.motion.time;
+                let left = self.pacing.due - self.motion.time;
                 let f = self.motion.followers[k].get_or_insert(SmoothedTarget::at_rest(at));
                 f.lead(target, if left > h { h / left } else { 1.0 }, h);
                 continue;
             }
-            let node = self.support_node[k].filter(|_| self.problem.supports[k].holds_from(self.motion.time));
-            if let Some(node) = node.filter(|_| self.pulled[k]) {
+            let node = self.meshing.support_node[k].filter(|_| self.problem.supports[k].holds_from(self.motion.time));
+            if let Some(node) = node.filter(|_| self.hand_drive.pulled[k]) {
                 let known = self.motion.hands[k];
                 let mut hand = known.unwrap_or_else(|| {
-                    Hand::grip(&self.problem, self.hand_stiffness, (at, self.holding_force(k, node)))
+                    Hand::grip(&self.problem, self.hand_drive.hand_stiffness, at, self.holding_force(k, node))
                 });
                 hand.follow(target, h, fastest);
                 (self.motion.hands[k], self.motion.followers[k]) = (Some(hand), None);
@@ -59,17 +60,17 @@ impl Dynamics {
     /// Keeps the force of the cable on what hands hold, as a pose balances it.
     pub(in crate::model::fem) fn note_hands(&mut self, pose: &Pose) {
         for &(k, stiffness, at) in &self.task.hands {
-            self.reaction[k] = (pose.x[k] - at) * stiffness;
+            self.answers.reaction[k] = (pose.x[k] - at) * stiffness;
         }
     }
 
     /// What is to be said of hands that lag, and of supports that lag behind them.
     pub(in crate::model::fem) fn hand_warnings(&self) -> impl Iterator<Item = Warning> {
         self.motion.hands.iter().enumerate().filter_map(|(k, hand)| {
-            let (hand, node) = (hand.as_ref()?, self.support_node[k]?);
-            let fastest = self.hand_speed;
-            let support = (self.problem.as_ref(), k, self.mesh.arc_length[node]);
-            hand.warning(support, (self.motion.x[node], -self.reaction[node]), fastest)
+            let (hand, node) = (hand.as_ref()?, self.meshing.support_node[k]?);
+            let fastest = self.hand_drive.hand_speed;
+            let (at, force) = (self.motion.x[node], -self.answers.reaction[node]);
+            hand.warning(&self.problem, k, self.mesh.arc_length[node], at, force, fastest)
         })
     }
 }

@@ -4,8 +4,9 @@
 //! ```text
 //! Δp = F/a + (past − older) Δp₋ − older Δp₌
 //! ```
-//! so that the impulse of each kind of force is filtered as their sum is. What a round does to the cable that runs over it is what bends its way:
-//! the pull of the bars beside it, and the change of the momentum of what lies on it and of what goes over it.
+//! so that the impulse of each kind of force is filtered as their sum is. What a round does to the
+//! cable that runs over it is what bends its way: the pull of the bars beside it, and the change of
+//! the momentum of what lies on it and of what goes over it.
 
 use crate::contact::friction;
 use crate::math::Vec2;
@@ -68,7 +69,9 @@ fn kind_of(seat: Seat) -> usize {
 
 /// Mass that moves with a node, kg.
 pub(in crate::model::fem) fn mass_with(
-    (problem, mesh, support_node): (&Problem, &Mesh, &[Option<usize>]),
+    problem: &Problem,
+    mesh: &Mesh,
+    support_node: &[Option<usize>],
     node: usize,
 ) -> f64 {
     let lumps = problem.supports.iter().zip(support_node).filter(|(_, k)| **k == Some(node));
@@ -112,7 +115,7 @@ impl Dynamics {
 
     /// Mass that moves with a node, kg.
     pub(in crate::model::fem) fn node_mass(&self, node: usize) -> f64 {
-        mass_with((&self.problem, &self.mesh, &self.support_node), node)
+        mass_with(&self.problem, &self.mesh, &self.meshing.support_node, node)
     }
 
     /// Momentum of cable and lumps, kg m/s.
@@ -131,7 +134,7 @@ impl Dynamics {
             }
         }
         sum *= self.problem.linear_density;
-        for (s, node) in self.problem.supports.iter().zip(&self.support_node) {
+        for (s, node) in self.problem.supports.iter().zip(&self.meshing.support_node) {
             if let Some(v) = node.and_then(|k| v.get(k)).filter(|_| s.mass > 0.0) {
                 sum += v * s.mass;
             }
@@ -152,7 +155,7 @@ impl Dynamics {
     /// Half of it runs each way.
     fn slid_by(&self, w: &[f64], counts: impl Fn(Seat) -> bool) -> Vec2 {
         let mut sum = Vec2::zeros();
-        if self.never_slides {
+        if self.meshing.never_slides {
             return sum;
         }
         let (mesh, x) = (&self.mesh, &self.motion.x);
@@ -168,7 +171,8 @@ impl Dynamics {
         sum
     }
 
-    /// The forces that a step balanced at a pose, N: on what moves with its material, and the weight of what does not less what carries that.
+    /// The forces that a step balanced at a pose, N: on what moves with its material, and the
+    /// weight of what does not less what carries that.
     pub(in crate::model::fem) fn forces_in_step(&self, pose: &Pose) -> Kinds {
         let (problem, mesh, task, x) = (&self.problem, &self.mesh, &self.task, &pose.x);
         let gravity =
@@ -177,26 +181,26 @@ impl Dynamics {
         sum[WEIGHT] = problem.weight * problem.length;
         sum[LOADS] = (task.body - problem.weight) * problem.length;
         let to = task.to;
-        for (s, _) in problem.supports.iter().zip(&self.support_node).filter(|(_, node)| node.is_some()) {
+        for (s, _) in problem.supports.iter().zip(&self.meshing.support_node).filter(|(_, node)| node.is_some()) {
             sum[WEIGHT] += gravity * s.mass;
             if s.kind == SupportKind::Load {
                 sum[LOADS] += s.force.at(to);
             }
         }
-        for (_, force) in &self.loads {
+        for (_, force) in &self.meshing.loads {
             sum[LOADS] += force.at(to);
         }
         for (k, _) in mesh.held.iter().enumerate().filter(|(_, held)| **held) {
-            sum[SUPPORTS] -= self.reaction[k];
+            sum[SUPPORTS] -= self.answers.reaction[k];
         }
         for &(k, stiffness, at) in &task.hands {
             sum[SUPPORTS] += (at - x[k]) * stiffness;
         }
-        if self.freely {
+        if self.meshing.freely {
             return sum;
         }
         let moves = |k: usize| mesh.sliding[k].is_none();
-        for touch in self.memory.0.iter().flat_map(|m| &m.touches) {
+        for touch in self.solver.memory.0.iter().flat_map(|m| &m.touches) {
             sum[CONTACTS] += touch.pair.gap.normal * (touch.load(&self.contacts.barrier) * touch.felt(moves));
         }
         for rub in &self.contacts.rubs {
@@ -211,30 +215,32 @@ impl Dynamics {
             let Some(node) = &mesh.sliding[k] else { continue };
             let round = &mut sum[kind_of(node.seat)];
             if moves(k - 1) {
-                *round += mesh.path(k - 1, x).direction * bar_energy::pull_on((mesh, task), k - 1, x, &pose.slide);
+                *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, task, k - 1, x, &pose.slide);
             }
             if moves(k + 1) {
-                *round -= mesh.path(k, x).direction * bar_energy::pull_on((mesh, task), k, x, &pose.slide);
+                *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, task, k, x, &pose.slide);
             }
             for (e, side) in [(k - 1, 1), (k, 0)] {
-                *round -= bar_weight::on_ends(mesh, e, (x, Some(&pose.slide)), task.body)[side];
+                *round -= bar_weight::on_ends(mesh, e, x, Some(&pose.slide), task.body)[side];
             }
         }
         sum
     }
 
-    /// Adds the impulses of a step of these weights in which forces (N) were balanced: the step is made, contacts are not yet
-    /// made plastic. `slid` is the momentum of what lay on rounds before (kg m/s), `slide` how far it slid (m).
+    /// Adds the impulses of a step of these weights in which forces (N) were balanced: the step is
+    /// made, contacts are not yet made plastic. `slid` is the momentum of what lay on rounds before
+    /// (kg m/s), `slide` how far it slid (m).
     pub(in crate::model::fem) fn account_for_step(
         &mut self,
         weights: Weights,
         forces: Kinds,
-        (slid, slide): ([Vec2; 2], &[f64]),
+        slid: [Vec2; 2],
+        slide: &[f64],
     ) {
         let now = self.sliding_momentum();
         let mut over = [now[0] - slid[0], now[1] - slid[1]];
         let mut history = [Vec2::zeros(); 2];
-        if !self.never_slides {
+        if !self.meshing.never_slides {
             let (mesh, m) = (&self.mesh, &self.motion);
             for (k, node) in mesh.sliding.iter().enumerate() {
                 let Some(node) = node else { continue };
@@ -263,7 +269,8 @@ impl Dynamics {
         account.late = [Vec2::zeros(); 4];
     }
 
-    /// A plastic contact of the step of velocities gave the cable so much, and of what the step's contact forces gave it so much is not of its history, N s.
+    /// A plastic contact of the step of velocities gave the cable so much, and of what the step's
+    /// contact forces gave it so much is not of its history, N s.
     pub(in crate::model::fem) fn account_for_landing(&mut self, given: Vec2, forgotten: Vec2) {
         let account = &mut self.motion.account;
         account.add(CONTACTS, given);
@@ -282,7 +289,8 @@ impl Dynamics {
         (account.reached, account.to) = (reached, self.motion.time);
     }
 
-    /// A change of the mesh in which a seat takes hold of material or lets it go: what that does to the momentum it does.
+    /// A change of the mesh in which a seat takes hold of material or lets it go: what that does to
+    /// the momentum it does.
     pub(in crate::model::fem) fn as_of<R>(&mut self, seat: Seat, change: impl FnOnce(&mut Self) -> R) -> R {
         let history = |d: &Self| d.moved_by(&d.motion.v) - d.moved_by(&d.motion.v_before);
         let (before, known) = (self.momentum(), history(self));

@@ -1,10 +1,12 @@
-//! This module continues from a solution, of another model or an earlier instant, and keeps what friction holds.
+//! This module continues from a solution, of another model or an earlier instant, and keeps what
+//! friction holds.
 //!
-//! A [`State`] says where a cable is; an answer also says what tension it has. Between two places of the cable with forces
-//! F₁ = T₁t₁ and F₂ = T₂t₂ the obstacles must push with C = F₁ − F₂ − bΔs: N = C·n is the normal force there and C·t friction.
-//! Friction here is a spring of the length ε to an anchor (`contact/friction.rs`), of the force μN(2y/ε − y|y|/ε²): the
-//! sliding y that gives the friction the answer had is what a contact remembers from then on. Corners and posts get their sliding
-//! nodes at once, with the material the answer has there.
+//! A [`State`] says where a cable is; an answer also says what tension it has. Between two places
+//! of the cable with forces F₁ = T₁t₁ and F₂ = T₂t₂ the obstacles must push with C = F₁ − F₂ − bΔs:
+//! N = C·n is the normal force there and C·t friction. Friction here is a spring of the length ε to
+//! an anchor (`contact/friction.rs`), of the force μN(2y/ε − y|y|/ε²): the sliding y that gives the
+//! friction the answer had is what a contact remembers from then on. Corners and posts get their
+//! sliding nodes at once, with the material the answer has there.
 
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
@@ -12,7 +14,7 @@ use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::dynamics::REACH;
 use crate::model::fem::equilibrium::initial_guess::push_out;
 use crate::model::fem::mesh::adapt::LEAST_TURN;
-use crate::model::fem::mesh::arc_nodes::{SMALL, WIDE, rotate};
+use crate::model::fem::mesh::arc_nodes::{MARKED_ARC_LIMIT, ONE_MARK_BAR_FRACTION, rotate};
 use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, StickSlip, round_of};
 use crate::model::fem::mesh::tangent_path::{End, angle_between};
 use crate::model::fem::system::friction_state::ContactPair;
@@ -28,8 +30,8 @@ const ON_ROUND: f64 = 1e-3;
 /// Turn (rad) that one mark can carry: the way to it must not go round the other side.
 const MOST: f64 = 2.8;
 
-/// Marks on a round that is taken over, for each bar that would lie on it. Fewer: tension jumps by more (1.2e-3 of the greatest with 1 round a post of
-/// 450°, 7e-4 with 1.5); more: more nodes.
+/// Marks on a round that is taken over, for each bar that would lie on it. Fewer: tension jumps by
+/// more (1.2e-3 of the greatest with 1 round a post of 450°, 7e-4 with 1.5); more: more nodes.
 const MARKS: f64 = 1.5;
 
 /// Bars beside a new sliding node are at least this part of an even one.
@@ -39,7 +41,8 @@ const LEAST_BAR: f64 = 0.35;
 struct SolutionCurve<'a>(&'a [Node]);
 
 impl SolutionCurve<'_> {
-    /// The nodes on either side of a material point (m), and how far it is from the first to the second.
+    /// The nodes on either side of a material point (m), and how far it is from the first to the
+    /// second.
     fn around(&self, s: f64) -> Option<(&Node, &Node, f64)> {
         let nodes = self.0;
         let k = nodes.partition_point(|n| n.arc_length_m <= s).clamp(1, nodes.len().max(2) - 1);
@@ -52,8 +55,8 @@ impl SolutionCurve<'_> {
         self.around(s).map_or(0.0, |(a, b, f)| a.tension_n + (b.tension_n - a.tension_n) * f)
     }
 
-    /// Position, m: on the parabola of curvature and strain between two nodes. Where an arc begins the curvature jumps; the
-    /// lesser counts.
+    /// Position, m: on the parabola of curvature and strain between two nodes. Where an arc begins
+    /// the curvature jumps; the lesser counts.
     fn place(&self, s: f64) -> Option<Vec2> {
         let (a, b, f) = self.around(s)?;
         let (from, to) = (a.at(), b.at());
@@ -105,8 +108,8 @@ impl Dynamics {
         time_s: f64,
         dragged: &[Option<Vec2>],
     ) -> Result<(), SolveError> {
-        let told = SolutionCurve(&answer.nodes);
-        let state = self.as_told(&told, &State::of_nodes(&answer.nodes, time_s));
+        let curve = SolutionCurve(&answer.nodes);
+        let state = self.state_of_solution(&curve, &State::of_nodes(&answer.nodes, time_s));
         self.set_state(&state)?;
         let moves = answer.nodes.iter().any(|n| n.vx_m_per_s != 0.0 || n.vy_m_per_s != 0.0);
         let touches = !self.problem.world.is_empty() || self.problem.floor_friction.is_some();
@@ -114,15 +117,15 @@ impl Dynamics {
             return Ok(());
         }
         self.save();
-        self.lie_as_told(&state);
-        self.seat_as_told(&told);
+        self.restore_positions(&state);
+        self.adopt_sliding_nodes(&curve);
         let mut x = std::mem::take(&mut self.motion.x);
         push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
         self.motion.x = x;
-        self.stretch_as_told(&told);
+        self.adopt_stretch(&curve);
         self.renew_task();
-        self.hold_as_told(&told);
-        self.lie_on_floor_as_told(&told);
+        self.adopt_friction(&curve);
+        self.adopt_floor_friction(&curve);
         if self.rest_step(time_s, dragged).is_ok() {
             self.rested = true;
         } else {
@@ -132,22 +135,23 @@ impl Dynamics {
     }
 
     /// A state with the nodes of this mesh where the answer has them.
-    fn as_told(&self, told: &SolutionCurve<'_>, whole: &State) -> State {
+    fn state_of_solution(&self, curve: &SolutionCurve<'_>, whole: &State) -> State {
         let mut s = whole.arc_length_m.clone();
         s.extend(&self.mesh.arc_length);
         s.sort_by(f64::total_cmp);
         s.dedup();
-        let at = |s: &f64| told.place(*s).or_else(|| whole.position_at(*s)).unwrap_or_default();
+        let at = |s: &f64| curve.place(*s).or_else(|| whole.position_at(*s)).unwrap_or_default();
         State {
             time_s: whole.time_s,
             position_m: s.iter().map(at).collect(),
             velocity_m_per_s: s.iter().map(|s| whole.velocity_at(*s).unwrap_or_default()).collect(),
             arc_length_m: s,
+            in_motion: whole.in_motion,
         }
     }
 
     /// Nodes of the cable where they were before they were pushed clear of obstacles.
-    fn lie_as_told(&mut self, state: &State) {
+    fn restore_positions(&mut self, state: &State) {
         for k in 0..self.mesh.nodes() {
             if let (None, Some(at)) = (self.mesh.sliding[k], state.position_at(self.mesh.arc_length[k])) {
                 self.motion.x[k] = at;
@@ -156,23 +160,23 @@ impl Dynamics {
     }
 
     /// Puts sliding nodes on the rounds that the answer lies on.
-    fn seat_as_told(&mut self, told: &SolutionCurve<'_>) {
-        if !self.slides {
+    fn adopt_sliding_nodes(&mut self, curve: &SolutionCurve<'_>) {
+        if !self.meshing.slides {
             return;
         }
-        for arc in self.arcs_told(told) {
-            if self.bends_visibly(told.tension(0.5 * (arc.material[0] + arc.material[1]))) {
+        for arc in self.arcs_of_solution(curve) {
+            if self.bends_visibly(curve.tension(0.5 * (arc.material[0] + arc.material[1]))) {
                 continue;
             }
             let round = arc.node.end.radius * arc.turn;
-            let many = 0.5 * arc.turn > WIDE && 0.5 * round > SMALL * self.even();
+            let many = 0.5 * arc.turn > MARKED_ARC_LIMIT && 0.5 * round > ONE_MARK_BAR_FRACTION * self.even();
             let bars = if many { (MARKS * round / self.even()).round() } else { 1.0 };
-            let marks = (arc.turn / if many { WIDE } else { MOST }).ceil().max(bars);
+            let marks = (arc.turn / if many { MARKED_ARC_LIMIT } else { MOST }).ceil().max(bars);
             for i in 0..marks as usize {
                 let part = (i as f64 + 0.5) / marks;
                 let end = arc.node.end;
                 let mark = rotate(end.mark, end.sense * part * arc.turn);
-                let at = told.at_turn(&arc, part * arc.turn);
+                let at = curve.at_turn(&arc, part * arc.turn);
                 self.seat(at, SlidingNode { end: End { mark, ..end }, ..arc.node });
             }
             self.clear_of_nodes(arc.material);
@@ -209,10 +213,10 @@ impl Dynamics {
     }
 
     /// The rounds that the answer lies on, in order.
-    fn arcs_told(&self, told: &SolutionCurve<'_>) -> Vec<Arc> {
+    fn arcs_of_solution(&self, curve: &SolutionCurve<'_>) -> Vec<Arc> {
         let geometry = self.problem.world.geometry();
         let mut out: Vec<Arc> = Vec::new();
-        for (i, n) in told.0.iter().enumerate() {
+        for (i, n) in curve.0.iter().enumerate() {
             let within = ON_ROUND * self.problem.radius;
             let Some(gap) = self.problem.world.signed_gap(n.at(), within).filter(|g| g.gap_m.abs() <= within) else {
                 continue;
@@ -240,7 +244,7 @@ impl Dynamics {
                     balanced: None,
                 },
             };
-            arc.grow(told, radius - clearance);
+            arc.grow(curve, radius - clearance);
             if arc.turn > LEAST_TURN {
                 out.push(arc);
             }
@@ -248,10 +252,11 @@ impl Dynamics {
         out
     }
 
-    /// Gives every bar between two nodes in contact the material that makes its tension that of the answer: rounds are the
-    /// barrier's reach wider than the answer's, which between two corners that hold would be a great strain. What that takes is
-    /// given by the spans on either side as they can: a loose end all of it, two spans by their lengths.
-    fn stretch_as_told(&mut self, told: &SolutionCurve<'_>) {
+    /// Gives every bar between two nodes in contact the material that makes its tension that of the
+    /// answer: rounds are the barrier's reach wider than the answer's, which between two corners
+    /// that hold would be a great strain. What that takes is given by the spans on either side as
+    /// they can: a loose end all of it, two spans by their lengths.
+    fn adopt_stretch(&mut self, curve: &SolutionCurve<'_>) {
         let on = |d: &Self, k: usize| {
             d.mesh.sliding[k].is_some()
                 || (d.removable(k) && d.problem.world.signed_gap(d.motion.x[k], 2.0 * REACH).is_some())
@@ -265,7 +270,7 @@ impl Dynamics {
                 continue;
             };
             let next = (last + 1..nodes - 1).find(|&k| on(self, k)).unwrap_or(nodes - 1);
-            self.stretch_run(told, [first, last], next);
+            self.stretch_run(curve, [first, last], next);
             first = last + 1;
         }
         for e in 0..self.mesh.rest_length.len() {
@@ -275,12 +280,13 @@ impl Dynamics {
         self.motion.s_before.clone_from(&self.mesh.arc_length);
     }
 
-    /// The same for nodes in contact one after the other; `next` is the next that is held or in contact.
-    fn stretch_run(&mut self, told: &SolutionCurve<'_>, [first, last]: [usize; 2], next: usize) {
+    /// The same for nodes in contact one after the other; `next` is the next that is held or in
+    /// contact.
+    fn stretch_run(&mut self, curve: &SolutionCurve<'_>, [first, last]: [usize; 2], next: usize) {
         let s = self.mesh.arc_length.clone();
         let mut lengths = vec![0.0; last + 1 - first];
         for e in first..last {
-            let strain = told.tension(0.5 * (s[e] + s[e + 1])) / self.mesh.axial_stiffness;
+            let strain = curve.tension(0.5 * (s[e] + s[e + 1])) / self.mesh.axial_stiffness;
             let length = self.mesh.path(e, &self.motion.x).length / (self.mesh.thermal_stretch * (1.0 + strain));
             lengths[e + 1 - first] = lengths[e - first] + length;
         }
@@ -305,8 +311,9 @@ impl Dynamics {
         }
     }
 
-    /// Plan view: every node remembers the sliding with which the floor does what the answer asks for there, as far as it can.
-    fn lie_on_floor_as_told(&mut self, told: &SolutionCurve<'_>) {
+    /// Plan view: every node remembers the sliding with which the floor does what the answer asks
+    /// for there, as far as it can.
+    fn adopt_floor_friction(&mut self, curve: &SolutionCurve<'_>) {
         if self.problem.floor_friction.is_none() {
             return;
         }
@@ -317,8 +324,8 @@ impl Dynamics {
             let high = 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]);
             let asked = match self.mesh.sliding[k] {
                 // What holds there is the floor first, and the round for the rest.
-                Some(_) => Some(Vec2::new(told.tension(low) - told.tension(high), 0.0)),
-                None => match (told.force(low, near), told.force(high, near)) {
+                Some(_) => Some(Vec2::new(curve.tension(low) - curve.tension(high), 0.0)),
+                None => match (curve.force(low, near), curve.force(high, near)) {
                     (Some(before), Some(after)) => Some(after - before + self.task.body * (high - low)),
                     _ => None,
                 },
@@ -331,7 +338,7 @@ impl Dynamics {
     }
 
     /// Every contact remembers the sliding that gives the friction of the answer.
-    fn hold_as_told(&mut self, told: &SolutionCurve<'_>) {
+    fn adopt_friction(&mut self, curve: &SolutionCurve<'_>) {
         let mut touches: Vec<ContactPair> = Vec::new();
         self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
         let s = &self.mesh.arc_length;
@@ -343,7 +350,7 @@ impl Dynamics {
             } else {
                 (0.5 * (s[k] + s[k.saturating_sub(1)]), 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]))
             };
-            let (Some(before), Some(after)) = (told.force(low, near), told.force(high, near)) else { continue };
+            let (Some(before), Some(after)) = (curve.force(low, near), curve.force(high, near)) else { continue };
             let pushed = before - after - self.task.body * (high - low);
             let normal = pushed.dot(&touch.pair.gap.normal);
             let limit = touch.pair.gap.friction * normal;
@@ -370,13 +377,13 @@ struct Arc {
 
 impl Arc {
     /// Takes in all nodes before and after that lie on a round of this radius (m).
-    fn grow(&mut self, told: &SolutionCurve<'_>, radius: f64) {
+    fn grow(&mut self, curve: &SolutionCurve<'_>, radius: f64) {
         let center = self.node.end.center;
         let lies = |n: &Node| ((n.at() - center).norm() - radius).abs() <= ON_ROUND * radius;
-        let before = told.0[..self.nodes[0]].iter().rev().take_while(|n| lies(n)).count();
-        let after = told.0[self.nodes[1]..].iter().skip(1).take_while(|n| lies(n)).count();
+        let before = curve.0[..self.nodes[0]].iter().rev().take_while(|n| lies(n)).count();
+        let after = curve.0[self.nodes[1]..].iter().skip(1).take_while(|n| lies(n)).count();
         self.nodes = [self.nodes[0] - before, self.nodes[1] + after];
-        let on = &told.0[self.nodes[0]..=self.nodes[1]];
+        let on = &curve.0[self.nodes[0]..=self.nodes[1]];
         let whole: f64 = on.windows(2).map(|n| angle_between(n[0].at() - center, n[1].at() - center)).sum();
         self.turn = whole.abs();
         self.material = [on[0].arc_length_m, on[on.len() - 1].arc_length_m];

@@ -1,4 +1,5 @@
-//! This module continues from a state of another mesh or model, and threads the cable through its pulleys.
+//! This module continues from a state of another mesh or model, and threads the cable through its
+//! pulleys.
 
 use std::sync::Arc;
 
@@ -12,11 +13,13 @@ use crate::model::fem::mesh::tangent_path::End;
 use crate::scene::PulleySide;
 use crate::state::State;
 
-/// Part of a bar that a new node keeps away from its ends. Less: bars without mass; more: corners beside a node are still cut off.
+/// Part of a bar that a new node keeps away from its ends. Less: bars without mass; more: corners
+/// beside a node are still cut off.
 const LEAST_PART: f64 = 0.05;
 
 impl Dynamics {
-    /// Puts a sliding node at every pulley: where `state` has the cable nearest to it, else where the layout lays it.
+    /// Puts a sliding node at every pulley: where `state` has the cable nearest to it, else where
+    /// the layout lays it.
     pub(in crate::model::fem) fn thread_pulleys(&mut self, state: Option<&State>) {
         let problem = Arc::clone(&self.problem);
         let layout = Layout::new(&problem, self.motion.time, &[], &[]);
@@ -24,7 +27,7 @@ impl Dynamics {
             let (Hold::Pulley(wheel), Some(support)) = (stop.hold, stop.support) else { continue };
             let s = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or(stop.arc_length);
             let k = self.mesh.arc_length.partition_point(|&a| a <= s).clamp(1, self.mesh.nodes() - 1);
-            let room = 0.05 * problem.length / self.even_bars as f64;
+            let room = 0.05 * problem.length / self.meshing.even_bars as f64;
             let (low, high) = (self.mesh.arc_length[k - 1] + room, self.mesh.arc_length[k] - room);
             let at = if low < high { s.clamp(low, high) } else { 0.5 * (low + high) };
             let passing = self.motion.x[k] - self.motion.x[k - 1];
@@ -51,7 +54,8 @@ impl Dynamics {
     /// Takes over a state (from statics: at rest).
     ///
     /// # Errors
-    /// When a number is not finite, and `Buried` when it is so far inside an obstacle that nodes cannot be pushed out.
+    /// When a number is not finite, and `Buried` when it is so far inside an obstacle that nodes
+    /// cannot be pushed out.
     pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         if let Some(e) = state.refuse_non_finite() {
             return Err(e);
@@ -91,7 +95,7 @@ impl Dynamics {
             self.thread_pulleys(Some(state));
         }
         // What moves goes on from where it is; a state at rest is brought to rest on this mesh.
-        let still = self.motion.v.iter().all(|v| v.norm() == 0.0);
+        let still = !state.in_motion && self.motion.v.iter().all(|v| v.norm() == 0.0);
         if !same && !still {
             self.follow_corners(state);
         }
@@ -108,8 +112,9 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Bars that cut off by more than the cable's radius what the state leads round get a node where the state is farthest from them: from
-    /// there inside nothing tells on which side of a corner they were, and nothing could push them out.
+    /// Bars that cut off by more than the cable's radius what the state leads round get a node
+    /// where the state is farthest from them: from there inside nothing tells on which side of a
+    /// corner they were, and nothing could push them out.
     fn follow_corners(&mut self, state: &State) {
         let (mut e, mut left) = (0, state.arc_length_m.len());
         while e + 1 < self.mesh.nodes() {
@@ -125,7 +130,8 @@ impl Dynamics {
         }
     }
 
-    /// Arc length and place (m) of the node of a state that is farthest from a bar, if that is more than the cable's radius.
+    /// Arc length and place (m) of the node of a state that is farthest from a bar, if that is more
+    /// than the cable's radius.
     fn farthest(&self, e: usize, state: &State) -> Option<(f64, Vec2)> {
         let (s, x) = (&self.mesh.arc_length, &self.motion.x);
         let (from, along) = (x[e], (x[e + 1] - x[e]).try_normalize(0.0)?);

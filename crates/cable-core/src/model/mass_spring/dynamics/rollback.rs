@@ -1,4 +1,5 @@
-//! A rollback keeps the state before a step, in the same memory step after step, to return to it where the step fails.
+//! A rollback keeps the state before a step, in the same memory step after step, to return to it
+//! where the step fails.
 
 use crate::model::mass_spring::MassSpringModel;
 
@@ -35,53 +36,15 @@ impl MassSpringModel {
 
     /// Becomes a copy without new memory where there is room.
     fn copy_from(&mut self, other: &Self) {
-        macro_rules! copy {
-            ($($field:ident),*) => {{
-                // All fields are named, so that none is forgotten.
-                let Self { $($field: _),*, problem, kept: _ } = other;
-                $(self.$field.clone_from(&other.$field);)*
-                self.problem.clone_from(problem);
-            }};
-        }
-        copy!(
-            time_s,
-            due_s,
-            s,
-            rest,
-            span,
-            mass,
-            node_of,
-            load_node,
-            x,
-            v,
-            behind_s,
-            f,
-            tension,
-            held,
-            let_go,
-            held_acceleration,
-            drag,
-            clearance,
-            touches,
-            gaps,
-            damping_time_s,
-            cost,
-            laid,
-            followers,
-            pulled,
-            hands,
-            even,
-            share,
-            lump,
-            pulleys,
-            pulley_at,
-            anchors,
-            warnings,
-            settings,
-            driven,
-            beside,
-            account,
-            errors
-        );
+        // All fields are named, so that none is forgotten.
+        let Self { problem, settings, clock, chain, drives, contacts, wheels, report, laid, kept: _ } = other;
+        self.problem.clone_from(problem);
+        (self.settings, self.laid) = (*settings, *laid);
+        self.clock.clone_from(clock);
+        self.chain.clone_from(chain);
+        self.drives.clone_from(drives);
+        self.contacts.clone_from(contacts);
+        self.wheels.clone_from(wheels);
+        self.report.clone_from(report);
     }
 }

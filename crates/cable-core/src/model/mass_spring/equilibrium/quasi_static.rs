@@ -1,22 +1,25 @@
-//! A quasi-static step moves the supports a little; the chain comes to rest there, and friction remembers.
+//! A quasi-static step moves the supports a little; the chain comes to rest there, and friction
+//! remembers.
 
 use crate::error::SolveError;
 use crate::math::Vec2;
+use crate::model::mass_spring::Anchors;
 use crate::model::mass_spring::MassSpringModel;
 
-/// Longest way of a support between two resting places, of the even length (friction is measured from where the material
-/// was, and a longer way leaves that element) and of the cable's radius where there is something to hit (a longer one
-/// stretches the end so far that Newton's first steps draw a node in under a corner, where it locks).
-const MOST_WAY: f64 = 0.5;
+/// Longest way of a support between two resting places, of the even length (friction is measured
+/// from where the material was, and a longer way leaves that element) and of the cable's radius
+/// where there is something to hit (a longer one stretches the end so far that Newton's first steps
+/// draw a node in under a corner, where it locks).
+const SUPPORT_WAY_LENGTHS: f64 = 0.5;
 /// Most resting places in a step, and the shortest part of one that is tried after a failure.
 const MOST_PARTS: f64 = 1e4;
-const SHORTEST: f64 = 1.0 / 1024.0;
+const SHORTEST_PART: f64 = 1.0 / 1024.0;
 
 impl MassSpringModel {
     pub(in crate::model::mass_spring) fn creep(&mut self, dt_s: f64) -> Result<(), SolveError> {
-        let (begin, end) = (self.time_s, self.time_s + dt_s);
-        let from = self.x.clone();
-        let nodes: Vec<(usize, usize)> = self.node_of.iter().copied().enumerate().collect();
+        let (begin, end) = (self.clock.time_s, self.clock.time_s + dt_s);
+        let from = self.chain.x.clone();
+        let nodes: Vec<(usize, usize)> = self.chain.node_of.iter().copied().enumerate().collect();
         let mut way: f64 = 0.0;
         for &(k, node) in &nodes {
             let support = &self.problem.supports[k];
@@ -25,51 +28,52 @@ impl MassSpringModel {
             for j in 1..=WAY_SAMPLES {
                 let time = begin + dt_s * f64::from(j) / f64::from(WAY_SAMPLES);
                 let Some((at, _)) = support.position_at(time) else { break };
-                let at = self.drag[k].unwrap_or(at);
+                let at = self.drives.drag[k].unwrap_or(at);
                 way += (at - last).norm();
                 last = at;
             }
         }
-        let within = if self.problem.world.is_empty() { self.even } else { self.even.min(self.problem.radius) };
-        let parts = if self.touches_something() || !self.pulleys.is_empty() {
-            (way / (MOST_WAY * within)).ceil().clamp(1.0, MOST_PARTS)
+        let within =
+            if self.problem.world.is_empty() { self.chain.even } else { self.chain.even.min(self.problem.radius) };
+        let parts = if self.touches_something() || !self.wheels.pulleys.is_empty() {
+            (way / (SUPPORT_WAY_LENGTHS * within)).ceil().clamp(1.0, MOST_PARTS)
         } else {
             1.0
         };
-        let targets = self.drag.clone();
+        let targets = self.drives.drag.clone();
         let starts: Vec<Vec2> = nodes.iter().map(|&(_, n)| from[n]).collect();
         let (mut done, mut part, mut iterations) = (0.0, 1.0 / parts, 0);
         while done < 1.0 {
             let kept = self.clone();
             let next = if done + part > 1.0 - 0.5 * part { 1.0 } else { done + part };
-            self.time_s = begin + (end - begin) * next;
+            self.clock.time_s = begin + (end - begin) * next;
             for (k, target) in targets.iter().enumerate() {
                 // A hand goes straight.
-                self.drag[k] = target.map(|t| starts[k] + (t - starts[k]) * next);
+                self.drives.drag[k] = target.map(|t| starts[k] + (t - starts[k]) * next);
             }
-            match self.equilibrium(false) {
+            match self.equilibrium(Anchors::Kept) {
                 Ok(()) => {
-                    iterations += self.cost.iterations;
+                    iterations += self.report.cost.iterations;
                     done = next;
                 }
                 Err(e) => {
                     *self = kept;
                     part *= 0.5;
-                    if part * parts < SHORTEST {
+                    if part * parts < SHORTEST_PART {
                         return Err(e);
                     }
                 }
             }
         }
-        self.cost.iterations = iterations;
+        self.report.cost.iterations = iterations;
         // What rubs on a held node asks which way it goes.
         for &(k, node) in &nodes {
-            let now = self.node_of[k];
-            if self.held[now] {
-                self.v[now] = (self.x[now] - from[node]) / dt_s;
+            let now = self.chain.node_of[k];
+            if self.drives.held[now] {
+                self.chain.v[now] = (self.chain.x[now] - from[node]) / dt_s;
             }
         }
-        self.drag = targets;
+        self.drives.drag = targets;
         Ok(())
     }
 }

@@ -1,31 +1,42 @@
 //! A pulley is a node fixed in space whose material slides through it.
 //!
-//! The node holds the centre x of the wheel and the material coordinate σ at a *mark* fixed on the wheel. The elements
-//! beside it run to where they touch the wheel and on along the arc to the mark. With R the radius of the centre line, f
-//! its sense (+1 clockwise), θ the angle of the free part and θₘ that of the tangent at the mark:
+//! The node holds the centre x of the wheel and the material coordinate σ at a *mark* fixed on the
+//! wheel. The elements beside it run to where they touch the wheel and on along the arc to the
+//! mark. With R the radius of the centre line, f its sense (+1 clockwise), θ the angle of the free
+//! part and θₘ that of the tangent at the mark:
 //!
 //! ```text
 //! d = L t + i(R₁f₁ − R₂f₂) t   (complex)   ⇒   t = (L d + ρ perp d)/|d|²,   ρ = R₂f₂ − R₁f₁,   L = √(d² − ρ²)
 //! length = L + R₁f₁ (θₘ₁ − θ) + R₂f₂ (θ − θₘ₂),      ∂length/∂(ends) = ∓t
 //! ```
 //!
-//! so an element is a spring of that length with rest length λ(s₂ − s₁), whatever it winds round, and the energy is exact.
-//! The material obeys ṡ = u with the mass of the half elements beside it and of the arc,
-//! m u̇ = λ(Θ_b − Θ_a) + q·(c_b − c_a) + friction, Θ = T + T²/2EA, c the middle of the straight part; friction holds within the capstan's
-//! cone |T_b − T_a| ≤ tanh(μφ/2)(T_b + T_a), taken where the cable touches the wheel. Material sliding through a fixed
-//! point in space is after S. Sueda, G. L. Jones, D. I. W. Levin, D. K. Pai, "Large-scale dynamic simulation of highly
-//! constrained strands", ACM Transactions on Graphics 30 (2011); they share masses consistently, here they are lumped.
+//! so an element is a spring of that length with rest length λ(s₂ − s₁), whatever it winds round,
+//! and the energy is exact. The material obeys ṡ = u with the mass of the half elements beside it
+//! and of the arc, m u̇ = λ(Θ_b − Θ_a) + q·(c_b − c_a) + friction, Θ = T + T²/2EA, c the middle of
+//! the straight part; friction holds within the capstan's cone |T_b − T_a| ≤ tanh(μφ/2)(T_b + T_a),
+//! taken where the cable touches the wheel. Material sliding through a fixed point in space is
+//! after S. Sueda, G. L. Jones, D. I. W. Levin, D. K. Pai, "Large-scale dynamic simulation of
+//! highly constrained strands", ACM Transactions on Graphics 30 (2011); they share masses
+//! consistently, here they are lumped.
 
 use crate::math::{Vec2, cross, perp};
 use crate::model::mass_spring::MassSpringModel;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
-/// No pulley at a node.
-pub(in crate::model::mass_spring) const NONE: usize = usize::MAX;
+/// Tension over the weight of half an element below which the direction of the force there says
+/// nothing.
+const DIRECTION_TENSION_RATIO: f64 = 4.0;
 
-/// Tension over the weight of half an element below which the direction of the force there says nothing.
-const SLACK: f64 = 4.0;
+part! {
+    /// The pulleys.
+    Wheels {
+        /// In order along the cable.
+        pulleys: Vec<Pulley>,
+        /// Index of the pulley at each node, if there is one.
+        pulley_at: Vec<Option<usize>>,
+    }
+}
 
 /// One pulley.
 #[derive(Clone, Copy, Debug)]
@@ -90,7 +101,8 @@ pub(in crate::model::mass_spring) fn angle_of(v: Vec2) -> f64 {
 }
 
 impl Pulley {
-    /// The pulleys of a cable, without nodes yet; `way` gives the direction in which the cable comes and goes.
+    /// The pulleys of a cable, at its first node until [`Self::sit`]; `way` gives the direction in
+    /// which the cable comes and goes.
     pub(in crate::model::mass_spring) fn all(p: &Problem) -> Vec<Self> {
         let at = |k: usize| p.supports.get(k).and_then(|s| s.position_at(0.0)).map(|a| a.0);
         let down = p.body_force(0.0).try_normalize(0.0).unwrap_or(Vec2::new(0.0, -1.0));
@@ -110,7 +122,7 @@ impl Pulley {
                 };
                 Some(Self {
                     support: k,
-                    node: NONE,
+                    node: 0,
                     radius: s.wheel_radius,
                     friction: s.friction,
                     facing,
@@ -128,12 +140,18 @@ impl Pulley {
             .collect()
     }
 
-    /// Centroid of the arc between the mark and where the cable has the direction `angle`, round `center`.
+    /// Centroid of the arc between the mark and where the cable has the direction `angle`, round
+    /// `center`.
     fn middle_of_arc(&self, center: Vec2, angle: f64) -> Vec2 {
         let half = 0.5 * wrap(angle - self.mark);
         let (sin, cos) = (self.mark + half).sin_cos();
         let flat = if half == 0.0 { 1.0 } else { half.sin() / half };
         center + Vec2::new(-sin, cos) * (self.facing * self.radius * flat)
+    }
+
+    /// Puts it on a node, whose arc length (m) friction at rest is measured from.
+    pub(in crate::model::mass_spring) fn sit(&mut self, node: usize, arc_length: f64) {
+        (self.node, self.anchor) = (node, arc_length);
     }
 
     /// Greatest |T_b − T_a| over T_b + T_a that friction holds.
@@ -144,7 +162,7 @@ impl Pulley {
 
 impl MassSpringModel {
     pub(in crate::model::mass_spring) fn pulley_of(&self, node: usize) -> Option<&Pulley> {
-        self.pulley_at.get(node).and_then(|&k| self.pulleys.get(k))
+        self.wheels.pulley_at.get(node).copied().flatten().and_then(|k| self.wheels.pulleys.get(k))
     }
 
     /// How element `e` lies at positions `x`.
@@ -177,12 +195,12 @@ impl MassSpringModel {
 
     /// How element `e` lies now.
     pub(in crate::model::mass_spring) fn reach(&self, e: usize) -> Reach {
-        self.reach_at(e, &self.x)
+        self.reach_at(e, &self.chain.x)
     }
 
     /// Whether an end of the element is on a pulley.
     pub(in crate::model::mass_spring) fn at_pulley(&self, e: usize) -> bool {
-        self.pulley_at[e] != NONE || self.pulley_at[e + 1] != NONE
+        self.wheels.pulley_at[e].is_some() || self.wheels.pulley_at[e + 1].is_some()
     }
 
     /// Whether an end of the element is on a wheel with a radius.
@@ -192,63 +210,65 @@ impl MassSpringModel {
 
     /// Spans, rest lengths and masses of what lies beside pulleys, after σ or the wheels moved.
     pub(in crate::model::mass_spring) fn weigh(&mut self) {
-        let x = std::mem::take(&mut self.x);
+        let x = std::mem::take(&mut self.chain.x);
         self.weigh_at(&x);
-        self.x = x;
+        self.chain.x = x;
     }
 
     /// The same with the nodes at `x`.
     pub(in crate::model::mass_spring) fn weigh_at(&mut self, x: &[Vec2]) {
-        for k in 0..self.pulleys.len() {
-            let i = self.pulleys[k].node;
+        for k in 0..self.wheels.pulleys.len() {
+            let i = self.wheels.pulleys[k].node;
             for e in [i - 1, i] {
-                self.span[e] = self.s[e + 1] - self.s[e];
-                self.rest[e] = self.span[e] * self.problem.thermal_stretch;
+                self.chain.span[e] = self.chain.s[e + 1] - self.chain.s[e];
+                self.chain.rest[e] = self.chain.span[e] * self.problem.thermal_stretch;
             }
         }
-        for k in 0..self.pulleys.len() {
-            let i = self.pulleys[k].node;
+        for k in 0..self.wheels.pulleys.len() {
+            let i = self.wheels.pulleys[k].node;
             for e in [i - 1, i] {
                 let r = self.reach_at(e, x);
-                // What lies on a wheel is taken as if unstretched: σ then moves the straight part alone.
-                self.share[e] = self.span[e] - (r.arc[0] + r.arc[1]) / self.problem.thermal_stretch;
+                // What lies on a wheel is taken as if unstretched: σ then moves the straight part
+                // alone.
+                self.chain.share[e] = self.chain.span[e] - (r.arc[0] + r.arc[1]) / self.problem.thermal_stretch;
             }
         }
         let density = self.problem.linear_density;
-        for k in 0..self.pulleys.len() {
-            let i = self.pulleys[k].node;
+        for k in 0..self.wheels.pulleys.len() {
+            let i = self.wheels.pulleys[k].node;
             for n in [i - 1, i, i + 1] {
-                self.mass[n] = density * self.half_share(n) + self.lump[n];
+                self.chain.mass[n] = density * self.half_share(n) + self.chain.lump[n];
             }
-            let whole = self.span[i - 1] + self.span[i];
-            let on_wheel = whole - self.share[i - 1] - self.share[i];
-            self.mass[i] += density * on_wheel;
-            self.pulleys[k].mass = density * (self.half_share(i) + on_wheel);
+            let whole = self.chain.span[i - 1] + self.chain.span[i];
+            let on_wheel = whole - self.chain.share[i - 1] - self.chain.share[i];
+            self.chain.mass[i] += density * on_wheel;
+            self.wheels.pulleys[k].mass = density * (self.half_share(i) + on_wheel);
         }
     }
 
     /// Half of the free parts beside a node, m of arc length.
     pub(in crate::model::mass_spring) fn half_share(&self, n: usize) -> f64 {
-        let before = if n > 0 { self.share[n - 1] } else { 0.0 };
-        0.5 * (before + self.share.get(n).copied().unwrap_or(0.0))
+        let before = if n > 0 { self.chain.share[n - 1] } else { 0.0 };
+        0.5 * (before + self.chain.share.get(n).copied().unwrap_or(0.0))
     }
 
-    /// Tensions beside pulley `k`, its turn, and the force on its material at positions `x`. `tension` is of each element.
+    /// Tensions beside pulley `k`, its turn, and the force on its material at positions `x`.
+    /// `tension` is of each element.
     pub(in crate::model::mass_spring) fn load_pulley(&mut self, k: usize, body: Vec2) {
-        let i = self.pulleys[k].node;
+        let i = self.wheels.pulleys[k].node;
         let (b, a) = (self.reach(i - 1), self.reach(i));
-        let (tb, ta) = (self.tension[i - 1], self.tension[i]);
-        // Half a free part's weight lies between the middle of an element and the wheel: that also turns the cable a
-        // little, and moves where it touches.
+        let (tb, ta) = (self.chain.tension[i - 1], self.chain.tension[i]);
+        // Half a free part's weight lies between the middle of an element and the wheel: that also
+        // turns the cable a little, and moves where it touches.
         let touch = |r: &Reach, tension: f64, half: Vec2| {
             let force = r.direction * tension + half;
             let size = force.norm();
-            (size, if size > SLACK * half.norm() { force / size } else { r.direction })
+            (size, if size > DIRECTION_TENSION_RATIO * half.norm() { force / size } else { r.direction })
         };
-        let (before, from) = touch(&b, tb, body * (-0.5 * self.share[i - 1]));
-        let (after, to) = touch(&a, ta, body * (0.5 * self.share[i]));
-        let center = self.x[i];
-        let p = &mut self.pulleys[k];
+        let (before, from) = touch(&b, tb, body * (-0.5 * self.chain.share[i - 1]));
+        let (after, to) = touch(&a, ta, body * (0.5 * self.chain.share[i]));
+        let center = self.chain.x[i];
+        let p = &mut self.wheels.pulleys[k];
         if p.radius > 0.0 {
             p.arc = [wrap(angle_of(from) - p.mark), wrap(p.mark - angle_of(to))].map(|a| a * p.facing * p.radius);
             let at = |t: Vec2| center + perp(t) * (p.facing * p.radius);
@@ -263,38 +283,40 @@ impl MassSpringModel {
         p.drive = self.problem.thermal_stretch * (theta(tb) - theta(ta)) + body.dot(&(b.middle - a.middle));
     }
 
-    /// The sliding of one sub-step of `h`, pushed for a time `kick` (s): friction stops it within the capstan's cone.
+    /// The sliding of one sub-step of `h`, pushed for a time `kick` (s): friction stops it within
+    /// the capstan's cone.
     pub(in crate::model::mass_spring) fn slide(&mut self, [kick, h]: [f64; 2]) {
         let (least, thermal) = (self.least_span(), self.problem.thermal_stretch);
-        for k in 0..self.pulleys.len() {
-            let p = &mut self.pulleys[k];
+        for k in 0..self.wheels.pulleys.len() {
+            let p = &mut self.wheels.pulleys[k];
             let push = p.rate + p.drive * kick / p.mass;
             let most = thermal * p.grip() * (p.tension[0] + p.tension[1]) * kick / p.mass;
             p.rate = if push.abs() <= most { 0.0 } else { push - most * push.signum() };
             // What is joined to the cable does not run through.
             let (i, rate) = (p.node, p.rate);
-            let blocked = rate < 0.0 && self.share[i - 1] < least || rate > 0.0 && self.share[i] < least;
+            let blocked = rate < 0.0 && self.chain.share[i - 1] < least || rate > 0.0 && self.chain.share[i] < least;
             if blocked {
-                self.pulleys[k].rate = 0.0;
+                self.wheels.pulleys[k].rate = 0.0;
             }
-            self.carry(k, self.pulleys[k].rate * h);
+            self.carry(k, self.wheels.pulleys[k].rate * h);
         }
-        if !self.pulleys.is_empty() {
+        if !self.wheels.pulleys.is_empty() {
             self.weigh();
         }
     }
 
-    /// Material `ds` comes to the side before the pulley: the nodes that get it take its momentum with it.
+    /// Material `ds` comes to the side before the pulley: the nodes that get it take its momentum
+    /// with it.
     fn carry(&mut self, k: usize, ds: f64) {
-        let (i, u) = (self.pulleys[k].node, self.pulleys[k].rate);
-        self.s[i] += ds;
+        let (i, u) = (self.wheels.pulleys[k].node, self.wheels.pulleys[k].rate);
+        self.chain.s[i] += ds;
         let gained = 0.5 * self.problem.linear_density * ds.abs();
         let (node, e) = if ds > 0.0 { (i - 1, i - 1) } else { (i + 1, i) };
         let direction = self.reach(e).direction;
-        let arriving = (self.v[node] + self.v[i] - direction * u) * 0.5;
-        if !self.held[node] {
-            let m = self.mass[node];
-            self.v[node] = (self.v[node] * m + arriving * gained) / (m + gained);
+        let arriving = (self.chain.v[node] + self.chain.v[i] - direction * u) * 0.5;
+        if !self.drives.held[node] {
+            let m = self.chain.mass[node];
+            self.chain.v[node] = (self.chain.v[node] * m + arriving * gained) / (m + gained);
         }
     }
 }

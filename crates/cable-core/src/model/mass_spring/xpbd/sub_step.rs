@@ -1,14 +1,17 @@
-//! The preview moves stiff cables in real time: compliant constraints in fixed small sub-steps instead of stable explicit ones.
+//! The preview moves stiff cables in real time: compliant constraints in fixed small sub-steps
+//! instead of stable explicit ones.
 //!
-//! A spring is the constraint C = length − l₀ with compliance l₀/EA (M. Macklin, M. Müller, N. Chentanez, "XPBD:
-//! position-based simulation of compliant constrained dynamics", Motion in Games, 2016), one iteration in each of many
-//! sub-steps (M. Macklin et al., "Small steps in physics simulation", Symposium on Computer Animation, 2019). Unlike the
-//! papers the constraints of a chain are not taken one after the other but solved together (`chain`).
-//! It is a picture, not a measurement: implicit in time, so fast motion is damped, and contacts act a sub-step late.
+//! A spring is the constraint C = length − l₀ with compliance l₀/EA (M. Macklin, M. Müller, N.
+//! Chentanez, "XPBD: position-based simulation of compliant constrained dynamics", Motion in Games,
+//! 2016), one iteration in each of many sub-steps (M. Macklin et al., "Small steps in physics
+//! simulation", Symposium on Computer Animation, 2019). Unlike the papers the constraints of a
+//! chain are not taken one after the other but solved together (`chain`). It is a picture, not a
+//! measurement: implicit in time, so fast motion is damped, and contacts act a sub-step late.
 //!
-//! Directions are those of the predicted place x* = 2xₙ − xₙ₋₁, so swings across a taut cable, of frequency ω, obey
-//! xₙ₊₁ = (1 − ω²h²) x*, whose roots have modulus √(1 − ω²h²) up to ωh = 1 and leave the unit circle at ω²h² = 4/3: taut
-//! cables take shorter sub-steps, still longer than explicit ones by √(EA/T).
+//! Directions are those of the predicted place x* = 2xₙ − xₙ₋₁, so swings across a taut cable, of
+//! frequency ω, obey xₙ₊₁ = (1 − ω²h²) x*, whose roots have modulus √(1 − ω²h²) up to ωh = 1 and
+//! leave the unit circle at ω²h² = 4/3: taut cables take shorter sub-steps, still longer than
+//! explicit ones by √(EA/T).
 
 use crate::error::SolveError;
 use crate::math::Vec2;
@@ -19,12 +22,13 @@ use crate::model::mass_spring::xpbd::constraint_solve::Chain;
 use crate::model::settings::Stepping;
 use crate::solution::{Warning, WarningKind};
 
-/// Longest sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in proportion.
-const LONGEST: f64 = 1.0 / 600.0;
+/// Longest sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in
+/// proportion.
+const LONGEST_SUB_STEP_S: f64 = 1.0 / 600.0;
 /// And shortest: a snap that asks for less is damped instead, for a sub-step or two.
-const SHORTEST: f64 = LONGEST / 64.0;
+const SHORTEST_SUB_STEP_S: f64 = LONGEST_SUB_STEP_S / 64.0;
 /// Greatest ω²h² of swings across the cable: 4/3 is unstable, less costs more.
-const SWAY: f64 = 1.0;
+const SWING_STEP_LIMIT: f64 = 1.0;
 
 impl MassSpringModel {
     /// Advances by `dt_s` in sub-steps.
@@ -33,27 +37,28 @@ impl MassSpringModel {
         dt_s: f64,
         gauge: &mut TensionGauge,
     ) -> Result<(), SolveError> {
-        let end = self.time_s + dt_s;
+        let end = self.clock.time_s + dt_s;
         let mut chain = Chain::default();
         let mut trouble = self.no_trouble();
         let (mut left, mut count, mut longest) = (dt_s, 0, 0.0);
         while left > 0.0 {
-            let stable = (SWAY / self.sway()).sqrt();
-            let limit = if stable < LONGEST { stable } else { LONGEST };
-            let parts = (left / if limit > SHORTEST { limit } else { SHORTEST } - 1e-9).ceil().max(1.0);
+            let stable = (SWING_STEP_LIMIT / self.sway()).sqrt();
+            let limit = if stable < LONGEST_SUB_STEP_S { stable } else { LONGEST_SUB_STEP_S };
+            let parts =
+                (left / if limit > SHORTEST_SUB_STEP_S { limit } else { SHORTEST_SUB_STEP_S } - 1e-9).ceil().max(1.0);
             let h = left / parts;
             left = if parts > 1.0 { left - h } else { 0.0 };
-            self.time_s = end - left;
+            self.clock.time_s = end - left;
             self.preview_step(h, &mut chain);
-            gauge.note(self.time_s, &self.s, |i| self.gauged_inside(i));
+            gauge.note(self.clock.time_s, &self.chain.s, |i| self.gauged_inside(i));
             gauge.keep();
             self.calm(&mut trouble);
             self.floor_friction(h);
             self.contacts(h);
-            for (x, v) in self.x.iter_mut().zip(&self.v) {
+            for (x, v) in self.chain.x.iter_mut().zip(&self.chain.v) {
                 *x += v * h;
             }
-            if !self.pulleys.is_empty() {
+            if !self.wheels.pulleys.is_empty() {
                 self.weigh();
                 self.load_pulleys();
             }
@@ -64,20 +69,21 @@ impl MassSpringModel {
             longest = if h > longest { h } else { longest };
         }
         self.read_forces();
-        self.behind_s = 0.0;
-        self.cost.iterations = count;
-        self.cost.inner_step_s = longest;
-        self.cost.residual_n = 0.0;
+        self.clock.behind_s = 0.0;
+        self.report.cost.iterations = count;
+        self.report.cost.inner_step_s = longest;
+        self.report.cost.residual_n = 0.0;
         self.warn_of(&trouble);
         self.warn_of_preview(longest);
         Ok(())
     }
 
-    /// ω² of the fastest swing across the cable, 1/s², by Gershgorin's circles: 2(T_b/l_b + T_a/l_a)/m at a node.
+    /// ω² of the fastest swing across the cable, 1/s², by Gershgorin's circles: 2(T_b/l_b +
+    /// T_a/l_a)/m at a node.
     fn sway(&self) -> f64 {
         let (mut fastest, mut before) = (0.0, 0.0);
-        let held = self.held.iter().zip(&self.mass);
-        let after = self.tension.iter().zip(&self.rest).map(|(tension, rest)| tension / rest).chain([0.0]);
+        let held = self.drives.held.iter().zip(&self.chain.mass);
+        let after = self.chain.tension.iter().zip(&self.chain.rest).map(|(tension, rest)| tension / rest).chain([0.0]);
         for ((held, mass), after) in held.zip(after) {
             let square = 2.0 * (before + after) / mass;
             if square > fastest && !held {
@@ -90,7 +96,7 @@ impl MassSpringModel {
 
     /// The velocities of a sub-step, but for contacts.
     fn preview_step(&mut self, h: f64, chain: &mut Chain) {
-        if !self.pulleys.is_empty() {
+        if !self.wheels.pulleys.is_empty() {
             self.release_pulleys();
             self.remesh();
         }
@@ -100,24 +106,25 @@ impl MassSpringModel {
         let hands = self.predict_hands(h, chain);
         self.project(h, chain);
         let per_step = h.recip();
-        for (((v, x), to), held) in self.v.iter_mut().zip(&self.x).zip(&chain.x).zip(&self.held) {
+        for (((v, x), to), held) in self.chain.v.iter_mut().zip(&self.chain.x).zip(&chain.x).zip(&self.drives.held) {
             if !held {
                 *v = (to - x) * per_step;
             }
         }
         for (node, before) in hands {
-            let v = (chain.x[node] - self.x[node]) * per_step;
-            self.held_acceleration[node] = (v - before) * per_step;
-            self.v[node] = v;
+            let v = (chain.x[node] - self.chain.x[node]) * per_step;
+            self.drives.held_acceleration[node] = (v - before) * per_step;
+            self.chain.v[node] = v;
         }
     }
 
     /// Where nodes and material go without springs.
     fn predict(&mut self, h: f64, chain: &mut Chain) {
-        let count = self.x.len();
+        let count = self.chain.x.len();
         chain.x.resize(count, Vec2::zeros());
         chain.inverse.resize(count, 0.0);
-        let nodes = self.x.iter().zip(&mut self.v).zip(&self.f).zip(&self.mass).zip(&self.held);
+        let nodes =
+            self.chain.x.iter().zip(&mut self.chain.v).zip(&self.chain.f).zip(&self.chain.mass).zip(&self.drives.held);
         for (((((x, v), f), mass), held), (to, inverse)) in nodes.zip(chain.x.iter_mut().zip(&mut chain.inverse)) {
             *inverse = if *held { 0.0 } else { mass.recip() };
             if !held {
@@ -125,11 +132,11 @@ impl MassSpringModel {
             }
             *to = x + *v * h;
         }
-        let body = self.problem.body_force(self.time_s);
-        for k in 0..self.pulleys.len() {
-            let i = self.pulleys[k].node;
+        let body = self.problem.body_force(self.clock.time_s);
+        for k in 0..self.wheels.pulleys.len() {
+            let i = self.wheels.pulleys[k].node;
             let weight = body.dot(&(self.reach(i - 1).middle - self.reach(i).middle));
-            let p = &mut self.pulleys[k];
+            let p = &mut self.wheels.pulleys[k];
             p.rate += weight * h / p.mass;
         }
     }
@@ -143,6 +150,6 @@ impl MassSpringModel {
             "`{name}` is too stiff for explicit steps in real time: this is a preview in steps of {h:.2e} s that damps fast motion; use fem, fewer segments or a smaller axial stiffness for figures"
         );
         let stable = 1.0 / 60.0 / MOST_SUB_STEPS;
-        self.warnings.push(Warning::new(WarningKind::Stabilised, name, 0.0, [h, stable], message));
+        self.report.warnings.push(Warning::new(WarningKind::Stabilised, name, 0.0, [h, stable], message));
     }
 }

@@ -1,8 +1,9 @@
 //! A stretch of an arc has closed forms of tension and material.
 //!
-//! With λ = λ₀ frozen dT/dψ = mT − (c/λ)(b·t + m b·n) is solved by T⁰, see [`law`](crate::model::spans::boundary::capstan). What is left of it, and the
-//! material, are integrals of functions that hardly change along a stretch, and whose derivatives at both ends are known:
-//! with f = 1/λ, k = τ/EA, q = b·t + m b·n and r = dq/dψ = m b·t − b·n (dr/dψ = −q),
+//! With λ = λ₀ frozen dT/dψ = mT − (c/λ)(b·t + m b·n) is solved by T⁰, see
+//! [`law`](crate::model::spans::boundary::capstan). What is left of it, and the material, are
+//! integrals of functions that hardly change along a stretch, and whose derivatives at both ends
+//! are known: with f = 1/λ, k = τ/EA, q = b·t + m b·n and r = dq/dψ = m b·t − b·n (dr/dψ = −q),
 //!
 //! ```text
 //! T' = mT − c f q            T'' = mT' − c(f' q + f r)         T''' = mT'' − c(f'' q + 2 f' r − f q)
@@ -11,19 +12,20 @@
 //! T = T⁰ − c ∫ G dξ,         G = e^{m(h−ξ)} q (f − f₀)         material = c ∫ f dξ
 //! ```
 //!
-//! both by the rule of Hermite that is exact to the fifth power,
-//! ∫ g = h/2 (g₀ + g₁) + h²/10 (g₀' − g₁') + h³/120 (g₀'' + g₁''): one exponential and one turn for a stretch, and nothing in
-//! between.
+//! both by the rule of Hermite that is exact to the fifth power, ∫ g = h/2 (g₀ + g₁) + h²/10 (g₀' −
+//! g₁') + h³/120 (g₀'' + g₁''): one exponential and one turn for a stretch, and nothing in between.
 
 use crate::math::{exp, sin_cos};
 use crate::model::spans::boundary::capstan::{Law, LocalLoad, Step};
 
-/// Longest stretch taken at once, rad: the rule leaves h⁶/100 800 of what 1/λ changes along it, itself of the order of T/EA.
+/// Longest stretch taken at once, rad: the rule leaves h⁶/100 800 of what 1/λ changes along it,
+/// itself of the order of T/EA.
 const PANEL: f64 = 0.3;
 
-/// A way (rad) so short that what changes on it is known from its start to third order: what is left out is its fourth power
-/// times a part of the tension. Larger: material is off. Smaller: one more look at both tensions where they are to be one.
-pub(in crate::model::spans) const HAIR: f64 = 1e-3;
+/// A way (rad) so short that what changes on it is known from its start to third order: what is
+/// left out is its fourth power times a part of the tension. Larger: material is off. Smaller: one
+/// more look at both tensions where they are to be one.
+pub(in crate::model::spans) const SHORT_ARC: f64 = 1e-3;
 
 /// A way along an arc, in as many stretches as it needs.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +40,8 @@ pub(in crate::model::spans) struct Way {
     load: (f64, f64),
 }
 
-/// Farthest way along an arc, rad: 1600 turns. Less: drums are refused; more: a step of Newton into nowhere takes a minute.
+/// Farthest way along an arc, rad: 1600 turns. Less: drums are refused; more: a step of Newton into
+/// nowhere takes a minute.
 pub(in crate::model::spans) const MOST_TURN: f64 = 1e4;
 
 /// How tension and material go on from a point of an arc: derivatives by the angle.
@@ -65,13 +68,13 @@ impl Way {
             let panels = (way.abs() / PANEL).ceil().max(1.0);
             (way / panels, panels as usize)
         };
-        let turn = if h.abs() <= HAIR { (h, 1.0) } else { sin_cos(h) };
+        let turn = if h.abs() <= SHORT_ARC { (h, 1.0) } else { sin_cos(h) };
         Self { c: from.stretch, count, h, turn, load: from.load }
     }
 
     /// Slides along it with m from the tension `t`; and how it goes on from there.
     pub fn slide(&self, law: &Law, t: f64, m: f64) -> (Step, Rates) {
-        if self.h.abs() <= HAIR {
+        if self.h.abs() <= SHORT_ARC {
             return self.hair(law, t, m);
         }
         let ((sin, cos), mut load) = (self.turn, self.load);
@@ -79,7 +82,7 @@ impl Way {
         let mut on = |t: f64| {
             let (bt, bn) = load;
             let end = (bt * cos - bn * sin, bn * cos + bt * sin);
-            let found = self.stretch(law, [load, end], (t, m, grown));
+            let found = self.stretch(law, [load, end], t, m, grown);
             load = end;
             found
         };
@@ -95,24 +98,24 @@ impl Way {
     /// No more than a hair's breadth.
     fn hair(&self, law: &Law, t: f64, m: f64) -> (Step, Rates) {
         let ((c, h), (bt, bn)) = ((self.c, self.h), self.load);
-        let start = Point::new(law, (c, law.thermal * law.compliance), (bt + m * bn, m * bt - bn), (t, m));
-        let rates = start.rates((c, law.thermal * law.compliance), (1.0, m));
+        let start = Point::new(law, c, law.thermal * law.compliance, bt + m * bn, m * bt - bn, t, m);
+        let rates = start.rates(c, law.thermal * law.compliance, 1.0, m);
         let step = rates.on(&Step::none(t), h);
         let shifted = |[a, b, d]: [f64; 3]| [a + h * (b + 0.5 * h * d), b + h * d, d];
         (step, Rates { tension: shifted(rates.tension), material: shifted(rates.material), ..rates })
     }
 
     /// A stretch, with the loads at its start and end; `grown` = e^{mh}.
-    fn stretch(&self, law: &Law, load: [(f64, f64); 2], (t, m, grown): (f64, f64, f64)) -> (Step, Rates) {
+    fn stretch(&self, law: &Law, load: [(f64, f64); 2], t: f64, m: f64, grown: f64) -> (Step, Rates) {
         let (c, h, [(bt, bn), (bt1, bn1)]) = (self.c, self.h, load);
         let k = law.thermal * law.compliance;
-        let start = Point::new(law, (c, k), (bt + m * bn, m * bt - bn), (t, m));
+        let start = Point::new(law, c, k, bt + m * bn, m * bt - bn, t, m);
         let (q, r, [f, f1, f2]) = (start.q, start.r, start.f);
         // T⁰ at the end.
         let divided = c * f / (1.0 + m * m);
         let (alpha, beta) = (2.0 * divided * m, divided * (m * m - 1.0));
         let tension = alpha * bt1 + beta * bn1 + (t - alpha * bt - beta * bn) * grown;
-        let mut end = Point::new(law, (c, k), (bt1 + m * bn1, m * bt1 - bn1), (tension, m));
+        let mut end = Point::new(law, c, k, bt1 + m * bn1, m * bt1 - bn1, tension, m);
         // G and its derivatives at both ends.
         let (more, q1, r1) = (end.f[0] - f, end.q, end.r);
         let first = grown * q * f1;
@@ -130,7 +133,7 @@ impl Way {
         let by = h * (0.5 * (squares[0] + squares[1]) + h / 12.0 * change);
         let step =
             Step { tension: end.tension, material: c * material, by_tension: grown, material_by_tension: -c * k * by };
-        (step, end.rates((c, k), (grown, m)))
+        (step, end.rates(c, k, grown, m))
     }
 }
 
@@ -146,7 +149,7 @@ struct Point {
 }
 
 impl Point {
-    fn new(law: &Law, (c, k): (f64, f64), (q, r): (f64, f64), (tension, m): (f64, f64)) -> Self {
+    fn new(law: &Law, c: f64, k: f64, q: f64, r: f64, tension: f64, m: f64) -> Self {
         let stretch = law.stretch(tension);
         let f = 1.0 / stretch;
         let slope = m * tension - c * f * q;
@@ -158,7 +161,7 @@ impl Point {
     }
 
     /// As it goes on from there; `grown`: its tension by that at the start.
-    fn rates(&self, (c, k): (f64, f64), (grown, m): (f64, f64)) -> Rates {
+    fn rates(&self, c: f64, k: f64, grown: f64, m: f64) -> Rates {
         let [f, f1, f2] = self.f;
         Rates { tension: self.slopes, material: [c * f, c * f1, c * f2], by_tension: -c * k * f * f * grown, m }
     }

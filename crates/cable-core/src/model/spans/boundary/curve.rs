@@ -1,31 +1,33 @@
-//! A curve is the boundary of an obstacle as the centre line of the cable runs along it, with a coordinate p that grows
-//! along the cable.
+//! A curve is the boundary of an obstacle as the centre line of the cable runs along it, with a
+//! coordinate p that grows along the cable.
 //!
-//! The centre line runs at the offset c (cable radius and what the obstacle adds) from the obstacle. On an edge p counts
-//! metres, on an arc (a convex corner, a post, a wheel) radians, so that a sharp corner needs no case of its own. With
-//! the sense σ = +1 where the solid lies right of travel and −1 where it lies left, t the direction of travel and n the
-//! outward normal,
+//! The centre line runs at the offset c (cable radius and what the obstacle adds) from the
+//! obstacle. On an edge p counts metres, on an arc (a convex corner, a post, a wheel) radians, so
+//! that a sharp corner needs no case of its own. With the sense σ = +1 where the solid lies right
+//! of travel and −1 where it lies left, t the direction of travel and n the outward normal,
 //!
 //! ```text
 //! n = σ perp t        edge: x = x₀ + t p        arc: x = C + c n,  dt/dp = −n,  dn/dp = t
 //! ```
 //!
-//! A concave kink is a break: a tensioned cable bridges it by a free span. So is an edge the load does not press the
-//! cable on to (b·n ≥ 0: walls, undersides): the cable hangs beside it by a free span from corner to corner. What lies
-//! between two breaks is a chain; a contact never leaves its chain. Beyond the ends of its chain the curve goes on
-//! straight or round, so that Newton may look there; what that would cut is found by the search for penetration.
+//! A concave kink is a break: a tensioned cable bridges it by a free span. So is an edge the load
+//! does not press the cable on to (b·n ≥ 0: walls, undersides): the cable hangs beside it by a free
+//! span from corner to corner. What lies between two breaks is a chain; a contact never leaves its
+//! chain. Beyond the ends of its chain the curve goes on straight or round, so that Newton may look
+//! there; what that would cut is found by the search for penetration.
 
 use std::sync::Arc;
 
 use crate::contact::geometry::{Body, Edge};
 use crate::math::{Vec2, bounded, cross, perp, sin_cos};
 
-/// An edge holds the cable if the load presses on it with more than this part of itself. Smaller: a wall that rounding
-/// tilts would hold a cable that hangs beside it. Larger: floors steeper than 89.99° would not hold.
-const PRESSES: f64 = 1e-9;
+/// An edge holds the cable if the load presses on it with more than this part of itself. Smaller: a
+/// wall that rounding tilts would hold a cable that hangs beside it. Larger: floors steeper than
+/// 89.99° would not hold.
+const PRESSING_FRACTION: f64 = 1e-9;
 
 /// A direction beyond the end of an arc by less than this (rad) is rounding.
-const ASIDE: f64 = 1e-9;
+const ARC_END_TOLERANCE: f64 = 1e-9;
 
 /// The form of a piece of the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,8 +58,8 @@ pub(in crate::model::spans) struct Piece {
     pub extent: f64,
     /// Whether a concave kink lies before it.
     pub kink_before: bool,
-    /// Feature of the obstacle it belongs to.
-    pub feature: usize,
+    /// Feature of the obstacle it belongs to; None of a wheel.
+    pub feature: Option<usize>,
 }
 
 /// A boundary, in one sense of travel.
@@ -116,11 +118,11 @@ impl Curve {
             Some(center) => {
                 let arc = Form::Arc { center, radius: c, from: Vec2::x() };
                 let extent = f64::INFINITY;
-                (vec![Piece { form: arc, extent, kink_before: false, feature: body.first + 1 }], false)
+                (vec![Piece { form: arc, extent, kink_before: false, feature: Some(body.first + 1) }], false)
             }
             None => boundary(body, c),
         };
-        let forward = Self::new(pieces, closed, (Some(body.obstacle), body.friction, 1.0));
+        let forward = Self::new(pieces, closed, Some(body.obstacle), body.friction, 1.0);
         let back = forward.reversed();
         [forward, back]
     }
@@ -128,11 +130,11 @@ impl Curve {
     /// A wheel of a radius (of the centre line, m) about the origin; shift it to its place.
     pub fn wheel(radius: f64, friction: f64, sense: f64) -> Self {
         let form = Form::Arc { center: Vec2::zeros(), radius, from: Vec2::x() };
-        let piece = Piece { form, extent: f64::INFINITY, kink_before: false, feature: usize::MAX };
-        Self::new(vec![piece], false, (None, friction, sense))
+        let piece = Piece { form, extent: f64::INFINITY, kink_before: false, feature: None };
+        Self::new(vec![piece], false, None, friction, sense)
     }
 
-    fn new(pieces: Vec<Piece>, closed: bool, (obstacle, friction, sense): (Option<usize>, f64, f64)) -> Self {
+    fn new(pieces: Vec<Piece>, closed: bool, obstacle: Option<usize>, friction: f64, sense: f64) -> Self {
         let mut starts = Vec::with_capacity(pieces.len());
         let mut sum = 0.0;
         for p in &pieces {
@@ -161,7 +163,7 @@ impl Curve {
             Piece { form, kink_before, ..p }
         };
         let pieces = (0..n).map(back).collect();
-        Self::new(pieces, self.period.is_some(), (self.obstacle, self.friction, -self.sense))
+        Self::new(pieces, self.period.is_some(), self.obstacle, self.friction, -self.sense)
     }
 
     /// Whether it is round all the way: a post or a wheel.
@@ -265,14 +267,14 @@ impl Curve {
         let piece = self.piece(i);
         match piece.form {
             Form::Edge { tangent, .. } => {
-                piece.extent > 0.0 && -load.dot(&perp(tangent)) * self.sense > PRESSES * load.norm()
+                piece.extent > 0.0 && -load.dot(&perp(tangent)) * self.sense > PRESSING_FRACTION * load.norm()
             }
             Form::Arc { .. } => true,
         }
     }
 
-    /// The chain a piece belongs to and the number of the piece in it; None if it cannot hold a cable. A chain of a closed
-    /// boundary is always counted from the same turn.
+    /// The chain a piece belongs to and the number of the piece in it; None if it cannot hold a
+    /// cable. A chain of a closed boundary is always counted from the same turn.
     pub fn chain(&self, i: i64, load: Vec2) -> Option<(i64, ChainRange)> {
         if !self.holds(i, load) {
             return None;
@@ -295,17 +297,19 @@ impl Curve {
         Some((i + turn, ChainRange { first: first + turn, last: last + turn }))
     }
 
-    /// The piece beyond the kink at the start (side 0) or the end of a chain; None where there is none.
+    /// The piece beyond the kink at the start (side 0) or the end of a chain; None where there is
+    /// none.
     pub fn beyond_kink(&self, home: ChainRange, side: usize) -> Option<i64> {
         let (i, after) = if side == 0 { (home.first - 1, home.first) } else { (home.last + 1, home.last + 1) };
         let there = self.period.is_some() || (i >= 0 && i < self.pieces.len() as i64);
         (there && !self.is_round() && self.piece(after).kink_before).then_some(i)
     }
 
-    /// The piece of one turn that stands for a feature of the obstacle, the nearest to a point where it has several.
+    /// The piece of one turn that stands for a feature of the obstacle, the nearest to a point
+    /// where it has several.
     pub fn piece_of(&self, feature: usize, at: Vec2) -> Option<i64> {
         let mut best: Option<(f64, i64)> = None;
-        for k in (0..self.pieces.len()).filter(|&k| self.pieces[k].feature == feature) {
+        for k in (0..self.pieces.len()).filter(|&k| self.pieces[k].feature == Some(feature)) {
             let i = k as i64;
             let d = (self.place_on(i, self.project(i, at) - self.origin(i)).at - at).norm();
             if best.is_none_or(|(b, _)| d < b) {
@@ -347,7 +351,8 @@ impl Curve {
         self.origin(i) + x
     }
 
-    /// p on the arc i where its tangent is that of `along`, kept on the arc (on a post: within half a turn of 0).
+    /// p on the arc i where its tangent is that of `along`, kept on the arc (on a post: within half
+    /// a turn of 0).
     pub fn with_tangent(&self, i: i64, along: Vec2) -> f64 {
         let piece = self.piece(i);
         let x = match piece.form {
@@ -357,8 +362,9 @@ impl Curve {
         self.origin(i) + x
     }
 
-    /// Calls back with each place between p and q, on arc i, at which its tangent is that of `along`.
-    pub fn running(&self, i: i64, along: Vec2, (p, q): (f64, f64), mut each: impl FnMut(f64)) {
+    /// Calls back with each place between p and q, on arc i, at which its tangent is that of
+    /// `along`.
+    pub fn running(&self, i: i64, along: Vec2, p: f64, q: f64, mut each: impl FnMut(f64)) {
         let Form::Arc { from, .. } = self.piece(i).form else { return };
         let turn = std::f64::consts::TAU;
         let mut x = self.origin(i) - self.sense * cross(from, along).atan2(from.dot(&along));
@@ -369,14 +375,15 @@ impl Curve {
         }
     }
 
-    /// Whether the tangent of arc i comes to be `along` only before its start (−1) or after its end (+1); 0 where it does on it.
+    /// Whether the tangent of arc i comes to be `along` only before its start (−1) or after its end
+    /// (+1); 0 where it does on it.
     pub fn aside(&self, i: i64, along: Vec2) -> i64 {
         let piece = self.piece(i);
         let Form::Arc { from, .. } = piece.form else { return 0 };
         let x = -self.sense * cross(from, along).atan2(from.dot(&along));
         match piece.extent.is_finite() {
-            true if x < -ASIDE => -1,
-            true if x > piece.extent + ASIDE => 1,
+            true if x < -ARC_END_TOLERANCE => -1,
+            true if x > piece.extent + ARC_END_TOLERANCE => 1,
             _ => 0,
         }
     }
@@ -394,7 +401,8 @@ impl Curve {
     }
 }
 
-/// The pieces of a polygon, ground or thin line at an offset, with the solid right of travel; and whether it closes.
+/// The pieces of a polygon, ground or thin line at an offset, with the solid right of travel; and
+/// whether it closes.
 fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
     let mut edges: Vec<(Edge, usize)> = Vec::with_capacity(2 * body.edges.len());
     edges.extend(body.edges.iter().enumerate().map(|(k, e)| (*e, k)));
@@ -427,7 +435,7 @@ fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
         let first = out.len();
         if arc > 0.0 {
             let form = Form::Arc { center: e.p, radius: c, from: direction(arc_from) };
-            out.push(Piece { form, extent: arc, kink_before, feature: corner_feature(k) });
+            out.push(Piece { form, extent: arc, kink_before, feature: Some(corner_feature(k)) });
         }
         // A kink takes c tan(δ/2) of both its edges.
         let cut = [kink(k), kink(k + 1)].map(|d| c * (0.5 * d).tan());
@@ -435,10 +443,10 @@ fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
         let extent = e.length() - cut[0] - cut[1];
         let extent = if extent > 0.0 { extent } else { 0.0 };
         let kink_before = kink_before && out.len() == first;
-        out.push(Piece { form, extent, kink_before, feature: body.first + 2 * index });
+        out.push(Piece { form, extent, kink_before, feature: Some(body.first + 2 * index) });
         if !closed && k + 1 == n && angle > -up {
             let form = Form::Arc { center: e.q, radius: c, from: direction(angle) };
-            out.push(Piece { form, extent: angle + up, kink_before: false, feature: body.first + 2 * n + 1 });
+            out.push(Piece { form, extent: angle + up, kink_before: false, feature: Some(body.first + 2 * n + 1) });
         }
     }
     (out, closed)

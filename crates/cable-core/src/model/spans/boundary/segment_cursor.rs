@@ -1,20 +1,21 @@
-//! One piece of a track, seen from a point of it: what lies on the same piece needs no search, and its direction is that of
-//! the point turned by a small angle. And where on a piece two tensions come to be one.
+//! A segment cursor holds one piece of a track as seen from a point of it: places on the same piece
+//! need no search, and their direction is that of the point turned by a small angle. It also finds
+//! where on a piece two tensions become equal.
 
 use std::cell::Cell;
 
 use crate::math::{Vec2, sin_cos};
-use crate::model::spans::boundary::arc::{HAIR, Way};
+use crate::model::spans::boundary::arc::{SHORT_ARC, Way};
 use crate::model::spans::boundary::capstan::{Law, LocalLoad, Step};
 use crate::model::spans::boundary::curve::{ChainRange, Curve, Place};
-use crate::model::spans::numerics::root::{FLOOR, crossing};
+use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 
-/// Where two tensions are about one before this part of a piece it is not asked whether they are so on it. Larger: asked after
-/// all more often.
-const WELL: f64 = 0.9;
+/// Where two tensions are about one before this part of a piece it is not asked whether they are so
+/// on it. Larger: asked after all more often.
+const MEETING_SKIP_FRACTION: f64 = 0.9;
 
 /// Looks at both tensions before their meeting is sought within bounds.
-const LOOKS: usize = 3;
+const FREE_SEARCH_LOOKS: usize = 3;
 
 /// A point of a piece and how far that goes.
 #[derive(Clone, Copy, Debug)]
@@ -106,9 +107,9 @@ impl SegmentCursor<'_> {
         self.law.along(&self.from, p - self.p0, t, m)
     }
 
-    /// Where before p₁ two tensions, each with its m, that differ at its point come to be one, and both ways there; None
-    /// where that is not before p₁, and both ways there. On an edge both Θ are linear, round a sharp corner both T are
-    /// exponential, else about.
+    /// Where before p₁ two tensions, each with its m, that differ at its point come to be one, and
+    /// both ways there; None where that is not before p₁, and both ways there. On an edge both Θ
+    /// are linear, round a sharp corner both T are exponential, else about.
     pub fn crossing(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> (Option<f64>, [Step; 2]) {
         let law = self.law;
         let whole = p1 - self.p0;
@@ -132,7 +133,7 @@ impl SegmentCursor<'_> {
             return (at, both(at.unwrap_or(p1)));
         }
         if part > 0.0
-            && part < WELL
+            && part < MEETING_SKIP_FRACTION
             && let Some((at, ways)) = self.closing(about, whole, [(t, m), (u, n)])
         {
             return (Some(at), ways);
@@ -144,17 +145,18 @@ impl SegmentCursor<'_> {
             return (None, [a, b]);
         }
         // Where friction goes to and fro over the same stretch.
-        if end.abs() <= FLOOR * t.abs() {
+        if end.abs() <= TENSION_ROUNDING * t.abs() {
             return (Some(p1), [a, b]);
         }
         let (at, ways) = self.meeting(p1, [(t, m), (u, n)], end);
         (Some(at), ways)
     }
 
-    /// As [`Self::crossing`] round an arc, from about where: Newton's method, the last step from the derivatives alone.
+    /// As [`Self::crossing`] round an arc, from about where: Newton's method, the last step from
+    /// the derivatives alone.
     fn closing(&self, about: f64, whole: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> Option<(f64, [Step; 2])> {
         let mut way = about;
-        for _ in 0..LOOKS {
+        for _ in 0..FREE_SEARCH_LOOKS {
             let there = Way::new(&self.from, way);
             let [(a, one), (b, two)] = [(t, m), (u, n)].map(|(t, m)| there.slide(self.law, t, m));
             let apart = a.tension - b.tension;
@@ -167,7 +169,7 @@ impl SegmentCursor<'_> {
             if !(next / whole > 0.0 && next / whole < 1.0) {
                 return None;
             }
-            if by.abs() <= HAIR {
+            if by.abs() <= SHORT_ARC {
                 return Some((self.p0 + next, [one.on(&a, by), two.on(&b, by)]));
             }
             way = next;
@@ -181,7 +183,7 @@ impl SegmentCursor<'_> {
         let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
         let last = Cell::new((f64::NAN, [Step::none(t); 2]));
         let ends = ((t - u) * sign, end);
-        let x = crossing((self.p0, p1), FLOOR * t.abs(), Some(ends), |x| {
+        let x = crossing(self.p0, p1, TENSION_ROUNDING * t.abs(), Some(ends), |x| {
             let [a, b] = both(x);
             last.set((x, [a, b]));
             let spot = self.from.on(x - self.p0);

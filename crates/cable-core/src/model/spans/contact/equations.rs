@@ -1,14 +1,16 @@
 //! A contact has two equations for its material; they stand here with their derivatives.
 //!
-//! Where some of it sticks, at the fronts p_l and p_r, with A the material between end and front as it slides:
+//! Where some of it sticks, at the fronts p_l and p_r, with A the material between end and front as
+//! it slides:
 //!
 //! ```text
 //! s₁ + A₁ − s_old(p_l) = 0,      s₂ − A₂ − s_old(p_r) = 0
 //! ```
 //!
-//! Where all of it slides with m: s₂ − s₁ − A = 0 and T₂ = the tension the law makes of T₁. Moving an end by dp under the
-//! same end tension is the same as a tension there changed by −T'(p) dp, so every derivative by p follows from the one by
-//! tension. At a front both stretches have the same tension, so that moving it changes nothing.
+//! Where all of it slides with m: s₂ − s₁ − A = 0 and T₂ = the tension the law makes of T₁. Moving
+//! an end by dp under the same end tension is the same as a tension there changed by −T'(p) dp, so
+//! every derivative by p follows from the one by tension. At a front both stretches have the same
+//! tension, so that moving it changes nothing.
 
 use crate::math::larger;
 use crate::model::spans::boundary::capstan::Track;
@@ -26,32 +28,36 @@ pub(in crate::model::spans) struct Rows {
 
 /// The rows of a contact in a mode, and where it sticks if it does.
 ///
-/// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself; `spots`: the places of its ends.
+/// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself;
+/// `spots`: the places of its ends.
 pub(in crate::model::spans) fn rows(
     track: &Track<'_>,
-    (history, e): (&TensionProfile, &Ends),
+    history: &TensionProfile,
+    e: &Ends,
     spots: &[Place; 2],
-    (mode, pinned): (Mode, [bool; 2]),
+    mode: Mode,
+    pinned: [bool; 2],
 ) -> (Rows, Option<Held>) {
     // Lifted (Newton looks there): a point without friction.
     let mode = if e.p[1] < e.p[0] { Mode::Slide(0.0) } else { mode };
     match mode {
         Mode::Slide(m) if track.floored && m != 0.0 => (drawn(track, e, spots, m), None),
-        Mode::Slide(m) => (sliding(track, (history, e), spots, m), None),
+        Mode::Slide(m) => (sliding(track, history, e, spots, m), None),
         Mode::Hold => {
             let held = history.hold(track, e);
             let (mut out, fronts) = match held {
-                // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the rows.
+                // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the
+                // rows.
                 Held::Between(fronts) | Held::Beyond(_, fronts) => (holding(track, e, spots, &fronts), fronts),
                 Held::Meet(fronts) => {
                     let mut out = holding(track, e, spots, &fronts);
-                    meeting(&mut out, (track, history, e), spots, &fronts);
+                    meeting(&mut out, track, history, e, spots, &fronts);
                     (out, fronts)
                 }
             };
             for side in 0..2 {
                 if pinned[side] {
-                    pin(&mut out, (track, history, e), side, &fronts[side]);
+                    pin(&mut out, track, history, e, side, &fronts[side]);
                 }
             }
             (out, Some(held))
@@ -61,15 +67,15 @@ pub(in crate::model::spans) fn rows(
 
 /// The row of an end that is held on the boundary, made linear in its tension.
 ///
-/// Near the old tension what a change x of it moves is φ = ∓ k x|x|, k = 1/(2·D·EA·τ), D the difference of the slopes
-/// of tension at the front: flat at x = 0, where Newton starts. Its root √|φ| is straight. Where the end has not moved
-/// the answer is x = 0, with nothing to solve.
-fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &TensionProfile, &Ends), side: usize, front: &Front) {
+/// Near the old tension what a change x of it moves is φ = ∓ k x|x|, k = 1/(2·D·EA·τ), D the
+/// difference of the slopes of tension at the front: flat at x = 0, where Newton starts. Its root
+/// √|φ| is straight. Where the end has not moved the answer is x = 0, with nothing to solve.
+fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, side: usize, front: &Front) {
     let (old_t, old_s) = history.at(track, e.p[side]);
     let gap = e.s[side] - old_s;
     let x = e.t[side] - old_t;
     out.of_tension[side] = true;
-    if gap.abs() <= UNMOVED * (e.s[0].abs() + e.s[1].abs()) {
+    if gap.abs() <= END_MOVE_TOLERANCE * (e.s[0].abs() + e.s[1].abs()) {
         out.residual[side] = x;
         out.by[side] = [0.0; 6];
         out.by[side][3 * side + 2] = 1.0;
@@ -84,13 +90,13 @@ fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &TensionProfile, &Ends)
     let m = front.m.abs() * if (target > 0.0) == (side == 0) { -1.0 } else { 1.0 };
     let inner = e.p[side] + (e.p[1 - side] - e.p[side]) * 1e-9;
     let drop = (law.slope(&place, old_t, m) - history.slope(track, inner)).abs() / place.stretch;
-    if drop <= PARALLEL * law.load.norm() {
-        // It slides on as it slid: the material follows the tension along the whole of the old sliding, evenly, which a
-        // tension that has not changed yet does not show.
+    if drop <= SLOPE_DIFFERENCE_FRACTION * law.load.norm() {
+        // It slides on as it slid: the material follows the tension along the whole of the old
+        // sliding, evenly, which a tension that has not changed yet does not show.
         out.of_tension[side] = false;
         if x == 0.0 {
-            let nudged = old_t + NUDGE * (old_t.abs() + law.load.norm() * size) * target.signum();
-            let way = history.front(track, (e.p[side], nudged), e.p[1 - side]).way;
+            let nudged = old_t + DIFFERENCE_STEP * (old_t.abs() + law.load.norm() * size) * target.signum();
+            let way = history.front(track, e.p[side], nudged, e.p[1 - side]).way;
             out.by[side][3 * side + 2] = way.material_by_tension;
         }
         return;
@@ -115,8 +121,9 @@ fn pin(out: &mut Rows, (track, history, e): (&Track<'_>, &TensionProfile, &Ends)
     }
 }
 
-/// Where a cable runs away it is followed with a drag η: T₂ less what the law makes of T₁ is η (s_old(p₁) − s₁), the slip.
-fn sliding(track: &Track<'_>, (history, e): (&TensionProfile, &Ends), [a, b]: &[Place; 2], m: f64) -> Rows {
+/// Where a cable runs away it is followed with a drag η: T₂ less what the law makes of T₁ is η
+/// (s_old(p₁) − s₁), the slip.
+fn sliding(track: &Track<'_>, history: &TensionProfile, e: &Ends, [a, b]: &[Place; 2], m: f64) -> Rows {
     let way = track.slide(e.p[0], e.p[1], e.t[0], m);
     let slope = track.law.slope(a, e.t[0], m);
     let (mut held, mut held_by) = (0.0, 0.0);
@@ -149,7 +156,8 @@ fn sliding(track: &Track<'_>, (history, e): (&TensionProfile, &Ends), [a, b]: &[
     }
 }
 
-/// Friction fully mobilised: from the end that is drawn the tension falls by the law, to nothing at most.
+/// Friction fully mobilised: from the end that is drawn the tension falls by the law, to nothing at
+/// most.
 fn drawn(track: &Track<'_>, e: &Ends, spots: &[Place; 2], m: f64) -> Rows {
     let from = usize::from(m > 0.0);
     let to = 1 - from;
@@ -187,11 +195,13 @@ fn holding(track: &Track<'_>, e: &Ends, spots: &[Place; 2], fronts: &[Front; 2])
     out
 }
 
-/// What is added where the fronts meet: the meeting point moves with both tensions, and the old tension there differs from
-/// the new one.
+/// What is added where the fronts meet: the meeting point moves with both tensions, and the old
+/// tension there differs from the new one.
 fn meeting(
     out: &mut Rows,
-    (track, history, e): (&Track<'_>, &TensionProfile, &Ends),
+    track: &Track<'_>,
+    history: &TensionProfile,
+    e: &Ends,
     spots: &[Place; 2],
     fronts: &[Front; 2],
 ) {
@@ -215,18 +225,22 @@ fn meeting(
     }
 }
 
-/// The mode to go on with: a contact that holds beyond its cone slides; one that would slide the wrong way holds.
+/// The mode to go on with: a contact that holds beyond its cone slides; one that would slide the
+/// wrong way holds.
 ///
-/// `held`: where it sticks; `patience`: how many times rounding that is; 1 while it costs nothing to change.
+/// `held`: where it sticks; `patience`: how many times rounding that is; 1 while it costs nothing
+/// to change.
 pub(in crate::model::spans) fn next_mode(
     track: &Track<'_>,
-    (history, e): (&TensionProfile, &Ends),
+    history: &TensionProfile,
+    e: &Ends,
     held: Option<Held>,
-    (mode, pinned): (Mode, [bool; 2]),
+    mode: Mode,
+    pinned: [bool; 2],
     patience: f64,
 ) -> Mode {
     let friction = track.friction;
-    let (cone, stuck) = (CONE * patience, STUCK * patience);
+    let (cone, stuck) = (CONE_ROUNDING * patience, STICK_ROUNDING * patience);
     if friction <= 0.0 || e.p[1] < e.p[0] {
         return if friction <= 0.0 { Mode::Slide(0.0) } else { mode };
     }
@@ -242,18 +256,18 @@ pub(in crate::model::spans) fn next_mode(
         Mode::Slide(m) => {
             for side in (0..2).filter(|&side| pinned[side]) {
                 let (old_t, old_s) = history.at(track, e.p[side]);
-                if (e.s[side] - old_s).abs() <= UNMOVED * (e.s[0].abs() + e.s[1].abs()) {
+                if (e.s[side] - old_s).abs() <= END_MOVE_TOLERANCE * (e.s[0].abs() + e.s[1].abs()) {
                     // What does not move is drawn the more the more the rest slides away from it.
                     let drawn = (e.t[side] - old_t) * m * if side == 0 { 1.0 } else { -1.0 };
                     let rounding = cone * friction * larger(e.t[0].abs(), e.t[1].abs());
                     return if drawn < -rounding { Mode::Hold } else { mode };
                 }
             }
-            // With m = +μ material goes on along p, so there is less of it than was, s < s_old, at every p. The slip is
-            // least where the tension is what it was: before it the one stretch is the greater, after it the other.
+            // With m = +μ material goes on along p, so there is less of it than was, s < s_old, at
+            // every p. The slip is least where the tension is what it was: before it the one
+            // stretch is the greater, after it the other.
             let (old, _) = history.at(track, e.p[0]);
-            let least =
-                if (old - e.t[0]) * m > 0.0 { history.front(track, (e.p[0], e.t[0]), e.p[1]).p } else { e.p[0] };
+            let least = if (old - e.t[0]) * m > 0.0 { history.front(track, e.p[0], e.t[0], e.p[1]).p } else { e.p[0] };
             let s = e.s[0] + track.slide(e.p[0], least, e.t[0], m).material;
             let slid = s - history.at(track, least).1;
             if m * slid > 0.0 && slid.abs() > stuck * (s.abs() + e.s[1].abs()) { Mode::Hold } else { mode }
@@ -261,15 +275,17 @@ pub(in crate::model::spans) fn next_mode(
     }
 }
 
-/// Part of a tension by which the cone of friction may be left. Smaller: chatter of rounding; larger: creep.
-const CONE: f64 = 1e-13;
+/// Part of a tension by which the cone of friction may be left. Smaller: chatter of rounding;
+/// larger: creep.
+const CONE_ROUNDING: f64 = 1e-13;
 /// Part of the material coordinate that is rounding.
 const ROUNDING: f64 = 1e-15;
 /// Part of a tension by which it is changed to see what that moves.
-const NUDGE: f64 = 1e-6;
+const DIFFERENCE_STEP: f64 = 1e-6;
 /// Slopes of tension nearer to each other than this part of the load are one.
-const PARALLEL: f64 = 1e-6;
-/// Part of the material coordinate that an end held on the boundary may be off without having moved.
-const UNMOVED: f64 = 1e-14;
+const SLOPE_DIFFERENCE_FRACTION: f64 = 1e-6;
+/// Part of the material coordinate that an end held on the boundary may be off without having
+/// moved.
+const END_MOVE_TOLERANCE: f64 = 1e-14;
 /// Part of the material coordinate that is no movement: rounding.
-const STUCK: f64 = 1e-15;
+const STICK_ROUNDING: f64 = 1e-15;

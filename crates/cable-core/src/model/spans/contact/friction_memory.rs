@@ -1,29 +1,32 @@
 //! A contact remembers its friction as a profile of tension, in closed form.
 //!
-//! Where the cable has stuck the tension is what it was, where it slides it follows the law of sliding from one end:
+//! Where the cable has stuck the tension is what it was, where it slides it follows the law of
+//! sliding from one end:
 //!
 //! ```text
 //! T(p) = clamp(T_old(p), max(L₁, L₂), min(U₁, U₂))
 //! ```
 //!
-//! with L and U the least and the greatest tension that sliding allows from the tension at either end (1 at p₁, 2 at
-//! p₂). This is the exact minimiser of the energy and the incremental dissipation: T − T_old has the sign that the law
-//! asks for wherever it slides. U₁ and L₂ follow m = +μ, L₁ and U₂ m = −μ, so whatever happens T stays a curve made of
-//! stretches with one m each: a knot where m changes is all there is to store, and nothing is ever interpolated.
-//! From each end T leaves its envelope at most once, at the *front*; between the fronts it sticks, and the material
-//! there is where it was. Material newly laid down beyond the old contact has the tension of its end, as even as friction
-//! can keep it (m between −μ and μ on each edge).
+//! with L and U the least and the greatest tension that sliding allows from the tension at either
+//! end (1 at p₁, 2 at p₂). This is the exact minimiser of the energy and the incremental
+//! dissipation: T − T_old has the sign that the law asks for wherever it slides. U₁ and L₂ follow
+//! m = +μ, L₁ and U₂ m = −μ, so whatever happens T stays a curve made of stretches with one m each:
+//! a knot where m changes is all there is to store, and nothing is ever interpolated. From each end
+//! T leaves its envelope at most once, at the *front*; between the fronts it sticks, and the
+//! material there is where it was. Material newly laid down beyond the old contact has the tension
+//! of its end, as even as friction can keep it (m between −μ and μ on each edge).
 
 use crate::math::smaller;
 use crate::model::spans::boundary::capstan::{Step, Track};
-use crate::model::spans::numerics::root::{FLOOR, crossing};
+use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 
 /// Part of the friction coefficient by which it is changed to see what that moves.
-const NUDGE: f64 = 1e-6;
+const DIFFERENCE_STEP: f64 = 1e-6;
 
-/// A stretch of no more than this (m or rad) is none. Smaller: where friction goes to and fro over the same stretch rounding
-/// leaves a knot more each time. Larger: tension is off by as much times the slope of tension.
-const SLIVER: f64 = 1e-12;
+/// A stretch of no more than this (m or rad) is none. Smaller: where friction goes to and fro over
+/// the same stretch rounding leaves a knot more each time. Larger: tension is off by as much times
+/// the slope of tension.
+const SHORTEST_STRETCH: f64 = 1e-12;
 
 /// A point from which the tension follows the law with m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,7 +83,8 @@ pub(in crate::model::spans) enum Held {
     Between([Front; 2]),
     /// Sliding from both ends meets in one point, which sticks.
     Meet([Front; 2]),
-    /// The end tensions are too far apart: it slides with this m. The fronts have passed each other.
+    /// The end tensions are too far apart: it slides with this m. The fronts have passed each
+    /// other.
     Beyond(f64, [Front; 2]),
 }
 
@@ -127,7 +131,8 @@ impl TensionProfile {
         Self { knots: out }
     }
 
-    /// The m with which sliding reaches a tension, which is brought to what it can reach. `grows`: what it reaches grows with m.
+    /// The m with which sliding reaches a tension, which is brought to what it can reach. `grows`:
+    /// what it reaches grows with m.
     fn between(tension: &mut f64, friction: f64, reach: impl Fn(f64) -> f64, grows: bool) -> f64 {
         let sign = if grows { 1.0 } else { -1.0 };
         let (low, high) = (reach(-friction * sign), reach(friction * sign));
@@ -139,15 +144,15 @@ impl TensionProfile {
             *tension = low;
             return -friction * sign;
         }
-        let by = NUDGE * friction;
+        let by = DIFFERENCE_STEP * friction;
         let goal = *tension;
-        sign * crossing((-friction, friction), FLOOR * goal.abs(), None, |m| {
+        sign * crossing(-friction, friction, TENSION_ROUNDING * goal.abs(), None, |m| {
             (goal - reach(m * sign), (reach((m - by) * sign) - reach((m + by) * sign)) / (2.0 * by))
         })
     }
 
-    /// Material laid from `start` to p₁ and to p₂ with an even tension as far as friction holds that on every slope: what it is does
-    /// not depend on the end from which the cable is counted.
+    /// Material laid from `start` to p₁ and to p₂ with an even tension as far as friction holds
+    /// that on every slope: what it is does not depend on the end from which the cable is counted.
     pub fn laid(track: &Track<'_>, start: Knot, [first, last]: [f64; 2]) -> Self {
         let way = |to: f64| {
             let mut knots = vec![Knot { m: 0.0, ..start }];
@@ -175,8 +180,9 @@ impl TensionProfile {
         out
     }
 
-    /// The same from the middle of its length with a tension there, N, what is missing or too much of its material at both ends alike; no
-    /// end has less than that tension: weight that hangs down on both sides of a crest is held there.
+    /// The same from the middle of its length with a tension there, N, what is missing or too much
+    /// of its material at both ends alike; no end has less than that tension: weight that hangs
+    /// down on both sides of a crest is held there.
     pub fn laid_from_middle(track: &Track<'_>, e: &Ends, tension: f64) -> Self {
         let middle = Knot { p: track.middle(e.p), s: 0.5 * (e.s[0] + e.s[1]), tension, m: 0.0 };
         let mut laid = Self::laid(track, middle, e.p);
@@ -189,7 +195,8 @@ impl TensionProfile {
         laid
     }
 
-    /// Counts its material anew from its first knot (its last, if `back`), as its tensions strain it.
+    /// Counts its material anew from its first knot (its last, if `back`), as its tensions strain
+    /// it.
     pub fn measure(&mut self, track: &Track<'_>, back: bool) {
         let way = |a: &Knot, b: &Knot| track.slide(a.p, b.p, a.tension, a.m).material;
         if back {
@@ -213,8 +220,8 @@ impl TensionProfile {
         &self.knots
     }
 
-    /// Takes over what another contact, joined to this one at its end, remembers. Between the two, and on as far as it
-    /// must, tension is brought within the cone by the least change.
+    /// Takes over what another contact, joined to this one at its end, remembers. Between the two,
+    /// and on as far as it must, tension is brought within the cone by the least change.
     pub fn append(&mut self, track: &Track<'_>, next: &Self) {
         let friction = track.friction;
         for knot in &next.knots {
@@ -249,7 +256,7 @@ impl TensionProfile {
 
     fn push(&mut self, k: Knot) {
         if let Some(last) = self.knots.last_mut() {
-            if k.p - last.p <= SLIVER {
+            if k.p - last.p <= SHORTEST_STRETCH {
                 // A stretch of no extent.
                 last.m = k.m;
                 return;
@@ -264,8 +271,8 @@ impl TensionProfile {
         self.knots.push(k);
     }
 
-    /// The knot from which the tension at p follows, seen going on to the right or back to the left, and whether it lies
-    /// beyond what was there.
+    /// The knot from which the tension at p follows, seen going on to the right or back to the
+    /// left, and whether it lies beyond what was there.
     fn knot(&self, p: f64, right: bool) -> (Knot, bool) {
         let k = self.knots.partition_point(|k| if right { k.p <= p } else { k.p < p });
         match k.checked_sub(1).and_then(|j| self.knots.get(j)) {
@@ -309,13 +316,13 @@ impl TensionProfile {
     }
 
     /// Slides from an end at p with tension `t` towards `to`, as far as the old tension lets it.
-    pub fn front(&self, track: &Track<'_>, (p, t): (f64, f64), to: f64) -> Front {
+    pub fn front(&self, track: &Track<'_>, p: f64, t: f64, to: f64) -> Front {
         let right = to > p;
         let (mut old, mut s) = self.at(track, p);
         let sign = if t < old { 1.0 } else { -1.0 };
         let m = track.friction * sign * if right { 1.0 } else { -1.0 };
         let (mut at, mut way) = (p, Step::none(t));
-        if (t - old).abs() <= FLOOR * t.abs() {
+        if (t - old).abs() <= TENSION_ROUNDING * t.abs() {
             return Front { p, way, m, met: true, old: s };
         }
         while at != to {
@@ -339,8 +346,8 @@ impl TensionProfile {
         let friction = track.friction;
         let [p1, p2] = e.p;
         let [t1, t2] = e.t;
-        let left = self.front(track, (p1, t1), p2);
-        let right = self.front(track, (p2, t2), p1);
+        let left = self.front(track, p1, t1, p2);
+        let right = self.front(track, p2, t2, p1);
         if left.met && right.met && left.p <= right.p {
             return Held::Between([left, right]);
         }
@@ -361,7 +368,7 @@ impl TensionProfile {
         }
         // … or they slide towards or away from each other.
         let sign = if left.m > 0.0 { 1.0 } else { -1.0 };
-        let meet = crossing((p1, p2), FLOOR * (t1.abs() + t2.abs()), None, |x| {
+        let meet = crossing(p1, p2, TENSION_ROUNDING * (t1.abs() + t2.abs()), None, |x| {
             let (r, l) = (track.slide(p2, x, t2, right.m).tension, track.slide(p1, x, t1, left.m).tension);
             let place = track.place(x);
             let slope = track.law.slope(&place, r, right.m) - track.law.slope(&place, l, left.m);
@@ -372,8 +379,9 @@ impl TensionProfile {
         Held::Meet([front(p1, t1, left.m), front(p2, t2, right.m)])
     }
 
-    /// Takes what came of a step as the new past. `held`: where it sticks, where that is known; `old`: memory.
-    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, (mode, held): (Mode, Option<Held>), old: &mut Self) {
+    /// Takes what came of a step as the new past. `held`: where it sticks, where that is known;
+    /// `old`: memory.
+    pub fn commit(&mut self, track: &Track<'_>, e: &Ends, mode: Mode, held: Option<Held>, old: &mut Self) {
         let [first, last] = [0, 1].map(|k| Knot { p: e.p[k], s: e.s[k], tension: e.t[k], m: 0.0 });
         if last.p <= first.p {
             self.clear();
@@ -393,7 +401,8 @@ impl TensionProfile {
                     self.knots.extend([Knot { m, ..first }, last]);
                     return;
                 };
-                // Loose from there to the end that is not drawn, as even as friction keeps it: without tension.
+                // Loose from there to the end that is not drawn, as even as friction keeps it:
+                // without tension.
                 let end = Knot { p, s: from.s + material, tension: 0.0, m };
                 let [a, b] = if m > 0.0 { [first, end] } else { [end, last] };
                 let laid = Self::laid(track, Knot { tension: 0.0, ..if m > 0.0 { a } else { b } }, [a.p, b.p]);

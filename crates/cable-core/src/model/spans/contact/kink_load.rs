@@ -1,22 +1,23 @@
 //! A load in a concave kink of a boundary is held by both its edges.
 //!
-//! What slides down into a kink stays there as long as the force V on it lies between the cones of friction of the two edges:
-//! it leaves along its own edge where V·t back from the kink is more than μN, with N = −V·n of that edge alone, and likewise along
-//! the other. The cable beside it may lie on either edge, joined to it.
+//! A load that slides into a kink stays there as long as the force V on it lies between the
+//! friction cones of the two edges. It leaves along its own edge if V·t away from the kink is more
+//! than μN, with N = −V·n of that edge alone, and likewise along the other. The cable beside it may
+//! rest on either edge, joined to the load.
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::changes::resolve;
 use crate::model::spans::contact::friction_memory::{Knot, Mode, TensionProfile};
 use crate::model::spans::contact::point_load::{LoadBalance, felt};
 use crate::model::spans::failure::Failure;
-use crate::model::spans::run::{CableRun, Contact, Course};
+use crate::model::spans::run::{CableRun, Contact, Course, RestingLoad};
 
 /// A load so far beyond the end of its chain (m or rad) is in the kink there. Smaller: rounding.
-const BEYOND: f64 = 1e-12;
+const CHAIN_END_ROUNDING: f64 = 1e-12;
 /// Part of the forces that is rounding.
-const CONE: f64 = 1e-12;
+const CONE_ROUNDING: f64 = 1e-12;
 /// Part of the strand that a contact gives way by where a load leaves it, to begin with.
-const GIVES: f64 = 1e-6;
+const GIVE_WAY_FRACTION: f64 = 1e-6;
 
 /// Which way along the boundary the kink lies that a load is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,8 +57,9 @@ fn other(course: &Course, c: &Contact, kink: Kink) -> Option<(Vec2, Vec2)> {
     Some((place.tangent, place.normal))
 }
 
-/// The way V pushes the load out of its kink: away along its own edge, or on along the other (`true`).
-fn leaves(course: &Course, c: &Contact, (kink, f): (Kink, &LoadBalance), room: f64) -> Option<bool> {
+/// The way V pushes the load out of its kink: away along its own edge, or on along the other
+/// (`true`).
+fn leaves(course: &Course, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) -> Option<bool> {
     let out = |along: f64, press: f64| along > course.friction(c) * larger(press, 0.0) + room * f.size;
     if out(-kink.sign() * f.sum.dot(&f.tangent), -f.sum.dot(&f.normal)) {
         return Some(false);
@@ -68,27 +70,28 @@ fn leaves(course: &Course, c: &Contact, (kink, f): (Kink, &LoadBalance), room: f
 
 /// N of both edges together.
 pub(in crate::model::spans) fn press(course: &Course, c: &Contact, f: &LoadBalance) -> f64 {
-    match c.kink.and_then(|kink| other(course, c, kink)) {
+    match c.kink().and_then(|kink| other(course, c, kink)) {
         Some((_, normal)) => -f.sum.dot(&(f.normal + normal).normalize()),
         None => f.press(),
     }
 }
 
 /// Whether the load keeps its kink, to a part of its forces.
-pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, (kink, f): (Kink, &LoadBalance), room: f64) -> bool {
-    leaves(course, c, (kink, f), room).is_none()
+pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) -> bool {
+    leaves(course, c, kink, f, room).is_none()
 }
 
 /// K: loads that have come into a kink stay there; whether there was one.
 pub(in crate::model::spans) fn enter(strand: &mut CableRun, course: &Course) -> bool {
-    for c in strand.contacts.iter_mut().filter(|c| c.weight && c.kink.is_none()) {
+    for c in strand.contacts.iter_mut().filter(|c| c.load.is_some_and(|l| l.kink.is_none())) {
         for kink in [Kink::Back, Kink::Ahead] {
             let Some((_, p)) = beyond(course, c, kink) else { continue };
-            if (c.ends.p[0] - p) * kink.sign() > BEYOND {
+            if (c.ends.p[0] - p) * kink.sign() > CHAIN_END_ROUNDING {
                 let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
                 c.ends.p = [p; 2];
                 c.history = TensionProfile::new(knot, knot);
-                (c.kink, c.mode, c.smooth) = (Some(kink), Mode::Hold, false);
+                c.load = Some(RestingLoad { kink: Some(kink) });
+                (c.mode, c.smooth) = (Mode::Hold, false);
                 return true;
             }
         }
@@ -100,8 +103,8 @@ pub(in crate::model::spans) fn enter(strand: &mut CableRun, course: &Course) -> 
 pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Failure> {
     let f = felt(strand, course, j);
     let c = &strand.contacts[j];
-    let Some(kink) = c.kink else { return Ok(false) };
-    let Some(on) = leaves(course, c, (kink, &f), CONE) else { return Ok(false) };
+    let Some(kink) = c.kink() else { return Ok(false) };
+    let Some(on) = leaves(course, c, kink, &f, CONE_ROUNDING) else { return Ok(false) };
     let (curve, friction) = (&course.curves[c.curve], course.friction(c));
     let mut home = c.home;
     if on {
@@ -115,16 +118,17 @@ pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: 
     };
     let c = &mut strand.contacts[j];
     let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
-    (c.home, c.ends.p, c.history, c.kink) = (home, [p; 2], TensionProfile::new(knot, knot), None);
+    (c.home, c.ends.p, c.history) = (home, [p; 2], TensionProfile::new(knot, knot));
+    c.load = Some(RestingLoad::default());
     c.mode = Mode::Slide(friction * if on { kink.sign() } else { -kink.sign() });
     for side in 0..2 {
-        part(strand, course, (j, side));
+        part(strand, course, j, side);
     }
     Ok(true)
 }
 
 /// What is joined to the load that is contact j but lies on another chain leaves it by a span.
-fn part(strand: &mut CableRun, course: &Course, (j, side): (usize, usize)) {
+fn part(strand: &mut CableRun, course: &Course, j: usize, side: usize) {
     if !strand.is_joined(j, side) {
         return;
     }
@@ -132,14 +136,14 @@ fn part(strand: &mut CableRun, course: &Course, (j, side): (usize, usize)) {
     if strand.contacts[i].home == strand.contacts[j].home {
         return;
     }
-    strand.contacts[if side == 0 { i } else { j }].joined = false;
-    give_way(strand, (i, 1 - side));
+    strand.contacts[if side == 0 { i } else { j }].next.part();
+    give_way(strand, i, 1 - side);
     resolve(strand, course, j + side);
 }
 
 /// An end of contact i gives way by a little, for a span to begin there.
-pub(in crate::model::spans) fn give_way(strand: &mut CableRun, (i, end): (usize, usize)) {
-    let gives = GIVES * (strand.to - strand.from);
+pub(in crate::model::spans) fn give_way(strand: &mut CableRun, i: usize, end: usize) {
+    let gives = GIVE_WAY_FRACTION * (strand.to - strand.from);
     let e = &mut strand.contacts[i].ends;
     let (most, sign) = (0.5 * (e.s[1] - e.s[0]), if end == 0 { 1.0 } else { -1.0 });
     let by = if gives < most { gives } else { most };
@@ -149,7 +153,7 @@ pub(in crate::model::spans) fn give_way(strand: &mut CableRun, (i, end): (usize,
 
 /// Whether contact `c` lies on the chain beyond the kink that a load is in, on that side.
 pub(in crate::model::spans) fn follows(course: &Course, load: &Contact, c: &Contact, side: usize) -> bool {
-    load.kink.is_some_and(|kink| {
+    load.kink().is_some_and(|kink| {
         kink.side() == side
             && c.curve == load.curve
             && beyond(course, load, kink).is_some_and(|(i, p)| {

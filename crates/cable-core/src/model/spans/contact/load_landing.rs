@@ -1,12 +1,12 @@
-//! Loads and ends of the cable that come down onto a boundary are found and put down where they did; `point_load` says
-//! what they are there.
+//! Loads and ends of the cable that come down onto a boundary are found and put down where they
+//! did; `point_load` says what they are there.
 
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp};
 use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
-use crate::model::spans::contact::point_load::LIFTS;
+use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::failure::Failure;
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie};
 use crate::model::spans::verify::penetration;
 
 /// A load of span k, or the tip of it, that is deeper inside something than `deep` (m).
@@ -27,7 +27,8 @@ pub(in crate::model::spans) fn find(
     strand: &CableRun,
     course: &Course,
     world: &World,
-    (k, deep): (usize, f64),
+    k: usize,
+    deep: f64,
 ) -> Option<Landing> {
     let hangs = [k == 0, k == strand.contacts.len()];
     let (from, to) = strand.material(k);
@@ -72,8 +73,9 @@ pub(in crate::model::spans) fn touch(
         Some(Tie::Hangs(force)) => force,
         _ => Vec2::zeros(),
     };
-    let pressed = l.tip.is_none() || drawn.dot(&l.gap.normal) < -LIFTS * drawn.norm();
-    // An end that nothing presses down slides on with its load as it lies down, or comes to lie in a heap.
+    let pressed = l.tip.is_none() || drawn.dot(&l.gap.normal) < -LIFT_FRACTION * drawn.norm();
+    // An end that nothing presses down slides on with its load as it lies down, or comes to lie in
+    // a heap.
     let load = course.law.load;
     let down = load - l.gap.normal * load.dot(&l.gap.normal);
     let along = if pressed { l.along } else { down * if l.tip == Some(0) { -1.0 } else { 1.0 } };
@@ -95,10 +97,8 @@ pub(in crate::model::spans) fn touch(
         history: TensionProfile::new(knot(p, l.s, tension), knot(p, l.s, tension)),
         wheel: None,
         flips: 0,
-        pocket: false,
-        joined: false,
-        weight: true,
-        kink: None,
+        next: Next::Span,
+        load: Some(RestingLoad::default()),
         smooth: true,
     };
     let Some(side) = l.tip else {
@@ -121,7 +121,7 @@ pub(in crate::model::spans) fn touch(
         let below = -l.gap.gap_m / larger(steep, 0.1);
         let sign = if side == 0 { -1.0 } else { 1.0 };
         let (inner, tension) = (1 - side, rate * below);
-        (c.weight, c.smooth) = (false, false);
+        (c.load, c.smooth) = (None, false);
         c.ends.p[side] += sign * below;
         c.ends.s[inner] -= sign * below;
         (c.ends.t[side], c.ends.t[inner]) = (0.0, tension);

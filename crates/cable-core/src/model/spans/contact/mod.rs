@@ -1,4 +1,5 @@
-//! These modules hold what a contact is: its friction memory, its equations, loads on it and its ends.
+//! These modules hold what a contact is: its friction memory, its equations, loads on it and its
+//! ends.
 
 pub(in crate::model::spans) mod equations;
 pub(in crate::model::spans) mod friction_memory;

@@ -1,16 +1,18 @@
 //! A dead load may lie on a boundary, inside the cable or at an end of it.
 //!
-//! Such a load P is a contact without extent: p₁ = p₂ = q, and its material is its own (after it the next number, so that
-//! what is summed up to there has the load in it, and what is summed up to before it has not). With F₋ and F₊ the force of
-//! the cable before and after it, pressed by N n and rubbed by −mN t as all that lies (see `capstan`), V = F₊ − F₋ + P:
+//! Such a load P is a contact without extent: p₁ = p₂ = q, and its material is its own (after it
+//! the next number, so that what is summed up to there has the load in it, and what is summed up to
+//! before it has not). With F₋ and F₊ the force of the cable before and after it, pressed by N n
+//! and rubbed by −mN t as all that lies (see `capstan`), V = F₊ − F₋ + P:
 //!
 //! ```text
 //! V + N n − m N t = 0:      N = −V·n,      V·(t + m n) = 0  where it slides with m,      |V·t| ≤ μN  where it sticks
 //! ```
 //!
-//! The cable beside it comes from the air at any angle, a span that ends in q; or it lies on the same chain, F = T t, and
-//! there is no span between the two: they are *joined*, and T stands where the force of that span would stand. At an end of
-//! the cable nothing is beyond it, and P is what draws the end.
+//! The cable beside it comes from the air at any angle, a span that ends in q; or it lies on the
+//! same chain, F = T t, and there is no span between the two: they are *joined*, and T stands where
+//! the force of that span would stand. At an end of the cable nothing is beyond it, and P is what
+//! draws the end.
 
 use crate::catenary::PointForce;
 use crate::math::{Vec2, larger, smaller};
@@ -19,20 +21,21 @@ use crate::model::spans::changes::resolve;
 use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::kink_load;
 use crate::model::spans::failure::Failure;
-use crate::model::spans::numerics::root::{FLOOR, crossing};
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
+use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie};
 
-/// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger: creep.
-const CONE: f64 = 1e-12;
+/// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger:
+/// creep.
+const CONE_ROUNDING: f64 = 1e-12;
 /// Part of the material coordinate that is no movement.
-const UNMOVED: f64 = 1e-15;
+const MATERIAL_ROUNDING: f64 = 1e-15;
 /// Part of a dead force that lifts an end off what it lies on, or presses it down.
-pub(in crate::model::spans) const LIFTS: f64 = 1e-9;
+pub(in crate::model::spans) const LIFT_FRACTION: f64 = 1e-9;
 /// Equations must hold to this part of the forces; the solver stops at 1e-11.
-const HOLDS: f64 = 1e-7;
-/// A contact's end this near to a load, of the strand's length, may end there. Smaller: it is found after more halvings. Larger: loads
-/// in the air are set down for nothing.
-const CATCHES: f64 = 0.02;
+const BALANCE_TOLERANCE: f64 = 1e-7;
+/// A contact's end this near to a load, of the strand's length, may end there. Smaller: it is found
+/// after more halvings. Larger: loads in the air are set down for nothing.
+const CATCH_DISTANCE_FRACTION: f64 = 0.02;
 
 /// What a load feels.
 #[derive(Clone, Copy, Debug)]
@@ -91,7 +94,7 @@ fn load(strand: &CableRun, course: &Course, j: usize) -> Vec2 {
 pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: usize, patience: f64) -> Mode {
     let c = &strand.contacts[j];
     let friction = course.friction(c);
-    if c.kink.is_some() {
+    if c.kink().is_some() {
         return Mode::Hold;
     }
     if friction <= 0.0 {
@@ -101,39 +104,39 @@ pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: 
     match c.mode {
         Mode::Hold => {
             let (along, press) = (felt.sum.dot(&felt.tangent), larger(felt.press(), 0.0));
-            let beyond = along.abs() > friction * press + CONE * patience * felt.size;
+            let beyond = along.abs() > friction * press + CONE_ROUNDING * patience * felt.size;
             if beyond { Mode::Slide(friction * along.signum()) } else { Mode::Hold }
         }
         Mode::Slide(m) => {
             let moved = c.ends.p[0] - held_at(c);
-            let back = m * moved < 0.0 && moved.abs() > UNMOVED * patience * c.ends.p[0].abs();
+            let back = m * moved < 0.0 && moved.abs() > MATERIAL_ROUNDING * patience * c.ends.p[0].abs();
             if m == 0.0 || back { Mode::Hold } else { c.mode }
         }
     }
 }
 
-/// The friction of what came down in a step that is not remembered yet, of the force there: loads have had none, and cable rubs
-/// as if it had come down where it was found.
+/// The friction of what came down in a step that is not remembered yet, of the force there: loads
+/// have had none, and cable rubs as if it had come down where it was found.
 pub(in crate::model::spans) fn fresh(strand: &CableRun, course: &Course) -> f64 {
     let missing = |j: usize| {
         let c = &strand.contacts[j];
-        if c.weight && c.smooth {
+        if c.is_load() && c.smooth {
             let f = felt(strand, course, j);
             return course.curves[c.curve].friction * larger(f.press(), 0.0) / larger(f.size, f64::MIN_POSITIVE);
         }
         let [t1, t2] = c.ends.t;
-        let new = !c.weight && c.wheel.is_none() && c.history.knots().len() == 1 && c.ends.p[1] > c.ends.p[0];
+        let new = !c.is_load() && c.wheel.is_none() && c.history.knots().len() == 1 && c.ends.p[1] > c.ends.p[0];
         if new { (t2 - t1).abs() / larger(larger(t1, t2), f64::MIN_POSITIVE) } else { 0.0 }
     };
     (0..strand.contacts.len()).map(missing).fold(0.0, larger)
 }
 
-/// Whether all of a strand is about to slide one way (1: towards its end, −1: towards its start): at each contact the tensions are
-/// those of sliding, but for this part of them.
+/// Whether all of a strand is about to slide one way (1: towards its end, −1: towards its start):
+/// at each contact the tensions are those of sliding, but for this part of them.
 pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way: f64, near: f64) -> bool {
     let slides = |(j, c): (usize, &Contact)| {
         let m = way * course.friction(c);
-        if c.weight {
+        if c.is_load() {
             let felt = felt(strand, course, j);
             return felt.sum.dot(&(felt.tangent + felt.normal * m)).abs() <= near * felt.size;
         }
@@ -156,12 +159,12 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usiz
     let f = felt(strand, course, j);
     let unsound =
         |what: &'static str| Failure::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
-    let room = HOLDS * f.size;
+    let room = BALANCE_TOLERANCE * f.size;
     if !(kink_load::press(course, c, &f) >= -room) {
         return Err(unsound("a load is held down"));
     }
-    if let Some(kink) = c.kink {
-        if !kink_load::holds(course, c, (kink, &f), HOLDS) {
+    if let Some(kink) = c.kink() {
+        if !kink_load::holds(course, c, kink, &f, BALANCE_TOLERANCE) {
             return Err(unsound("a load is out of its kink"));
         }
     } else if !(f.sum.dot(&f.tangent).abs() <= course.friction(c) * f.press() + room) {
@@ -169,20 +172,20 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usiz
     }
     for side in (0..2).filter(|&side| strand.is_joined(j, side)) {
         let beside = strand.contacts[j + 2 * side - 1].ends;
-        if !((beside.p[1 - side] - c.ends.p[side]).abs() <= HOLDS * (strand.to - strand.from)) {
+        if !((beside.p[1 - side] - c.ends.p[side]).abs() <= BALANCE_TOLERANCE * (strand.to - strand.from)) {
             return Err(unsound("a load is not where the cable beside it ends"));
         }
     }
     Ok(())
 }
 
-/// L: loads that lift are let go, those within a contact are set down there, ends that are pressed down rub, and what lies
-/// on one chain beside a load is joined to it; whether there was any.
+/// L: loads that lift are let go, those within a contact are set down there, ends that are pressed
+/// down rub, and what lies on one chain beside a load is joined to it; whether there was any.
 pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) -> Result<bool, Failure> {
     for j in 0..strand.contacts.len() {
-        if strand.contacts[j].weight {
+        if strand.contacts[j].is_load() {
             let f = felt(strand, course, j);
-            if kink_load::press(course, &strand.contacts[j], &f) < -CONE * f.size {
+            if kink_load::press(course, &strand.contacts[j], &f) < -CONE_ROUNDING * f.size {
                 lift(strand, course, j);
                 return Ok(true);
             }
@@ -200,12 +203,12 @@ pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) ->
 fn lift(strand: &mut CableRun, course: &Course, j: usize) {
     for side in 0..2 {
         if strand.is_joined(j, side) {
-            kink_load::give_way(strand, (j + 2 * side - 1, 1 - side));
+            kink_load::give_way(strand, j + 2 * side - 1, 1 - side);
         }
     }
     let last = strand.contacts.len() - 1;
-    let before = j.checked_sub(1).is_some_and(|i| std::mem::take(&mut strand.contacts[i].joined));
-    let after = strand.contacts[j].joined;
+    let before = j.checked_sub(1).is_some_and(|i| strand.contacts[i].next.part());
+    let after = strand.contacts[j].next == Next::Joined;
     for (side, end) in [(0, 0), (1, last)] {
         if let (true, Tie::Loose(force)) = (j == end, strand.ties[side]) {
             let lies = if side == 0 { after } else { before };
@@ -227,7 +230,7 @@ fn lift(strand: &mut CableRun, course: &Course, j: usize) {
 pub(in crate::model::spans) fn join(strand: &mut CableRun, course: &Course) -> Result<(), Failure> {
     let mut j = 0;
     while j < strand.contacts.len() {
-        while strand.contacts[j].weight && join_one(strand, course, j)? {}
+        while strand.contacts[j].is_load() && join_one(strand, course, j)? {}
         j += 1;
     }
     Ok(())
@@ -245,7 +248,7 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
             continue;
         }
         let (k, first) = (j + side, if side == 0 { i } else { j });
-        if c.weight {
+        if c.is_load() {
             // What lies between two loads of one chain lies, too.
             let [a, b] = [first, first + 1].map(|k| strand.contacts[k].ends);
             if !same || !(b.p[0] > a.p[0]) {
@@ -256,9 +259,9 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
             let knot = |side: usize| Knot { p: ends.p[side], s: ends.s[side], tension, m: 0.0 };
             let history = TensionProfile::new(knot(0), knot(1));
             let mode = Mode::Slide(0.0);
-            let between = Contact { ends, history, mode, weight: false, smooth: true, joined: true, ..load };
-            strand.contacts[first].joined = true;
-            strand.contacts.insert(first + 1, Contact { kink: None, ..between });
+            let between = Contact { ends, history, mode, load: None, smooth: true, next: Next::Joined, ..load };
+            strand.contacts[first].next = Next::Joined;
+            strand.contacts.insert(first + 1, between);
             strand.forces[k] = Vec2::new(tension, 0.0);
             strand.forces.insert(k, Vec2::new(tension, 0.0));
             return Ok(true);
@@ -267,19 +270,19 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
         let e = &mut strand.contacts[i].ends;
         (e.p[1 - side], e.s[1 - side]) = (load.ends.p[0], load.ends.s[side]);
         strand.forces[k] = Vec2::new(tension, 0.0);
-        strand.contacts[first].joined = true;
+        strand.contacts[first].next = Next::Joined;
         return Ok(true);
     }
     Ok(false)
 }
 
-/// C: where Newton stalls an end of a contact may have come to a load: it ends there, whatever the load rests with. The load
-/// that is nearest to an end is set down; whether there was one.
+/// C: where Newton stalls an end of a contact may have come to a load: it ends there, whatever the
+/// load rests with. The load that is nearest to an end is set down; whether there was one.
 pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> bool {
     let mut best: Option<(f64, usize, usize, f64)> = None;
-    let lies = |s: f64| strand.contacts.iter().any(|c| c.weight && c.ends.s[0] == s);
+    let lies = |s: f64| strand.contacts.iter().any(|c| c.is_load() && c.ends.s[0] == s);
     for (j, c) in strand.contacts.iter().enumerate() {
-        for side in (0..2).filter(|&side| strand.has_span(j + side) && !c.weight && c.wheel.is_none()) {
+        for side in (0..2).filter(|&side| strand.has_span(j + side) && !c.is_load() && c.wheel.is_none()) {
             let [from, to] = [strand.material(j + side).0, strand.material(j + side).1];
             let inside = |l: &&PointForce| l.arc_length > strand.from && l.arc_length < strand.to;
             let near = |l: &&PointForce| l.force.norm() > 0.0 && inside(l) && !lies(l.arc_length);
@@ -288,7 +291,10 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
                 let beside = l.arc_length >= from && l.arc_length <= to;
                 let turned =
                     l.arc_length >= c.ends.s[1].min(c.ends.s[0]) && l.arc_length <= c.ends.s[0].max(c.ends.s[1]);
-                if (beside || turned) && off <= CATCHES * (strand.to - strand.from) && best.is_none_or(|b| off < b.0) {
+                if (beside || turned)
+                    && off <= CATCH_DISTANCE_FRACTION * (strand.to - strand.from)
+                    && best.is_none_or(|b| off < b.0)
+                {
                     best = Some((off, j, side, l.arc_length));
                 }
             }
@@ -298,21 +304,21 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
     let c = &strand.contacts[j];
     let e = c.ends;
     let p = walk(&course.track(c), e.p[side], (s - e.s[side]) * course.law.stretch(e.t[side]));
-    let load = lying(c, (p, [s, s.next_up()]), e.t[side], true);
+    let load = lying(c, p, [s, s.next_up()], e.t[side], true);
     let left = if side == 0 { e.p[1] - p } else { p - e.p[0] };
     if left <= 0.0 {
         // Nothing else of it is left.
-        strand.contacts[j] = Contact { joined: c.joined, pocket: c.pocket, ..load };
+        strand.contacts[j] = Contact { next: c.next, ..load };
         return true;
     }
     let c = &mut strand.contacts[j];
     (c.ends.p[side], c.ends.s[side]) = (p, if side == 0 { s.next_up() } else { s });
     let joint = Vec2::new(e.t[side], 0.0);
     if side == 0 {
-        strand.contacts.insert(j, Contact { joined: true, ..load });
+        strand.contacts.insert(j, Contact { next: Next::Joined, ..load });
         strand.forces.insert(j + 1, joint);
     } else {
-        c.joined = true;
+        c.next = Next::Joined;
         strand.contacts.insert(j + 1, load);
         strand.forces.insert(j + 1, joint);
     }
@@ -347,8 +353,8 @@ fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     let s = s.arc_length;
     let track = course.track(c);
     let [p0, p1] = c.ends.p;
-    let floor = FLOOR * (strand.to - strand.from);
-    let q = crossing((p0, p1), floor, None, |p| {
+    let floor = TENSION_ROUNDING * (strand.to - strand.from);
+    let q = crossing(p0, p1, floor, None, |p| {
         let place = track.place(p);
         let (tension, laid) = c.history.at(&track, p);
         (s - laid, -place.stretch / track.law.stretch(tension))
@@ -359,13 +365,13 @@ fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     let fresh = c.smooth || !knots.first().zip(knots.last()).is_some_and(|(a, b)| q >= a.p && q <= b.p);
     let (first, second) = c.history.split(&track, q);
     let after = s.next_up();
-    let mut load = lying(c, (q, [s, after]), tension, fresh);
-    (load.joined, load.smooth) = (true, fresh);
+    let mut load = lying(c, q, [s, after], tension, fresh);
+    (load.next, load.smooth) = (Next::Joined, fresh);
     let mut rest = c.clone();
     (rest.ends.p[0], rest.ends.s[0], rest.ends.t[0], rest.history) = (q, after, tension, second);
     let c = &mut strand.contacts[j];
     (c.ends.p[1], c.ends.s[1], c.ends.t[1], c.history) = (q, s, tension, first);
-    (c.pocket, c.joined) = (false, true);
+    c.next = Next::Joined;
     strand.contacts.insert(j + 1, load);
     strand.contacts.insert(j + 2, rest);
     for _ in 0..2 {
@@ -380,14 +386,14 @@ fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
         let Tie::Loose(force) = strand.ties[side] else { continue };
         let c = &strand.contacts[j];
         let normal = course.track(c).place(c.ends.p[side]).normal;
-        if j != end || course.friction(c) <= 0.0 || force.dot(&normal) >= -LIFTS * force.norm() {
+        if j != end || course.friction(c) <= 0.0 || force.dot(&normal) >= -LIFT_FRACTION * force.norm() {
             continue;
         }
         let (p, s, tension) = (c.ends.p[side], c.ends.s[side], c.ends.t[side]);
-        let load = lying(c, (p, [s; 2]), tension, c.smooth);
+        let load = lying(c, p, [s; 2], tension, c.smooth);
         let k = j + side;
         strand.contacts.insert(k, load);
-        strand.contacts[j].joined = true;
+        strand.contacts[j].next = Next::Joined;
         strand.forces.insert(j + 1, Vec2::new(tension, 0.0));
         return true;
     }
@@ -395,17 +401,15 @@ fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
 }
 
 /// A load on what a contact lies on.
-fn lying(on: &Contact, (p, s): (f64, [f64; 2]), tension: f64, fresh: bool) -> Contact {
+fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, fresh: bool) -> Contact {
     Contact {
         ends: Ends { p: [p; 2], s, t: [tension; 2] },
         mode: if fresh { Mode::Slide(0.0) } else { Mode::Hold },
         held: None,
         history: TensionProfile::new(Knot { p, s: s[0], tension, m: 0.0 }, Knot { p, s: s[0], tension, m: 0.0 }),
         flips: 0,
-        pocket: false,
-        joined: false,
-        weight: true,
-        kink: None,
+        next: Next::Span,
+        load: Some(RestingLoad::default()),
         smooth: fresh,
         ..on.clone()
     }

@@ -1,24 +1,25 @@
 //! A cable round a post may hang free below it, where its tension is too small to bear it there.
 //!
-//! On an arc the pressure P = T − (c/λ) b·n obeys P' = mP − 2(c/λ) b·t, so that P e^{−mψ} falls up to the *bottom* of the arc, where
-//! b·t = 0 with the load away from the centre, and grows behind it: if P is not below nothing at a bottom it is so nowhere near it. What
-//! pulls is a stretch about a bottom; the contact is parted there and a span hangs in its place. Two contacts of one post with
-//! a bottom between them are two until they meet.
+//! On an arc the pressure P = T − (c/λ) b·n obeys P' = mP − 2(c/λ) b·t, so that P e^{−mψ} falls up
+//! to the *bottom* of the arc, where b·t = 0 with the load away from the centre, and grows behind
+//! it: if P is not below nothing at a bottom it is so nowhere near it. What pulls is a stretch
+//! about a bottom; the contact is parted there and a span hangs in its place. Two contacts of one
+//! post with a bottom between them are two until they meet.
 
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::changes::resolve;
 use crate::model::spans::contact::friction_memory::{Ends, Mode, TensionProfile};
-use crate::model::spans::numerics::root::{FLOOR, crossing};
-use crate::model::spans::run::{CableRun, Contact, Course};
+use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
+use crate::model::spans::run::{CableRun, Contact, Course, Next};
 
-/// Pull on a post that is none, of the tensions at the ends of the contact: rounding. Larger than what the check lets pass: contacts
-/// that it refuses are not parted.
-const PULLS: f64 = 1e-9;
+/// Pull on a post that is none, of the tensions at the ends of the contact: rounding. Larger than
+/// what the check lets pass: contacts that it refuses are not parted.
+const PULL_ROUNDING: f64 = 1e-9;
 
 /// Whether a bottom of a round boundary lies between two places on it.
 pub(in crate::model::spans) fn hangs_between(track: &Track<'_>, from: f64, to: f64) -> bool {
     let mut found = false;
-    track.bottoms((from, to), |_| found = true);
+    track.bottoms(from, to, |_| found = true);
     found
 }
 
@@ -33,12 +34,12 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
     for (j, c) in strand.contacts.iter().enumerate() {
         let track = course.track(c);
         let [first, last] = c.ends.p;
-        if c.weight || c.wheel.is_some() || !track.curve.is_round() || !hangs_between(&track, first, last) {
+        if c.is_load() || c.wheel.is_some() || !track.curve.is_round() || !hangs_between(&track, first, last) {
             continue;
         }
         let past = after(&track, c);
-        let most = -PULLS * (c.ends.t[0].abs() + c.ends.t[1].abs());
-        track.bottoms((first, last), |p| {
+        let most = -PULL_ROUNDING * (c.ends.t[0].abs() + c.ends.t[1].abs());
+        track.bottoms(first, last, |p| {
             let pressed = press(&track, &past, p).0;
             if pressed < most && worst.as_ref().is_none_or(|w| pressed < w.0) {
                 worst = Some((pressed, j, p, past.clone()));
@@ -48,14 +49,14 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
     let Some((_, j, bottom, past)) = worst else { return false };
     let c = &strand.contacts[j];
     let track = course.track(c);
-    let floor = FLOOR * (c.ends.t[0].abs() + c.ends.t[1].abs());
+    let floor = TENSION_ROUNDING * (c.ends.t[0].abs() + c.ends.t[1].abs());
     // Within half a turn P has one zero on either side.
     let edges = [0, 1].map(|side| {
         let half = if side == 0 { -std::f64::consts::PI } else { std::f64::consts::PI };
         let far = bottom + half;
         let far = if (c.ends.p[side] - far) * half < 0.0 { c.ends.p[side] } else { far };
         if press(&track, &past, far).0 > 0.0 {
-            crossing((far, bottom), floor, None, |p| press(&track, &past, p))
+            crossing(far, bottom, floor, None, |p| press(&track, &past, p))
         } else {
             far
         }
@@ -73,7 +74,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
             other.ends = Ends { p: [edges[1], e.p[1]], s: [s1, e.s[1]], t: [t1, e.t[1]] };
             c.history = history.split(&course.track(c), edges[0]).0;
             other.history = history.split(&course.track(&other), edges[1]).1;
-            (c.pocket, c.joined) = (false, false);
+            c.next = Next::Span;
             strand.contacts.insert(j + 1, other);
             let g = strand.forces[j + 1];
             strand.forces.insert(j + 1, g);
@@ -95,7 +96,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
 /// What the contact remembers after the present state.
 fn after(track: &Track<'_>, c: &Contact) -> TensionProfile {
     let mut past = c.history.clone();
-    past.commit(track, &c.ends, (c.mode, c.held), &mut TensionProfile::default());
+    past.commit(track, &c.ends, c.mode, c.held, &mut TensionProfile::default());
     past
 }
 

@@ -1,51 +1,56 @@
 //! A pocket is slack in a concave kink.
 //!
-//! A cable under tension bridges a kink of δ by a span that is tangent to both its edges; its size goes with its tension,
-//! x = T tan(δ/2)/w on each edge. Where there is more cable than that the span shrinks to nothing: the cable lies in the kink
-//! without tension, and what is over lies there loose. Such a *pocket* is two ends of contacts held in the kink, T = 0 on
-//! both, with as much material between them as there is over, surplus = s₁ − s₂ ≥ 0. Where the surplus is used up the cable
-//! draws a span across the kink again. Between the two nothing jumps: T → 0 as surplus → 0.
+//! A cable under tension bridges a kink of δ by a span that is tangent to both its edges; its size
+//! goes with its tension, x = T tan(δ/2)/w on each edge. Where there is more cable than that the
+//! span shrinks to nothing: the cable lies in the kink without tension, and what is over lies there
+//! loose. Such a *pocket* is two ends of contacts held in the kink, T = 0 on both, with as much
+//! material between them as there is over, surplus = s₁ − s₂ ≥ 0. Where the surplus is used up the
+//! cable draws a span across the kink again. Between the two nothing jumps: T → 0 as surplus → 0.
 //!
-//! What is over is a heap in the kink that weighs B = −b·surplus and more where dead loads are in it. The two edges have to carry
-//! it: pressed alone, N₁n₁ + N₂n₂ = −B, where −B is between their normals; else by the one edge it lies on, within its cone.
-//! A heap that neither carries slides on down (see [`heap`]).
+//! What is over is a heap in the kink that weighs B = −b·surplus and more where dead loads are in
+//! it. The two edges have to carry it: pressed alone, N₁n₁ + N₂n₂ = −B, where −B is between their
+//! normals; else by the one edge it lies on, within its cone. A heap that neither carries slides on
+//! down (see [`heap`]).
 //!
-//! The span that replaces a surplus of −e: an arc tangent to both edges x from the kink is δ x/tan(δ/2) long, and so
-//! e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
+//! The span that replaces a surplus of −e: an arc tangent to both edges x from the kink is δ
+//! x/tan(δ/2) long, and so e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::run::{CableRun, Contact, Course};
+use crate::model::spans::run::{CableRun, Contact, Course, Next};
 
-/// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it. Larger: the cable there is
-/// too short by as much.
-pub(in crate::model::spans) const SHORT: f64 = 1e-11;
-/// Spans of less tension than this part of the cable's weight may have become pockets where a step fails. Smaller: it takes
-/// more halvings to come so near. Larger: more of them are tried for nothing.
-const LOOSE: f64 = 1e-2;
+/// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it.
+/// Larger: the cable there is too short by as much.
+pub(in crate::model::spans) const POCKET_SHORTAGE_FRACTION: f64 = 1e-11;
+/// Spans of less tension than this part of the cable's weight may have become pockets where a step
+/// fails. Smaller: it takes more halvings to come so near. Larger: more of them are tried for
+/// nothing.
+const POCKET_TENSION_FRACTION: f64 = 1e-2;
 /// Ends of two chains this near to each other (m) are one kink.
-const ONE: f64 = 1e-9;
+const KINK_DISTANCE_M: f64 = 1e-9;
 /// Part of a heap's weight by which it may leave the cone of what it lies on: rounding.
-const CONE: f64 = 1e-9;
+const HEAP_CONE_ROUNDING: f64 = 1e-9;
 /// A span drawn across a kink takes at most this part of the contacts beside it.
-const PART: f64 = 0.3;
+const KINK_SPAN_FRACTION: f64 = 0.3;
 
-/// Where the ends of the contacts before and after span k would lie in a kink: p on both, the turn, rad.
+/// Where the ends of the contacts before and after span k would lie in a kink: p on both, the turn,
+/// rad.
 fn kink(strand: &CableRun, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
     let (a, b) = (strand.contacts.get(k.checked_sub(1)?)?, strand.contacts.get(k)?);
-    if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.weight || b.weight {
+    if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.is_load() || b.is_load() {
         return None;
     }
     let curve = &course.curves[a.curve];
     let p = [curve.end(a.home.last), curve.origin(b.home.first)];
     let (u, v) = (curve.place(p[0], a.home), curve.place(p[1], b.home));
     let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
-    ((u.at - v.at).norm() <= ONE && turn > 0.0 && p[0] >= a.ends.p[0] && p[1] <= b.ends.p[1]).then_some((p, turn))
+    ((u.at - v.at).norm() <= KINK_DISTANCE_M && turn > 0.0 && p[0] >= a.ends.p[0] && p[1] <= b.ends.p[1])
+        .then_some((p, turn))
 }
 
 /// Spans that may become pockets, those of the least tension first.
 pub(in crate::model::spans) fn candidates(strand: &CableRun, course: &Course, out: &mut Vec<(f64, usize)>) {
     out.clear();
-    let most = LOOSE * course.law.load.norm() * (strand.to - strand.from);
+    let most = POCKET_TENSION_FRACTION * course.law.load.norm() * (strand.to - strand.from);
     for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
         let tension = strand.force(course, k, strand.material(k).0).norm();
         if tension < most && kink(strand, course, k).is_some() {
@@ -65,7 +70,7 @@ pub(in crate::model::spans) fn fill(strand: &mut CableRun, course: &Course, k: u
         c.ends.s[end] += (p - c.ends.p[end]) / stretch;
         (c.ends.p[end], c.ends.t[end]) = (p, 0.0);
     }
-    strand.contacts[k - 1].pocket = true;
+    strand.contacts[k - 1].next = Next::Pocket;
     strand.forces[k] = Vec2::zeros();
 }
 
@@ -104,17 +109,17 @@ pub(in crate::model::spans) fn heap(strand: &CableRun, course: &Course, k: usize
     let side = usize::from(!(press[1] < 0.0));
     let edge = &mut borne[side];
     (edge.press, edge.friction) = (held.dot(&edge.normal), held.dot(&edge.tangent));
-    let most = course.friction([a, b][side]) * edge.press + CONE * held.norm();
+    let most = course.friction([a, b][side]) * edge.press + HEAP_CONE_ROUNDING * held.norm();
     (edge.press >= 0.0 && edge.friction.abs() <= most).then_some(borne)
 }
 
 /// U: draws a span across the kink whose material is shortest.
 pub(in crate::model::spans) fn open(strand: &mut CableRun, course: &Course) -> bool {
     let surplus = |k: usize| strand.contacts[k].ends.s[0] - strand.contacts[k - 1].ends.s[1];
-    let pockets = (1..strand.contacts.len()).filter(|&k| strand.contacts[k - 1].pocket);
+    let pockets = (1..strand.contacts.len()).filter(|&k| strand.contacts[k - 1].next == Next::Pocket);
     let Some(k) = pockets.min_by(|&a, &b| surplus(a).total_cmp(&surplus(b))) else { return false };
     let short = -surplus(k);
-    if !(short > SHORT * (strand.to - strand.from)) {
+    if !(short > POCKET_SHORTAGE_FRACTION * (strand.to - strand.from)) {
         return false;
     }
     let Some((_, turn)) = kink(strand, course, k) else { return false };
@@ -122,7 +127,7 @@ pub(in crate::model::spans) fn open(strand: &mut CableRun, course: &Course) -> b
     let half = (0.5 * turn).tan();
     let (mut x, stretch) = (short / (2.0 - turn / half), course.law.stretch(0.0));
     for j in [k - 1, k] {
-        let most = PART * extent(j);
+        let most = KINK_SPAN_FRACTION * extent(j);
         x = if x < most { x } else { most };
     }
     let normal = course.track(&strand.contacts[k]).place(strand.contacts[k].ends.p[0]).normal;
@@ -134,7 +139,7 @@ pub(in crate::model::spans) fn open(strand: &mut CableRun, course: &Course) -> b
         c.ends.s[end] += sign * x / stretch;
         c.ends.t[end] = tension;
     }
-    strand.contacts[k - 1].pocket = false;
+    strand.contacts[k - 1].next = Next::Span;
     if let Some(g) = strand.solve_span(course, k) {
         strand.forces[k] = g;
     }

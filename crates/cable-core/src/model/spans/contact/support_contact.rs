@@ -1,18 +1,18 @@
 //! A support may come to lie on a boundary, slide along it, or lift the cable off it.
 
 use crate::math::Vec2;
-use crate::model::spans::changes::ON;
+use crate::model::spans::changes::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::run::{CableRun, Course, Tie};
 
 /// Part of a contact that the first guess of a lifted end leaves lying at least.
-const LEFT: f64 = 0.02;
+const LYING_FRACTION: f64 = 0.02;
 
 /// Moves an end that is held to `at`, m.
 pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, side: usize, at: Vec2) {
     let outer = if side == 0 { 0 } else { strand.contacts.len().wrapping_sub(1) };
-    let on = strand.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.weight).and_then(|c| {
+    let on = strand.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.is_load()).and_then(|c| {
         let curve = course.track(c).curve;
-        curve.on_chain(c.home, at, ON)
+        curve.on_chain(c.home, at, SUPPORT_CONTACT_DISTANCE_M)
     });
     match (strand.ties[side], on) {
         (Tie::Lies(_), Some(p)) => {
@@ -25,8 +25,8 @@ pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, sid
                 c.ends.t[side] = c.history.at(&course.track(c), p).0;
             }
         }
-        (Tie::Lies(_), None) => lift(strand, course, side, (outer, at)),
-        (Tie::Held(_), Some(p)) if beyond(strand, outer, side, p) => lay(strand, side, (outer, p)),
+        (Tie::Lies(_), None) => lift(strand, course, side, outer, at),
+        (Tie::Held(_), Some(p)) if beyond(strand, outer, side, p) => lay(strand, side, outer, p),
         (Tie::Held(_), _) => strand.ties[side] = Tie::Held(at),
         _ => {}
     }
@@ -39,16 +39,16 @@ fn beyond(strand: &CableRun, j: usize, side: usize, p: f64) -> bool {
 }
 
 /// An end that comes down to lie on the boundary: its span is gone.
-fn lay(strand: &mut CableRun, side: usize, (j, p): (usize, f64)) {
+fn lay(strand: &mut CableRun, side: usize, j: usize, p: f64) {
     strand.ties[side] = Tie::Lies(p);
     let s = if side == 0 { strand.from } else { strand.to };
     let e = &mut strand.contacts[j].ends;
     (e.p[side], e.s[side]) = (p, s);
 }
 
-/// An end that leaves the boundary: a span begins where a parabola of the height h and tension T there would,
-/// x = √(2Th/w_n).
-fn lift(strand: &mut CableRun, course: &Course, side: usize, (j, at): (usize, Vec2)) {
+/// An end that leaves the boundary: a span begins where a parabola of the height h and tension T
+/// there would, x = √(2Th/w_n).
+fn lift(strand: &mut CableRun, course: &Course, side: usize, j: usize, at: Vec2) {
     let c = &mut strand.contacts[j];
     let track = course.track(c);
     let curve = track.curve;
@@ -60,7 +60,7 @@ fn lift(strand: &mut CableRun, course: &Course, side: usize, (j, at): (usize, Ve
     let reach = if press > 0.0 { (2.0 * c.ends.t[side].abs() * height / press).sqrt() } else { 0.0 };
     let other = c.ends.p[1 - side];
     let sign = if side == 0 { 1.0 } else { -1.0 };
-    let least = (foot - other).abs() * (1.0 - LEFT);
+    let least = (foot - other).abs() * (1.0 - LYING_FRACTION);
     let p = foot + sign * if reach < least { reach } else { least };
     let end = if side == 0 { strand.from } else { strand.to };
     // Of the material there is some must remain for the span.

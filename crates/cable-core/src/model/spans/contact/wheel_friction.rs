@@ -1,7 +1,9 @@
-//! The friction of one wheel, for models that have cables of their own: what it remembers, and the two equations of the cable on it.
+//! This module gives models with spans of their own the friction of one wheel: its memory, and the
+//! two equations of the cable on it.
 //!
-//! The law is that of every contact here (`law`, `history`, `rub`). Slip is seen at points fixed to the wheel, since where the cable
-//! meets and leaves it wanders with its directions and moves no material.
+//! The law is that of every contact here (`law`, `history`, `rub`). Slip is seen at points fixed to
+//! the wheel, since where the cable meets and leaves it wanders with its directions and moves no
+//! material.
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::capstan::{Law, Track};
@@ -10,10 +12,10 @@ use crate::model::spans::contact::equations;
 use crate::model::spans::contact::friction_memory::{Ends, Held, Knot, Mode, TensionProfile};
 
 /// A wheel is one arc.
-const ROUND: ChainRange = ChainRange { first: 0, last: 0 };
-/// Part of the cone within which a cable taken over counts as sliding. Less: rounding of the answer decides; more: a cable that holds
-/// is let slide, for as much of its tension.
-const FULL: f64 = 1e-7;
+const WHEEL_RANGE: ChainRange = ChainRange { first: 0, last: 0 };
+/// Part of the cone within which a cable taken over counts as sliding. Less: rounding of the answer
+/// decides; more: a cable that holds is let slide, for as much of its tension.
+const SLIDING_CONE_TOLERANCE: f64 = 1e-7;
 
 /// Load (N/m), 1 + αΔT and EA (N) of the cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +25,8 @@ pub(in crate::model) struct OnWheel {
     pub stiffness: f64,
 }
 
-/// Where the cable meets and leaves a wheel: angle (rad, growing along the cable), material (m), tension (N).
+/// Where the cable meets and leaves a wheel: angle (rad, growing along the cable), material (m),
+/// tension (N).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::model) struct WheelEnds {
     pub p: [f64; 2],
@@ -56,7 +59,8 @@ impl From<&WheelEnds> for Ends {
 }
 
 impl WheelFriction {
-    /// A wheel of a radius (of the centre line, m) that the cable passes clockwise (`facing` +1) or the other way (−1).
+    /// A wheel of a radius (of the centre line, m) that the cable passes clockwise (`facing` +1) or
+    /// the other way (−1).
     pub fn new(radius: f64, friction: f64, facing: f64) -> Self {
         let mode = if friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) };
         Self { curve: Curve::wheel(radius, friction, facing), history: TensionProfile::default(), mode, held: None }
@@ -66,7 +70,7 @@ impl WheelFriction {
         let law = Law::new(on.load, on.thermal, on.stiffness);
         Track {
             curve: &self.curve,
-            home: ROUND,
+            home: WHEEL_RANGE,
             law,
             friction: self.curve.friction,
             drag: 0.0,
@@ -83,11 +87,12 @@ impl WheelFriction {
 
     /// Direction of the cable and outward normal at an angle.
     pub fn directions(&self, p: f64) -> [Vec2; 2] {
-        let place = self.curve.place(p, ROUND);
+        let place = self.curve.place(p, WHEEL_RANGE);
         [place.tangent, place.normal]
     }
 
-    /// Begins with what is known of the cable on it: angle, material (m) and tension (N) at points in order.
+    /// Begins with what is known of the cable on it: angle, material (m) and tension (N) at points
+    /// in order.
     pub fn begin(&mut self, on: &OnWheel, points: &[[f64; 3]]) {
         let knots: Vec<Knot> = points.iter().map(|&[p, s, tension]| Knot { p, s, tension, m: 0.0 }).collect();
         let friction = self.curve.friction;
@@ -97,7 +102,9 @@ impl WheelFriction {
             && b.p > a.p
         {
             let reach = |m: f64| self.track(on).slide(a.p, b.p, a.tension, m).tension;
-            let full = |m: f64| (b.tension - reach(m)).abs() <= FULL * (reach(friction) - reach(-friction)).abs();
+            let full = |m: f64| {
+                (b.tension - reach(m)).abs() <= SLIDING_CONE_TOLERANCE * (reach(friction) - reach(-friction)).abs()
+            };
             self.mode = [friction, -friction].into_iter().find(|&m| full(m)).map_or(Mode::Hold, Mode::Slide);
         }
     }
@@ -106,16 +113,16 @@ impl WheelFriction {
     pub fn rows(&mut self, on: &OnWheel, ends: &WheelEnds) -> WheelRows {
         let (e, track) = (Ends::from(ends), self.track(on));
         let spots = e.p.map(|p| track.place(p));
-        let (rows, held) = equations::rows(&track, (&self.history, &e), &spots, (self.mode, [false; 2]));
+        let (rows, held) = equations::rows(&track, &self.history, &e, &spots, self.mode, [false; 2]);
         self.held = held;
         WheelRows { residual: rows.residual, by: rows.by, of_tension: rows.of_tension }
     }
 
-    /// Goes over to sliding or holding where the law asks for it at these ends; whether it did. `patience` is how many times
-    /// rounding a violation must be.
+    /// Goes over to sliding or holding where the law asks for it at these ends; whether it did.
+    /// `patience` is how many times rounding a violation must be.
     pub fn change_mode(&mut self, on: &OnWheel, ends: &WheelEnds, patience: f64) -> bool {
         let e = Ends::from(ends);
-        let next = equations::next_mode(&self.track(on), (&self.history, &e), None, (self.mode, [false; 2]), patience);
+        let next = equations::next_mode(&self.track(on), &self.history, &e, None, self.mode, [false; 2], patience);
         let changed = next != self.mode;
         self.mode = next;
         changed
@@ -125,7 +132,7 @@ impl WheelFriction {
     pub fn commit(&mut self, on: &OnWheel, ends: &WheelEnds) {
         let e = Ends::from(ends);
         let mut history = std::mem::take(&mut self.history);
-        history.commit(&self.track(on), &e, (self.mode, None), &mut TensionProfile::default());
+        history.commit(&self.track(on), &e, self.mode, None, &mut TensionProfile::default());
         self.history = history;
     }
 

@@ -1,5 +1,5 @@
-//! The first guess of a run has contacts where the shortest path of its route bends, and its material spread evenly along
-//! the route.
+//! The first guess of a run has contacts where the shortest path of its route bends, and its
+//! material spread evenly along the route.
 
 use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};
@@ -7,39 +7,43 @@ use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::ChainRange;
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part, Pulley};
 use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
-use crate::model::spans::contact::point_load::LIFTS;
+use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::initial::route::{Way, way};
 use crate::model::spans::initial::shortest_path;
 use crate::model::spans::initial::shortest_path::{Bend, Ring};
 use crate::model::spans::initial::tension;
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 
 /// Ends of a route this near to a boundary lie on it, of the cable's radius.
-const LIES: f64 = 0.05;
-/// The same of a free end and of the points of the route behind it, which fall on what is below them. Smaller: an end drawn by hand a
-/// little above the ground hangs from its support, through the ground; larger: what hangs beside an obstacle is laid on it.
-const FALLS: f64 = 1.0;
-/// Tension with which the cable is laid at least where it does not lie in one piece, of its weight. Smaller: spans over
-/// hollows shrink to nothing. Larger: friction at a free end has to hold it, and it slides there first.
-const LAID: f64 = 1e-3;
-/// A route longer than the cable by more than this part is not how it lies: no cable is strained so. It is laid along the string
-/// then. Smaller: a cable laid taut is laid anew with other tensions. Larger: the first guess is far off.
-const LONG: f64 = 0.05;
-/// Points of a route between its ends lie on a boundary if they are this near, of the cable's radius: routes follow the
-/// surface, the centre line is cut off at kinks.
-const NEAR: f64 = 0.5;
-/// How far along the route, in radii of a post, the cable may come up to it before or after the string does: less than half
-/// a turn, so that turns are not mistaken for each other.
-const ROUND: f64 = 2.5;
-/// How much further than at its nearest a route that is drawn round a wheel may be from its centre, of the radius. Smaller: the chords of
-/// a coarse polygon are left; larger: of a route that only comes near more is taken for its round.
+const LYING_END_RADII: f64 = 0.05;
+/// The same of a free end and of the points of the route behind it, which fall on what is below
+/// them. Smaller: an end drawn by hand a little above the ground hangs from its support, through
+/// the ground; larger: what hangs beside an obstacle is laid on it.
+const FALLING_END_RADII: f64 = 1.0;
+/// Tension with which the cable is laid at least where it does not lie in one piece, of its weight.
+/// Smaller: spans over hollows shrink to nothing. Larger: friction at a free end has to hold it,
+/// and it slides there first.
+const FIRST_TENSION_WEIGHTS: f64 = 1e-3;
+/// A route longer than the cable by more than this part is not how it lies: no cable is strained
+/// so. It is laid along the string then. Smaller: a cable laid taut is laid anew with other
+/// tensions. Larger: the first guess is far off.
+const ROUTE_EXCESS_FRACTION: f64 = 0.05;
+/// Points of a route between its ends lie on a boundary if they are this near, of the cable's
+/// radius: routes follow the surface, the centre line is cut off at kinks.
+const ROUTE_CONTACT_RADII: f64 = 0.5;
+/// How far along the route, in radii of a post, the cable may come up to it before or after the
+/// string does: less than half a turn, so that turns are not mistaken for each other.
+const POST_APPROACH_RADII: f64 = 2.5;
+/// How much further than at its nearest a route that is drawn round a wheel may be from its centre,
+/// of the radius. Smaller: the chords of a coarse polygon are left; larger: of a route that only
+/// comes near more is taken for its round.
 const ABOUT: f64 = 0.1;
 /// Rounds of bringing a free end to where the material ends; each gains the digits of the strain.
-const FITS: usize = 6;
+const END_FIT_ROUNDS: usize = 6;
 /// Corners by which a seat goes on at most.
 const MOST_STRETCHED: usize = 8;
 /// A contact guessed keeps at least this part of the strand's material clear of the next.
-const CLEAR: f64 = 1e-4;
+const CONTACT_SPACING_FRACTION: f64 = 1e-4;
 
 /// Something the cable bends round, in order.
 #[derive(Clone, Debug)]
@@ -59,18 +63,21 @@ struct Seat {
 pub(in crate::model::spans) fn lay(
     layout: &Layout,
     index: usize,
-    (course, instant): (&Course, &BoundaryConditions),
+    course: &Course,
+    instant: &BoundaryConditions,
     ring: Ring,
 ) -> Option<(CableRun, Vec<Vec2>)> {
     let way = way(layout, layout.strands.get(index)?, instant);
-    Some((along(layout, index, (course, instant), (&way, ring))?, way.points))
+    Some((along(layout, index, course, instant, &way, ring)?, way.points))
 }
 
 fn along(
     layout: &Layout,
     index: usize,
-    (course, instant): (&Course, &BoundaryConditions),
-    (way, ring): (&Way, Ring),
+    course: &Course,
+    instant: &BoundaryConditions,
+    way: &Way,
+    ring: Ring,
 ) -> Option<CableRun> {
     let part = layout.strands.get(index)?;
     let [from, to] = part.material;
@@ -84,17 +91,19 @@ fn along(
     });
     // Ends that lie: how many points of the route, and the contact. What a load lifts does not.
     let heads = [0, 1].map(|side| {
-        let near = if part.supports[side].is_none() { [FALLS; 2] } else { [LIES, NEAR] };
+        let near =
+            if part.supports[side].is_none() { [FALLING_END_RADII; 2] } else { [LYING_END_RADII, ROUTE_CONTACT_RADII] };
         let near = near.map(|n| n * layout.problem.radius);
-        lying(course, &layout.problem.world, near, (&way.points, side)).filter(|h| match ties[side] {
+        lying(course, &layout.problem.world, near, &way.points, side).filter(|h| match ties[side] {
             Tie::Hangs(force) => {
                 let place = course.curves[h.curve].place(h.p[side], h.home);
-                force.dot(&place.normal) <= LIFTS * force.norm()
+                force.dot(&place.normal) <= LIFT_FRACTION * force.norm()
             }
             _ => true,
         })
     });
-    // Evenly along the route; from the end that is held, strained by what draws the other, where that is not held.
+    // Evenly along the route; from the end that is held, strained by what draws the other, where
+    // that is not held.
     let loose = |side: usize| part.supports[side].is_none();
     let drawn = |side: usize| match (&heads[side], ties[side]) {
         (None, Tie::Hangs(force)) => (force + course.law.load * tail(part, instant, way, side)).norm(),
@@ -116,7 +125,7 @@ fn along(
     } else {
         0.0
     };
-    let least = LAID * course.law.load.norm() * (to - from);
+    let least = FIRST_TENSION_WEIGHTS * course.law.load.norm() * (to - from);
     if let [Some(a), Some(b)] = &heads
         && (a.count + b.count > way.points.len() && a.curve == b.curve && a.home == b.home)
     {
@@ -129,15 +138,22 @@ fn along(
     if first > last {
         return None;
     }
-    let mut contacts = bends(layout, part, (course, instant), (way, first, last, ring), (&at, tension))?;
-    let join = joint(course, &heads, (first == last, tension));
+    let mut contacts = bends(
+        layout,
+        part,
+        course,
+        instant,
+        &TautString { way, first, last, ring },
+        &FirstMaterial { at: &at, tension },
+    )?;
+    let join = joint(course, &heads, first == last, tension);
     for (side, h) in heads.iter().enumerate() {
         let Some(h) = h else { continue };
         let way_at = |k: usize| at(way.along[k]);
         let join = smaller(join, 0.5 * (h.p[1] - h.p[0]));
         let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
         let p = if side == 0 { [h.p[0], h.p[1] - join] } else { [h.p[0] + join, h.p[1]] };
-        let c = contact(course, (h.curve, h.home), (p, s), tension);
+        let c = contact(course, h.curve, h.home, p, s, tension);
         contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
         strand.ties[side] = end_tie(ties[side], h.p[side]);
     }
@@ -148,10 +164,11 @@ fn along(
     }
     spread(&mut strand, course);
     solve_spans(&mut strand, course)?;
-    // Without a route the way is straight from support to support: round a wheel from tangent to tangent.
+    // Without a route the way is straight from support to support: round a wheel from tangent to
+    // tangent.
     let wheel = |q: &Pulley| layout.problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
     let tangent_ways = layout.problem.route.len() < 2 && part.pulleys.iter().any(wheel);
-    if (slack > LONG || tangent_ways) && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
+    if (slack > ROUTE_EXCESS_FRACTION || tangent_ways) && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
         tension::relay(&mut strand, course);
     }
     Some(strand)
@@ -170,7 +187,7 @@ fn solve_spans(strand: &mut CableRun, course: &Course) -> Option<()> {
 
 /// A strand that lies on one boundary from end to end.
 fn lies_whole(mut strand: CableRun, course: &Course, [a, b]: [&Head; 2], tension: f64) -> CableRun {
-    let mut c = contact(course, (a.curve, a.home), ([a.p[0], b.p[1]], [strand.from, strand.to]), tension);
+    let mut c = contact(course, a.curve, a.home, [a.p[0], b.p[1]], [strand.from, strand.to], tension);
     c.wheel = None;
     strand.ties = [0, 1].map(|side| end_tie(strand.ties[side], if side == 0 { a.p[0] } else { b.p[1] }));
     strand.contacts.push(c);
@@ -186,8 +203,9 @@ fn lies_whole(mut strand: CableRun, course: &Course, [a, b]: [&Head; 2], tension
     strand
 }
 
-/// Two stretches that meet at a kink of δ are joined by a span of length Tδ/w: half of it, m; 0 where they do not meet.
-fn joint(course: &Course, heads: &[Option<Head>; 2], (meet, tension): (bool, f64)) -> f64 {
+/// Two stretches that meet at a kink of δ are joined by a span of length Tδ/w: half of it, m; 0
+/// where they do not meet.
+fn joint(course: &Course, heads: &[Option<Head>; 2], meet: bool, tension: f64) -> f64 {
     match heads {
         [Some(a), Some(b)] if meet => {
             let (u, v) = (course.curves[a.curve].place(a.p[1], a.home), course.curves[b.curve].place(b.p[0], b.home));
@@ -198,17 +216,41 @@ fn joint(course: &Course, heads: &[Option<Head>; 2], (meet, tension): (bool, f64
     }
 }
 
-/// Contacts where the taut string of the route bends, `at` the material at a length along the way (m), laid with a tension.
+/// The part of a route along which a string is pulled taut.
+#[derive(Clone, Copy)]
+struct TautString<'a> {
+    way: &'a Way,
+    /// Index of the route's point at which it begins.
+    first: usize,
+    /// Index of the point at which it ends.
+    last: usize,
+    /// The outline about the corners.
+    ring: Ring,
+}
+
+/// The material of the cable in its first shape.
+#[derive(Clone, Copy)]
+struct FirstMaterial<'a> {
+    /// Arc length (m) at a length along the route (m).
+    at: &'a dyn Fn(f64) -> f64,
+    /// Tension, N.
+    tension: f64,
+}
+
+/// Contacts where the taut string of the route bends.
 fn bends(
     layout: &Layout,
     part: &Part,
-    (course, instant): (&Course, &BoundaryConditions),
-    (way, first, last, ring): (&Way, usize, usize, Ring),
-    (at, tension): (&dyn Fn(f64) -> f64, f64),
+    course: &Course,
+    instant: &BoundaryConditions,
+    string: &TautString<'_>,
+    material: &FirstMaterial<'_>,
 ) -> Option<Vec<Contact>> {
-    let mut seats = seats(layout, part, (course, instant), (way, first, last), ring)?;
+    let TautString { way, first, last, .. } = *string;
+    let FirstMaterial { at, tension } = *material;
+    let mut seats = seats(layout, part, course, instant, string)?;
     let mut contacts = Vec::with_capacity(seats.len() + 2);
-    let rounds = stretched(course, &mut seats, (way.points[first], way.points[last]));
+    let rounds = stretched(course, &mut seats, [way.points[first], way.points[last]]);
     for (k, seat) in seats.iter().enumerate() {
         let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
         let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
@@ -225,13 +267,14 @@ fn bends(
         // One that the string passes without a bend touches in one point, seen from either end.
         let [p1, p2] = if p2 > p1 { [p1, p2] } else { [0.5 * (p1 + p2); 2] };
         let half = 0.5 * curve.length(p1, p2, seat.home) / course.law.stretch(tension);
-        // Round a post the string's points are not those of the cable: where it comes and goes on the route itself.
+        // Round a post the string's points are not those of the cable: where it comes and goes on
+        // the route itself.
         let seen = |p: f64, w: f64| {
             let place = curve.place(p, seat.home);
-            if curve.is_round() { way.close(place.at, w, ROUND * place.stretch) } else { w }
+            if curve.is_round() { way.close(place.at, w, POST_APPROACH_RADII * place.stretch) } else { w }
         };
         let s = at(0.5 * (seen(p1, seat.way[0]) + seen(p2, seat.way[1])));
-        let mut c = contact(course, (index, seat.home), ([p1, p2], [s - half, s + half]), tension);
+        let mut c = contact(course, index, seat.home, [p1, p2], [s - half, s + half], tension);
         c.wheel = seat.wheel;
         contacts.push(c);
     }
@@ -253,8 +296,8 @@ fn bare(part: &Part, instant: &BoundaryConditions) -> Option<CableRun> {
     })
 }
 
-/// Material as it lies along the taut string, strained by `stretch`, from the end that is held; from the first contact as
-/// the route has it where none is.
+/// Material as it lies along the taut string, strained by `stretch`, from the end that is held;
+/// from the first contact as the route has it where none is.
 pub(in crate::model::spans) fn measure(strand: &mut CableRun, course: &Course, loose: [bool; 2], stretch: f64) {
     let n = strand.contacts.len();
     let point = |strand: &CableRun, k: usize, side: usize| strand.ends_of(course, k)[side];
@@ -284,7 +327,8 @@ pub(in crate::model::spans) fn measure(strand: &mut CableRun, course: &Course, l
     }
 }
 
-/// Length of a route from an end that hangs to the highest of its points, about where it is first held, m.
+/// Length of a route from an end that hangs to the highest of its points, about where it is first
+/// held, m.
 fn tail(part: &Part, instant: &BoundaryConditions, way: &Way, side: usize) -> f64 {
     let up = -instant.load;
     let high = |k: &usize| way.points[*k].dot(&up);
@@ -311,7 +355,7 @@ fn end_tie(tie: Tie, p: f64) -> Tie {
 
 /// Keeps material in order, and some of it in each span.
 pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
-    let least = CLEAR * (strand.to - strand.from);
+    let least = CONTACT_SPACING_FRACTION * (strand.to - strand.from);
     let n = strand.contacts.len();
     let mut before = strand.from;
     for j in 0..n {
@@ -343,7 +387,7 @@ pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
         c.history = lay_down(&track, &c.ends, [free, held]);
         // A free end lies where the material ends.
         for side in (0..2).filter(|&side| free[side]) {
-            for _ in 0..FITS {
+            for _ in 0..END_FIT_ROUNDS {
                 // Laid from a free end it is the other end that does not fit.
                 let other = if free[1 - side] { side } else { 1 - side };
                 let (tension, s) = c.history.at(&track, c.ends.p[other]);
@@ -355,8 +399,9 @@ pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
     }
 }
 
-/// A contact as it is laid: from its end that is free, where its tension is known, or held, where its material is; else from its middle.
-/// With two free ends it is laid with the tension of the one that draws less.
+/// A contact as it is laid: from its end that is free, where its tension is known, or held, where
+/// its material is; else from its middle. With two free ends it is laid with the tension of the one
+/// that draws less.
 fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> TensionProfile {
     let end = |side: usize| Knot { p: e.p[side], s: e.s[side], tension: e.t[side], m: 0.0 };
     let start = match (free, held) {
@@ -368,7 +413,7 @@ fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> Tensio
     TensionProfile::laid(track, start, e.p)
 }
 
-fn contact(course: &Course, (curve, home): (usize, ChainRange), (p, s): ([f64; 2], [f64; 2]), tension: f64) -> Contact {
+fn contact(course: &Course, curve: usize, home: ChainRange, p: [f64; 2], s: [f64; 2], tension: f64) -> Contact {
     let knot = |k: usize| Knot { p: p[k], s: s[k], tension, m: 0.0 };
     Contact {
         curve,
@@ -379,10 +424,8 @@ fn contact(course: &Course, (curve, home): (usize, ChainRange), (p, s): ([f64; 2
         wheel: None,
         flips: 0,
         held: None,
-        pocket: false,
-        joined: false,
-        weight: false,
-        kink: None,
+        next: Next::Span,
+        load: None,
         smooth: false,
     }
 }
@@ -396,8 +439,9 @@ struct Head {
     count: usize,
 }
 
-/// Whether the first points of a route (the last, for side 1) lie on one chain: the end and the others as `near` as that, m.
-fn lying(course: &Course, world: &World, near: [f64; 2], (points, side): (&[Vec2], usize)) -> Option<Head> {
+/// Whether the first points of a route (the last, for side 1) lie on one chain: the end and the
+/// others as `near` as that, m.
+fn lying(course: &Course, world: &World, near: [f64; 2], points: &[Vec2], side: usize) -> Option<Head> {
     let n = points.len();
     let point = |k: usize| points[if side == 0 { k } else { n - 1 - k }];
     let gap = world.signed_gap(point(0), 2.0 * near[0]).filter(|g| g.gap_m.abs() <= near[0])?;
@@ -419,10 +463,11 @@ fn lying(course: &Course, world: &World, near: [f64; 2], (points, side): (&[Vec2
 fn seats(
     layout: &Layout,
     part: &Part,
-    (course, instant): (&Course, &BoundaryConditions),
-    (way, first, last): (&Way, usize, usize),
-    ring: Ring,
+    course: &Course,
+    instant: &BoundaryConditions,
+    string: &TautString<'_>,
 ) -> Option<Vec<Seat>> {
+    let TautString { way, first, last, ring } = *string;
     let world = &layout.problem.world;
     let corners = shortest_path::corners(world, ring);
     let mut out: Vec<Seat> = Vec::new();
@@ -433,7 +478,7 @@ fn seats(
         let (stop, w) = match pulley {
             Some(q) => {
                 let at = instant.places[q.support];
-                (at, way.nearest(at, reached, last.saturating_sub(1)))
+                (at, way.nearest(at, reached, Some(last.saturating_sub(1))))
             }
             None => (way.points[last], way.along[last]),
         };
@@ -445,17 +490,18 @@ fn seats(
         route.push(stop);
         let bends = shortest_path::pull(&route, &corners)?;
         for (j, b) in bends.iter().enumerate() {
-            reached = way.nearest(b.corner.at, reached, begin.1 + b.leg);
+            reached = way.nearest(b.corner.at, reached, Some(begin.1 + b.leg));
             let before = j.checked_sub(1).and_then(|i| bends.get(i)).map_or(begin.0, |a| a.corner.at);
             let after = bends.get(j + 1).map_or(stop, |a| a.corner.at);
             let (u, v) = (b.corner.at - before, after - b.corner.at);
-            push(&mut out, course, b, (reached, cross(u, v).atan2(u.dot(&v)).abs()))?;
+            push(&mut out, course, b, reached, cross(u, v).atan2(u.dot(&v)).abs())?;
         }
         if let Some(q) = pulley {
             let curve = q.curve + usize::from(q.facing < 0.0);
             let home = ChainRange { first: 0, last: 0 };
-            // Tangents say how far it turns but for whole turns. A wheel passed on its side turns it by −90° (it lifts off, almost) to
-            // 270°: half a turn, two tails that hang from it, lies in the middle of that.
+            // Tangents say how far it turns but for whole turns. A wheel passed on its side turns
+            // it by −90° (it lifts off, almost) to 270°: half a turn, two tails that hang from it,
+            // lies in the middle of that.
             let turn = if q.facing == 0.0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
             // The route may be drawn round it: where it comes and where it goes.
             let radius = course.curves[curve].place(0.0, home).stretch;
@@ -469,7 +515,7 @@ fn seats(
 }
 
 /// Adds a bend to what there is, or to the last seat where it goes on there.
-fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, (w, turn): (f64, f64)) -> Option<()> {
+fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, w: f64, turn: f64) -> Option<()> {
     let curve_index = 2 * b.corner.body + usize::from(b.sense < 0.0);
     let curve = course.curves.get(curve_index)?;
     let i = curve.piece_of(b.corner.feature, b.corner.at)?;
@@ -487,13 +533,13 @@ fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, (w, turn): (f64, f64)) -
     Some(())
 }
 
-/// Lets each seat go on to the corner beside it where the string comes up to its corner, or leaves it, through the edge
-/// between the two; the rounds of all.
+/// Lets each seat go on to the corner beside it where the string comes up to its corner, or leaves
+/// it, through the edge between the two; the rounds of all.
 ///
-/// The string of points passes just by such a corner, that of the cable's radius bends round it: along the edge nothing
-/// turns, and Newton's method does not find across it.
-fn stretched(course: &Course, seats: &mut [Seat], ends: (Vec2, Vec2)) -> Vec<[Round; 2]> {
-    let mut found = rounds(course, seats, ends);
+/// The string of points passes just by such a corner, that of the cable's radius bends round it:
+/// along the edge nothing turns, and Newton's method does not find across it.
+fn stretched(course: &Course, seats: &mut [Seat], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
+    let mut found = rounds(course, seats, ends[0], ends[1]);
     for _ in 0..MOST_STRETCHED {
         let mut changed = false;
         for (k, seat) in seats.iter_mut().enumerate() {
@@ -513,7 +559,7 @@ fn stretched(course: &Course, seats: &mut [Seat], ends: (Vec2, Vec2)) -> Vec<[Ro
         if !changed {
             break;
         }
-        found = rounds(course, seats, ends);
+        found = rounds(course, seats, ends[0], ends[1]);
     }
     found
 }
@@ -522,7 +568,7 @@ fn stretched(course: &Course, seats: &mut [Seat], ends: (Vec2, Vec2)) -> Vec<[Ro
 type Round = (Vec2, f64, f64);
 
 /// The circles on which the string arrives at each seat and leaves it; points at both ends.
-fn rounds(course: &Course, seats: &[Seat], (start, end): (Vec2, Vec2)) -> Vec<[Round; 2]> {
+fn rounds(course: &Course, seats: &[Seat], start: Vec2, end: Vec2) -> Vec<[Round; 2]> {
     let mut out = vec![[(start, 0.0, 1.0); 2]];
     for s in seats {
         let curve = &course.curves[s.curve];
@@ -535,7 +581,8 @@ fn rounds(course: &Course, seats: &[Seat], (start, end): (Vec2, Vec2)) -> Vec<[R
     out
 }
 
-/// Direction of the line that touches two circles: with n = σ perp t, (C₂ − C₁)·perp t = σ₁r₁ − σ₂r₂.
+/// Direction of the line that touches two circles: with n = σ perp t, (C₂ − C₁)·perp t = σ₁r₁ −
+/// σ₂r₂.
 fn tangent(a: Round, b: Round) -> Vec2 {
     let d = b.0 - a.0;
     let far = d.norm();

@@ -1,11 +1,13 @@
 //! A drained route is the way of a cable that has drained down from its route.
 //!
-//! With cable enough, nothing is held up but by what is below it: each point of the route falls along the load, on to the first
-//! boundary that faces it. On the way down nothing is passed through, so that what comes of it lies on the same sides of everything as the
-//! route. It is a word of two letters: it *lies* along a boundary, or *hangs* plumb where the boundary below it ends and the next one is
-//! lower or higher. Where it goes back over what it has just come along it can be drawn back: the word is reduced as it is written.
+//! With enough cable, only what is below the cable holds it up: each point of the route falls along
+//! the load to the first boundary that faces it. It passes through nothing on the way down, so the
+//! result is on the same side of every obstacle as the route. The result is a word of two letters:
+//! the cable *lies* along a boundary, or *hangs* plumb where the boundary below it ends and the
+//! next one is lower or higher. If it returns over the stretch it has just come along, both are
+//! drawn back: the word is reduced as it is written.
 //!
-//! All of it in the frame of the load: u across it, v against it.
+//! All coordinates are in the frame of the load: u across it, v against it.
 
 use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross, larger, perp, smaller};
@@ -14,7 +16,8 @@ use crate::model::spans::run::Course;
 
 /// Lengths that are none, m: rounding of kilometres.
 pub(in crate::model::spans) const NONE_M: f64 = 1e-9;
-/// A boundary that faces the load with less than this part of itself is a wall: the cable hangs beside it.
+/// A boundary that faces the load with less than this part of itself is a wall: the cable hangs
+/// beside it.
 const FACES: f64 = 1e-9;
 /// Roofs that what does not hold slides down over at most.
 const MOST_DOWN: usize = 1000;
@@ -40,7 +43,8 @@ pub(in crate::model::spans) enum Leg {
 pub(in crate::model::spans) struct Roof {
     pub body: usize,
     friction: f64,
-    /// Piece of the boundary of the body with the solid right of travel, and how far along it the roof begins.
+    /// Piece of the boundary of the body with the solid right of travel, and how far along it the
+    /// roof begins.
     piece: i64,
     start: f64,
     u: [f64; 2],
@@ -54,7 +58,8 @@ enum Top {
     Round { center: Vec2, radius: f64 },
 }
 
-/// A part of a boundary with the direction of travel: (index of the curve, piece, p from where to where).
+/// A part of a boundary with the direction of travel: (index of the curve, piece, p from where to
+/// where).
 pub(in crate::model::spans) type Along = (usize, i64, [f64; 2]);
 
 impl Frame {
@@ -143,7 +148,8 @@ impl Roof {
                     let rounding = 4.0 * f64::EPSILON * (center.x.abs() + radius) / radius;
                     let angle = |u: f64| {
                         let c = (center.x - u) / radius;
-                        // Where it is plumb the angle would be off by the root of what rounding leaves.
+                        // Where it is plumb the angle would be off by the root of what rounding
+                        // leaves.
                         let c = if 1.0 - c.abs() <= rounding { c.signum() } else { c };
                         larger(1.0 - c * c, 0.0).sqrt().atan2(c)
                     };
@@ -152,7 +158,8 @@ impl Roof {
             }
     }
 
-    /// The stretch of the boundary of its body from one place to another, in the sense in which that goes on.
+    /// The stretch of the boundary of its body from one place to another, in the sense in which
+    /// that goes on.
     pub fn stretch(&self, curves: &[Curve], u: [f64; 2]) -> Along {
         let forward = &curves[2 * self.body];
         let [a, b] = u.map(|u| self.along(u));
@@ -182,7 +189,7 @@ impl Roofs {
         let mut all = Vec::new();
         for body in 0..bodies {
             if let Some(curve) = course.curves.get(2 * body) {
-                curve.pieces().for_each(|piece| roofs_of(curve, (body, piece), frame, &mut all));
+                curve.pieces().for_each(|piece| roofs_of(curve, body, piece, frame, &mut all));
             }
         }
         all.sort_by(|a, b| a.u[0].total_cmp(&b.u[0]));
@@ -199,7 +206,7 @@ impl Roofs {
     }
 }
 
-fn roofs_of(curve: &Curve, (body, piece): (usize, i64), frame: Frame, out: &mut Vec<Roof>) {
+fn roofs_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: &mut Vec<Roof>) {
     let (given, friction) = (curve.piece(piece), curve.friction);
     match given.form {
         Form::Edge { from, tangent } => {
@@ -266,7 +273,8 @@ impl Drained {
         }
         draining.hang(last.x, last.y);
         if !draining.legs.iter().any(|leg| matches!(leg, Leg::Lies { .. })) {
-            // Plumb above each other, or in one place: down to what is below both. Down and up again do not cancel: what is over lies there.
+            // Plumb above each other, or in one place: down to what is below both. Down and up
+            // again do not cancel: what is over lies there.
             (draining.height, draining.legs) = (first.y, Vec::new());
             draining.down(first.x, smaller(first.y, last.y))?;
             let down = draining.legs.clone();
@@ -285,7 +293,7 @@ impl Drained {
     }
 
     /// From a point plumb down, or up to it from there.
-    pub fn plumb(roofs: &Roofs, bodies: &[Body], frame: Frame, (from, up): (Vec2, bool)) -> Option<Self> {
+    pub fn plumb(roofs: &Roofs, bodies: &[Body], frame: Frame, from: Vec2, up: bool) -> Option<Self> {
         let at = frame.split(from);
         let mut draining = Draining { roofs, bodies, frame, legs: Vec::new(), height: at.y };
         draining.down(at.x, at.y)?;
@@ -373,7 +381,7 @@ impl Draining<'_> {
                 next += 1;
             }
             active.retain(|k| self.roofs.all[*k].u[1] >= middle);
-            self.between((at, stop), &active, &route, &mut fallen)?;
+            self.between(at, stop, &active, &route, &mut fallen)?;
             at = stop;
         }
         if to.x < from.x {
@@ -390,7 +398,8 @@ impl Draining<'_> {
     /// What it falls on where the same roofs are below and above all the way.
     fn between(
         &self,
-        (low, high): (f64, f64),
+        low: f64,
+        high: f64,
         active: &[usize],
         route: &Top,
         out: &mut Vec<(usize, [f64; 2])>,
@@ -418,7 +427,8 @@ impl Draining<'_> {
         Some(())
     }
 
-    /// Whether the route passes above a roof: where it cuts into its body, whether that is from above.
+    /// Whether the route passes above a roof: where it cuts into its body, whether that is from
+    /// above.
     fn is_below(&self, roof: usize, u: f64, v: f64) -> bool {
         let roof = &self.roofs.all[roof];
         if roof.height(u) <= v {

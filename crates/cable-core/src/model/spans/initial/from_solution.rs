@@ -1,23 +1,26 @@
 //! Runs are set up where another model's answer has the cable, with the friction it has there.
 //!
-//! Nodes that lie on one chain of a boundary, one after the other, are a contact. On an arc it goes on from its outer nodes to
-//! where the cable beside it is tangent, s by the length of the arc. What friction remembers are the tensions midway between its
-//! nodes: a chain of bars has its tensions there, and jumps at the nodes. Between two of them the one m that leads from one
-//! to the other is called upon, none beyond the cone.
+//! Consecutive nodes on one chain of a boundary form a contact. On an arc the contact extends from
+//! its outer nodes to the points where the cable beside it is tangent, with the material of the
+//! arc's length. The friction memory is set up from the tensions midway between the nodes: a chain
+//! of bars has its tensions there, and jumps at the nodes. Between two neighbouring tensions the
+//! single mobilised friction coefficient m is used that connects them, limited to the friction
+//! cone.
 
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
-use crate::model::spans::changes::ON;
+use crate::model::spans::changes::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
-use crate::model::spans::contact::point_load::LIFTS;
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::contact::point_load::LIFT_FRACTION;
+use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::solution::Node;
 
-/// A node this near to a boundary (m) lies on it: a barrier keeps nodes as far off as it reaches, 1e-4 m.
-const NEAR: f64 = 2.5e-4;
+/// A node this near to a boundary (m) lies on it: a barrier keeps nodes as far off as it reaches,
+/// 1e-4 m.
+const CONTACT_DISTANCE_M: f64 = 2.5e-4;
 /// Of the material of a strand, what is kept between two contacts at least.
-const CLEAR: f64 = 1e-6;
+const CONTACT_SPACING_FRACTION: f64 = 1e-6;
 
 /// A point of the cable, with the tensions before and after it.
 #[derive(Clone, Copy, Debug)]
@@ -36,13 +39,14 @@ impl Station {
     }
 }
 
-/// The strands of a cable as an answer has it, with at most a part of the cone of friction called upon; None where they
-/// cannot be told from it.
+/// The strands of a cable as an answer has it, with at most a part of the cone of friction called
+/// upon; None where they cannot be told from it.
 pub(in crate::model::spans) fn take(
     layout: &Layout,
     course: &Course,
     instant: &BoundaryConditions,
-    (nodes, within): (&[Node], f64),
+    nodes: &[Node],
+    within: f64,
 ) -> Option<Vec<CableRun>> {
     let strand = |part: &Part| {
         let mut stations = stations(nodes, part.material);
@@ -51,7 +55,7 @@ pub(in crate::model::spans) fn take(
         }
         pulleys(part, course, instant, &mut stations);
         seat(layout, course, &mut stations);
-        laid(layout, part, (course, instant), &stations, within)
+        laid(layout, part, course, instant, &stations, within)
     };
     layout.strands.iter().map(strand).collect()
 }
@@ -102,18 +106,21 @@ fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
             before = None;
             continue;
         }
-        station.lies = world.signed_gap(station.at, NEAR).filter(|g| g.gap_m.abs() <= NEAR).and_then(|gap| {
-            let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
-            let back = cross(along, gap.normal) < 0.0;
-            let index = 2 * body + usize::from(back);
-            let curve = course.curves.get(index)?;
-            let (i, home) = curve.chain(curve.piece_of(gap.feature, station.at)?, course.law.load)?;
-            let mut p = curve.project(i, station.at);
-            if let (true, Some(b)) = (curve.is_round(), before.filter(|b| b.0 == index)) {
-                p += std::f64::consts::TAU * ((b.2 - p) / std::f64::consts::TAU).ceil().max(0.0);
-            }
-            Some((index, home, p))
-        });
+        station.lies = world
+            .signed_gap(station.at, CONTACT_DISTANCE_M)
+            .filter(|g| g.gap_m.abs() <= CONTACT_DISTANCE_M)
+            .and_then(|gap| {
+                let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
+                let back = cross(along, gap.normal) < 0.0;
+                let index = 2 * body + usize::from(back);
+                let curve = course.curves.get(index)?;
+                let (i, home) = curve.chain(curve.piece_of(gap.feature, station.at)?, course.law.load)?;
+                let mut p = curve.project(i, station.at);
+                if let (true, Some(b)) = (curve.is_round(), before.filter(|b| b.0 == index)) {
+                    p += std::f64::consts::TAU * ((b.2 - p) / std::f64::consts::TAU).ceil().max(0.0);
+                }
+                Some((index, home, p))
+            });
         before = station.lies;
     }
 }
@@ -122,7 +129,8 @@ fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
 fn laid(
     layout: &Layout,
     part: &Part,
-    (course, instant): (&Course, &BoundaryConditions),
+    course: &Course,
+    instant: &BoundaryConditions,
     stations: &[Station],
     within: f64,
 ) -> Option<CableRun> {
@@ -166,7 +174,7 @@ fn laid(
 
 /// Material in order, some of it in every span.
 fn keep_apart(strand: &mut CableRun) -> Option<()> {
-    let least = CLEAR * (strand.to - strand.from);
+    let least = CONTACT_SPACING_FRACTION * (strand.to - strand.from);
     let mut before = strand.from;
     let mut spanned = strand.ties[0].has_span();
     for c in &mut strand.contacts {
@@ -206,10 +214,8 @@ impl Run<'_> {
             flips: 0,
             held: None,
             smooth: false,
-            pocket: false,
-            joined: false,
-            weight: false,
-            kink: None,
+            next: Next::Span,
+            load: None,
         };
         for side in 0..2 {
             let (p, s, t) = self.end(strand, course, stations, side)?;
@@ -239,8 +245,8 @@ impl Run<'_> {
         }
         knots.push(knot(1));
         let track = course.track(&contact);
-        // What is beyond the cone goes to where the tension is known without friction: away from an end that lies, to one that
-        // is not held.
+        // What is beyond the cone goes to where the tension is known without friction: away from an
+        // end that lies, to one that is not held.
         let lies = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
         let at_end = [self.first == 0, self.last + 1 == stations.len()];
         let free = strand.ties.map(|t| matches!(t, Tie::Hangs(_) | Tie::Loose(_)));
@@ -250,8 +256,8 @@ impl Run<'_> {
         } else {
             TensionProfile::through(&track, &knots, self.within)
         };
-        // Other models' nodes have their material as their bars have it, not as the tension between them strains it: what that is off goes
-        // to the span beyond, where there is one.
+        // Other models' nodes have their material as their bars have it, not as the tension between
+        // them strains it: what that is off goes to the span beyond, where there is one.
         if !at_end[usize::from(!back)] {
             contact.history.measure(&track, back);
             if let [first, .., last] = contact.history.knots() {
@@ -281,7 +287,7 @@ impl Run<'_> {
         if tip {
             let s = if side == 0 { strand.from } else { strand.to };
             match strand.ties[side] {
-                Tie::Held(at) => match self.curve.on_chain(self.home, at, ON) {
+                Tie::Held(at) => match self.curve.on_chain(self.home, at, SUPPORT_CONTACT_DISTANCE_M) {
                     Some(p) => {
                         strand.ties[side] = Tie::Lies(p);
                         return Some((p, s, tension));
@@ -298,7 +304,7 @@ impl Run<'_> {
                     let place = self.curve.place(p, self.home);
                     let along = force.dot(&place.tangent);
                     // What is pressed down rubs by itself.
-                    let pressed = self.curve.friction > 0.0 && force.dot(&place.normal) < -LIFTS * force.norm();
+                    let pressed = self.curve.friction > 0.0 && force.dot(&place.normal) < -LIFT_FRACTION * force.norm();
                     return Some((
                         p,
                         s,
@@ -332,7 +338,8 @@ impl Run<'_> {
         Some((q, station.s + way, tension))
     }
 
-    /// Direction of travel of the line that touches the arc at p and goes through a point beside it.
+    /// Direction of travel of the line that touches the arc at p and goes through a point beside
+    /// it.
     fn tangent_from(&self, beside: Vec2, p: f64, side: usize) -> Option<Vec2> {
         let place = self.curve.place(p, self.home);
         let center = place.at - place.normal * place.stretch;

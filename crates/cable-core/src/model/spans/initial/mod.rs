@@ -1,4 +1,5 @@
-//! These modules make the initial shape: route, shortest path, contacts and tension, or another answer.
+//! These modules make the initial shape: route, shortest path, contacts and tension, or another
+//! answer.
 
 pub(in crate::model::spans) mod contacts;
 pub(in crate::model::spans) mod drained_route;

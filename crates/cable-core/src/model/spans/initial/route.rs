@@ -1,12 +1,13 @@
-//! The route of a run is that of the scene, or goes from support to support and over what is in the way.
+//! The route of a run is that of the scene, or goes from support to support and over what is in the
+//! way.
 
 use crate::contact::World;
 use crate::math::{Vec2, bounded};
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
 
-/// Part of the way from one end to the other by which a route that is led over things keeps clear of them. Smaller: rounding may let it touch.
-/// Larger: it goes round more than it needs to.
-const CLEAR: f64 = 1e-4;
+/// Part of the way from one end to the other by which a route that is led over things keeps clear
+/// of them. Smaller: rounding may let it touch. Larger: it goes round more than it needs to.
+const ROUTE_CLEARANCE_FRACTION: f64 = 1e-4;
 
 /// A route with the length along it.
 pub(in crate::model::spans) struct Way {
@@ -28,9 +29,10 @@ impl Way {
     }
 
     /// How far along it comes nearest to a point, not before `from`, up to the end of leg `last`.
-    pub fn nearest(&self, at: Vec2, from: f64, last: usize) -> f64 {
+    pub fn nearest(&self, at: Vec2, from: f64, last: Option<usize>) -> f64 {
         let (mut best, mut found) = (f64::INFINITY, from);
-        for k in 0..self.points.len().saturating_sub(1).min(last + 1) {
+        let pieces = self.points.len().saturating_sub(1);
+        for k in 0..last.map_or(pieces, |last| pieces.min(last + 1)) {
             let d = self.points[k + 1] - self.points[k];
             let l = d.norm();
             if l == 0.0 || self.along[k + 1] < from {
@@ -124,10 +126,8 @@ pub(in crate::model::spans) fn way(layout: &Layout, part: &Part, instant: &Bound
     if p.route.len() > 1 {
         let whole = Way::new(p.route.clone());
         // The part of the route between the grips.
-        let a = ends[0].filter(|_| part.material[0] > 0.0).map_or(0.0, |at| whole.nearest(at, 0.0, usize::MAX - 1));
-        let b = ends[1]
-            .filter(|_| part.material[1] < p.length)
-            .map_or(whole.total(), |at| whole.nearest(at, a, usize::MAX - 1));
+        let a = ends[0].filter(|_| part.material[0] > 0.0).map_or(0.0, |at| whole.nearest(at, 0.0, None));
+        let b = ends[1].filter(|_| part.material[1] < p.length).map_or(whole.total(), |at| whole.nearest(at, a, None));
         let mut points: Vec<Vec2> = Vec::with_capacity(whole.points.len() + 2);
         points.extend(ends[0].or(whole.points.first().copied()));
         for (k, q) in whole.points.iter().enumerate() {
@@ -161,14 +161,15 @@ pub(in crate::model::spans) fn way(layout: &Layout, part: &Part, instant: &Bound
     Way::new(points)
 }
 
-/// What leads from `a` to `b` where the straight way is blocked: out from under what either is under, then above everything between.
+/// What leads from `a` to `b` where the straight way is blocked: out from under what either is
+/// under, then above everything between.
 fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
     let free = |p: Vec2, q: Vec2| world.free_fraction([p, p], [q, q], 0.0) >= 1.0;
     if world.is_empty() || free(a, b) {
         return Vec::new();
     }
     let (low, high) = (a.x.min(b.x), a.x.max(b.x));
-    let clear = CLEAR * (b - a).norm();
+    let clear = ROUTE_CLEARANCE_FRACTION * (b - a).norm();
     let mut top = a.y.max(b.y);
     for body in world.geometry().bodies() {
         let points = body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
@@ -196,7 +197,7 @@ fn aside(world: &World, p: Vec2, to: Vec2) -> Option<Vec2> {
     let side = if to.x < p.x { -1.0 } else { 1.0 };
     let mut far: Option<(f64, f64)> = None;
     for body in world.geometry().bodies().iter().filter(|b| !b.is_ground()) {
-        let reach = body.offset + if body.center.is_some() { 0.0 } else { CLEAR * (to - p).norm() };
+        let reach = body.offset + if body.center.is_some() { 0.0 } else { ROUTE_CLEARANCE_FRACTION * (to - p).norm() };
         let points = || body.edges.iter().flat_map(|e| [e.p, e.q]).chain(body.center);
         let [least, most] = points().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], q| [l.min(q.x), m.max(q.x)]);
         let above = points().any(|q| q.y > p.y);

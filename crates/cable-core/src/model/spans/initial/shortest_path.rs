@@ -1,9 +1,11 @@
-//! The shortest path keeps the same obstacles on the same sides as a route, turns round posts included.
+//! The shortest path keeps the same obstacles on the same sides as a route, turns round posts
+//! included.
 //!
-//! The route's end is drawn along it, the string from the last corner it bends round to the end sweeping a triangle. Two
-//! things can happen first: a corner comes on to the string, which then bends round it; or the string at its last corner
-//! becomes straight and leaves it. Corners are points here, posts a few points well inside them: it is the order and the
-//! side that is sought, not the place.
+//! The route's end is drawn along it, the string from the last corner it bends round to the end
+//! sweeping a triangle. Two things can happen first: a corner comes on to the string, which then
+//! bends round it; or the string at its last corner becomes straight and leaves it. Corners are
+//! points here, posts a few points well inside them: it is the order and the side that is sought,
+//! not the place.
 
 use crate::contact::World;
 use crate::contact::swept_corners::Corner;
@@ -13,15 +15,18 @@ use crate::math::{Vec2, cross};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Ring {
     pub points: usize,
-    /// Part of its radius on which they lie: inside it, as routes drawn as polygons cut into a post.
+    /// Part of its radius on which they lie: inside it, as routes drawn as polygons cut into a
+    /// post.
     pub part: f64,
 }
 
-/// How posts are seen at first, and how they are where that shows nothing to lie on and nothing else holds the cable: a string that
-/// hardly bends round a post passes between few points far inside it. Nearer at once: routes drawn roughly pass on the wrong side.
+/// How posts are seen at first, and how they are where that shows nothing to lie on and nothing
+/// else holds the cable: a string that hardly bends round a post passes between few points far
+/// inside it. Nearer at once: routes drawn roughly pass on the wrong side.
 pub(in crate::model::spans) const RINGS: [Ring; 3] =
     [Ring { points: 12, part: 0.5 }, Ring { points: 24, part: 0.9 }, Ring { points: 96, part: 0.99 }];
-/// A move of the end smaller than this part of a leg is no move: the corner just left is not met again by rounding.
+/// A move of the end smaller than this part of a leg is no move: the corner just left is not met
+/// again by rounding.
 const SAME: f64 = 1e-12;
 /// Corners met or left along one leg at most, times the number of corners.
 const MOST: usize = 8;
@@ -73,7 +78,7 @@ pub(in crate::model::spans) fn pull(route: &[Vec2], corners: &[Corner]) -> Optio
             }
             let pivot = bends.last().map_or(start, |b| b.corner.at);
             let left = leaves(start, &bends, from, way, done);
-            let met = meets(corners, (pivot, bends.last().map(|b| b.index)), (from, way), done, skip);
+            let met = meets(corners, pivot, bends.last().map(|b| b.index), from, way, done, skip);
             match (left, met) {
                 (Some(u), met) if met.is_none_or(|(v, _)| u <= v) => {
                     skip = bends.pop().map(|b| b.index);
@@ -92,7 +97,8 @@ pub(in crate::model::spans) fn pull(route: &[Vec2], corners: &[Corner]) -> Optio
     Some(bends)
 }
 
-/// When the string leaves its last corner: the end crosses the line from the corner before through it.
+/// When the string leaves its last corner: the end crosses the line from the corner before through
+/// it.
 fn leaves(start: Vec2, bends: &[Bend], from: Vec2, way: Vec2, done: f64) -> Option<f64> {
     let last = bends.last()?;
     let before = bends.len().checked_sub(2).and_then(|k| bends.get(k)).map_or(start, |b| b.corner.at);
@@ -111,8 +117,10 @@ fn leaves(start: Vec2, bends: &[Bend], from: Vec2, way: Vec2, done: f64) -> Opti
 /// The first corner the string meets: how far along the leg, and which.
 fn meets(
     corners: &[Corner],
-    (pivot, own): (Vec2, Option<usize>),
-    (from, way): (Vec2, Vec2),
+    pivot: Vec2,
+    own: Option<usize>,
+    from: Vec2,
+    way: Vec2,
     done: f64,
     skip: Option<usize>,
 ) -> Option<(f64, usize)> {

@@ -102,7 +102,7 @@ pub(super) fn assemble(strand: &mut CableRun, course: &Course, sheet: &mut Syste
 
 /// As [`assemble`], where nothing but the mode of contact j has changed since.
 pub(super) fn renew(strand: &mut CableRun, course: &Course, j: usize, sheet: &mut System) {
-    if strand.contacts[j].weight {
+    if strand.contacts[j].is_load() {
         // What is joined to it is held or let go with it.
         return assemble(strand, course, sheet);
     }
@@ -218,14 +218,14 @@ fn weight_rows(strand: &CableRun, course: &Course, j: usize, sheet: &mut System)
 }
 
 fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, sheet: &mut System) {
-    if strand.contacts[j].weight {
+    if strand.contacts[j].is_load() {
         return weight_rows(strand, course, j, sheet);
     }
     let (r, b, (spots, pivot), scale) = (&mut sheet.residual, &mut sheet.band, &sheet.spots[j], scale(strand));
     let c = &strand.contacts[j];
     let track = Track { pivot: Some(*pivot), ..course.track(c) };
     let row = 6 * j + 2;
-    let (rows, held) = equations::rows(&track, (&c.history, &c.ends), spots, (c.mode, pinned(strand, j)));
+    let (rows, held) = equations::rows(&track, &c.history, &c.ends, spots, c.mode, pinned(strand, j));
     strand.contacts[j].held = held;
     let c = &strand.contacts[j];
     let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * course.law.load.norm());
@@ -259,7 +259,8 @@ fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, sheet: &mut Sy
             let s = if side == 0 { strand.from } else { strand.to };
             r[tangency] = (c.ends.s[side] - s) * scale;
             b.add(tangency, s_column, scale);
-            // A free end has no tension and finds its place; a held one has a place and finds its tension.
+            // A free end has no tension and finds its place; a held one has a place and finds its
+            // tension.
             let of = if lies(strand, j, side) { 2 } else { 0 };
             for i in 0..2 {
                 b.add(row + 1 + i, p_column, by(i, of));

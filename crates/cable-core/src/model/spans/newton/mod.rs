@@ -1,6 +1,8 @@
-//! Newton's method for a strand: all spans and contacts at once, never a span solved inside another iteration.
+//! Newton's method for a strand: all spans and contacts at once, never a span solved inside another
+//! iteration.
 //!
-//! Six unknowns and six equations for each contact, two more for the last span, in the order span, contact, span …:
+//! Six unknowns and six equations for each contact, two more for the last span, in the order span,
+//! contact, span …:
 //!
 //! ```text
 //! span     ∫ f(F(s)) ds − (x_b − x_a) = 0,   f(F) = τ(F/T + F/EA)      (2)
@@ -8,7 +10,8 @@
 //!          two rows for material and tension, see `rub`                 (2)
 //! ```
 //!
-//! At a lying end the tension takes the place of p among the unknowns, and s = its material that of the tangency.
+//! At a lying end the tension takes the place of p among the unknowns, and s = its material that of
+//! the tangency.
 
 pub(in crate::model::spans) mod jacobian;
 pub(in crate::model::spans) mod slip_predictor;
@@ -36,33 +39,40 @@ const MAX_STALLED: usize = 12;
 const MAX_HALVINGS: usize = 14;
 /// Residual wanted: of lengths in hundredths of the strand, of angles, of tensions relative.
 const RESIDUAL: f64 = 1e-11;
-/// Residual that rounding leaves where a cable is EA/T times stiffer than it is taut: this times EA/T.
+/// Residual that rounding leaves where a cable is EA/T times stiffer than it is taut: this times
+/// EA/T.
 const STIFF_RESIDUAL: f64 = 2e-14;
-/// A residual that will do is made better by one more step where it is more than this times T/EA: forces are off by a hundredth of this
-/// part then. Smaller: a step more in each solve. Larger: forces of stiff cables are as exact as their tolerance, 1e-8.
-const EXACT: f64 = 1e-8;
+/// A residual that will do is made better by one more step where it is more than this times T/EA:
+/// forces are off by a hundredth of this part then. Smaller: a step more in each solve. Larger:
+/// forces of stiff cables are as exact as their tolerance, 1e-8.
+const REFINED_RESIDUAL_FACTOR: f64 = 1e-8;
 /// Residual that no step makes smaller: rounding.
-const FLOOR: f64 = 5e-15;
-/// Where no step gains anything the residual is rounding if it is below so many times the one wanted. Larger: a step that
-/// was halved often enough is taken without having been solved.
+const RESIDUAL_ROUNDING: f64 = 5e-15;
+/// Where no step gains anything the residual is rounding if it is below so many times the one
+/// wanted. Larger: a step that was halved often enough is taken without having been solved.
 const ROUNDING: f64 = 20.0;
-/// A contact's end moves by at most so many radians in one iteration. Larger: it jumps a turn of a post.
+/// A contact's end moves by at most so many radians in one iteration. Larger: it jumps a turn of a
+/// post.
 const MOST_TURN: f64 = 0.7;
 /// A span keeps at least this part of its material in one iteration.
-const KEEP: f64 = 0.1;
-/// A step to the end of a piece of boundary goes beyond it by this part of p: more than rounding, less than matters.
-const BEYOND: f64 = 1e-9;
-/// Residual below which modes are judged. Larger: a contact slides because an iterate has tensions it will not keep, and
-/// what is held at neither end slides away. Smaller: iterations spent on a mode that will not last.
-const SETTLED: f64 = 1e-3;
-/// Rounding that is let pass where modes cycle at the edge of the cone, in times of what is rounding.
-const PATIENT: f64 = 1e4;
+const KEPT_MATERIAL_FRACTION: f64 = 0.1;
+/// A step to the end of a piece of boundary goes beyond it by this part of p: more than rounding,
+/// less than matters.
+const PIECE_END_OVERSHOOT: f64 = 1e-9;
+/// Residual below which modes are judged. Larger: a contact slides because an iterate has tensions
+/// it will not keep, and what is held at neither end slides away. Smaller: iterations spent on a
+/// mode that will not last.
+const MODE_RESIDUAL: f64 = 1e-3;
+/// If stick and slip modes cycle, violations of the friction cone up to this multiple of round-off
+/// are tolerated.
+const CYCLE_ROUNDINGS: f64 = 1e4;
 /// Iterations without progress after which modes are judged all the same.
-const PATIENCE: usize = 3;
+const STALLED_ITERATIONS: usize = 3;
 /// Changes of mode of one contact while iterating; after that only between converged states.
 const MOST_FLIPS: u32 = 6;
 
-/// Memory of a solve, kept between steps. A copy has none of its own: what is in it means nothing between two steps.
+/// Memory of a solve, kept between steps. A copy has none of its own: what is in it means nothing
+/// between two steps.
 #[derive(Debug, Default)]
 pub(super) struct Work {
     sheet: System,
@@ -125,18 +135,19 @@ fn squares(r: &[f64]) -> f64 {
     r.iter().map(|v| v * v).sum()
 }
 
-/// The residual that will do, of a strand whose contacts have the tensions of the spans beside them.
+/// The residual that will do, of a strand whose contacts have the tensions of the spans beside
+/// them.
 fn tolerance(strand: &CableRun, course: &Course) -> f64 {
     let least = least_tension(strand, course);
     let stiff = if least.is_finite() && least > 0.0 { STIFF_RESIDUAL * course.law.stiffness / least } else { 0.0 };
     larger(RESIDUAL, stiff.min(1e3 * RESIDUAL))
 }
 
-/// Whether a residual that will do leaves forces off by more than need be: a length that is missing is strain, and that times EA is
-/// force.
+/// Whether a residual that will do leaves forces off by more than need be: a length that is missing
+/// is strain, and that times EA is force.
 fn is_rough(strand: &CableRun, course: &Course, residual: f64) -> bool {
     let least = least_tension(strand, course);
-    least.is_finite() && residual > larger(FLOOR, EXACT * least / course.law.stiffness)
+    least.is_finite() && residual > larger(RESIDUAL_ROUNDING, REFINED_RESIDUAL_FACTOR * least / course.law.stiffness)
 }
 
 /// The least tension at an end of a span, N; infinite where there is no span.
@@ -172,8 +183,8 @@ fn room(strand: &CableRun, course: &Course, x: &[f64], d: &[f64]) -> f64 {
             let first = if k > 0 { d[6 * k - 1] } else { 0.0 };
             let last = if k < strand.contacts.len() { d[6 * k + 3] } else { 0.0 };
             let (length, change) = (to - from, last - first);
-            if change < 0.0 && alpha * -change > (1.0 - KEEP) * length {
-                alpha = (1.0 - KEEP) * length / -change;
+            if change < 0.0 && alpha * -change > (1.0 - KEPT_MATERIAL_FRACTION) * length {
+                alpha = (1.0 - KEPT_MATERIAL_FRACTION) * length / -change;
             }
         }
         let Some(c) = strand.contacts.get(k) else { continue };
@@ -191,11 +202,11 @@ fn room(strand: &CableRun, course: &Course, x: &[f64], d: &[f64]) -> f64 {
     alpha
 }
 
-/// Parts of a step after which each end of a contact is just beyond the piece of boundary it was on: (index, part) for each
-/// that comes so far.
+/// Parts of a step after which each end of a contact is just beyond the piece of boundary it was
+/// on: (index, part) for each that comes so far.
 ///
-/// Round an arc the direction turns by one per rad, along an edge the cable leaves it by w/T per metre: a step that is right
-/// on one of them says nothing of the other, and half of it less.
+/// Round an arc the direction turns by one per rad, along an edge the cable leaves it by w/T per
+/// metre: a step that is right on one of them says nothing of the other, and half of it less.
 fn borders(strand: &CableRun, course: &Course, x: &[f64], d: &[f64], mut each: impl FnMut(usize, f64)) {
     for (k, c) in strand.contacts.iter().enumerate() {
         let track = course.track(c);
@@ -206,7 +217,7 @@ fn borders(strand: &CableRun, course: &Course, x: &[f64], d: &[f64], mut each: i
                 continue;
             }
             let i = track.curve.locate(p, c.home);
-            let beyond = BEYOND * (1.0 + p.abs());
+            let beyond = PIECE_END_OVERSHOOT * (1.0 + p.abs());
             let way = match dp > 0.0 {
                 true if i < c.home.last => track.curve.end(i) - p + beyond,
                 false if i > c.home.first => track.curve.origin(i) - p - beyond,
@@ -222,7 +233,7 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
     strand.take_tensions(course);
     for c in &mut strand.contacts {
         c.flips = 0;
-        if course.mobilised != 0.0 && c.kink.is_none() {
+        if course.mobilised != 0.0 && c.kink().is_none() {
             c.mode = Mode::Slide(course.mobilised * course.friction(c));
         }
     }
@@ -231,13 +242,14 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
     loop {
         let (mut worst, mut at) = norm(&work.sheet.residual);
         let done = worst <= tolerance(strand, course);
-        if worst <= SETTLED || stalled >= PATIENCE {
+        if worst <= MODE_RESIDUAL || stalled >= STALLED_ITERATIONS {
             let (changed, content) =
                 change_modes(strand, course, if done { 4 * MOST_FLIPS } else { MOST_FLIPS }, &mut work.sheet);
             if changed {
                 (worst, at) = norm(&work.sheet.residual);
                 (best, stalled) = (f64::INFINITY, 0);
-                // In rounding at the edge of the cone another mode changes nothing: nothing is left to solve.
+                // In rounding at the edge of the cone another mode changes nothing: nothing is left
+                // to solve.
                 if worst <= tolerance(strand, course) {
                     continue;
                 }
@@ -278,12 +290,12 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
 }
 
 /// The mode that the state of contact j asks for.
-fn asked(strand: &CableRun, course: &Course, (sheet, j): (&System, usize), patience: f64) -> Mode {
+fn asked(strand: &CableRun, course: &Course, sheet: &System, j: usize, patience: f64) -> Mode {
     let c = &strand.contacts[j];
-    if course.mobilised != 0.0 && c.kink.is_none() {
+    if course.mobilised != 0.0 && c.kink().is_none() {
         return Mode::Slide(course.mobilised * course.friction(c));
     }
-    if c.weight {
+    if c.is_load() {
         return point_load::next_mode(strand, course, j, patience);
     }
     // What holds within its cone goes on so, and what is smooth slides.
@@ -291,22 +303,23 @@ fn asked(strand: &CableRun, course: &Course, (sheet, j): (&System, usize), patie
         return c.mode;
     }
     let track = Track { pivot: sheet.spots.get(j).map(|s| s.1), ..course.track(c) };
-    equations::next_mode(&track, (&c.history, &c.ends), c.held, (c.mode, pinned(strand, j)), patience)
+    equations::next_mode(&track, &c.history, &c.ends, c.held, c.mode, pinned(strand, j), patience)
 }
 
 /// Whether every contact is in the mode that its state asks for; the sheet is that of the state.
 fn agreed(strand: &CableRun, course: &Course, sheet: &System) -> bool {
     // What is rounding grows with the stiffness as the residual does.
-    let patience = PATIENT * tolerance(strand, course) / RESIDUAL;
-    (0..strand.contacts.len()).all(|j| asked(strand, course, (sheet, j), patience) == strand.contacts[j].mode)
+    let patience = CYCLE_ROUNDINGS * tolerance(strand, course) / RESIDUAL;
+    (0..strand.contacts.len()).all(|j| asked(strand, course, sheet, j, patience) == strand.contacts[j].mode)
 }
 
-/// Gives contacts the mode they ask for; whether any was changed, and whether none asked for another.
+/// Gives contacts the mode they ask for; whether any was changed, and whether none asked for
+/// another.
 fn change_modes(strand: &mut CableRun, course: &Course, most: u32, sheet: &mut System) -> (bool, bool) {
     let (mut changed, mut content) = (false, true);
     for j in 0..strand.contacts.len() {
         let flips = strand.contacts[j].flips;
-        let next = asked(strand, course, (sheet, j), if flips < MOST_FLIPS { 1.0 } else { PATIENT });
+        let next = asked(strand, course, sheet, j, if flips < MOST_FLIPS { 1.0 } else { CYCLE_ROUNDINGS });
         let c = &mut strand.contacts[j];
         content &= next == c.mode;
         if next != c.mode && c.flips < most {
@@ -319,8 +332,8 @@ fn change_modes(strand: &mut CableRun, course: &Course, most: u32, sheet: &mut S
     (changed, content)
 }
 
-/// One Newton step with a line search on the sum of squares; false where none makes it smaller. The sheet is that of where
-/// the strand then is.
+/// One Newton step with a line search on the sum of squares; false where none makes it smaller. The
+/// sheet is that of where the strand then is.
 fn step(strand: &mut CableRun, course: &Course, work: &mut Work) -> bool {
     gather(strand, &mut work.saved);
     let before = squares(&work.sheet.residual);
@@ -344,7 +357,8 @@ fn search(strand: &mut CableRun, course: &Course, before: f64, work: &mut Work) 
         work.best.clear();
         work.best.extend(work.saved.iter().zip(&work.rhs).map(|(x, d)| x + alpha * d));
         if round == 1 {
-            // At first only what changes its piece of boundary stops there; after that everything does.
+            // At first only what changes its piece of boundary stops there; after that everything
+            // does.
             borders(strand, course, &work.saved, &work.rhs, |index, part| {
                 if part > 0.0 && part < alpha {
                     first = if part < first { part } else { first };

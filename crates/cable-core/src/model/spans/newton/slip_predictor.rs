@@ -1,19 +1,22 @@
-//! The slip predictor tells before a step is solved which contacts will slide in it, and about how far.
+//! The slip predictor estimates, before a step is solved, which contacts will slide in it and how
+//! far.
 //!
-//! Newton's method with a wrong set of sliding contacts ends at a state that shows the next wrong set: of ten contacts in a
-//! row one after the other is found to slide. To first order the whole question is one of scalars. With d the gap that a
-//! span's force leaves after its ends have moved, C its compliance, t the cable's direction and f = λt at its two ends a, b,
-//! and σ the material that has slid back through the contact before and after it (s at a fixed place grows by σ),
+//! Newton's method with a wrong set of sliding contacts ends at a state that shows the next wrong
+//! set: of ten contacts in a row one after the other is found to slide. To first order the whole
+//! question is one of scalars. With d the gap that a span's force leaves after its ends have moved,
+//! C its compliance, t the cable's direction and f = λt at its two ends a, b, and σ the material
+//! that has slid back through the contact before and after it (s at a fixed place grows by σ),
 //!
 //! ```text
 //! ΔG = −C⁻¹(d + f_b σ_after − fₐ σ_before),      ΔT_a = tₐ·(ΔG − b σ_before),      ΔT_b = t_b·(ΔG − b σ_after)
 //! contact: σ = 0 where T₂ is within what sliding makes of T₁ at ±μ; σ ≤ 0 at +μ, σ ≥ 0 at −μ
 //! ```
 //!
-//! (that a contact's end moves along the boundary takes as much of the cable as of the chord). This is a linear
-//! complementarity problem with three diagonals, solved by changing what is on the wrong side until nothing is: G. Zoutendijk's
-//! active sets in their simplest form. After each of a few rounds of it the ends of contacts on arcs follow the directions of
-//! their spans, and the next begins from there: with another wrap. All that is a guess: Newton's method for the whole starts
+//! (that a contact's end moves along the boundary takes as much of the cable as of the chord). This
+//! is a linear complementarity problem with three diagonals, solved by changing what is on the
+//! wrong side until nothing is: G. Zoutendijk's active sets in their simplest form. After each of a
+//! few rounds of it the ends of contacts on arcs follow the directions of their spans, and the next
+//! begins from there: with another wrap. All that is a guess: Newton's method for the whole starts
 //! there and judges each contact again.
 
 use crate::math::{Vec2, angle, exp, larger};
@@ -25,18 +28,20 @@ use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 
 /// Rounds of changing sides, over two for each contact.
 const MORE_ROUNDS: usize = 6;
-/// Rounds of Newton's method at most, and the change of tension, as part of it, from which another is worth its cost: what is
-/// left after it is about that squared. A round costs a tenth of an iteration of Newton's method for the whole.
+/// Rounds of Newton's method at most, and the change of tension, as part of it, from which another
+/// is worth its cost: what is left after it is about that squared. A round costs a tenth of an
+/// iteration of Newton's method for the whole.
 const ROUNDS: usize = 6;
-const ENOUGH: f64 = 2e-3;
+const ROUND_TOLERANCE: f64 = 2e-3;
 /// Change of tension, as part of it, in the last of all rounds with which its guess is still taken.
-const WORTH: f64 = 0.02;
+const ACCEPTED_TENSION_CHANGE: f64 = 0.02;
 /// A span whose tension would change by more than this factor in a round is not foreseen.
-const WILD: f64 = 4.0;
-/// A span whose force changes by no more than this part in a round is where it was. Larger: the guess is off by as much.
-const STILL: f64 = 1e-8;
+const TENSION_CHANGE_LIMIT: f64 = 4.0;
+/// A span whose force changes by no more than this part in a round is where it was. Larger: the
+/// guess is off by as much.
+const FORCE_TOLERANCE: f64 = 1e-8;
 /// A contact's end follows its span by at most this angle, rad.
-const FOLLOWS: f64 = 0.2;
+const FOLLOWED_ANGLE: f64 = 0.2;
 
 /// A span to first order.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,7 +67,8 @@ struct Bar {
 struct Link {
     /// Where it ends, material and tensions there.
     ends: Ends,
-    /// Tension that sliding with −μ and +μ makes of that, N, and its derivative; None where it is not ours to say.
+    /// Tension that sliding with −μ and +μ makes of that, N, and its derivative; None where it is
+    /// not ours to say.
     reach: Option<[(f64, f64); 2]>,
     /// −1, 0, +1: slides back, sticks, slides on.
     side: i8,
@@ -84,7 +90,8 @@ pub(in crate::model::spans) struct Foresight {
     spots: Vec<Spots>,
 }
 
-/// Gives each contact the mode that the step will ask for, and contacts and spans their place, as far as that can be foreseen.
+/// Gives each contact the mode that the step will ask for, and contacts and spans their place, as
+/// far as that can be foreseen.
 pub(in crate::model::spans) fn foresee(strand: &mut CableRun, course: &Course, memory: &mut Foresight) {
     if course.drag > 0.0 || strand.contacts.is_empty() {
         return;
@@ -95,9 +102,9 @@ pub(in crate::model::spans) fn foresee(strand: &mut CableRun, course: &Course, m
     spots.clear();
     spots.extend(strand.contacts.iter().map(seen));
     bars.clear();
-    bars.extend((0..strand.spans()).map(|k| span(strand, course, (spots, k))));
+    bars.extend((0..strand.spans()).map(|k| span(strand, course, spots, k)));
     links.clear();
-    links.extend((0..strand.contacts.len()).map(|j| link(strand, course, (spots, j))));
+    links.extend((0..strand.contacts.len()).map(|j| link(strand, course, spots, j)));
     let Some(settled) = memory.rounds(strand, course) else { return };
     for (c, l) in strand.contacts.iter_mut().zip(&memory.links).filter(|(_, l)| l.reach.is_some()) {
         let friction = course.friction(c);
@@ -116,7 +123,7 @@ pub(in crate::model::spans) fn foresee(strand: &mut CableRun, course: &Course, m
 }
 
 /// A span as it is, to begin with.
-fn span(strand: &CableRun, course: &Course, (spots, k): (&[Spots], usize)) -> Bar {
+fn span(strand: &CableRun, course: &Course, spots: &[Spots], k: usize) -> Bar {
     if !strand.has_span(k) {
         return Bar::default();
     }
@@ -164,7 +171,7 @@ impl Bar {
     }
 }
 
-fn link(strand: &CableRun, course: &Course, (spots, j): (&[Spots], usize)) -> Link {
+fn link(strand: &CableRun, course: &Course, spots: &[Spots], j: usize) -> Link {
     let c = &strand.contacts[j];
     let e = &c.ends;
     let ties = [(j == 0).then(|| strand.ties[0]), (j + 1 == strand.contacts.len()).then(|| strand.ties[1])];
@@ -187,7 +194,8 @@ fn link(strand: &CableRun, course: &Course, (spots, j): (&[Spots], usize)) -> Li
 }
 
 impl Foresight {
-    /// Newton's method for what slides: whether it came to an end, None where not even the modes can be told.
+    /// Newton's method for what slides: whether it came to an end, None where not even the modes
+    /// can be told.
     fn rounds(&mut self, strand: &CableRun, course: &Course) -> Option<bool> {
         let mut last = f64::INFINITY;
         for round in 0..ROUNDS {
@@ -196,12 +204,12 @@ impl Foresight {
             }
             let Some(change) = self.step() else { return Some(false) };
             self.turn(strand, course);
-            if change <= ENOUGH {
+            if change <= ROUND_TOLERANCE {
                 return Some(true);
             }
             last = change;
         }
-        Some(last <= WORTH)
+        Some(last <= ACCEPTED_TENSION_CHANGE)
     }
 
     /// Lets the ends of contacts on arcs follow the directions of their spans.
@@ -222,7 +230,7 @@ impl Foresight {
                 let (tension, place) = (force.norm(), &mut places[side]);
                 l.ends.t[side] = tension;
                 let angle = angle(place.tangent, force);
-                if place.turn == 0.0 || !(angle.abs() <= FOLLOWS) {
+                if place.turn == 0.0 || !(angle.abs() <= FOLLOWED_ANGLE) {
                     continue;
                 }
                 let by = angle / place.turn;
@@ -250,7 +258,8 @@ impl Foresight {
         }
     }
 
-    /// Takes what the round has found; the greatest change of tension as part of it, None where that is wild.
+    /// Takes what the round has found; the greatest change of tension as part of it, None where
+    /// that is wild.
     fn step(&mut self) -> Option<f64> {
         let mut greatest = 0.0;
         for k in 0..self.bars.len() {
@@ -263,12 +272,12 @@ impl Foresight {
             let change = bar.change[0] + bar.change[1] * before + bar.change[2] * after;
             let now = [0, 1].map(|i| bar.tension[i] + bar.by[i][0] * before + bar.by[i][1] * after);
             for (now, was) in now.into_iter().zip(bar.was) {
-                if !(now <= was * WILD && now >= was / WILD) {
+                if !(now <= was * TENSION_CHANGE_LIMIT && now >= was / TENSION_CHANGE_LIMIT) {
                     return None;
                 }
                 greatest = larger(greatest, (now - was).abs() / was);
             }
-            bar.still = before == 0.0 && after == 0.0 && change.norm() <= STILL * bar.was[0];
+            bar.still = before == 0.0 && after == 0.0 && change.norm() <= FORCE_TOLERANCE * bar.was[0];
             (bar.was, bar.tension) = (now, now);
             bar.force += change;
             bar.material = [bar.material[0] + before, bar.material[1] + after];

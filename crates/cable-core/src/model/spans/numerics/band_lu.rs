@@ -1,5 +1,6 @@
-//! LU factorisation with partial pivoting of a matrix with a narrow band: G. H. Golub and C. F. Van Loan, *Matrix
-//! Computations*, Johns Hopkins, 4th ed. 2013, §4.3. The network's Jacobian is neither symmetric nor definite.
+//! LU factorisation with partial pivoting of a matrix with a narrow band: G. H. Golub and C. F. Van
+//! Loan, *Matrix Computations*, Johns Hopkins, 4th ed. 2013, §4.3. The network's Jacobian is
+//! neither symmetric nor definite.
 
 /// Entries left and right of the diagonal.
 pub(in crate::model::spans) const BAND: usize = 4;
@@ -21,7 +22,8 @@ impl Band {
         self.rows.iter_mut().for_each(|row| *row = [0.0; WIDTH]);
     }
 
-    /// Adds to an entry; entries outside the band or the matrix must not be asked for and are left out.
+    /// Adds to an entry; entries outside the band or the matrix must not be asked for and are left
+    /// out.
     pub fn add(&mut self, row: usize, column: usize, value: f64) {
         if let Some(entry) = self.rows.get_mut(row).and_then(|r| r.get_mut((column + BAND).wrapping_sub(row))) {
             *entry += value;

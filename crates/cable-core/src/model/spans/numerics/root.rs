@@ -2,17 +2,18 @@
 
 /// Roots are found to this part of the interval searched: rounding.
 const ROOT: f64 = 1e-15;
-/// Differences of tension that are rounding, of the tension. Smaller: where old and new tension run alike the search halves
-/// on through rounding. Larger: material is off by this part of the strain.
-pub(in crate::model::spans) const FLOOR: f64 = 1e-14;
+/// Differences of tension that are rounding, of the tension. Smaller: where old and new tension run
+/// alike the search halves on through rounding. Larger: material is off by this part of the strain.
+pub(in crate::model::spans) const TENSION_ROUNDING: f64 = 1e-14;
 /// Rounds of such a search at most: halving alone takes 52.
 const MAX_ROUNDS: usize = 100;
 
-/// Where f falls from above zero at `a` to zero or below at `b`: Newton's method from the secant, kept inside what brackets
-/// the root. `f`: value and slope; `floor`: a value that is rounding; the values at a and b and a place near the root where
-/// they are known.
+/// Where f falls from above zero at `a` to zero or below at `b`: Newton's method from the secant,
+/// kept inside what brackets the root. `f`: value and slope; `floor`: a value that is rounding; the
+/// values at a and b and a place near the root where they are known.
 pub(in crate::model::spans) fn crossing(
-    (a, b): (f64, f64),
+    a: f64,
+    b: f64,
     floor: f64,
     ends: Option<(f64, f64)>,
     f: impl Fn(f64) -> (f64, f64),

@@ -1,21 +1,24 @@
 //! A bridge is a span from a support to a crest that draws it tight.
 //!
-//! Where a support is so near above a crest that what hangs beyond it pulls more than friction holds at the foot of its plumb line, the cable
-//! has slid until it is a free span, tangent to the crest at p with the tension that friction leaves there. Seen from p, with H the force
-//! across the load, V that against it and V₁ = V + bσ,
+//! Where a support is so near above a crest that what hangs beyond it pulls more than friction
+//! holds at the foot of its plumb line, the cable has slid until it is a free span, tangent to the
+//! crest at p with the tension that friction leaves there. Seen from p, with H the force across the
+//! load, V that against it and V₁ = V + bσ,
 //!
 //! ```text
 //! u = Hτ (σ/EA + (asinh V₁/H − asinh V/H)/b),      v = τ ((T₁ − T)/b + (V₁² − V²)/2bEA)
 //! ```
 //!
-//! σ follows from u, and p from v: at the foot the span is nothing and too low, where the crest falls plumb it rises beyond all bounds.
+//! σ follows from u, and p from v: at the foot the span is nothing and too low, where the crest
+//! falls plumb it rises beyond all bounds.
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::slack::joint::Profile;
 use crate::model::spans::slack::{Drape, HALVINGS, Line, Part};
 
-/// How far from its support a span may end, of its length and the size of coordinates: next to plumb rounding of where it touches moves its
-/// end a thousand times as much. Larger: a jump could be taken for a root.
+/// How far from its support a span may end, of its length and the size of coordinates: next to
+/// plumb rounding of where it touches moves its end a thousand times as much. Larger: a jump could
+/// be taken for a root.
 const ENDS: f64 = 1e-10;
 /// Rounds of Newton's method for the length of a span: it is off by its strain at first.
 const ROUNDS: usize = 8;
@@ -41,15 +44,16 @@ struct Seen {
 }
 
 impl Drape<'_> {
-    /// The span to a support at the start (side 0) or the end, from tensions that come from the other one.
+    /// The span to a support at the start (side 0) or the end, from tensions that come from the
+    /// other one.
     pub(super) fn bridge(&self, profile: &Profile, support: Vec2, side: usize) -> Option<Bridge> {
         let (course, other, lies, tensions) = (self.course, 1 - side, &profile.lies, &profile.enters);
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let seen = |k: usize, p: f64| {
             let s = &lies[k];
-            let t = s.slide(course, (s.p[other], p), tensions[k], sign * s.friction(course)).tension;
+            let t = s.slide(course, s.p[other], p, tensions[k], sign * s.friction(course)).tension;
             let place = s.place(course, p);
-            self.seen((place.at, -place.tangent * sign), t, support)
+            self.seen(place.at, -place.tangent * sign, t, support)
         };
         let order: Vec<usize> = if side == 0 { (0..lies.len()).collect() } else { (0..lies.len()).rev().collect() };
         for k in order {
@@ -64,7 +68,8 @@ impl Drape<'_> {
             let found =
                 seen(k, low).filter(|s| s.over.abs() <= ENDS * (s.length + support.norm()) && s.tension > 0.0)?;
             let weight = course.law.load * found.length;
-            // The force there is what the rest of the cable pulls with, the load of the span on top at the support.
+            // The force there is what the rest of the cable pulls with, the load of the span on top
+            // at the support.
             let (tension, form) = if side == 0 {
                 let force = -found.towards * found.tension + weight;
                 ([force.norm(), found.tension], Line::Spans { from: support, force })
@@ -78,8 +83,9 @@ impl Drape<'_> {
         None
     }
 
-    /// The span that leaves a point in a direction with a tension, up to the plumb line of the support; None where it never comes there.
-    fn seen(&self, (at, towards): (Vec2, Vec2), tension: f64, support: Vec2) -> Option<Seen> {
+    /// The span that leaves a point in a direction with a tension, up to the plumb line of the
+    /// support; None where it never comes there.
+    fn seen(&self, at: Vec2, towards: Vec2, tension: f64, support: Vec2) -> Option<Seen> {
         let (law, frame) = (&self.course.law, self.frame);
         let b = law.load.norm();
         let away = frame.split(support - at);

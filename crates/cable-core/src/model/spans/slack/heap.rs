@@ -1,13 +1,14 @@
-//! A heap is where folds lie in one place: where nothing lies without tension but at a foot or in a kink, the rest is there.
+//! A heap is surplus cable folded in one place: if cable can rest without tension only at a foot or
+//! in a kink, all that is left over rests there.
 //!
-//! The two edges of a kink carry it pressed alone where its weight is between their normals; else the one it lies on does, within its
-//! cone.
+//! If its weight points between the normals of a kink's two edges, both carry it by pressure alone;
+//! else the edge it rests on carries it within its friction cone.
 
 use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::curve::Place;
 use crate::model::spans::initial::drained_route::Frame;
 use crate::model::spans::run::Course;
-use crate::model::spans::slack::{CONE, Line, Part, Stretch};
+use crate::model::spans::slack::{CREST_CONE_ROUNDING, Line, Part, Stretch};
 
 /// A heap.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,7 +69,7 @@ fn carried(course: &Course, sides: [Option<(Stretch, Place)>; 2], held: Vec2) ->
     };
     let holds = |side: &(Stretch, Place)| {
         let b = borne(*side);
-        b.press >= 0.0 && b.friction.abs() <= side.0.friction(course) * b.press + CONE * held.norm()
+        b.press >= 0.0 && b.friction.abs() <= side.0.friction(course) * b.press + CREST_CONE_ROUNDING * held.norm()
     };
     if let Some(one) = sides.iter().flatten().find(|s| holds(s)) {
         return Some(Heap { at, edges: [Some(borne(*one)), None] });

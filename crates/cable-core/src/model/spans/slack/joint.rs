@@ -1,27 +1,32 @@
-//! This module finds tensions along stretches, and the spans over concave kinks in which the cable has some.
+//! This module finds tensions along stretches, and the spans over concave kinks in which the cable
+//! has some.
 //!
-//! On slopes beyond their cone what lies draws at what lies above it, through every kink on the way. With slopes m₁ and m₂ of the edges on
-//! either side, seen along the way, and H the force across the load, a span leaves the one and meets the other along its tangent:
+//! On slopes steeper than the friction cone the cable pulls on the cable above it, through every
+//! kink on the way. With slopes m₁ and m₂ of the edges on either side, seen along the way, and H
+//! the force across the load, a span leaves the one and meets the other along its tangent:
 //!
 //! ```text
 //! bσ = H (m₂ − m₁),   u = τ (Hσ/EA + H (asinh m₂ − asinh m₁)/b),   v = τ ((T₂ − T₁)/b + H² (m₂² − m₁²)/2bEA)
 //! x₁ t₁ + x₂ t₂ = (u, v),   T₁(x₁) = H √(1 + m₁²)
 //! ```
 //!
-//! with x₁ and x₂ the lengths of the edges that it does not touch and T₁(x₁) the tension that comes along the first: one equation for H.
+//! with x₁ and x₂ the lengths of the edges that it does not touch and T₁(x₁) the tension that comes
+//! along the first: one equation for H.
 //!
-//! Up a wall the same span leaves what lies at its foot and meets the round above: from the point it leaves follow T₁, H and the whole
-//! catenary; of all such points that is the one whose catenary is as far from the centre of the round as its radius, where it is nearest.
+//! Up a wall the same span leaves what lies at its foot and meets the round above: from the point
+//! it leaves follow T₁, H and the whole catenary; of all such points that is the one whose catenary
+//! is as far from the centre of the round as its radius, where it is nearest.
 
 use crate::math::{Vec2, cross, larger};
-use crate::model::spans::slack::{Drape, HALVINGS, Line, Part, STRAIGHT, Stretch};
+use crate::model::spans::slack::{Drape, HALVINGS, Line, Part, STRAIGHT_TURN, Stretch};
 
 /// Doublings of the force across the load in the search for one that is too large.
 const MOST_DOUBLED: usize = 60;
 
-/// Distance from a round, of its radius, at which a span touches it. Larger: a place where the distance jumps could be taken for a root.
-/// Smaller: where tension hardly changes along the ground, rounding of p leaves more.
-const TOUCHES: f64 = 1e-3;
+/// Distance from a round, of its radius, at which a span touches it. Larger: a place where the
+/// distance jumps could be taken for a root. Smaller: where tension hardly changes along the
+/// ground, rounding of p leaves more.
+const TANGENCY_FRACTION: f64 = 1e-3;
 
 /// A span from one stretch to the next, seen from where its tension comes.
 #[derive(Clone, Copy, Debug)]
@@ -46,21 +51,17 @@ pub(super) struct Profile {
 }
 
 impl Drape<'_> {
-    /// Tensions along stretches from their start (side 0) or end, as little as friction lets them have, from a tension there (N); `walls`:
-    /// material up what hangs behind each, as the cable goes, m. None where a kink cannot be bridged.
-    pub(super) fn profile(
-        &self,
-        (lies, walls): (&[Stretch], &[Option<f64>]),
-        side: usize,
-        begins: f64,
-    ) -> Option<Profile> {
+    /// Tensions along stretches from their start (side 0) or end, as little as friction lets them
+    /// have, from a tension there (N); `walls`: material up what hangs behind each, as the cable
+    /// goes, m. None where a kink cannot be bridged.
+    pub(super) fn profile(&self, lies: &[Stretch], walls: &[Option<f64>], side: usize, begins: f64) -> Option<Profile> {
         let n = lies.len();
         let mut out = Profile { lies: lies.to_vec(), enters: vec![0.0; n], spans: vec![None; n], leaves: begins };
         for i in 0..n {
             let k = if side == 0 { i } else { n - 1 - i };
             let (s, enters) = (out.lies[k], out.leaves);
             out.enters[k] = enters;
-            out.leaves = self.least(&s, (side, enters), s.p[1 - side]);
+            out.leaves = self.least(&s, side, enters, s.p[1 - side]);
             let first = if side == 0 { k } else { k.wrapping_sub(1) };
             let (Some(a), Some(b)) = (out.lies.get(first).copied(), out.lies.get(first.wrapping_add(1)).copied())
             else {
@@ -73,7 +74,7 @@ impl Drape<'_> {
                     let from =
                         Stretch { p: bounds(side, out.lies[left].p[side], lies[left].p[1 - side]), ..lies[left] };
                     let enters = out.enters[left];
-                    if let Some(over) = self.climb([&from, to], way, &|p| self.least(&from, (side, enters), p))? {
+                    if let Some(over) = self.climb([&from, to], way, &|p| self.least(&from, side, enters, p))? {
                         break over;
                     }
                     // From further away.
@@ -85,7 +86,8 @@ impl Drape<'_> {
                     out.spans[between] = None;
                 },
                 Some(height) => {
-                    // It hangs plumb from the round, and draws at the foot by what it draws at the round less its weight.
+                    // It hangs plumb from the round, and draws at the foot by what it draws at the
+                    // round less its weight.
                     out.leaves = larger(out.leaves + self.course.law.load.norm() * height * way, 0.0);
                     if out.leaves > self.most {
                         return None;
@@ -93,7 +95,7 @@ impl Drape<'_> {
                     continue;
                 }
                 None if out.leaves > self.most && self.bends_in(&a, &b) => {
-                    self.over([from, to], way, &|p| self.least(&s, (side, enters), p))?
+                    self.over([from, to], way, &|p| self.least(&s, side, enters, p))?
                 }
                 None => continue,
             };
@@ -108,21 +110,23 @@ impl Drape<'_> {
         Some(out)
     }
 
-    /// Tension at p of a stretch that is entered on a side with another: as little as friction lets it have, N.
-    fn least(&self, s: &Stretch, (side, enters): (usize, f64), p: f64) -> f64 {
+    /// Tension at p of a stretch that is entered on a side with another: as little as friction lets
+    /// it have, N.
+    fn least(&self, s: &Stretch, side: usize, enters: f64, p: f64) -> f64 {
         let friction = s.friction(self.course);
         let against = if side == 0 { -friction } else { friction };
-        larger(s.slide(self.course, (s.p[side], p), enters, against).tension, 0.0)
+        larger(s.slide(self.course, s.p[side], p, enters, against).tension, 0.0)
     }
 
     /// Whether a cable under tension would bridge what is between two stretches.
     pub(super) fn bends_in(&self, a: &Stretch, b: &Stretch) -> bool {
         let [before, after] = [a.place(self.course, a.p[1]), b.place(self.course, b.p[0])];
-        cross(before.tangent, after.tangent) * self.course.curves[a.curve].sense > STRAIGHT
+        cross(before.tangent, after.tangent) * self.course.curves[a.curve].sense > STRAIGHT_TURN
     }
 
-    /// The span from one edge to the next, `way` being 1 where that is along the cable and −1 where it is against it; from the tension at each
-    /// p of the first. None where it does not leave and meet them.
+    /// The span from one edge to the next, `way` being 1 where that is along the cable and −1 where
+    /// it is against it; from the tension at each p of the first. None where it does not leave and
+    /// meet them.
     fn over(&self, [from, to]: [&Stretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<Over> {
         let end = usize::from(way > 0.0);
         let (kink, next) = (from.place(self.course, from.p[end]), to.place(self.course, to.p[1 - end]));
@@ -162,8 +166,8 @@ impl Drape<'_> {
         (x1 < room(from) && x2 < room(to)).then_some(Over { p, tension, material })
     }
 
-    /// The span from a stretch at the foot of a wall up to the round above it; from the tension at each p of the first. Some(None) where it
-    /// leaves from before that.
+    /// The span from a stretch at the foot of a wall up to the round above it; from the tension at
+    /// each p of the first. Some(None) where it leaves from before that.
     fn climb(&self, [from, to]: [&Stretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<Option<Over>> {
         let end = usize::from(way > 0.0);
         let above = to.place(self.course, to.p[1 - end]);
@@ -174,7 +178,8 @@ impl Drape<'_> {
         let foot = from.place(self.course, from.p[end]);
         let sight = Sight::new(self, foot.tangent * way)?;
         let center = sight.seen(above.at - above.normal * radius);
-        // The catenary from p: its tension across the load, its slopes at both ends, the material, and how far it is from the round.
+        // The catenary from p: its tension across the load, its slopes at both ends, the material,
+        // and how far it is from the round.
         let seen = |p: f64| {
             let place = from.place(self.course, p);
             let t = sight.seen(place.tangent * way);
@@ -201,7 +206,7 @@ impl Drape<'_> {
             return Some(None);
         }
         let (h, [m1, m2], off) = seen(near);
-        if !(off.abs() <= TOUCHES * radius && h > 0.0) {
+        if !(off.abs() <= TANGENCY_FRACTION * radius && h > 0.0) {
             return None;
         }
         let (material, _) = sight.catenary(h, m1, m2);
@@ -242,7 +247,8 @@ impl<'a> Sight<'a> {
         self.drape.frame.point(at.x * self.right, at.y)
     }
 
-    /// Material of a catenary with h across the load from one slope to another, m, and the way from its start to its end.
+    /// Material of a catenary with h across the load from one slope to another, m, and the way from
+    /// its start to its end.
     fn catenary(&self, h: f64, m1: f64, m2: f64) -> (f64, Vec2) {
         let law = &self.drape.course.law;
         let b = law.load.norm();

@@ -1,23 +1,27 @@
-//! A strand that lies without tension.
+//! A run of cable rests on obstacles without tension.
 //!
-//! With more cable than it takes to drain down its route (see `drained_route`), no part of it needs any tension but what hangs: plumb, F is the
-//! weight below, and it is nothing at each foot and in each kink, where a cable under tension would not turn. Between two such points the
-//! cable goes over one crest: from both sides its tension falls as it does where it slides down there,
+//! If there is more cable than its drained route needs (see `drained_route`), only the parts that
+//! hang have tension. They hang plumb: F is the weight below. The tension vanishes at each foot and
+//! in each kink, where a cable under tension would not turn. Between two such points the cable
+//! passes over one crest; on both sides its tension falls as in a cable that slides down there,
 //!
 //! ```text
 //! dT/ds = −b·t ∓ μN,   T ≥ 0
 //! ```
 //!
-//! and the greater of the two is what friction has to hold: less than all of it, if the one falls below the other before its end. Where
-//! both are nothing the cable lies loose, and what is over lies there in folds. A plane cannot show where, nor in how many layers: they are
-//! spread evenly over that ground, which carries their weight where it carries the rest. Of a plumb end h long, stretched,
+//! and the greater of the two is what friction has to hold: less than all of it, if the one falls
+//! below the other before its end. Where both are nothing the cable lies loose, and what is over
+//! lies there in folds. A plane cannot show where, nor in how many layers: they are spread evenly
+//! over that ground, which carries their weight where it carries the rest. Of a plumb end h long,
+//! stretched,
 //!
 //! ```text
 //! h = λ (s + b s²/2EA)
 //! ```
 //!
-//! Any other rest of the same cable is one that pulls or leans somewhere, and then only by what friction remembers. Where a crest is
-//! held by less friction than it takes, the cable runs over it: that is no such rest.
+//! Any other rest of the same cable is one that pulls or leans somewhere, and then only by what
+//! friction remembers. Where a crest is held by less friction than it takes, the cable runs over
+//! it: that is no such rest.
 
 mod bridge;
 mod heap;
@@ -34,11 +38,13 @@ use crate::model::spans::run::{CableRun, Course, Tie};
 use crate::model::spans::slack::heap::{Heap, heap};
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
-const CONE: f64 = 1e-9;
-/// Part of the cable that there must be too much of: what is as long as its way lies along it, and remembers what friction does.
-const OVER: f64 = 1e-9;
-/// Turn (rad) up to which two stretches are one, and by which what hangs beside a roof may be off its end.
-const STRAIGHT: f64 = 1e-6;
+const CREST_CONE_ROUNDING: f64 = 1e-9;
+/// Part of the cable that there must be too much of: what is as long as its way lies along it, and
+/// remembers what friction does.
+const EXCESS_CABLE_FRACTION: f64 = 1e-9;
+/// Turn (rad) up to which two stretches are one, and by which what hangs beside a roof may be off
+/// its end.
+const STRAIGHT_TURN: f64 = 1e-6;
 /// Halvings of a stretch in the search for where its tension ends.
 const HALVINGS: usize = 60;
 
@@ -69,11 +75,13 @@ enum Line {
     Lies(Stretch),
     /// In one place.
     Heap(Heap),
-    /// Free between a support and a crest, with tension: from a point, with a force in the cable there (N).
+    /// Free between a support and a crest, with tension: from a point, with a force in the cable
+    /// there (N).
     Spans { from: Vec2, force: Vec2 },
 }
 
-/// A stretch of a boundary, p from where to where, with the part `m` of friction that is called upon against going on.
+/// A stretch of a boundary, p from where to where, with the part `m` of friction that is called
+/// upon against going on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stretch {
     curve: usize,
@@ -89,7 +97,7 @@ impl Stretch {
     }
 
     /// How the tension `t` at one place of it goes on to another.
-    fn slide(&self, course: &Course, (from, to): (f64, f64), t: f64, m: f64) -> Step {
+    fn slide(&self, course: &Course, from: f64, to: f64, t: f64, m: f64) -> Step {
         course.law.along(&course.law.spot(&self.place(course, from)), to - from, t, m)
     }
 
@@ -109,7 +117,8 @@ impl Part {
 pub(in crate::model::spans) fn lay(
     layout: &Layout,
     index: usize,
-    (course, instant): (&Course, &BoundaryConditions),
+    course: &Course,
+    instant: &BoundaryConditions,
 ) -> Option<CableRun> {
     let part = layout.strands.get(index)?;
     let (load, [from, to]) = (course.law.load, part.material);
@@ -124,11 +133,11 @@ pub(in crate::model::spans) fn lay(
         Some(_) => Vec2::zeros(),
     });
     let drawn = drawn[0] + drawn[1];
-    let drape = Drape { course, frame, most: CONE * load.norm() * (to - from) };
+    let drape = Drape { course, frame, most: CREST_CONE_ROUNDING * load.norm() * (to - from) };
     let strand = |drained: Drained| {
         let lines = drape.lines(&roofs, &drained.legs);
         let parts = drape.parts(&lines, ends)?;
-        let parts = pay_out(parts, course, frame, (part.material, drawn, ends))?;
+        let parts = pay_out(parts, course, frame, part.material, drawn, ends)?;
         let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn), Tie::Held));
         let loose = Some(Loose { parts, drawn });
         Some(CableRun { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
@@ -137,29 +146,33 @@ pub(in crate::model::spans) fn lay(
     match held {
         [Some(_), Some(_)] => strand(along_route()?),
         [Some(at), None] | [None, Some(at)] => {
-            // As the route lays it out on the ground; else it comes down in a heap below the support.
+            // As the route lays it out on the ground; else it comes down in a heap below the
+            // support.
             let laid_out = layout.problem.route.len() > 1 && drawn.norm() == 0.0;
             let laid = if laid_out { along_route().and_then(&strand) } else { None };
             laid.filter(|s| {
                 s.loose.as_ref().is_some_and(|l| l.spreads() && l.hangs() <= layout.problem.cable.diameter_m)
             })
-            .or_else(|| strand(Drained::plumb(&roofs, bodies, frame, (at, held[0].is_none()))?))
+            .or_else(|| strand(Drained::plumb(&roofs, bodies, frame, at, held[0].is_none())?))
         }
         [None, None] => None,
     }
 }
 
-/// Gives each part its material, what is over to those without tension, or to a heap; None where nothing is over or nothing holds it. A
-/// free end lies where the cable ends if that is before the route does.
+/// Gives each part its material, what is over to those without tension, or to a heap; None where
+/// nothing is over or nothing holds it. A free end lies where the cable ends if that is before the
+/// route does.
 fn pay_out(
     mut parts: Vec<Part>,
     course: &Course,
     frame: Frame,
-    ([from, to], drawn, held): ([f64; 2], Vec2, [bool; 2]),
+    [from, to]: [f64; 2],
+    drawn: Vec2,
+    held: [bool; 2],
 ) -> Option<Vec<Part>> {
     let own = |p: &Part| p.s[1] - p.s[0];
     let mut over = to - from - parts.iter().map(own).sum::<f64>();
-    if !(over > OVER * (to - from)) {
+    if !(over > EXCESS_CABLE_FRACTION * (to - from)) {
         cut(&mut parts, held.iter().position(|h| !h)?, -over)?;
         over = 0.0;
     }
@@ -179,7 +192,8 @@ fn pay_out(
     Some(parts)
 }
 
-/// Takes so much material (m) off a free end (0: the start) that lies without tension; None where it does not.
+/// Takes so much material (m) off a free end (0: the start) that lies without tension; None where
+/// it does not.
 fn cut(parts: &mut Vec<Part>, end: usize, mut off: f64) -> Option<()> {
     loop {
         let at = if end == 0 { 0 } else { parts.len().checked_sub(1)? };
@@ -228,8 +242,8 @@ impl Drape<'_> {
         legs.iter().map(line).collect()
     }
 
-    /// Every part with its tension, and the material that takes; None where a crest does not hold. What is drawn tight in a kink goes on
-    /// through it.
+    /// Every part with its tension, and the material that takes; None where a crest does not hold.
+    /// What is drawn tight in a kink goes on through it.
     fn parts(&self, lines: &[Line], held: [bool; 2]) -> Option<Vec<Part>> {
         let mut stops = vec![0];
         for k in 1..lines.len() {
@@ -239,7 +253,7 @@ impl Drape<'_> {
         }
         stops.push(lines.len());
         loop {
-            let tight = match self.chains(lines, (&stops, held)) {
+            let tight = match self.chains(lines, &stops, held) {
                 Ok(parts) => return Some(parts),
                 Err(stop) => stop?,
             };
@@ -255,8 +269,9 @@ impl Drape<'_> {
         }
     }
 
-    /// The parts between such stops; else the stop, if that is it, at which a tension is not nothing.
-    fn chains(&self, lines: &[Line], (stops, held): (&[usize], [bool; 2])) -> Result<Vec<Part>, Option<usize>> {
+    /// The parts between such stops; else the stop, if that is it, at which a tension is not
+    /// nothing.
+    fn chains(&self, lines: &[Line], stops: &[usize], held: [bool; 2]) -> Result<Vec<Part>, Option<usize>> {
         let (mut out, mut bridged) = (Vec::new(), false);
         let support = |line: &Line, end: usize| match line {
             Line::Hangs(ends) => Some(ends[end]),
@@ -271,7 +286,7 @@ impl Drape<'_> {
             if end < lines.len() || !bridged {
                 let ends = [begin == 0 && held[0], end == lines.len() && held[1]];
                 let tight = |side: Option<usize>| side.map(|side| pair[side]);
-                bridged = self.chain(&lines[begin..end], (ends, near), &mut out).map_err(tight)?;
+                bridged = self.chain(&lines[begin..end], ends, near, &mut out).map_err(tight)?;
             }
         }
         Ok(out)
@@ -282,10 +297,10 @@ impl Drape<'_> {
         (to - from).dot(&self.frame.up)
     }
 
-    /// Whether it has no tension between two lines: at a foot, and in a kink that a cable under tension would bridge. None where it
-    /// turns with nothing to turn it.
+    /// Whether it has no tension between two lines: at a foot, and in a kink that a cable under
+    /// tension would bridge. None where it turns with nothing to turn it.
     fn rests(&self, a: &Line, b: &Line) -> Option<bool> {
-        let plumb = |s: &Stretch, p: f64| cross(s.place(self.course, p).tangent, self.frame.up).abs() <= STRAIGHT;
+        let plumb = |s: &Stretch, p: f64| cross(s.place(self.course, p).tangent, self.frame.up).abs() <= STRAIGHT_TURN;
         match (a, b) {
             (Line::Hangs(h), Line::Lies(s)) => match self.rise(*h) < 0.0 {
                 true => Some(true),
@@ -299,18 +314,20 @@ impl Drape<'_> {
                 let [before, after] = [s.place(self.course, s.p[1]), next.place(self.course, next.p[0])];
                 let sense = self.course.curves[s.curve].sense;
                 let turns = self.course.curves[next.curve].sense != sense;
-                Some(turns || cross(before.tangent, after.tangent) * sense > STRAIGHT)
+                Some(turns || cross(before.tangent, after.tangent) * sense > STRAIGHT_TURN)
             }
             _ => Some(true),
         }
     }
 
-    /// What lies between two points without tension, or from or to a support. Where a support hangs nearby and the crest draws the cable
-    /// tight there, a span bridges to it; whether that was done at the end. Else on which side it is drawn tight, if that is it.
+    /// What lies between two points without tension, or from or to a support. Where a support hangs
+    /// nearby and the crest draws the cable tight there, a span bridges to it; whether that was
+    /// done at the end. Else on which side it is drawn tight, if that is it.
     fn chain(
         &self,
         lines: &[Line],
-        (held, near): ([bool; 2], [Option<Vec2>; 2]),
+        held: [bool; 2],
+        near: [Option<Vec2>; 2],
         out: &mut Vec<Part>,
     ) -> Result<bool, Option<usize>> {
         let weight = self.course.law.load.norm();
@@ -348,8 +365,8 @@ impl Drape<'_> {
                 _ => {}
             }
         }
-        let forth = self.profile((&lies, &walls), 0, ends[0]).ok_or(None)?;
-        let back = self.profile((&lies, &walls), 1, ends[1]).ok_or(None)?;
+        let forth = self.profile(&lies, &walls, 0, ends[0]).ok_or(None)?;
+        let back = self.profile(&lies, &walls, 1, ends[1]).ok_or(None)?;
         let begins_tight = !held[0] && back.leaves > ends[0] + self.most;
         let ends_tight = !held[1] && forth.leaves > ends[1] + self.most;
         let bridge = match (begins_tight, ends_tight) {
@@ -415,12 +432,14 @@ impl Drape<'_> {
         Ok(false)
     }
 
-    /// A stretch in its parts: where the tension from its start holds, where there is none, where that from its end does.
+    /// A stretch in its parts: where the tension from its start holds, where there is none, where
+    /// that from its end does.
     fn stretch(&self, s: &Stretch, [forth, back]: [f64; 2], out: &mut Vec<Part>) {
         let (course, friction, [p0, p1]) = (self.course, s.friction(self.course), s.p);
-        let forth_at = |p: f64| if p == p0 { forth } else { s.slide(course, (p0, p), forth, -friction).tension };
-        let back_at = |p: f64| if p == p1 { back } else { s.slide(course, (p1, p), back, friction).tension };
-        // Each ends at once or rises and falls again; from where it has fallen to nothing there is none.
+        let forth_at = |p: f64| if p == p0 { forth } else { s.slide(course, p0, p, forth, -friction).tension };
+        let back_at = |p: f64| if p == p1 { back } else { s.slide(course, p1, p, back, friction).tension };
+        // Each ends at once or rises and falls again; from where it has fallen to nothing there is
+        // none.
         let seek = |mut has: f64, mut not: f64, holds: &dyn Fn(f64) -> bool| {
             if holds(not) {
                 return not;
@@ -461,14 +480,14 @@ impl Drape<'_> {
             out.push(Part { s: [0.0, way.material.abs()], tension, form });
         };
         if ends > p0 {
-            let way = s.slide(course, (p0, ends), forth, -friction);
+            let way = s.slide(course, p0, ends, forth, -friction);
             push([p0, ends], -friction, way, [forth, larger(way.tension, 0.0)]);
         }
         if begins > ends || p0 == p1 {
             push([ends, begins], 0.0, Step { material: self.rest_of(s, begins - ends), ..Step::none(0.0) }, [0.0; 2]);
         }
         if p1 > begins {
-            let way = s.slide(course, (p1, begins), back, friction);
+            let way = s.slide(course, p1, begins, back, friction);
             push([begins, p1], friction, way, [larger(way.tension, 0.0), back]);
         }
     }
@@ -499,8 +518,9 @@ impl Loose {
         self.parts.iter().map(press).sum()
     }
 
-    /// Whether all that lies has no tension. Where it is drawn over crests, and where all that is over is a heap in a kink, a strand under
-    /// hardly any tension is much the same, and can be followed as it moves.
+    /// Whether all that lies has no tension. Where it is drawn over crests, and where all that is
+    /// over is a heap in a kink, a strand under hardly any tension is much the same, and can be
+    /// followed as it moves.
     pub fn spreads(&self) -> bool {
         let lies = |p: &Part| matches!(p.form, Line::Hangs(_)) || p.is_loose();
         self.parts.iter().all(lies) && self.parts.iter().any(|p| p.is_loose() && p.s[1] - p.s[0] > NONE_M)

@@ -1,4 +1,4 @@
-//! This module reports what lies slack: nodes, and what carries it.
+//! This module reports a slack run of cable: its nodes, and the contacts that carry it.
 
 use crate::math::Vec2;
 use crate::model::arc_nodes;
@@ -44,7 +44,7 @@ impl Loose {
                         runs.push(Run::new(s.curve, part));
                     }
                     if let Some(run) = runs.last_mut() {
-                        run.lie(course, (part, s), nodes, cable_radius);
+                        run.lie(course, part, s, nodes, cable_radius);
                     }
                 }
                 Line::Heap(heap) => {
@@ -127,7 +127,7 @@ impl Run {
         })
     }
 
-    fn lie(&mut self, course: &Course, (part, s): (&Part, &Stretch), nodes: &mut Nodes<'_>, cable_radius: f64) {
+    fn lie(&mut self, course: &Course, part: &Part, s: &Stretch, nodes: &mut Nodes<'_>, cable_radius: f64) {
         let law = &course.law;
         let [p0, p1] = s.p;
         let start = s.place(course, p0);
@@ -146,7 +146,7 @@ impl Run {
             if part.is_loose() {
                 return (place, part.s[0] + material * f, 0.0);
             }
-            let way = s.slide(course, (p0, p0 + (p1 - p0) * f), part.tension[0], s.m);
+            let way = s.slide(course, p0, p0 + (p1 - p0) * f, part.tension[0], s.m);
             match k {
                 0 => (place, part.s[0], part.tension[0]),
                 k if k == count => (place, part.s[1], part.tension[1]),

@@ -1,9 +1,11 @@
-//! This check asks that no answer is inside anything; it shares nothing with the search for contacts (`penetration`).
+//! This check asks that no answer is inside anything; it shares nothing with the search for
+//! contacts (`penetration`).
 //!
-//! A stretch of a catenary or of an arc that turns by no more than a right angle is convex: with its ends a, b and its
-//! tangents there it lies in the triangle of a, b and the point where the tangents meet. What is nowhere nearer to that
-//! triangle than the cable's radius is nowhere nearer to the stretch; else the stretch is halved. Distances are those of
-//! points from lines, without a sign: no way into an obstacle leads past its boundary.
+//! A stretch of a catenary or of an arc that turns by no more than a right angle is convex: with
+//! its ends a, b and its tangents there it lies in the triangle of a, b and the point where the
+//! tangents meet. What is nowhere nearer to that triangle than the cable's radius is nowhere nearer
+//! to the stretch; else the stretch is halved. Distances are those of points from lines, without a
+//! sign: no way into an obstacle leads past its boundary.
 
 use crate::contact::World;
 use crate::contact::geometry::{Body, Edge};
@@ -19,7 +21,8 @@ const MOST_HALVINGS: u32 = 40;
 /// Longest stretch of an arc taken at once, rad.
 const TURN: f64 = 1.0;
 
-/// A triangle that holds a stretch of cable: its corners, and its sides as (point, unit vector inwards).
+/// A triangle that holds a stretch of cable: its corners, and its sides as (point, unit vector
+/// inwards).
 struct Hull {
     corners: [Vec2; 3],
     sides: [(Vec2, Vec2); 3],
@@ -49,12 +52,13 @@ impl Hull {
     }
 
     /// Whether a box comes within r of it, as far as its sides tell.
-    fn meets(&self, (low, high): (Vec2, Vec2), r: f64) -> bool {
+    fn meets(&self, low: Vec2, high: Vec2, r: f64) -> bool {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         self.sides.iter().all(|(at, n)| (middle - at).dot(n) + half.x * n.x.abs() + half.y * n.y.abs() > -r)
     }
 
-    /// Whether an edge is nowhere nearer than r, as far as the sides, the edge itself and the ways from its ends tell.
+    /// Whether an edge is nowhere nearer than r, as far as the sides, the edge itself and the ways
+    /// from its ends tell.
     fn misses_edge(&self, e: &Edge, r: f64) -> bool {
         let (n, t) = (e.normal(), e.tangent);
         self.sides.iter().any(|(at, n)| (e.p - at).dot(n) <= -r && (e.q - at).dot(n) <= -r)
@@ -66,7 +70,8 @@ impl Hull {
             || self.aside(e.q, |n| n.dot(&t) >= 0.0, r)
     }
 
-    /// Whether a point is nowhere nearer than r, as far as the sides and the ways to the corners tell.
+    /// Whether a point is nowhere nearer than r, as far as the sides and the ways to the corners
+    /// tell.
     fn misses_point(&self, v: Vec2, r: f64) -> bool {
         self.sides.iter().any(|(at, n)| (v - at).dot(n) <= -r) || self.aside(v, |_| true, r)
     }
@@ -76,13 +81,15 @@ impl Hull {
         self.corners.iter().all(|c| (c - v).dot(&n) >= r)
     }
 
-    /// Whether all of it is at least r from a point in the direction of one of its corners, of those that will do.
+    /// Whether all of it is at least r from a point in the direction of one of its corners, of
+    /// those that will do.
     fn aside(&self, v: Vec2, will_do: impl Fn(Vec2) -> bool, r: f64) -> bool {
         let unit = self.corners.iter().map(|c| (c - v, (c - v).norm())).filter(|(_, far)| *far >= r && *far > 0.0);
         unit.map(|(way, far)| way / far).any(|n| will_do(n) && self.beyond(v, n, r))
     }
 
-    /// Whether it is clear of a body. `beside`: a corner or circle that what it holds runs round at the right distance.
+    /// Whether it is clear of a body. `beside`: a corner or circle that what it holds runs round at
+    /// the right distance.
     fn misses(&self, body: &Body, beside: Option<usize>) -> bool {
         let r = body.offset - smaller(DEPTH, 0.1 * body.offset);
         if let Some(center) = body.center {
@@ -91,7 +98,7 @@ impl Hull {
         let (first, last) = self.bounds(r);
         let beside_box =
             |low: Vec2, high: Vec2| low.x > last.x || low.y > last.y || high.x < first.x || high.y < first.y;
-        let near = |low: Vec2, high: Vec2| !beside_box(low, high) && self.meets((low, high), r);
+        let near = |low: Vec2, high: Vec2| !beside_box(low, high) && self.meets(low, high, r);
         body.candidates_where(near)
             .filter(|&k| !beside.is_some_and(|feature| body.is_beside(k, feature)))
             .filter_map(|k| body.edges.get(k))
@@ -137,7 +144,7 @@ fn contact(c: &Contact, course: &Course, world: &World) -> Option<(f64, Vec2)> {
             let place = track.place(p);
             (place.at, place.tangent)
         };
-        let found = inside_on(world, &point, [p, q], arc.then_some(piece.feature));
+        let found = inside_on(world, &point, [p, q], piece.feature.filter(|_| arc));
         if let Some((_, at)) = found {
             return Some((c.ends.s[0], at));
         }
@@ -153,17 +160,19 @@ fn inside_on(
     part: [f64; 2],
     beside: Option<usize>,
 ) -> Option<(f64, Vec2)> {
-    let ends = part.map(point);
-    world.geometry().bodies().iter().find_map(|body| search(body, point, (part, ends), (beside, 0)))
+    let ends = part.map(|s| (s, point(s)));
+    world.geometry().bodies().iter().find_map(|body| search(body, point, ends, beside, 0))
 }
 
 /// Where a stretch is inside a body, halved until it is clear or no stretch any more.
 fn search(
     body: &Body,
     point: &dyn Fn(f64) -> (Vec2, Vec2),
-    ([from, to], [a, b]): ([f64; 2], [(Vec2, Vec2); 2]),
-    (beside, depth): (Option<usize>, u32),
+    part: [(f64, (Vec2, Vec2)); 2],
+    beside: Option<usize>,
+    depth: u32,
 ) -> Option<(f64, Vec2)> {
+    let [(from, a), (to, b)] = part;
     if Hull::of([a.0, b.0], [a.1, b.1]).misses(body, beside) {
         return None;
     }
@@ -172,6 +181,6 @@ fn search(
     if depth >= MOST_HALVINGS || (b.0 - a.0).norm() <= DEPTH * DEPTH {
         return Some((s, middle.0));
     }
-    search(body, point, ([from, s], [a, middle]), (beside, depth + 1))
-        .or_else(|| search(body, point, ([s, to], [middle, b]), (beside, depth + 1)))
+    search(body, point, [(from, a), (s, middle)], beside, depth + 1)
+        .or_else(|| search(body, point, [(s, middle), (to, b)], beside, depth + 1))
 }

@@ -1,5 +1,6 @@
-//! This check does not use the solver: it finds lengths by quadrature of the law of the free cable, the balance of each
-//! contact from its ends, and the cone of friction along it. `clearance` asks that nothing is inside an obstacle.
+//! This check does not use the solver: it finds lengths by quadrature of the law of the free cable,
+//! the balance of each contact from its ends, and the cone of friction along it. `clearance` asks
+//! that nothing is inside an obstacle.
 
 use crate::math::{GAUSS, Vec2, bounded, cross};
 use crate::model::spans::boundary::capstan::{Step, Track};
@@ -11,24 +12,26 @@ use crate::model::spans::failure::Failure;
 use crate::model::spans::results;
 use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 
-/// Equations must hold to this part of the length, the tension, the angle. The solver stops at 1e-11.
-const HOLDS: f64 = 1e-7;
+/// Equations must hold to this part of the length, the tension, the angle. The solver stops at
+/// 1e-11.
+const BALANCE_TOLERANCE: f64 = 1e-7;
 /// Compression that is rounding, of the greatest tension.
-const PUSHES: f64 = 1e-9;
+const COMPRESSION_ROUNDING: f64 = 1e-9;
 /// A contact may end so far beyond its chain, m or rad: rounding.
-const BEYOND: f64 = 1e-9;
+const CHAIN_END_TOLERANCE: f64 = 1e-9;
 /// Points of a contact looked at where its load has changed.
 const SAMPLES: usize = 8;
 /// A span hangs in one line when the force across the load is below this part of its load.
-const FOLDED: f64 = 1e-12;
+const FOLD_FORCE_FRACTION: f64 = 1e-12;
 /// Panels of a span beside its fold.
 const TAUT_PANELS: usize = 4;
 /// Lengths of a span from which its fold is so far that one panel leaves 1e-12.
-const FAR: f64 = 4.0;
+const ONE_PANEL_FOLD_DISTANCE: f64 = 4.0;
 /// Panels of the quadrature of a span, in v; 5 Gauss points each leave 1e-12.
 const PANEL: f64 = 0.5;
 
-/// Whether an answer is one; its contacts remember it.
+/// Returns an error unless the solution satisfies equilibrium. The caller keeps the stick zones
+/// that the contacts were solved with.
 pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Result<(), Failure> {
     let mut before = strand.from;
     let greatest = strand
@@ -45,7 +48,7 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Resu
         let (from, to) = strand.material(k);
         let long = strand.to - strand.from;
         // A pocket that is short by less is not opened.
-        if !(from >= before - HOLDS * long && to >= from - slack_pocket::SHORT * long) {
+        if !(from >= before - BALANCE_TOLERANCE * long && to >= from - slack_pocket::POCKET_SHORTAGE_FRACTION * long) {
             return Err(Failure::Unsound { what: "material out of order", s: from, at: Vec2::zeros() });
         }
         before = to;
@@ -53,17 +56,17 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Resu
             span(strand, course, k)?;
         }
         if k < strand.contacts.len() {
-            contact(strand, course, (k, greatest))?;
+            contact(strand, course, k, greatest)?;
         }
     }
     Ok(())
 }
 
-/// Whether supports and contacts, as they are reported, hold all of the weight and the loads: what no part of the network asked
-/// for is missed by each part's own check.
+/// Whether supports and contacts, as they are reported, hold all of the weight and the loads: what
+/// no part of the network asked for is missed by each part's own check.
 pub(in crate::model::spans) fn balanced(layout: &Layout, network: &CableEquilibrium) -> Result<(), Failure> {
     let (left, size) = results::unbalanced(layout, network);
-    if left.norm() <= HOLDS * size {
+    if left.norm() <= BALANCE_TOLERANCE * size {
         return Ok(());
     }
     let strand = network.strands.first();
@@ -81,7 +84,7 @@ fn span(strand: &CableRun, course: &Course, k: usize) -> Result<(), Failure> {
             at += way(strand, course, k, [before, next]);
             before = next;
         }
-        if !((at - b).norm() <= HOLDS * (strand.to - strand.from)) {
+        if !((at - b).norm() <= BALANCE_TOLERANCE * (strand.to - strand.from)) {
             return Err(Failure::Unsound { what: "a span does not close", s: from, at });
         }
     }
@@ -90,15 +93,16 @@ fn span(strand: &CableRun, course: &Course, k: usize) -> Result<(), Failure> {
 
 /// The way of a catenary by quadrature of f(F) = τ(F/T + F/EA).
 ///
-/// With b along the load, H the part of F across it and s* where F is across it, s = s* + (H/b) sinh v makes T = H cosh v:
-/// smooth however sharp the cable folds. Straight up and down (H = 0) the integral is split at the fold.
+/// With b along the load, H the part of F across it and s* where F is across it, s = s* + (H/b)
+/// sinh v makes T = H cosh v: smooth however sharp the cable folds. Straight up and down (H = 0)
+/// the integral is split at the fold.
 fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2 {
     // Inside the piece: a load at its start acts before it.
     let start = strand.force(course, k, 0.5 * (from + to)) + course.law.load * (0.5 * (to - from));
     let force = |s: f64| start - course.law.load * (s - from);
     let b = course.law.load.norm();
     let across = if b > 0.0 { cross(start, course.law.load).abs() / b } else { 0.0 };
-    if !(across > FOLDED * b * (to - from)) {
+    if !(across > FOLD_FORCE_FRACTION * b * (to - from)) {
         let fold = if b > 0.0 { bounded(from + start.dot(&course.law.load) / (b * b), from, to) } else { to };
         let straight = |a: f64, c: f64| if c > a { course.rate(force(0.5 * (a + c))) * (c - a) } else { Vec2::zeros() };
         return straight(from, fold) + straight(fold, to);
@@ -106,8 +110,8 @@ fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Ve
     let middle = from + start.dot(&course.law.load) / (b * b);
     // T² = H² + b² (s − s*)²: smooth as it is far from s* ± i H/b.
     let far = (0.5 * (from + to) - middle).hypot(across / b);
-    if middle < 2.0 * from - to || middle > 2.0 * to - from || far > FAR * (to - from) {
-        let panels = if far > FAR * (to - from) { 1 } else { TAUT_PANELS };
+    if middle < 2.0 * from - to || middle > 2.0 * to - from || far > ONE_PANEL_FOLD_DISTANCE * (to - from) {
+        let panels = if far > ONE_PANEL_FOLD_DISTANCE * (to - from) { 1 } else { TAUT_PANELS };
         let h = (to - from) / panels as f64;
         let points = (0..panels).flat_map(|j| GAUSS.map(|(u, weight)| (from + (j as f64 + u) * h, weight * h)));
         return points.fold(Vec2::zeros(), |sum, (s, weight)| sum + course.rate(force(s)) * weight);
@@ -125,22 +129,23 @@ fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Ve
     sum
 }
 
-/// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its tangent.
-fn contact(strand: &CableRun, course: &Course, (j, greatest): (usize, f64)) -> Result<(), Failure> {
+/// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its
+/// tangent.
+fn contact(strand: &CableRun, course: &Course, j: usize, greatest: f64) -> Result<(), Failure> {
     let c = &strand.contacts[j];
     let (track, e) = (course.track(c).seen_from(c.ends.p[0]), &c.ends);
     let unsound = |what: &'static str, p: f64, s: f64| Failure::Unsound { what, s, at: track.place(p).at };
     let (first, last) = (track.curve.origin(c.home.first), track.curve.end(c.home.last));
-    if !(track.curve.is_round() || e.p[0] >= first - BEYOND && e.p[1] <= last + BEYOND) {
+    if !(track.curve.is_round() || e.p[0] >= first - CHAIN_END_TOLERANCE && e.p[1] <= last + CHAIN_END_TOLERANCE) {
         return Err(unsound("a contact goes on beyond what it lies on", e.p[0], e.s[0]));
     }
-    if c.weight {
+    if c.is_load() {
         return point_load::sound(strand, course, j);
     }
     for side in 0..2 {
         if let Some(force) = strand.force_at_contact(course, j, side) {
             let tangent = track.place(e.p[side]).tangent;
-            if !(cross(force, tangent).abs() <= HOLDS * force.norm() && force.dot(&tangent) > 0.0) {
+            if !(cross(force, tangent).abs() <= BALANCE_TOLERANCE * force.norm() && force.dot(&tangent) > 0.0) {
                 return Err(unsound("a span is not tangent to what it leaves", e.p[side], e.s[side]));
             }
         } else if strand.in_pocket(j, side) {
@@ -154,11 +159,13 @@ fn contact(strand: &CableRun, course: &Course, (j, greatest): (usize, f64)) -> R
             // The load beside it is looked at by itself.
         } else if let Tie::Loose(force) = strand.ties[side] {
             let lifts = force.dot(&track.place(e.p[side]).normal);
-            if !((e.t[side] - course.pull(c, side, force)).abs() <= HOLDS * greatest && lifts <= HOLDS * force.norm()) {
+            if !((e.t[side] - course.pull(c, side, force)).abs() <= BALANCE_TOLERANCE * greatest
+                && lifts <= BALANCE_TOLERANCE * force.norm())
+            {
                 return Err(unsound("an end is not what draws it", e.p[side], e.s[side]));
             }
         }
-        if !(e.t[side] >= -PUSHES * greatest - 1e-9) {
+        if !(e.t[side] >= -COMPRESSION_ROUNDING * greatest - 1e-9) {
             return Err(Failure::Compressed { s: e.s[side], at: track.place(e.p[side]).at, tension: e.t[side] });
         }
     }
@@ -167,20 +174,22 @@ fn contact(strand: &CableRun, course: &Course, (j, greatest): (usize, f64)) -> R
     {
         return Err(Failure::LoadLies { s: l.arc_length });
     }
-    along(&track, c, (greatest, strand.to - strand.from))
+    along(&track, c, greatest, strand.to - strand.from)
 }
 
-/// Material that may be missing along a contact, of the strand's length. Smaller: contacts laid along the nodes of another model, which
-/// know their material to the distance of those nodes, are refused; larger: folds are lost (8 cm of 20 m were).
-const LOST: f64 = 1e-4;
+/// Material that may be missing along a contact, of the strand's length. Smaller: contacts laid
+/// along the nodes of another model, which know their material to the distance of those nodes, are
+/// refused; larger: folds are lost (8 cm of 20 m were).
+const LOST_MATERIAL_FRACTION: f64 = 1e-4;
 
-/// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On each stretch between two knots
-/// one part of friction is called upon: what holds for that and at the next knot holds all along. No material of the strand's
-/// `length` (m) is lost between two knots, nor between the ends and the first and last of them.
-fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Result<(), Failure> {
+/// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On
+/// each stretch between two knots one part of friction is called upon: what holds for that and at
+/// the next knot holds all along. No material of the strand's `length` (m) is lost between two
+/// knots, nor between the ends and the first and last of them.
+fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(), Failure> {
     let friction = track.friction;
-    let room = HOLDS * (greatest + 1e-9);
-    let lost = |found: f64, kept: f64| !((found - kept).abs() <= LOST * length);
+    let room = BALANCE_TOLERANCE * (greatest + 1e-9);
+    let lost = |found: f64, kept: f64| !((found - kept).abs() <= LOST_MATERIAL_FRACTION * length);
     if let (0.0, [first, .., last]) = (track.drag, c.history.knots())
         && (lost(first.s, c.ends.s[0]) || lost(last.s, c.ends.s[1]))
     {
@@ -199,7 +208,7 @@ fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Resu
             let whole = track.slide(p, q, t, knot.m);
             let look = |x: f64, way: Step| {
                 let place = track.place(x);
-                if !(way.tension >= -PUSHES * greatest - 1e-9) {
+                if !(way.tension >= -COMPRESSION_ROUNDING * greatest - 1e-9) {
                     return Err(Failure::Compressed { s: s + way.material, at: place.at, tension: way.tension });
                 }
                 if !(track.law.press(&place, way.tension) >= -room) {
@@ -207,9 +216,9 @@ fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Resu
                 }
                 Ok(())
             };
-            if !firm(track, (p, q), t, knot.m) {
+            if !firm(track, p, q, t, knot.m) {
                 let mut found = look(q, whole);
-                track.loosest((p, q), knot.m, |x| {
+                track.loosest(p, q, knot.m, |x| {
                     found = found.clone().and_then(|()| look(x, track.slide(p, x, t, knot.m)))
                 });
                 found?;
@@ -220,7 +229,7 @@ fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Resu
         if track.drag > 0.0 {
             continue;
         }
-        if !(knot.m.abs() <= friction * (1.0 + HOLDS)) {
+        if !(knot.m.abs() <= friction * (1.0 + BALANCE_TOLERANCE)) {
             return unsound("friction beyond its cone");
         }
         if lost(s, next.s) {
@@ -233,15 +242,16 @@ fn along(track: &Track<'_>, c: &Contact, (greatest, length): (f64, f64)) -> Resu
     Ok(())
 }
 
-/// Whether tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and N ds/dp > T − cb.
-fn firm(track: &Track<'_>, (p, q): (f64, f64), t: f64, m: f64) -> bool {
+/// Whether tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and
+/// N ds/dp > T − cb.
+fn firm(track: &Track<'_>, p: f64, q: f64, t: f64, m: f64) -> bool {
     let place = track.place(p);
     let load = place.stretch * track.law.load.norm() / track.law.thermal;
     place.turn != 0.0 && track.law.stiffness > 0.0 && t - (q - p) * (m.abs() * t + 2.0 * load) > load && m.abs() <= 1.0
 }
 
-/// Where the load has changed since something was laid, what sticks has changed by less than friction takes up: the cone from
-/// point to point.
+/// Where the load has changed since something was laid, what sticks has changed by less than
+/// friction takes up: the cone from point to point.
 fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Failure> {
     let past = &c.history;
     let [first, last] = c.ends.p;

@@ -1,4 +1,5 @@
-//! These modules check an answer without the solver: equilibrium, clearance, penetration and tunnelling.
+//! These modules check an answer without the solver: equilibrium, clearance, penetration and
+//! tunnelling.
 
 pub(in crate::model::spans) mod clearance;
 pub(in crate::model::spans) mod equilibrium;

@@ -1,8 +1,9 @@
 //! This search finds where a free span runs into an obstacle.
 //!
-//! Under an even load a catenary is nowhere deeper in an edge than where it runs along it, F × t = 0, which is one
-//! division; nowhere nearer to a corner or a centre v than where (x − v)·F = 0, which is a root of one variable. Those
-//! points are asked of the obstacle's signed distance, so that a point is inside only if nothing nearer says otherwise.
+//! Under an even load a catenary is nowhere deeper in an edge than where it runs along it, F × t =
+//! 0, which is one division; nowhere nearer to a corner or a centre v than where (x − v)·F = 0,
+//! which is a root of one variable. Those points are asked of the obstacle's signed distance, so
+//! that a point is inside only if nothing nearer says otherwise.
 
 use crate::catenary::Catenary;
 use crate::contact::geometry::Body;
@@ -10,17 +11,18 @@ use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::spans::run::{CableRun, Course};
 
-/// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both branches of a deep
-/// catenary is seen from one only.
+/// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both
+/// branches of a deep catenary is seen from one only.
 const SAMPLES: usize = 8;
 /// Halvings of a root.
 const MAX_HALVINGS: usize = 60;
 /// Roots are found to this part of the catenary.
 const ROOT: f64 = 1e-12;
 
-/// A cable whose tangent makes less than this angle with its load hangs along it. Smaller: rounding says which side of the
-/// tangent it is on. Larger: steep spans are looked at more closely than they must be.
-const ALONG: f64 = 1e-6;
+/// A cable whose tangent makes less than this angle with its load hangs along it. Smaller: rounding
+/// says which side of the tangent it is on. Larger: steep spans are looked at more closely than
+/// they must be.
+const HANGING_ANGLE: f64 = 1e-6;
 
 /// A point of a span inside an obstacle.
 #[derive(Clone, Copy, Debug)]
@@ -45,19 +47,19 @@ struct Arc<'a> {
     at: Vec2,
     shape: &'a Catenary,
     load: Vec2,
-    /// Its tangents at both ends: it bends away from the load, and so lies beyond each of them. None where it hangs along the
-    /// load.
+    /// Its tangents at both ends: it bends away from the load, and so lies beyond each of them.
+    /// None where it hangs along the load.
     sides: [Option<Side>; 2],
 }
 
 /// The tangent of a cable at a point where its force is known.
 pub(in crate::model::spans) fn tangent(at: Vec2, force: Vec2, load: Vec2) -> Option<Side> {
     let normal = perp(force) * -perp(force).dot(&load).signum() / force.norm();
-    (normal.dot(&load) < -ALONG * load.norm()).then_some((at, normal))
+    (normal.dot(&load) < -HANGING_ANGLE * load.norm()).then_some((at, normal))
 }
 
 impl<'a> Arc<'a> {
-    fn new((s0, at, shape): (f64, Vec2, &'a Catenary), load: Vec2) -> Self {
+    fn new(s0: f64, at: Vec2, shape: &'a Catenary, load: Vec2) -> Self {
         let (start, end) = (shape.start_force(), shape.end_force());
         let sides = [tangent(at, start, load), tangent(at + shape.span().chord, end, load)];
         Self { s0, at, shape, load, sides }
@@ -68,7 +70,8 @@ impl<'a> Arc<'a> {
         self.sides.iter().flatten().any(|(at, normal)| (at - v).dot(normal) >= by)
     }
 
-    /// Whether all of edge k and of the one before it face it from at least so far, seen from one of those tangents.
+    /// Whether all of edge k and of the one before it face it from at least so far, seen from one
+    /// of those tangents.
     fn misses_edges(&self, body: &Body, k: usize, by: f64) -> bool {
         let before = k.checked_sub(1).or(body.edges.len().checked_sub(1));
         let edges = [Some(k), before].map(|k| k.and_then(|k| body.edges.get(k)));
@@ -153,10 +156,10 @@ pub(in crate::model::spans) fn deepest(
     }
     let mut best: Option<Penetration> = None;
     shapes(strand, course, k, |s0, at, shape| {
-        let arc = Arc::new((s0, at, shape), course.law.load);
+        let arc = Arc::new(s0, at, shape, course.law.load);
         let (low, high) = arc.bounds();
         for (index, body) in world.geometry().bodies().iter().enumerate() {
-            search(&arc, body, (low, high), tolerance, |s| {
+            search(&arc, body, low, high, tolerance, |s| {
                 let at = arc.point(s);
                 let reach = (high - low).norm() + body.offset;
                 let Some(gap) = world.signed_gap(at, reach) else { return };
@@ -194,7 +197,7 @@ pub(in crate::model::spans) fn shapes(
 }
 
 /// Calls back with the points of a catenary that may be deepest in a body.
-fn search(arc: &Arc<'_>, body: &Body, (low, high): (Vec2, Vec2), tolerance: f64, mut found: impl FnMut(f64)) {
+fn search(arc: &Arc<'_>, body: &Body, low: Vec2, high: Vec2, tolerance: f64, mut found: impl FnMut(f64)) {
     if let Some(center) = body.center {
         if arc.misses(center, body.offset - tolerance) {
             return;
@@ -221,7 +224,8 @@ fn search(arc: &Arc<'_>, body: &Body, (low, high): (Vec2, Vec2), tolerance: f64,
         if let Some(s) = arc.along(e.tangent) {
             let d = arc.point(s) - e.p;
             let (x, height) = (d.dot(&e.tangent), d.dot(&perp(e.tangent)));
-            // What is deep is nearest to an edge, or to the kink beside it, that it does not lie straight below.
+            // What is deep is nearest to an edge, or to the kink beside it, that it does not lie
+            // straight below.
             let aside = larger(body.offset, -height);
             if height < body.offset - tolerance && x > -aside && x < e.length() + aside {
                 found(s);

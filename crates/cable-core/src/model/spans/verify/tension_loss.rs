@@ -6,10 +6,10 @@ use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Course};
 use crate::model::spans::verify::penetration;
 
-/// A span has hardly any tension left when the force across its load is below this part of the load on it: it then hangs
-/// in a hairpin 1/50 as wide as it is long. Smaller: failures of slack spans are put down to the solver. Larger: the other
-/// way round.
-const SLACK: f64 = 5e-3;
+/// A span has hardly any tension left when the force across its load is below this part of the load
+/// on it: it then hangs in a hairpin 1/50 as wide as it is long. Smaller: failures of slack spans
+/// are put down to the solver. Larger: the other way round.
+const SLACK_FORCE_FRACTION: f64 = 5e-3;
 
 /// What was lost, where on the cable (m) and in the plane (m), in the last state that was found.
 pub(in crate::model::spans) fn lost(
@@ -33,7 +33,7 @@ pub(in crate::model::spans) fn lost(
             let (from, to) = strand.material(k);
             let force = strand.force(course, k, from);
             let across = cross(force, b).abs() / b.norm();
-            if across > SLACK * b.norm() * (to - from) {
+            if across > SLACK_FORCE_FRACTION * b.norm() * (to - from) {
                 continue;
             }
             let mut place = None;

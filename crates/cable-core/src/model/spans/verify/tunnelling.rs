@@ -1,28 +1,32 @@
-//! The shape of the cable as points tells whether it has passed through something (`contact/swept_corners.rs`), and when that need not be asked.
+//! The tunnelling check compares the cable's shape before and after a step as points
+//! (`contact/swept_corners.rs`), and decides when that is not necessary.
 
 use crate::contact::swept_corners::Corner;
 use crate::math::{Vec2, cross, larger, smaller};
-use crate::model::spans::run::{CableRun, Contact, Course};
+use crate::model::spans::run::{CableRun, Contact, Course, Next};
 use crate::model::spans::verify::penetration;
 
 /// Points of each catenary and contact.
 const POINTS: usize = 24;
 
-/// A contact's end that moves by more than this (m or rad) may have gone round something. Smaller: more is looked at closely.
-const SMALL: f64 = 0.5;
+/// A contact's end that moves by more than this (m or rad) may have gone round something. Smaller:
+/// more is looked at closely.
+const CHECKED_MOVE: f64 = 0.5;
 
 /// A corner this near to a tangent is on it, m: rounding.
-const TOUCHES: f64 = 1e-12;
+const TANGENCY_DISTANCE_M: f64 = 1e-12;
 
-/// Whether the ends of the spans alone tell that nothing was passed: contacts are the same, and every corner lies on the same
-/// side of each span before and after. A span is convex: above its tangents and below its chord, seen against the load.
+/// Whether the ends of the spans alone tell that nothing was passed: contacts are the same, and
+/// every corner lies on the same side of each span before and after. A span is convex: above its
+/// tangents and below its chord, seen against the load.
 pub(in crate::model::spans) fn clear(old: &CableRun, new: &CableRun, course: &Course, corners: &[Corner]) -> bool {
     let load = course.law.load;
     let same = |(a, b): (&Contact, &Contact)| {
         let moved = |side: usize| (a.ends.p[side] - b.ends.p[side]).abs();
-        (a.curve, a.home, a.wheel, a.pocket, a.weight) == (b.curve, b.home, b.wheel, b.pocket, b.weight)
-            && moved(0) < SMALL
-            && moved(1) < SMALL
+        (a.curve, a.home, a.wheel, a.next == Next::Pocket, a.is_load())
+            == (b.curve, b.home, b.wheel, b.next == Next::Pocket, b.is_load())
+            && moved(0) < CHECKED_MOVE
+            && moved(1) < CHECKED_MOVE
     };
     load.x == 0.0
         && load.y < 0.0
@@ -66,7 +70,7 @@ impl Bow {
 
     /// Whether a point between its ends lies below it.
     fn is_above(&self, v: Vec2) -> bool {
-        self.tangents.iter().flatten().any(|(at, normal)| (v - at).dot(normal) <= TOUCHES)
+        self.tangents.iter().flatten().any(|(at, normal)| (v - at).dot(normal) <= TANGENCY_DISTANCE_M)
     }
 
     /// Whether a point between its ends lies above it.

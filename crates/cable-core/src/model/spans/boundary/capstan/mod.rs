@@ -1,24 +1,28 @@
 //! How tension changes along a boundary while the cable slides, and how much material lies there.
 //!
-//! With b the load per unstretched metre, t the direction of travel, n the outward normal, λ = τ(1 + T/EA) the stretch,
-//! τ = 1 + αΔT, c the radius (∞ on an edge), equilibrium of a piece of cable that is pressed by N n and rubbed by −mN t
-//! (both per unstretched metre; m = +μ where it slides on along t, −μ where it slides back, 0 where it is smooth) gives
+//! With b the load per unstretched metre, t the direction of travel, n the outward normal, λ =
+//! τ(1 + T/EA) the stretch, τ = 1 + αΔT, c the radius (∞ on an edge), equilibrium of a piece of
+//! cable that is pressed by N n and rubbed by −mN t (both per unstretched metre; m = +μ where it
+//! slides on along t, −μ where it slides back, 0 where it is smooth) gives
 //!
 //! ```text
 //! N = Tλ/c − b·n,      dT/ds = −b·t + mN,      ds/dp = (dℓ/dp)/λ
 //! ```
 //!
-//! Edge (ℓ = p): with Θ = T + T²/2EA, λ dT = τ dΘ, so τ dΘ/dp = −b·t − m b·n: Θ is exactly linear. The material is
-//! ΔT/(τ dΘ/dp), which is Δp/(τ(1 + T̄/EA)) with T̄ the mean of the two end tensions: nothing cancels on a level edge.
+//! Edge (ℓ = p): with Θ = T + T²/2EA, λ dT = τ dΘ, so τ dΘ/dp = −b·t − m b·n: Θ is exactly linear.
+//! The material is ΔT/(τ dΘ/dp), which is Δp/(τ(1 + T̄/EA)) with T̄ the mean of the two end
+//! tensions: nothing cancels on a level edge.
 //!
-//! Arc (ℓ = cψ, p = ψ): dT/dψ = mT − (c/λ)(b·t + m b·n), and dt/dψ = −n, dn/dψ = t. With λ = λ₀ frozen it is solved by
+//! Arc (ℓ = cψ, p = ψ): dT/dψ = mT − (c/λ)(b·t + m b·n), and dt/dψ = −n, dn/dψ = t. With λ = λ₀
+//! frozen it is solved by
 //!
 //! ```text
 //! T⁰ = α b·t + β b·n + C e^{mψ},   α = 2gm/(1+m²),   β = g(m²−1)/(1+m²),   g = c/λ₀
 //! ```
 //!
-//! and the exact T differs by −c ∫ e^{m(ψ−ξ)} (b·t + m b·n)(1/λ(T⁰) − 1/λ₀) dξ, a small part (of order cb·ΔT/EA) of a
-//! small part; what this leaves out is of the order of its square over T. Material is c ∫ dψ/λ. Both in `arc`.
+//! and the exact T differs by −c ∫ e^{m(ψ−ξ)} (b·t + m b·n)(1/λ(T⁰) − 1/λ₀) dξ, a small part (of
+//! order cb·ΔT/EA) of a small part; what this leaves out is of the order of its square over T.
+//! Material is c ∫ dψ/λ. Both in `arc`.
 
 use crate::math::{Vec2, bounded, exp, perp};
 use crate::model::spans::boundary::arc::{MOST_TURN, Way};
@@ -106,8 +110,8 @@ impl Law {
         -(spot.load.0 + m * spot.load.1) / self.thermal
     }
 
-    /// Normal force per unstretched metre times its stretch, per dp: N ds/dp, N (per metre of an edge, per radian of an
-    /// arc).
+    /// Normal force per unstretched metre times its stretch, per dp: N ds/dp, N (per metre of an
+    /// edge, per radian of an arc).
     pub fn press(&self, place: &Place, t: f64) -> f64 {
         let turned = if place.turn == 0.0 { 0.0 } else { t };
         turned - self.load.dot(&place.normal) * place.stretch / self.stretch(t)
@@ -163,7 +167,8 @@ pub(in crate::model::spans) struct Track<'a> {
     pub friction: f64,
     /// See [`Course`](crate::model::spans::run::Course).
     pub drag: f64,
-    /// Whether all of it slides away from the end that is drawn as far as there is tension, and lies loose beyond that.
+    /// Whether all of it slides away from the end that is drawn as far as there is tension, and
+    /// lies loose beyond that.
     pub floored: bool,
     /// A point of it from which what lies on the same piece is seen.
     pub pivot: Option<Pivot>,
@@ -233,8 +238,8 @@ impl Track<'_> {
         }
     }
 
-    /// Slides with m from p₀, the end that is drawn, to p₁; from where no tension is left on an edge the cable lies loose to p₁. Where
-    /// that is, and the material up to there.
+    /// Slides with m from p₀, the end that is drawn, to p₁; from where no tension is left on an
+    /// edge the cable lies loose to p₁. Where that is, and the material up to there.
     pub fn slide_floored(&self, p0: f64, p1: f64, t: f64, m: f64) -> (Step, Option<(f64, f64)>) {
         let (mut at, mut sum, mut loose) = (p0, Step::none(t), None);
         while at != p1 {
@@ -259,7 +264,8 @@ impl Track<'_> {
         (sum, loose)
     }
 
-    /// The m that keeps tension even where p is, as far as friction can: −b·t − m b·n = 0 on an edge; 0 on an arc.
+    /// The m that keeps tension even where p is, as far as friction can: −b·t − m b·n = 0 on an
+    /// edge; 0 on an arc.
     pub fn even(&self, p: f64) -> f64 {
         if self.turns(p) {
             return 0.0;
@@ -272,7 +278,8 @@ impl Track<'_> {
         bounded(-self.law.load.dot(&place.tangent) / out_of, -self.friction, self.friction)
     }
 
-    /// From p₀ to p₁ (either way) with the tension as even as friction can keep it: as cable is laid down.
+    /// From p₀ to p₁ (either way) with the tension as even as friction can keep it: as cable is
+    /// laid down.
     pub fn lay(&self, p0: f64, p1: f64, t: f64) -> Step {
         let (mut at, mut sum) = (p0, Step::none(t));
         while at != p1 {
@@ -283,33 +290,36 @@ impl Track<'_> {
         sum
     }
 
-    /// Calls back with the places inside an arc from p to q at which tension or pressure may be least while it slides with m.
+    /// Calls back with the places inside an arc from p to q at which tension or pressure may be
+    /// least while it slides with m.
     ///
-    /// With P the [`Law::press`] of a place, P' = mP − 2(c/λ) b·t and T' = mT − (c/λ)(b·t + m b·n), both but for the change of λ: P e^{−mψ}
-    /// is least where b·t = 0 with the load out of the arc, below it, T e^{−mψ} where b·t + m b·n = 0. If neither is below nothing
-    /// there and at the ends, it is nowhere.
-    pub fn loosest(&self, (p, q): (f64, f64), m: f64, mut each: impl FnMut(f64)) {
+    /// With P the [`Law::press`] of a place, P' = mP − 2(c/λ) b·t and T' = mT − (c/λ)(b·t + m b·n),
+    /// both but for the change of λ: P e^{−mψ} is least where b·t = 0 with the load out of the arc,
+    /// below it, T e^{−mψ} where b·t + m b·n = 0. If neither is below nothing there and at the
+    /// ends, it is nowhere.
+    pub fn loosest(&self, p: f64, q: f64, m: f64, mut each: impl FnMut(f64)) {
         let middle = self.curve.locate(0.5 * (p + q), self.home);
         if !self.curve.is_arc(middle) {
             return;
         }
         let least = self.law.load - perp(self.law.load) * (m * self.curve.sense);
         for out in [self.law.load, least] {
-            self.facing(middle, out, (p, q), &mut each);
+            self.facing(middle, out, p, q, &mut each);
         }
     }
 
-    /// Calls back with the places between p and q at which a round boundary faces the load: its bottoms.
-    pub fn bottoms(&self, (p, q): (f64, f64), each: impl FnMut(f64)) {
-        self.facing(self.home.first, self.law.load, (p, q), each);
+    /// Calls back with the places between p and q at which a round boundary faces the load: its
+    /// bottoms.
+    pub fn bottoms(&self, p: f64, q: f64, each: impl FnMut(f64)) {
+        self.facing(self.home.first, self.law.load, p, q, each);
     }
 
     /// The places between p and q, on arc i, whose outward normal is along `out`.
-    fn facing(&self, i: i64, out: Vec2, (p, q): (f64, f64), each: impl FnMut(f64)) {
+    fn facing(&self, i: i64, out: Vec2, p: f64, q: f64, each: impl FnMut(f64)) {
         // No cable is wound further.
         if out.norm() > 0.0 && q - p <= MOST_TURN {
             // n = σ perp t.
-            self.curve.running(i, perp(out) * -self.curve.sense, (p, q), each);
+            self.curve.running(i, perp(out) * -self.curve.sense, p, q, each);
         }
     }
 
@@ -329,7 +339,8 @@ impl Track<'_> {
         0.5 * (low + high)
     }
 
-    /// The next place from p towards `to` where the boundary changes from edge to arc or back; `to` if none lies between.
+    /// The next place from p towards `to` where the boundary changes from edge to arc or back; `to`
+    /// if none lies between.
     pub fn next_border(&self, p: f64, to: f64) -> f64 {
         if self.pivot.as_ref().is_some_and(|v| v.reaches(p) && v.reaches(to)) {
             return to;

@@ -14,7 +14,7 @@ fn on(curve: &Curve, home: ChainRange, law: Law, friction: f64) -> Track<'_> {
 }
 
 /// dT/dψ = mT − (c/λ)(b·t + m b·n) and ds/dψ = c/λ by 4th-order Runge–Kutta.
-fn stepped(track: &Track<'_>, (from, to): (f64, f64), t: f64, m: f64) -> (f64, f64) {
+fn stepped(track: &Track<'_>, from: f64, to: f64, t: f64, m: f64) -> (f64, f64) {
     const STEPS: usize = 4000;
     let rate = |p: f64, t: f64| {
         let place = track.place(p);
@@ -34,8 +34,8 @@ fn stepped(track: &Track<'_>, (from, to): (f64, f64), t: f64, m: f64) -> (f64, f
     (t, s)
 }
 
-/// What the closed form leaves out, N and m: with δT of the order of ε = cb/EA of T the tension is corrected by it, the
-/// material is not: ε² T and c ψ ε T/EA.
+/// What the closed form leaves out, N and m: with δT of the order of ε = cb/EA of T the tension is
+/// corrected by it, the material is not: ε² T and c ψ ε T/EA.
 fn left_out(track: &Track<'_>, radius: f64, turn: f64, t: f64) -> [f64; 2] {
     let stiffness = track.law.stiffness;
     let part = 9.0 * radius / stiffness;
@@ -70,7 +70,7 @@ fn on_a_slope_theta_is_linear() {
         let way = track.slide(p, p + 6.0, 50.0, m);
         let grown = law.theta(way.tension) - law.theta(50.0);
         assert!((grown - -(bt + m * bn) / law.thermal * 6.0).abs() < 1e-12 * 50.0, "{grown}");
-        let (t, s) = stepped(&track, (p, p + 6.0), 50.0, m);
+        let (t, s) = stepped(&track, p, p + 6.0, 50.0, m);
         assert!((way.tension - t).abs() < 1e-9 && (way.material - s).abs() < 1e-11, "{way:?} {t} {s}");
     }
 }
@@ -85,7 +85,7 @@ proptest! {
         let (wheel, t) = (Curve::wheel(radius, m.abs(), sense), 10f64.powf(log_t));
         let track = on(&wheel, ROUND, law(10f64.powf(log_ea)), m.abs());
         let way = track.slide(from, from + turn, t, m);
-        let (stepped_t, stepped_s) = stepped(&track, (from, from + turn), t, m);
+        let (stepped_t, stepped_s) = stepped(&track, from, from + turn, t, m);
         prop_assume!(stepped_t > 1.0);
         let size = stepped_t + t + 9.0 * radius;
         let left = left_out(&track, radius, turn, size);
