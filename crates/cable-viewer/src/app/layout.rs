@@ -99,7 +99,7 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
         let mut tab: Tab = ui.data(|d| d.get_temp(id)).unwrap_or_default();
         ui.horizontal(|ui| {
             ui.selectable_value(&mut tab, Tab::Edit, "Edit").on_hover_text("Scene, robot, cable, environment, solver");
-            ui.selectable_value(&mut tab, Tab::Read, "Read")
+            ui.selectable_value(&mut tab, Tab::Read, "Results")
                 .on_hover_text("Warnings, readouts, safe reach, tension at a place, compare");
             if graphs {
                 ui.selectable_value(&mut tab, Tab::Graphs, "Graphs")
@@ -107,9 +107,7 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
             }
             let warnings = state.live.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
             if state.document.fault.is_some() || state.live.snapshot.error.is_some() || warnings > 0 {
-                ui.add(
-                    egui::Label::new(RichText::new("Warnings: see Read").color(ui.visuals().warn_fg_color)).truncate(),
-                );
+                ui.add(egui::Label::new(RichText::new("See results").color(ui.visuals().warn_fg_color)).truncate());
             }
         });
         ui.data_mut(|d| d.insert_temp(id, tab));

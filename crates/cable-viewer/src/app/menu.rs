@@ -6,9 +6,10 @@ use egui::{Button, Color32, KeyboardShortcut, MenuBar, Sense, Ui, Vec2};
 
 use crate::app::keys;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use crate::panels::words;
 use crate::render::colour::{ColourMap, Quantity};
 use crate::state::dialog::Dialog;
-use crate::state::{AppState, WorkerStatus};
+use crate::state::{AppState, Freshness, WorkerStatus};
 use crate::units::system::System;
 use crate::units::{labels, translate};
 
@@ -26,7 +27,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if ui.button("About").on_hover_text("What was checked and what was not").clicked() {
             commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::About))));
         }
-        if ui.button("Feedback").on_hover_text("Four questions, kept in a table of yours").clicked() {
+        if ui.button("Feedback").on_hover_text("Four questions, saved to a CSV file on this computer").clicked() {
             commands.push(Command::File(feedback()));
         }
         ui.separator();
@@ -63,24 +64,24 @@ fn entry(ui: &mut Ui, text: &str, shortcut: Option<&KeyboardShortcut>) -> bool {
 fn help(text: &str) -> &'static str {
     match text {
         "Open…" => "A scene file; asks first if this one is not saved",
-        "Save" => "To where it came from; the old file stays whole if the disk refuses",
+        "Save" => "To the same file; the old one stays intact if saving fails",
         "Save as…" => "To another file",
         "Import map…" => "Terrain and beams from a table or an SVG, added to the scene",
-        "Open run…" => "A folder with all that was recorded",
-        "Save run…" => "All that was recorded, as tables in a folder",
+        "Open run…" => "A folder with a recording",
+        "Save run…" => "The whole recording, as tables in a folder",
         "Quit" => "Asks first if the scene is not saved",
         "Undo" => "Back by one edit; a drag is one",
         "Redo" => "Forward by one edit",
-        "Command palette…" => "Everything that can be done, by name",
-        "Copy" => "What is picked; other programs get its points as a table",
-        "Cut" => "Copies what is picked and takes it out",
-        "Paste" => "What was copied, at the pointer or a little beside where it was",
-        "Remove selected" => "Takes out what is picked; the ends of a cable become free",
+        "Command palette…" => "Every command, by name",
+        "Copy" => "The selection; other programs receive its points as a table",
+        "Cut" => "Copies the selection and removes it",
+        "Paste" => "At the pointer, or a little beside the original",
+        "Remove selected" => "Removes the selection; cable ends become free",
         "Add a cable" => "Like the present one, half a metre above it",
-        "Reset to start (R)" => "Back to the start, bit for bit",
+        "Reset to start (R)" => "Back to the start",
         "Restart the solver" => "The scene stays as it is",
-        "Fit scene (F)" => "All of it in view",
-        "Recentre on the cable (C)" => "Its middle in the middle, same scale",
+        "Fit scene (F)" => "Shows the whole scene",
+        "Recentre on the cable (C)" => "Centres the cable, same scale",
         _ => "Opens this scene; asks first if the present one is not saved",
     }
 }
@@ -159,7 +160,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         "Where the cable touches: normal force and friction; filled and blue where it holds, hollow and orange where it slides",
     );
     ui.checkbox(&mut layers.forces, "Forces").on_hover_text("Loads, and what the cable does to its supports");
-    ui.checkbox(&mut layers.components, "Parts of forces").on_hover_text("Of each force, to the right and upwards");
+    ui.checkbox(&mut layers.components, "Force components").on_hover_text("Horizontal and vertical part of each force");
     ui.checkbox(&mut layers.nodes, "Nodes").on_hover_text("The points the model works with");
     ui.separator();
     ui.checkbox(&mut layers.snap, "Snap to grid").on_hover_text("Dragged points land on the finest grid lines shown");
@@ -177,7 +178,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     ui.separator();
     let mut theme = state.view.theme;
-    ui.radio_value(&mut theme, egui::ThemePreference::System, "Theme of the system")
+    ui.radio_value(&mut theme, egui::ThemePreference::System, "Match system theme")
         .on_hover_text("Dark where it does not say");
     ui.radio_value(&mut theme, egui::ThemePreference::Light, "Light theme").on_hover_text("Dark on light");
     ui.radio_value(&mut theme, egui::ThemePreference::Dark, "Dark theme").on_hover_text("Light on dark");
@@ -209,7 +210,7 @@ fn colours(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let help =
             "On: the colours keep the values they have now; off: they follow the least and greatest of each answer";
         let present = state.live.snapshot.solution.as_deref().map(|s| state.view.colour.range(s));
-        if ui.checkbox(&mut fixed, "Keep the range").on_hover_text(help).changed() {
+        if ui.checkbox(&mut fixed, "Lock colour range").on_hover_text(help).changed() {
             colour.fixed = present.filter(|_| fixed);
         }
     });
@@ -260,29 +261,34 @@ pub fn status(ui: &mut Ui, state: &AppState) {
         };
         ui.separator();
         if let Some(solution) = &state.live.snapshot.solution {
-            ui.label(format!("{} model", solution.model)).on_hover_text(&solution.reason);
+            ui.label(format!("{} model", words::model(solution.model))).on_hover_text(&solution.reason);
             ui.separator();
-            if let Some(verification) = &solution.verification {
+            if let Some(verification) = solution.verification.as_ref().filter(|_| state.is_current()) {
                 light(ui, verification);
                 ui.separator();
             }
             ui.label(format!("t = {:.3} s", solution.time_s));
             ui.separator();
         }
-        ui.label(format!("solved in {:.2} ms", state.live.snapshot.solve_wall_s * 1e3));
-        if let Some(latency) = state.solver.edit_latency_s {
+        match (state.solving(), state.freshness()) {
+            (Some(seconds), _) => {
+                ui.label(labels::solving(seconds)).on_hover_text("The answer to the last edits is being sought");
+            }
+            (None, Freshness::Outdated) => {
+                ui.label("not solved");
+            }
+            (None, _) => {
+                ui.label(format!("solved in {:.2} ms", state.live.snapshot.solve_wall_s * 1e3));
+            }
+        }
+        if let Some(latency) = state.solver.edit_latency_s.filter(|_| state.is_current()) {
             ui.separator();
-            ui.label(format!("edit to picture {:.0} ms", latency * 1e3))
-                .on_hover_text("From the last edit to the first picture that shows it");
+            ui.label(format!("updated in {:.0} ms", latency * 1e3))
+                .on_hover_text("From the last edit to the first frame that shows it");
         }
         if let Some(fault) = &state.ui.autosave_fault {
             ui.separator();
             ui.colored_label(ui.visuals().warn_fg_color, "changes are not kept for recovery").on_hover_text(fault);
-        }
-        if state.live.snapshot.draft {
-            ui.separator();
-            ui.label("draft, settling…")
-                .on_hover_text("Few segments, not yet at rest, while the scene is being moved; the answer follows");
         }
     });
 }

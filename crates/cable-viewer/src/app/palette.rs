@@ -18,7 +18,7 @@ fn entries() -> Vec<(String, Command)> {
         ("Save", Command::File(FileCommand::Save)),
         ("Save as…", Command::File(FileCommand::AskSaveAs)),
         ("Open run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: false })),
-        ("Hold a run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: true })),
+        ("Pin a recorded run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: true })),
         ("Save run…", file(Dialog::SaveRun { path: "run".to_owned() })),
         ("Import map…", Command::File(crate::app::menu::import_map())),
         ("Undo", Command::Scene(SceneCommand::Undo)),
@@ -28,25 +28,25 @@ fn entries() -> Vec<(String, Command)> {
         ("Step", Command::Playback(PlaybackCommand::Step)),
         ("Step back", Command::Playback(PlaybackCommand::StepBack)),
         ("Reset to the start", Command::Playback(PlaybackCommand::Reset)),
-        ("Show the present", Command::Playback(PlaybackCommand::Show(None))),
+        ("Show the latest", Command::Playback(PlaybackCommand::Show(None))),
         ("Real-time speed", Command::Playback(PlaybackCommand::SetSpeed(1.0))),
         ("Slow motion 0.1×", Command::Playback(PlaybackCommand::SetSpeed(0.1))),
         ("Robot: follow path", Command::Playback(PlaybackCommand::DriveRobot(None))),
         ("Robot: stop", Command::Playback(PlaybackCommand::DriveRobot(Some(0.0)))),
         ("Fit scene", Command::View(ViewCommand::Fit)),
         ("Recentre on the cable", Command::View(ViewCommand::Recentre)),
-        ("Hold this answer", Command::View(ViewCommand::Hold)),
-        ("Hold every model", Command::View(ViewCommand::HoldModels(true))),
-        ("Let all held answers go", Command::View(ViewCommand::LetGo(None))),
+        ("Pin this result", Command::View(ViewCommand::Hold)),
+        ("Compare all models", Command::View(ViewCommand::HoldModels(true))),
+        ("Unpin all", Command::View(ViewCommand::LetGo(None))),
         ("Find safe reach", Command::View(ViewCommand::Reach(true))),
         ("Cancel or clear the safe reach", Command::View(ViewCommand::Reach(false))),
         ("Light theme", theme(egui::ThemePreference::Light)),
         ("Dark theme", theme(egui::ThemePreference::Dark)),
-        ("Theme of the system", theme(egui::ThemePreference::System)),
+        ("Match system theme", theme(egui::ThemePreference::System)),
         ("SI units", Command::View(ViewCommand::SetUnits(System::Si))),
         ("US units", Command::View(ViewCommand::SetUnits(System::Us))),
         ("Add a cable", Command::Scene(SceneCommand::AddCable)),
-        ("Go on from the time shown", Command::Playback(PlaybackCommand::GoOn)),
+        ("Resume from the time shown", Command::Playback(PlaybackCommand::GoOn)),
         ("Restart the solver", Command::File(FileCommand::RestartWorker)),
         ("Help: pointer and keys", file(Dialog::Help)),
         ("Give feedback…", Command::File(crate::app::menu::feedback())),
@@ -77,7 +77,7 @@ fn found(text: &str) -> Vec<(String, Command)> {
 
 /// Draws it; Enter does the first found.
 pub fn ui(ui: &mut Ui, text: &mut String, commands: &mut Vec<Command>) {
-    let field = TextEdit::singleline(text).hint_text("What to do").desired_width(f32::INFINITY);
+    let field = TextEdit::singleline(text).hint_text("Type a command…").desired_width(f32::INFINITY);
     let field = ui.add(field);
     crate::widgets::field::name(&field, "Command");
     let entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
@@ -93,7 +93,7 @@ pub fn ui(ui: &mut Ui, text: &mut String, commands: &mut Vec<Command>) {
             }
         }
         if found.is_empty() {
-            ui.weak("Nothing is called so");
+            ui.weak(format!("No command matches “{}”", text.trim()));
         }
     });
     if let Some(command) = chosen {

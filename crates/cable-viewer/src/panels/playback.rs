@@ -27,7 +27,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 commands.push(Command::Playback(command));
             }
         };
-        button(ui, (Icon::ToStart, "Reset"), "Back to the start, bit for bit", PlaybackCommand::Reset);
+        button(ui, (Icon::ToStart, "Reset"), "Back to the start", PlaybackCommand::Reset);
         if state.live.playback.paused {
             button(ui, (Icon::Play, "Play"), "Let time run", PlaybackCommand::SetPaused(false));
         } else {

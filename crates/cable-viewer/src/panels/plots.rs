@@ -3,6 +3,7 @@
 use egui::{ComboBox, Id, Ui};
 
 use crate::command::{Command, FileCommand};
+use crate::panels::readouts::DIMMED;
 use crate::plot::{GraphResponse, GraphView, along, time};
 use crate::record::measure::Measure;
 use crate::render::colour::Quantity;
@@ -115,7 +116,13 @@ fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> G
             let present = state.live.snapshot.solution.as_ref().map(|s| s.time_s);
             let found = friction_answer(state).filter(|(_, ask)| present == Some(ask.span_s));
             let ribbon = found.and_then(|(s, _)| s.along.get(index)).map_or(&[][..], Vec::as_slice);
-            along::ui(ui, cable, (solved, ribbon), view, height)
+            ui.scope(|ui| {
+                if !state.is_current() {
+                    ui.multiply_opacity(DIMMED);
+                }
+                along::ui(ui, cable, (solved, ribbon), view, height)
+            })
+            .inner
         }
         _ => {
             ui.weak("Nothing solved yet");

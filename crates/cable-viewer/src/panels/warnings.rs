@@ -6,11 +6,12 @@ use cable_core::solution::{Warning, WarningKind};
 use cable_core::{Settings, Solution};
 use egui::{Color32, Frame, RichText, ScrollArea, Ui};
 
-use crate::command::{Command, FileCommand, SceneCommand, ViewCommand};
+use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene_errors::{self, Fix};
 use crate::state::{AppState, Item, WorkerStatus};
 use crate::units::{format, translate, unit};
 use crate::widgets::icon::{self, Icon};
+use crate::worker::engine::CANCELLED;
 
 /// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a
 /// node.
@@ -48,8 +49,12 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let entries = entries(state);
     if entries.is_empty() {
         ui.horizontal(|ui| {
-            icon::sign(ui, Icon::Check, ui.visuals().text_color());
-            ui.weak("Nothing to warn of");
+            if state.is_current() {
+                icon::sign(ui, Icon::Check, ui.visuals().text_color());
+                ui.weak("No warnings");
+            } else {
+                ui.weak("Warnings follow once this is solved");
+            }
         });
         return;
     }
@@ -70,11 +75,15 @@ fn entries(state: &AppState) -> Vec<Entry> {
     list.extend(dead_worker(state));
     list.extend(scene_fault(state));
     if let (Some(error), None) = (&state.live.snapshot.error, &state.document.fault) {
+        let cancelled = error == CANCELLED;
         let error = capital(&translate::display(error));
         let text = format!("{error}. The picture and the figures are of the last scene that was solved.");
-        list.push(Entry { title: "No answer".to_owned(), ..entry(Severity::Stop, text) });
+        let solve = Fix { label: "Solve".to_owned(), command: Command::Playback(PlaybackCommand::Solve) };
+        let (title, fix) = if cancelled { ("Not solved", Some(solve)) } else { ("No answer", None) };
+        list.push(Entry { title: title.to_owned(), fix, ..entry(Severity::Stop, text) });
     }
-    if let Some(answer) = state.live.snapshot.solution.as_deref() {
+    // What a draft or the answer to another scene warns of says nothing of this one.
+    if let Some(answer) = state.live.snapshot.solution.as_deref().filter(|_| state.is_current()) {
         list.extend(answer.warnings.iter().map(|w| of_warning(state, answer, w)));
     }
     // A stable sort: equals stay in the order of the answer.
@@ -94,7 +103,7 @@ fn capital(text: &str) -> String {
 
 fn dead_worker(state: &AppState) -> Option<Entry> {
     let WorkerStatus::Dead(words) = &state.solver.status else { return None };
-    let fix = Fix { label: "Start it again".to_owned(), command: Command::File(FileCommand::RestartWorker) };
+    let fix = Fix { label: "Restart the solver".to_owned(), command: Command::File(FileCommand::RestartWorker) };
     let text = format!("{}. The scene is safe; nothing is solved until it runs again.", capital(words));
     Some(Entry { title: "The solver stopped".to_owned(), fix: Some(fix), ..entry(Severity::Stop, text) })
 }
@@ -112,30 +121,31 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::Broken => (Severity::Stop, "Broken"),
         WarningKind::MayBreak => (Severity::Caution, "May break"),
         WarningKind::Kink => (Severity::Caution, "Kinked"),
-        WarningKind::SidewallPressure => (Severity::Caution, "Pressed too hard sideways"),
+        WarningKind::SidewallPressure => (Severity::Caution, "Sidewall pressure too high"),
         WarningKind::Loop => (Severity::Caution, "Crosses itself"),
-        WarningKind::Curl => (Severity::Caution, "Curls up"),
+        WarningKind::Curl => (Severity::Caution, "Tight curl"),
         WarningKind::Wrapped => (Severity::Caution, "Wrapped round an obstacle"),
         WarningKind::Snag => (Severity::Caution, "Snagged"),
         WarningKind::Slack => (Severity::Note, "Slack"),
-        WarningKind::ServiceTension => (Severity::Caution, "Above the service tension"),
-        WarningKind::BendRadius => (Severity::Caution, "Bent too tightly"),
-        WarningKind::Accuracy => (Severity::Caution, "Less accurate than asked"),
-        WarningKind::SupportHeld => (Severity::Caution, "A support was held back"),
-        WarningKind::InitialPenetration => (Severity::Note, "Put outside of an obstacle"),
+        WarningKind::ServiceTension => (Severity::Caution, "Above service tension"),
+        WarningKind::BendRadius => (Severity::Caution, "Bend too tight"),
+        WarningKind::Accuracy => (Severity::Caution, "Accuracy below target"),
+        WarningKind::SupportHeld => (Severity::Caution, "Support blocked"),
+        WarningKind::InitialPenetration => (Severity::Note, "Moved out of an obstacle"),
         WarningKind::ThroughRobot => (Severity::Caution, "Lies through the robot"),
-        WarningKind::Stabilised => (Severity::Caution, "The motion was stabilised"),
-        WarningKind::EnergyGrows => (Severity::Stop, "Energy from nowhere"),
-        WarningKind::NotUnique => (Severity::Note, "One of several resting places"),
+        WarningKind::Stabilised => (Severity::Caution, "Motion was stabilised"),
+        WarningKind::EnergyGrows => (Severity::Stop, "Energy error"),
+        WarningKind::NotUnique => (Severity::Note, "Rest shape depends on how the cable was laid"),
     };
     let index = state.document.scene.cables.iter().position(|c| c.name == warning.cable);
-    let since = warning.since_s.map_or_else(String::new, |t| format!(" since {t:.2}\u{a0}s"));
+    let since = warning.since_s.map_or_else(String::new, |t| format!(", since {t:.2}\u{a0}s"));
     let along = unit::Unit { decimals: Some(2), ..unit::Unit::M }.text(warning.arc_length_m);
-    let place = format!("{} at {}{since}", warning.cable, along.replace(' ', "\u{a0}"));
-    let figures = figures(warning).map_or_else(String::new, |f| format!(" – {f}"));
+    // The name only where there is a choice.
+    let of = if answer.cables.len() > 1 { format!(" of {}", warning.cable) } else { String::new() };
+    let figures = figures(warning).map_or_else(String::new, |f| format!(": {f}"));
     Entry {
         severity,
-        title: format!("{title}: {place}{figures}"),
+        title: format!("{title} at {}{of}{figures}{since}", along.replace(' ', "\u{a0}")),
         text: translate::display(&warning.message).into_owned(),
         at_m: position(answer, warning),
         item: index.map(Item::Cable),
@@ -148,23 +158,25 @@ fn figures(warning: &Warning) -> Option<String> {
     let Warning { value, limit, .. } = *warning;
     match warning.kind {
         WarningKind::ServiceTension | WarningKind::BreakingTension | WarningKind::MayBreak => {
-            Some(format::force_of(value, limit))
+            Some(format!("{}, limit {}", format::force(value), format::force(limit)))
         }
-        WarningKind::Broken => Some(format::force(limit)),
+        WarningKind::Broken => Some(format!("breaking tension {}", format::force(limit))),
         WarningKind::BendRadius | WarningKind::Kink => {
-            Some(format!("{}, least {}", format::length(value), format::length(limit)))
+            Some(format!("{}, minimum {}", format::length(value), format::length(limit)))
         }
-        WarningKind::Slack => Some(format::length(value)),
+        WarningKind::Slack => Some(format!("{} of cable", format::length(value))),
         WarningKind::SidewallPressure => {
             let per_metre = |v| unit::Unit { decimals: Some(0), ..unit::Unit::N_PER_M }.text(v).replace(' ', "\u{a0}");
-            Some(format!("{} of {}", per_metre(value), per_metre(limit)))
+            Some(format!("{}, limit {}", per_metre(value), per_metre(limit)))
         }
         WarningKind::Wrapped => Some(format!("{value:.2} turns")),
-        WarningKind::Curl => Some(format!("{value:.0}° of {limit:.0}°")),
+        WarningKind::Curl => Some(format!("{value:.0}°")),
         WarningKind::Snag => Some(format!("tension ratio {value:.2}")),
-        WarningKind::EnergyGrows => Some(format!("{} more than given", format::energy(value))),
+        WarningKind::EnergyGrows => Some(format!("{} too much", format::energy(value))),
         WarningKind::Loop => None,
-        WarningKind::Accuracy => Some(format!("{} of {}", format::percent(value), format::percent(limit))),
+        WarningKind::Accuracy => {
+            Some(format!("{} estimated, target {}", format::percent(value), format::percent(limit)))
+        }
         WarningKind::InitialPenetration
         | WarningKind::NotUnique
         | WarningKind::SupportHeld

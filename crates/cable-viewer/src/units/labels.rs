@@ -61,3 +61,9 @@ pub fn speed(metres_per_second: f64) -> String {
     let Unit { symbol, si, .. } = Unit::M_PER_S.display();
     format!("{} {symbol}", digits(metres_per_second / si))
 }
+
+/// That an answer is being sought, and for how long, s.
+#[must_use]
+pub fn solving(seconds: f64) -> String {
+    if seconds < 1.0 { "Solving…".to_owned() } else { format!("Solving… {seconds:.0} s") }
+}

@@ -124,8 +124,8 @@ fn reset(ui: &mut Ui, quantity: &Quantity, known: &Provenance, typed_wrong: bool
     let response = icon::plain_button(ui, Icon::Reset, differs);
     field::name(&response, &format!("Reset {}", quantity.name.to_lowercase()));
     let text = known.origin.as_ref().map_or_else(
-        || "Nothing to go back to".to_owned(),
-        |(v, from)| format!("Back to {} ({from})", quantity.unit.exact(*v)),
+        || "No default to go back to".to_owned(),
+        |(v, from)| format!("Back to {} ({from})", quantity.unit.brief(*v)),
     );
     response.on_hover_text(&text).on_disabled_hover_text(text).clicked()
 }
@@ -134,12 +134,12 @@ fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Provenance) {
     ui.set_max_width(300.0);
     ui.label(RichText::new(quantity.name).strong());
     ui.label(quantity.help);
-    ui.label(format!("Now {}", quantity.unit.exact(known.value)));
+    ui.label(format!("Now {}", quantity.unit.brief(known.value)));
     let [low, high] = quantity.usual;
     ui.weak(format!(
         "Usually {} to {}; other values can be typed",
-        quantity.unit.exact(low),
-        quantity.unit.exact(high)
+        quantity.unit.brief(low),
+        quantity.unit.brief(high)
     ));
     if let Some(source) = &known.source {
         ui.separator();

@@ -18,6 +18,7 @@ mod spans;
 mod speed;
 mod stories;
 mod timing;
+mod truth;
 mod units;
 mod walk;
 mod wishes;

@@ -16,7 +16,8 @@ const TICKS: usize = 5;
 
 /// The colours and what they mean.
 pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
-    let Some(solution) = &state.live.snapshot.solution else { return };
+    // Of what has no colours there is nothing to say.
+    let Some(solution) = state.live.snapshot.solution.as_ref().filter(|_| state.is_current()) else { return };
     let [low, high] = state.view.colour.range(solution);
     let (unit, si) = state.view.colour.quantity.unit(high.abs().max(low.abs()));
     let plate = Rect::from_min_size(pos2(view.rect.max.x - 118.0, view.rect.min.y + 10.0), vec2(108.0, BAR[1] + 44.0));
@@ -62,7 +63,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
 /// What the bands along the cable mean, below the colours, where there are some.
 pub fn contacts(view: &mut CanvasView<'_>, state: &AppState) {
     let stretches = state.live.snapshot.solution.iter().flat_map(|s| &s.cables).flat_map(|c| &c.contacts);
-    let any = stretches.into_iter().any(|c| c.ends_m > c.begins_m);
+    let any = state.is_current() && stretches.into_iter().any(|c| c.ends_m > c.begins_m);
     let top = view.rect.min.y + 10.0 + BAR[1] + 44.0 + 6.0;
     let plate = Rect::from_min_size(pos2(view.rect.max.x - 118.0, top), vec2(108.0, 42.0));
     if !any
@@ -103,7 +104,7 @@ pub fn banner(view: &mut CanvasView<'_>, state: &AppState) {
         }
         _ => return,
     };
-    let kept = if state.live.snapshot.solution.is_some() { "The last good picture is shown in grey." } else { "" };
+    let kept = if state.live.snapshot.solution.is_some() { "The last valid result is shown in grey." } else { "" };
     let body = if kept.is_empty() { text } else { format!("{text}\n{kept}") };
     let width = (view.rect.width() - 200.0).clamp(140.0, 440.0);
     let at = view.rect.min + vec2(crate::canvas::layers::grid::STRIP[0] + 12.0, 12.0);

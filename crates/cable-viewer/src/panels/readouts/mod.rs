@@ -15,11 +15,15 @@ use egui::{Color32, Grid, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
-use crate::state::AppState;
 use crate::state::questions::{bending_query, bending_query_fits};
+use crate::state::{AppState, Freshness};
 use crate::units::{format, unit};
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
+
+/// Opacity of figures that are not of the scene as it is. More: they are read as answers; less: what
+/// was there cannot be read at all.
+pub const DIMMED: f32 = 0.4;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -34,19 +38,27 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.weak("This cable is not solved yet");
         return;
     };
-    if state.live.snapshot.stale {
+    let freshness = state.freshness();
+    let (said, help) = match freshness {
+        Freshness::Current => ("", ""),
+        Freshness::Solving => ("Solving… these figures are of the scene before", "They belong to the last answer"),
+        Freshness::Draft => ("Draft, not at rest yet", "Few segments follow the hand; the answer comes once it rests"),
+        Freshness::Outdated => ("Last valid result, not this scene", "The present scene has no answer"),
+    };
+    if freshness != Freshness::Current {
         ui.horizontal(|ui| {
             let colour = ui.visuals().warn_fg_color;
             icon::sign(ui, Icon::Caution, colour);
-            ui.colored_label(colour, "Of the last scene that was solved");
+            ui.colored_label(colour, said);
         })
         .response
-        .on_hover_text("The present scene has no answer, or is still being solved");
+        .on_hover_text(help);
+        ui.multiply_opacity(DIMMED);
     }
     if answer.cables.len() > 1 {
         ui.strong(&solved.name);
     }
-    tension(ui, cable, solved, commands);
+    tension(ui, cable, solved, freshness == Freshness::Current, commands);
     ui.separator();
     Grid::new(("figures", index)).num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
         let first = summary(scene, cable, solved, answer.time_s);
@@ -64,7 +76,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// The largest tension, where it is, and how much of the limits it takes.
-fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec<Command>) {
+fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, current: bool, commands: &mut Vec<Command>) {
     let Some((tension_n, node)) = figures::greatest(solved, |n| n.tension_n) else {
         ui.weak("No tension in this answer");
         return;
@@ -82,7 +94,8 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Ve
         let share = tension_n / limit_n;
         let text = format!("{} of {name} {}", format::percent(share), format::force(limit_n));
         let bar = ProgressBar::new(share.clamp(0.0, 1.0) as f32)
-            .fill(bar_colour(share, name == "break", ui.visuals().dark_mode))
+            // No verdict on what is not the answer.
+            .fill(bar_colour(if current { share } else { 0.0 }, name == "break", ui.visuals().dark_mode))
             .text(text.clone())
             .desired_height(16.0)
             .corner_radius(2);

@@ -97,7 +97,7 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, obstacle: &Obstacle, commands: 
                 commands.push(Command::Scene(SceneCommand::EditDone));
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                remove(ui, item, &obstacle.name, "Takes it out", commands);
+                remove(ui, item, &obstacle.name, "Removes it", commands);
             });
             selected
         })
@@ -122,7 +122,7 @@ fn details(ui: &mut Ui, k: usize, obstacle: &Obstacle, commands: &mut Vec<Comman
     });
     let mut own = obstacle.friction.is_some();
     let help = "Off: the cable's own coefficient";
-    if ui.checkbox(&mut own, "Own friction").on_hover_text(help).changed() {
+    if ui.checkbox(&mut own, "Custom friction").on_hover_text(help).changed() {
         value.friction = own.then_some(0.5);
     }
     if let Some(mu) = obstacle.friction {
@@ -178,7 +178,7 @@ fn corners(ui: &mut Ui, k: usize, points_m: &mut Vec<Point>, faults: &mut Vec<St
                     }
                     let remove = icon::plain_button(ui, Icon::Remove, true);
                     field::name(&remove, &format!("Remove {name}"));
-                    if remove.on_hover_text("Takes this corner out").clicked() {
+                    if remove.on_hover_text("Removes this corner").clicked() {
                         gone = Some(i);
                     }
                 });

@@ -105,7 +105,7 @@ pub fn components(
             entered = Some(changed);
         }
         faults.extend(entry.fault);
-        entry.response.on_hover_text(format!("{label}: {}", unit.exact(value[k])));
+        entry.response.on_hover_text(format!("{label}: {}", unit.brief(value[k])));
     }
     entered
 }

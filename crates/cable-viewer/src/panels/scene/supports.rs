@@ -118,7 +118,7 @@ fn line(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
                 }
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let help = if row.end { "An end becomes free" } else { "Takes it out" };
+                let help = if row.end { "Frees this end" } else { "Removes it" };
                 if !(row.end && row.value.kind == SupportKind::Free) {
                     remove(ui, row.item(), &row.value.name, help, commands);
                 }
@@ -200,12 +200,12 @@ fn release(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut
     if matches!(s.kind, SupportKind::Load | SupportKind::Free) {
         return;
     }
-    let help = "From a time on it does not hold the cable any more";
-    if let Some(on) = time_table::toggle(ui, "Lets go", s.release_s.is_some(), help) {
+    let help = "From this time on the support no longer holds the cable";
+    if let Some(on) = time_table::toggle(ui, "Releases the cable at a set time", s.release_s.is_some(), help) {
         row.changed(commands, |s| s.release_s = on.then_some(1.0));
     }
     if s.release_s.is_some() {
-        let text = ["Lets go at", "Time at which it lets go"];
+        let text = ["Release time", "Time at which it releases the cable"];
         if let Some(v) = optional(ui, text, Unit::S, s.release_s, faults) {
             row.changed(commands, |s| s.release_s = Some(v));
         }
@@ -217,7 +217,7 @@ fn motion(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut 
     let s = row.value;
     let Some(at_m) = s.at_m else { return };
     let help = "It follows points at times, smoothly, and stays at the last; all of them move along when it is moved";
-    if let Some(on) = time_table::toggle(ui, "Moves with time", s.motion.is_some(), help) {
+    if let Some(on) = time_table::toggle(ui, "Follows a schedule", s.motion.is_some(), help) {
         let Knots { times_s, values } = Knots::steady(at_m, FIRST_SPAN_S);
         row.changed(commands, |s| s.motion = on.then_some(Motion { times_s, points_m: values }));
         return;
