@@ -10,6 +10,7 @@ use crate::state::dialog::{Dialog, Replacement};
 
 /// Draws the dialog, if one is open.
 pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
+    let panels = state.ui.panels;
     let Some(dialog) = &mut state.ui.dialog else { return };
     let name = state.document.scene.name.clone();
     let response = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
@@ -40,7 +41,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
             }
             Dialog::Feedback { answers, path } => crate::app::feedback_form::ui(ui, answers, path, commands),
             Dialog::About => about(ui, commands),
-            Dialog::Palette { text } => crate::app::palette::ui(ui, text, commands),
+            Dialog::Palette { text } => crate::app::palette::ui(ui, text, panels, commands),
             Dialog::ImportMap { path, text, unit_m } => import_map(ui, [path, text, unit_m], commands),
             Dialog::Unsaved { then } => unsaved(ui, &name, then, commands),
             Dialog::Recover { scene } => recover(ui, scene, commands),
@@ -270,7 +271,7 @@ fn recover(ui: &mut Ui, scene: &cable_core::Scene, commands: &mut Vec<Command>) 
 }
 
 /// What pointer and keys do; docs/controls.md has the same table.
-const CONTROLS: [(&str, &str); 26] = [
+const CONTROLS: [(&str, &str); 27] = [
     ("Drag a support, waypoint or corner", "Moves it; the cable follows"),
     ("Drag an obstacle", "Moves all of it; click it to see its corners"),
     ("Double-click the cable", "Adds a waypoint"),
@@ -286,6 +287,7 @@ const CONTROLS: [(&str, &str); 26] = [
     ("Left, right in a graph", "Moves its cursor; with Shift what is in view"),
     ("Up, down, Enter in a graph", "Zooms; sets another cursor"),
     ("F, C", "Fits the scene, recentres on the cable"),
+    ("[, ], G", "Folds the edit panel, the results, graphs and timeline"),
     ("Space", "Runs or pauses"),
     ("Arrow right, left", "One step of 1/60 s; one picture back"),
     ("Hold A, D", "Drives the robot left, right"),
@@ -295,7 +297,7 @@ const CONTROLS: [(&str, &str); 26] = [
     ("N, Shift+N, M", "Picks the next thing, the one before, one more"),
     ("Alt+arrows", "Moves what is picked by a grid line"),
     ("Ctrl+C, X, V, A", "Copy, cut, paste, pick everything"),
-    ("Ctrl+O, Ctrl+S", "Open, save"),
+    ("Ctrl+N, Ctrl+O, Ctrl+S", "New, open, save"),
     ("Ctrl+P", "Every command, by name"),
 ];
 

@@ -10,6 +10,7 @@ mod feedback_form;
 mod keys;
 mod layout;
 mod menu;
+pub(crate) use crate::app::menu::status;
 mod palette;
 pub mod screenshot;
 mod tutorial_bar;
@@ -24,6 +25,7 @@ use cable_core::Scene;
 use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::{self, Command};
 use crate::io::autosave::Autosave;
+use crate::io::recent_files;
 use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach};
 use crate::render::theme;
 use crate::state::analysis::hold;
@@ -54,6 +56,8 @@ pub struct ViewerApp {
     /// Numbers of the edits not yet answered and when they were sent, oldest first; at most
     /// [`MAX_ASKED`].
     asked: VecDeque<(u64, Instant)>,
+    /// Where recent files are listed, and what stands there.
+    recent_list: Option<(PathBuf, Vec<PathBuf>)>,
     /// Since when an answer has been sought.
     solving_since: Option<Instant>,
     /// The map of where the robot can go, while it is computed.
@@ -90,6 +94,7 @@ impl ViewerApp {
             autosave: None,
             asked: VecDeque::new(),
             solving_since: None,
+            recent_list: None,
             reach: None,
             models: None,
             bending: None,
@@ -104,6 +109,14 @@ impl ViewerApp {
     /// From now on unsaved changes are kept in a file; if there are some from a window that died,
     /// they are offered.
     pub fn keep_changes_in(&mut self, path: PathBuf) {
+        let list = path.with_file_name("recent.txt");
+        for path in recent_files::load(&list).into_iter().rev() {
+            self.state.ui.add_recent(path);
+        }
+        if let Some(path) = self.state.document.path.clone() {
+            self.state.ui.add_recent(path);
+        }
+        self.recent_list = Some((list, Vec::new()));
         let autosave = Autosave::new(path);
         self.state.ui.dialog = match autosave.found() {
             None => None,
@@ -349,6 +362,12 @@ impl eframe::App for ViewerApp {
         }
         self.apply(&ctx, commands);
         self.update_autosave(&ctx);
+        if let Some((list, written)) = &mut self.recent_list
+            && *written != self.state.ui.recent
+        {
+            written.clone_from(&self.state.ui.recent);
+            recent_files::save(list, written);
+        }
         let title = format!("{} – Cable simulator", menu::title(&self.state));
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));

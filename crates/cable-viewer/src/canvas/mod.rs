@@ -21,6 +21,7 @@ use crate::command::{Command, PlaybackCommand};
 use crate::geometry::bounds;
 use crate::render::theme;
 use crate::state::AppState;
+use crate::state::camera::{BORDER, BORDER_WITHOUT_LEGEND};
 use crate::units::labels;
 
 /// Draws the scene into the rest of the window and reads the pointer.
@@ -35,9 +36,12 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         return;
     }
     let answered = state.live.snapshot.solution.is_some() || state.live.snapshot.error.is_some();
-    if state.view.camera.fit_wanted && answered {
+    // What was fitted stays so in a canvas of another size.
+    let resized = state.view.camera.fitted_to.is_some_and(|size| size != <[f32; 2]>::from(rect.size()));
+    if (state.view.camera.fit_wanted || resized) && answered {
+        let border = if state.ui.legend_beside { BORDER_WITHOUT_LEGEND } else { BORDER };
         let bounds = bounds::scene(state);
-        state.view.camera.fit(rect, bounds);
+        state.view.camera.fit(rect, bounds, border);
     }
     let [low, high] = [rect.left_bottom(), rect.right_top()].map(|p| state.view.camera.to_world(rect, p));
     state.view.visible_m = [low, high];
@@ -106,8 +110,10 @@ fn draw(view: &mut CanvasView<'_>, state: &AppState) {
         grid::axes(view);
         grid::scale_bar(view);
     }
-    legend::draw(view, state);
-    legend::contacts(view, state);
+    if !state.ui.legend_beside {
+        legend::draw(view, state);
+        legend::contacts(view, state);
+    }
     legend::banner(view, state);
     safe_reach::legend(view, state);
     if state.view.layers.labels {

@@ -40,6 +40,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
         ui.label(format!("Time {time_s:.3} s")).on_hover_text("Simulated time since the start");
         real_time(ui, state);
+        ui.separator();
+        crate::app::status(ui, state);
     });
 }
 

@@ -86,9 +86,8 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
     });
     field::name(&shown.response, "Time window");
     shown.response.on_hover_text("How much of the past the time graph follows");
-    if state.live.history.samples.len() < 2 {
-        ui.weak("Press play to record over time");
-    } else if state.document.scene.cables.len() > 1
+    if state.live.history.samples.len() >= 2
+        && state.document.scene.cables.len() > 1
         && matches!(view.measure, Measure::Cable(Quantity::Stress | Quantity::Strain))
     {
         ui.weak("Over time: tension, as there are several cables");

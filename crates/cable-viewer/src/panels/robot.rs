@@ -5,16 +5,16 @@ use cable_core::robot::RobotReport;
 use cable_core::scene::RobotTask;
 use cable_core::scene::preset::robot_preset;
 use cable_core::scene::robot::{ROLLING_RESISTANCE, TRACK_FRICTION};
-use egui::{Grid, Ui};
+use egui::Ui;
 
 use crate::command::{Command, PlaybackCommand, SceneCommand};
 use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
-use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
+use crate::widgets::{field, readout};
 
 /// Width of a number, points: “12.34 m/s” fits.
 const WIDTH: f32 = 72.0;
@@ -113,13 +113,9 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
             "On its body, where the cable lies on it or is pushed along",
         ),
     ];
-    Grid::new("robot readouts").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
-        for (name, value, help) in rows {
-            ui.weak(name).on_hover_text(help);
-            ui.label(value).on_hover_text(help);
-            ui.end_row();
-        }
-    });
+    for (name, value, help) in rows {
+        readout::row(ui, name, &value, help, |_| {});
+    }
 }
 
 fn set(robot: Robot, commands: &mut Vec<Command>) {

@@ -4,12 +4,13 @@
 use cable_core::scene::SupportKind;
 use cable_core::solution::{Warning, WarningKind};
 use cable_core::{Settings, Solution};
-use egui::{Color32, Frame, RichText, ScrollArea, Ui};
+use egui::{Align, Button, Color32, Label, Layout, RichText, ScrollArea, Sense, Ui, vec2};
 
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene_errors::{self, Fix};
 use crate::state::{AppState, Item, WorkerStatus};
 use crate::units::{format, translate, unit};
+use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
 use crate::worker::engine::CANCELLED;
 
@@ -35,7 +36,11 @@ enum Severity {
 /// One entry of the list.
 struct Entry {
     severity: Severity,
+    /// What it is about, as long as it lasts; figures are in the title.
+    kind: String,
     title: String,
+    /// The title in two parts, for a narrow panel: what, and figures with their place.
+    parts: Option<[String; 2]>,
     text: String,
     /// Where to look, m.
     at_m: Option<[f64; 2]>,
@@ -61,8 +66,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let high = SHARE * ui.ctx().content_rect().height();
     let area = ScrollArea::vertical().id_salt("warnings").max_height(high).min_scrolled_height(high);
     area.auto_shrink([false, true]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
         for (k, entry) in entries.iter().take(MAX_ROWS).enumerate() {
-            ui.push_id(k, |ui| card(ui, k, entry, commands));
+            row(ui, k, entry, commands);
         }
         if entries.len() > MAX_ROWS {
             ui.weak(format!("and {} more", entries.len() - MAX_ROWS));
@@ -92,7 +98,7 @@ fn entries(state: &AppState) -> Vec<Entry> {
 }
 
 fn entry(severity: Severity, text: String) -> Entry {
-    Entry { severity, title: String::new(), text, at_m: None, item: None, fix: None }
+    Entry { severity, kind: String::new(), title: String::new(), parts: None, text, at_m: None, item: None, fix: None }
 }
 
 fn capital(text: &str) -> String {
@@ -142,10 +148,18 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     let along = unit::Unit { decimals: Some(2), ..unit::Unit::M }.text(warning.arc_length_m);
     // The name only where there is a choice.
     let of = if answer.cables.len() > 1 { format!(" of {}", warning.cable) } else { String::new() };
-    let figures = figures(warning).map_or_else(String::new, |f| format!(": {f}"));
+    let figures = figures(warning);
+    let told = figures.as_ref().map_or_else(String::new, |f| format!(": {f}"));
+    let along = along.replace(' ', "\u{a0}");
+    let whole = format!("{title} at {along}{of}{told}{since}");
     Entry {
         severity,
-        title: format!("{title} at {}{of}{figures}{since}", along.replace(' ', "\u{a0}")),
+        kind: format!("{title} {}", warning.cable),
+        parts: Some([
+            title.to_owned(),
+            format!("{}at {along}{of}{since}", figures.map_or_else(String::new, |f| f + " ")),
+        ]),
+        title: whole,
         text: translate::display(&warning.message).into_owned(),
         at_m: position(answer, warning),
         item: index.map(Item::Cable),
@@ -162,7 +176,7 @@ fn figures(warning: &Warning) -> Option<String> {
         }
         WarningKind::Broken => Some(format!("breaking tension {}", format::force(limit))),
         WarningKind::BendRadius | WarningKind::Kink => {
-            Some(format!("{}, minimum {}", format::length(value), format::length(limit)))
+            Some(format!("{}, min {}", format::length(value), format::length(limit)))
         }
         WarningKind::Slack => Some(format!("{} of cable", format::length(value))),
         WarningKind::SidewallPressure => {
@@ -225,41 +239,84 @@ fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -
     Some(Fix { label, command: Command::Scene(command) })
 }
 
-fn card(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
-    let colour = match entry.severity {
-        Severity::Stop => ui.visuals().error_fg_color,
-        Severity::Caution => ui.visuals().warn_fg_color,
-        Severity::Note => ui.visuals().weak_text_color.unwrap_or(Color32::GRAY),
+/// One line: severity, what, value of limit, place. A click on it shows the place; the text and the
+/// fix are behind the arrow.
+fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
+    let (colour, sign) = match entry.severity {
+        Severity::Stop => (ui.visuals().error_fg_color, Icon::Stop),
+        Severity::Caution => (ui.visuals().warn_fg_color, Icon::Caution),
+        Severity::Note => (ui.visuals().weak_text_color.unwrap_or(Color32::GRAY), Icon::Note),
     };
-    let sign = match entry.severity {
-        Severity::Stop => Icon::Stop,
-        Severity::Caution => Icon::Caution,
-        Severity::Note => Icon::Note,
-    };
-    Frame::group(ui.style()).inner_margin(6).show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        ui.horizontal_top(|ui| {
-            icon::sign(ui, sign, colour);
-            ui.vertical(|ui| {
-                ui.label(RichText::new(&entry.title).strong());
-                ui.label(&entry.text);
-                if entry.at_m.is_some() || entry.fix.is_some() {
-                    ui.horizontal_wrapped(|ui| actions(ui, number, entry, commands));
+    // Remembered by what it says: the next warning in its place is another one.
+    let id = ui.scope_id().with((entry.severity as u8, &entry.kind));
+    let mut open = ui.data(|d| d.get_temp(id)).unwrap_or(entry.severity == Severity::Stop);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        icon::sign(ui, sign, colour);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let arrow = ui.add(Button::new(if open { "−" } else { "+" }).small().min_size(vec2(16.0, 0.0)));
+            field::name(&arrow, &format!("Details of warning {}", number + 1));
+            if arrow.on_hover_text("What it means, and what can be done").clicked() {
+                open = !open;
+                ui.data_mut(|d| d.insert_temp(id, open));
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let narrow = ui.available_width() < ONE_LINE;
+                let parts = entry.parts.as_ref().filter(|_| narrow);
+                let plain = |text: RichText| Button::new(text).frame(false).truncate();
+                let line = match parts {
+                    None => ui.add(plain(RichText::new(&entry.title).strong())),
+                    Some([what, rest]) => {
+                        ui.vertical(|ui| {
+                            ui.spacing_mut().item_spacing.y = 0.0;
+                            let wrapped =
+                                |text: RichText| Label::new(text).wrap().selectable(false).sense(Sense::click());
+                            let first = ui.add(Button::new(RichText::new(what).strong()).frame(false).wrap());
+                            first | ui.add(wrapped(RichText::new(rest).small()))
+                        })
+                        .inner
+                    }
+                };
+                field::name(&line, &entry.title);
+                let help = match entry.at_m {
+                    Some(at_m) => format!("{}\n\nClick: zooms on {}", entry.text, format::position(at_m)),
+                    None => entry.text.clone(),
+                };
+                if line.on_hover_text(help).clicked() {
+                    show(entry, commands);
                 }
             });
         });
     });
+    if open {
+        ui.indent(id, |ui| {
+            ui.add(egui::Label::new(&entry.text).wrap());
+            if entry.at_m.is_some() || entry.fix.is_some() {
+                ui.horizontal_wrapped(|ui| actions(ui, number, entry, commands));
+            }
+        });
+    }
+}
+
+/// Below this width a warning stands in two lines, points.
+const ONE_LINE: f32 = 330.0;
+
+/// Zooms on where it is and picks what it is about.
+fn show(entry: &Entry, commands: &mut Vec<Command>) {
+    if let Some(at_m) = entry.at_m {
+        commands.push(Command::View(ViewCommand::ZoomOn(at_m)));
+        if entry.item.is_some() {
+            commands.push(Command::View(ViewCommand::Select(entry.item)));
+        }
+    }
 }
 
 fn actions(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
     if let Some(at_m) = entry.at_m {
-        let show = ui.button("Show").on_hover_text(format!("Centres the picture on {}", format::position(at_m)));
-        crate::widgets::field::name(&show, &format!("Show warning {}", number + 1));
-        if show.clicked() {
-            commands.push(Command::View(ViewCommand::CentreOn(at_m)));
-            if entry.item.is_some() {
-                commands.push(Command::View(ViewCommand::Select(entry.item)));
-            }
+        let button = ui.button("Show").on_hover_text(format!("Zooms on {}", format::position(at_m)));
+        field::name(&button, &format!("Show warning {}", number + 1));
+        if button.clicked() {
+            show(entry, commands);
         }
     }
     if let Some(fix) = &entry.fix

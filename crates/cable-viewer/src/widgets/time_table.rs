@@ -11,7 +11,7 @@ use crate::widgets::icon::{self, Icon};
 /// Height of a table, points: about six rows.
 const HEIGHT: f32 = 140.0;
 /// Width of a number, points.
-const WIDTH: f32 = 62.0;
+const WIDTH: f32 = 46.0;
 /// Between columns, points.
 const GAP: f32 = 3.0;
 

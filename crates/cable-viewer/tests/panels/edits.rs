@@ -305,9 +305,12 @@ fn warnings_show_their_place_and_offer_the_fix() {
     let mut state = state();
     warn(&mut state);
     let mut harness = open_with(state, panels::warnings::ui);
-    harness.get_by_label_contains("912.0 N, limit 800.0 N");
+    harness.get_by_label_contains("Above service tension at 0.00");
+    assert!(harness.query_by_label("Show warning 1").is_none(), "one line each");
+    click(&mut harness, "Details of warning 1");
     click(&mut harness, "Show warning 1");
-    assert!(matches!(harness.state().commands.first(), Some(Command::View(ViewCommand::CentreOn(_)))));
+    assert!(matches!(harness.state().commands.first(), Some(Command::View(ViewCommand::ZoomOn(_)))));
+    click(&mut harness, "Details of warning 2");
     click(&mut harness, "Use 96 segments");
     assert_eq!(harness.state().state.solver.settings.segments, Some(96));
 }

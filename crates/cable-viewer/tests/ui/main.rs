@@ -7,6 +7,7 @@ mod hands;
 mod help;
 mod job;
 mod keys;
+mod layout;
 mod pictures;
 mod playing;
 mod reach;

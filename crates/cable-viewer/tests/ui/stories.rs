@@ -272,7 +272,7 @@ fn s09_a_pasted_table_becomes_ground_and_undo_takes_it_back() {
 fn s16_four_answers_are_held_and_their_differences_told() {
     let mut harness = open_span();
     // Tall enough that the whole table is in sight.
-    harness.set_size(egui::Vec2::new(1280.0, 1000.0));
+    harness.set_size(egui::Vec2::new(1280.0, 1600.0));
     harness.run_steps(3);
     for k in 0..4 {
         click(&mut harness, "Pin this result");

@@ -15,7 +15,7 @@ use crate::render::colour::{LINES, Quantity};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Reference};
 use crate::units::{format, translate};
-use crate::widgets::field;
+use crate::widgets::{field, readout};
 
 /// Most lines of difference told; more are counted.
 const MAX_LINES: usize = 12;
@@ -55,27 +55,32 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         .solution
         .as_deref()
         .map(|s| Figures::of(s, &state.document.scene, state.live.snapshot.solve_wall_s));
-    Grid::new("compare").num_columns(6).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
-        for title in ["", "Tension", "Sag", "Energy", "Cost", ""] {
-            ui.weak(title);
-        }
-        ui.end_row();
-        if let Some(present) = &present {
-            ui.strong("Now").on_hover_text("What is on screen");
-            row(ui, present, None);
-            ui.end_row();
-        }
-        for (k, held) in state.analysis.references.iter().enumerate() {
-            let colour = LINES[k % LINES.len()];
-            ui.label(RichText::new(format!("{}", k + 1)).color(colour).strong()).on_hover_text(&held.name);
-            row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), present.as_ref());
-            let away = crate::widgets::icon::plain_button(ui, crate::widgets::icon::Icon::Remove, true);
-            field::name(&away, &format!("Unpin {}", k + 1));
-            if away.on_hover_text("Unpins this result").clicked() {
-                commands.push(Command::View(ViewCommand::LetGo(Some(k))));
+    readout::wide(ui, "compare", |ui| {
+        Grid::new("compare").num_columns(5).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
+            for title in ["", "Tension", "Sag", "Energy", "Cost"] {
+                ui.weak(title);
             }
             ui.end_row();
-        }
+            if let Some(present) = &present {
+                ui.strong("Now").on_hover_text("What is on screen");
+                row(ui, present, None);
+                ui.end_row();
+            }
+            for (k, held) in state.analysis.references.iter().enumerate() {
+                let colour = LINES[k % LINES.len()];
+                ui.horizontal(|ui| {
+                    ui.spacing_mut().item_spacing.x = 2.0;
+                    let away = crate::widgets::icon::plain_button(ui, crate::widgets::icon::Icon::Remove, true);
+                    field::name(&away, &format!("Unpin {}", k + 1));
+                    if away.on_hover_text("Unpins this result").clicked() {
+                        commands.push(Command::View(ViewCommand::LetGo(Some(k))));
+                    }
+                    ui.label(RichText::new(format!("{}", k + 1)).color(colour).strong()).on_hover_text(&held.name);
+                });
+                row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), present.as_ref());
+                ui.end_row();
+            }
+        });
     });
     runs(ui, state);
     for (k, held) in state.analysis.references.iter().enumerate() {
@@ -131,36 +136,38 @@ fn runs(ui: &mut Ui, state: &AppState) {
     });
     ui.separator();
     ui.strong("Whole runs");
-    Grid::new("runs").num_columns(5).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
-        for (title, help) in [
-            ("", ""),
-            ("Lasts", "From its first to its last picture"),
-            ("Most tension", "Over the whole run, and when"),
-            ("Most pull", "Of the cable on the robot"),
-            ("Events", "Warnings that began"),
-        ] {
-            let title = ui.weak(title);
-            if !help.is_empty() {
-                title.on_hover_text(help);
+    readout::wide(ui, "runs", |ui| {
+        Grid::new("runs").num_columns(5).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
+            for (title, help) in [
+                ("", ""),
+                ("Lasts", "From its first to its last picture"),
+                ("Most tension", "Over the whole run, and when"),
+                ("Most pull", "Of the cable on the robot"),
+                ("Events", "Warnings that began"),
+            ] {
+                let title = ui.weak(title);
+                if !help.is_empty() {
+                    title.on_hover_text(help);
+                }
             }
-        }
-        ui.end_row();
-        let held = state.analysis.references.iter().enumerate();
-        let held = held.filter_map(|(k, h)| {
-            let run = h.run.as_deref()?;
-            Some((format!("{}", k + 1), Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
-        });
-        for (name, k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
-            let text = RichText::new(name).strong();
-            ui.label(k.map_or(text.clone(), |k| text.color(LINES[k % LINES.len()])));
-            ui.label(format::duration(last - first));
-            for peak in peaks {
-                let at = |p: Peak| format!("{} at {:.2} s", format::force(p.value), p.time_s);
-                ui.label(peak.map_or_else(|| "–".to_owned(), at));
-            }
-            ui.label(events.to_string());
             ui.end_row();
-        }
+            let held = state.analysis.references.iter().enumerate();
+            let held = held.filter_map(|(k, h)| {
+                let run = h.run.as_deref()?;
+                Some((format!("{}", k + 1), Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
+            });
+            for (name, k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
+                let text = RichText::new(name).strong();
+                ui.label(k.map_or(text.clone(), |k| text.color(LINES[k % LINES.len()])));
+                ui.label(format::duration(last - first));
+                for peak in peaks {
+                    let at = |p: Peak| format!("{} at {:.2} s", format::force(p.value), p.time_s);
+                    ui.label(peak.map_or_else(|| "–".to_owned(), at));
+                }
+                ui.label(events.to_string());
+                ui.end_row();
+            }
+        });
     });
 }
 

@@ -13,8 +13,12 @@ use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::field;
 
+/// Width of a slider's value beside it, points.
+const SPIN_WIDTH: f32 = 72.0;
+
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing.x = 5.0;
     let Some(moved) = reach_target(state) else {
         ui.weak("Nothing in this scene can be moved");
         return;
@@ -84,6 +88,7 @@ fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Ve
         ui.horizontal(|ui| {
             ui.label("Grid resolution");
             let mut across = choice.across;
+            ui.spacing_mut().slider_width = (ui.available_width() - SPIN_WIDTH).max(30.0);
             let slider = ui.add(Slider::new(&mut across, ACROSS[0]..=ACROSS[1]));
             field::name(&slider, "Grid resolution");
             let help =
