@@ -198,6 +198,8 @@ impl Engine {
             self.robot_order = order;
         }
         let began = Instant::now();
+        let runs = !self.playback.paused;
+        let resumed = request.resume.as_ref().map(|r| Arc::clone(&r.answer));
         let dragging = request.drag.is_some() && request.edit.is_none() && request.resume.is_none() && !request.reset;
         let mut solved = request.edit.is_some() || request.resume.is_some() || request.reset || request.steps > 0;
         let mut result = Ok(());
@@ -228,7 +230,7 @@ impl Engine {
             }
         }
         // Time must not run in a scene that is no longer the one on screen.
-        let held_back = self.refused() && !self.playback.paused;
+        let held_back = self.refused() && runs;
         self.playback.paused |= held_back;
         if dragging && self.playing() {
             // The next frame shows it, not this report.
@@ -238,7 +240,15 @@ impl Engine {
         self.snapshot.edit = request.number.max(self.dragged).max(self.snapshot.edit);
         if solved {
             self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
+            let resumed = resumed.filter(|_| result.is_ok() && request.steps == 0);
             self.show(result);
+            if let Some(answer) = resumed {
+                // No step was taken yet: what held the cable then is known from the recording only.
+                self.answers.clear();
+                self.answers.push((*answer).clone());
+                self.snapshot.solution = Some(answer);
+                self.keep_answer();
+            }
         }
         self.report(held_back)
     }

@@ -297,3 +297,74 @@ fn a_reset_can_be_undone_and_starts_the_robots_task_again() {
     harness.run_steps(60);
     assert!(answer(&harness).robot.unwrap().x_m > from + 0.05);
 }
+
+/// D10.1: what held the cable was gone after going on from an earlier time.
+#[test]
+fn resuming_keeps_the_forces_on_supports() {
+    let mut harness = open(catalog::swinging_span());
+    harness.key_press(Key::Space);
+    harness.run_steps(40);
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.3))));
+    let then = answer(&harness);
+    apply(&mut harness, Command::Playback(PlaybackCommand::GoOn));
+    let now = answer(&harness);
+    assert_eq!(now.time_s, then.time_s);
+    let pull = |a: &Solution| a.cables[0].supports[0].reaction_x_n.hypot(a.cables[0].supports[0].reaction_y_n);
+    assert!(pull(&then) > 1.0 && pull(&now) == pull(&then), "{} {}", pull(&then), pull(&now));
+}
+
+/// D10.6: pinned results followed into other scenes.
+#[test]
+fn pins_belong_to_their_scene() {
+    let mut harness = open(catalog::hanging_span());
+    apply(&mut harness, Command::View(cable_viewer::command::ViewCommand::Hold));
+    apply(&mut harness, Command::File(FileCommand::OpenCatalogue("hanging-span".to_owned())));
+    assert_eq!(state(&harness).analysis.references.len(), 1, "the same scene again");
+    apply(&mut harness, Command::File(FileCommand::OpenCatalogue("over-beam".to_owned())));
+    assert!(state(&harness).analysis.references.is_empty());
+}
+
+/// D10.9: an end dragged beyond the length while time runs stopped time, and the window went on saying that it starts.
+#[test]
+fn time_that_is_stopped_by_an_impossible_edit_is_said_to_stand() {
+    let mut harness = open(catalog::hanging_span());
+    harness.key_press(Key::Space);
+    harness.run_steps(10);
+    set_length(&mut harness, 5.0);
+    harness.run_steps(3);
+    assert!(state(&harness).live.snapshot.error.is_some());
+    assert!(state(&harness).live.playback.paused);
+    harness.get_by_label("Paused");
+    harness.get_by_label("Play");
+}
+
+/// D10.13: after a failed save the path had to be typed again.
+#[test]
+fn a_failed_save_asks_again_with_the_path_that_was_typed() {
+    let mut harness = open(catalog::hanging_span());
+    let path = std::path::PathBuf::from("/no such folder/scene.toml");
+    apply(&mut harness, Command::File(FileCommand::SaveAs(path.clone())));
+    harness.get_by_label("Close").click();
+    harness.run_steps(2);
+    let dialog = &state(&harness).ui.dialog;
+    let cable_viewer::state::dialog::Dialog::SaveAs { path: typed } = dialog.as_ref().expect("asked again") else {
+        panic!("{dialog:?}");
+    };
+    assert_eq!(std::path::Path::new(typed), path);
+}
+
+/// A new scene asks first, has a name and an answer, and the window's title tells the file.
+#[test]
+fn a_new_scene_and_the_name_of_its_file() {
+    let mut harness = open(catalog::over_beam());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::N);
+    harness.run_steps(3);
+    assert_eq!(state(&harness).document.scene.name, "New scene");
+    assert_eq!(state(&harness).freshness(), Freshness::Current);
+    let folder = tempfile::tempdir().unwrap();
+    apply(&mut harness, Command::File(FileCommand::SaveAs(folder.path().join("mine.toml"))));
+    harness.get_by_label("New scene – mine.toml");
+    assert_eq!(state(&harness).ui.recent.len(), 1);
+}

@@ -11,7 +11,7 @@ use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
 
 /// Width of a number in a list, points: “−123.456” fits.
-pub const NUMBER_WIDTH: f32 = 48.0;
+pub const NUMBER_WIDTH: f32 = 44.0;
 
 /// Width of a number with its unit, points: “−123.456 m” fits.
 pub const VALUE_WIDTH: f32 = 84.0;
@@ -20,7 +20,7 @@ pub const VALUE_WIDTH: f32 = 84.0;
 pub const NAME_WIDTH: [f32; 2] = [36.0, 100.0];
 
 /// Width of the columns beside the names and of the cross at the end, points.
-pub const BESIDE_NAME: f32 = KIND_WIDTH + 2.0 * (NUMBER_WIDTH + 8.0) + 3.0 * GAP + 20.0;
+pub const BESIDE_NAME: f32 = KIND_WIDTH + 2.0 * (NUMBER_WIDTH + 8.0) + 3.0 * GAP + 17.0;
 
 /// Width of the kind in a list, points.
 pub const KIND_WIDTH: f32 = 60.0;
