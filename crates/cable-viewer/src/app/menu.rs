@@ -7,12 +7,11 @@ use egui::{Align, Button, Color32, KeyboardShortcut, Label, Layout, MenuBar, Ric
 use crate::app::keys;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::readouts::DIMMED;
-use crate::panels::words;
 use crate::render::colour::{ColourMap, Quantity};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Freshness, WorkerStatus};
 use crate::units::system::System;
-use crate::units::{format, labels, translate};
+use crate::units::{format, translate};
 
 /// The menu bar.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -333,32 +332,4 @@ fn light(ui: &mut Ui, verification: &Verification) {
     let (place, _) = ui.allocate_exact_size(Vec2::splat(LIGHT_SIZE), Sense::hover());
     ui.painter().circle_filled(place.center(), 0.5 * LIGHT_SIZE, lamp);
     ui.colored_label(colour, text).on_hover_text(help);
-}
-
-/// How the solver is doing, beside the transport.
-pub fn status(ui: &mut Ui, state: &AppState) {
-    if let Some(solution) = &state.live.snapshot.solution {
-        ui.label(format!("{} model", words::model(solution.model))).on_hover_text(&solution.reason);
-        ui.separator();
-    }
-    let solved = format!("Solved in {:.2} ms", state.live.snapshot.solve_wall_s * 1e3);
-    match (state.solving(), state.freshness(), state.solver.edit_latency_s) {
-        (Some(seconds), ..) => {
-            ui.label(labels::solving(seconds)).on_hover_text("The answer to the last edits is being sought");
-        }
-        (None, Freshness::Outdated, _) => {
-            ui.label("Not solved");
-        }
-        (None, _, Some(latency)) => {
-            let help = format!("From the last edit to the first frame that shows it. {solved}");
-            ui.label(format!("Updated in {:.0} ms", latency * 1e3)).on_hover_text(help);
-        }
-        (None, _, None) => {
-            ui.label(solved);
-        }
-    }
-    if let Some(fault) = &state.ui.autosave_fault {
-        ui.separator();
-        ui.colored_label(ui.visuals().warn_fg_color, "changes are not kept for recovery").on_hover_text(fault);
-    }
 }

@@ -10,7 +10,6 @@ mod feedback_form;
 mod keys;
 mod layout;
 mod menu;
-pub(crate) use crate::app::menu::status;
 mod palette;
 pub mod screenshot;
 mod tutorial_bar;

@@ -8,7 +8,8 @@ use crate::command::effects::{Effects, next_number, submit_edit, submit_undone};
 use crate::command::items::{
     add_waypoint, drop_lost_selection, hitched, move_item, remove_all, set, set_robot, unique,
 };
-use crate::command::{PlaybackCommand, clipboard, playback, route};
+use crate::command::playback::{self, PlaybackCommand};
+use crate::command::{clipboard, route};
 use crate::state::undo::EditKind;
 use crate::state::{AppState, Item};
 use crate::worker::engine::is_quasi_static;

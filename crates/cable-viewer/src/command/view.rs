@@ -7,12 +7,12 @@ use cable_core::math::Point;
 use crate::command::effects::Effects;
 use crate::jobs::safe_reach::{self, Progress, ReachQuery, ReachSubject};
 use crate::jobs::{model_comparison, neglected_bending};
-use crate::panels::words;
 use crate::record::run::Run;
 use crate::render::colour::ColourScale;
 use crate::state::questions::{bending_query, reach_target};
 use crate::state::tutorial_place::TutorialPlace;
 use crate::state::{AppState, Grab, Item, Layers, OpenPanels, Reference, TensionMarker};
+use crate::units::labels;
 use crate::units::system::System;
 
 /// Changes what is shown.
@@ -179,7 +179,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 (state.live.snapshot.solution.clone(), state.live.snapshot.scene.clone())
                 && state.analysis.references.len() < Reference::MAX_COUNT
             {
-                let name = format!("{}, {} model, {:.2} s", scene.name, words::model(solution.model), solution.time_s);
+                let name = format!("{}, {} model, {:.2} s", scene.name, labels::model(solution.model), solution.time_s);
                 let recording = &state.live.recording;
                 let run = Run::of(state.live.history.samples.iter(), recording.answers(), recording.events().len());
                 let (run, wall_s) = (run.map(Arc::new), state.live.snapshot.solve_wall_s);

@@ -1,23 +1,8 @@
-//! Words for what a scene file and the models call by short names.
-
-use cable_core::Model;
+//! Words for what a scene file calls by short names.
 
 use crate::panels::cable::property::PROPERTIES;
 use crate::units::format;
 use crate::units::unit::Unit;
-
-/// A model as the window calls it.
-#[must_use]
-pub fn model(model: Model) -> &'static str {
-    match model {
-        Model::Auto => "Automatic",
-        Model::Catenary => "Catenary",
-        Model::Spans => "Spans",
-        Model::Fem => "FEM",
-        Model::MassSpring => "Mass-spring",
-        Model::External => "External model",
-    }
-}
 
 /// Endings of keys that name a unit. Longer ones first: `_kg_per_m` ends with `_m`.
 const UNITS: [(&str, Unit); 14] = [

@@ -14,7 +14,7 @@ use crate::record::run::Peak;
 use crate::render::colour::{LINES, Quantity};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Reference};
-use crate::units::{format, translate};
+use crate::units::{format, labels, translate};
 use crate::widgets::{field, readout};
 
 /// Most lines of difference told; more are counted.
@@ -114,7 +114,7 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             for answer in &found.answers {
                 if let Err(why) = &answer.result {
                     // Most refusals begin with the model's name.
-                    let name = if why.contains(answer.model.name()) { "" } else { words::model(answer.model) };
+                    let name = if why.contains(answer.model.name()) { "" } else { labels::model(answer.model) };
                     let colon = if name.is_empty() { "" } else { ": " };
                     ui.label(RichText::new(format!("{name}{colon}{}", translate::display(why))).small());
                 }
@@ -254,7 +254,7 @@ pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
     if let Some(present) = &state.live.snapshot.solution
         && present.model != held.solution.model
     {
-        out.push(format!("Model: {} → {}", words::model(held.solution.model), words::model(present.model)));
+        out.push(format!("Model: {} → {}", labels::model(held.solution.model), labels::model(present.model)));
     }
     let (a, b) = (held.scene.to_toml(), state.document.scene.to_toml());
     let (a, b): (Vec<&str>, Vec<&str>) = (a.lines().collect(), b.lines().collect());
