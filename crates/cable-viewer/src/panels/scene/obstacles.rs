@@ -7,7 +7,7 @@ use egui::{Button, Frame, ScrollArea, Ui};
 
 use crate::command::{Command, SceneCommand};
 use crate::panels::scene::rows::{
-    GAP, KIND_WIDTH, NUMBER_WIDTH, cell, coordinates, headings, name_width, optional, remove, selectable_name,
+    GAP, KIND_WIDTH, cell, coordinates, headings, name_width, number_width, optional, remove, selectable_name,
     show_faults,
 };
 use crate::panels::scene_errors;
@@ -24,7 +24,7 @@ const CORNERS_HEIGHT: f32 = 240.0;
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if !state.document.scene.obstacles.is_empty() {
         let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.display().symbol));
-        headings(ui, &[("Name", name_width(ui)), ("Form", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
+        headings(ui, &[("Name", name_width(ui)), ("Form", KIND_WIDTH), (&x, number_width(ui)), (&y, number_width(ui))]);
     }
     for (k, obstacle) in state.document.scene.obstacles.iter().enumerate() {
         ui.push_id(k, |ui| line(ui, state, k, obstacle, commands));

@@ -9,7 +9,7 @@ use crate::command::support_kind::{KINDS, of_kind, refusal};
 use crate::command::{Command, SceneCommand};
 use crate::panels::scene::loads::FIRST_SPAN_S;
 use crate::panels::scene::rows::{
-    GAP, KIND_WIDTH, NUMBER_WIDTH, cell, components, coordinates, headings, name_width, optional, remove,
+    GAP, KIND_WIDTH, cell, components, coordinates, headings, name_width, number_width, optional, remove,
     selectable_name, show_faults,
 };
 use crate::panels::scene_errors;
@@ -53,7 +53,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
     let Some(cable) = state.document.scene.cables.get(index) else { return };
     let last = cable.supports.len().saturating_sub(1);
     let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.display().symbol));
-    headings(ui, &[("Name", name_width(ui)), ("Kind", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
+    headings(ui, &[("Name", name_width(ui)), ("Kind", KIND_WIDTH), (&x, number_width(ui)), (&y, number_width(ui))]);
     for (support, value) in cable.supports.iter().enumerate() {
         let end = support == 0 || support == last;
         let row = Row { cable: index, support, value, end, now: place_now(state, index, support, cable) };
@@ -111,7 +111,7 @@ fn line(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
                 None => {
                     let (at_m, _) = row.now;
                     for v in at_m {
-                        cell(ui, NUMBER_WIDTH, |ui| {
+                        cell(ui, number_width(ui), |ui| {
                             ui.weak(Unit::COORDINATE.bare().text(v)).on_hover_text("Where it is now; not held there");
                         });
                     }
