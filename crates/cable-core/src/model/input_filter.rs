@@ -73,7 +73,7 @@ pub(crate) fn held_warning(
     let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
     let behind = f.behind_m();
     let message =
-        format!("support `{name}` is {behind:.2} m behind where it is drawn to: it follows at {fastest} m/s at most");
+        format!("support `{name}` lags {behind:.2} m behind where it is sent: it follows at {fastest} m/s at most");
     let speeds = [f.velocity().norm(), fastest];
     Warning::new(WarningKind::SupportHeld, &problem.cable.name, arc_length_m, speeds, message)
 }
@@ -167,9 +167,7 @@ impl Hand {
         }
         if slow > 0.0 {
             let hand = if held { "the hand" } else { "its hand" };
-            told.push(format!(
-                "{hand} is {slow:.2} m behind where it is drawn to: it follows at {fastest} m/s at most"
-            ));
+            told.push(format!("{hand} lags {slow:.2} m behind where it is sent: it follows at {fastest} m/s at most"));
         }
         let message = format!("support `{name}`: {}", told.join("; "));
         let speeds = [self.end.velocity().norm(), fastest];

@@ -35,7 +35,7 @@ impl Going {
             Self::Driving => "driving",
             Self::Slowed => "slowed by its load",
             Self::Stalled => "stalled: the drive is too weak",
-            Self::Slipping => "slipping: the tracks find no hold",
+            Self::Slipping => "tracks slipping: not enough traction",
             Self::Dragged => "dragged by the cable",
             Self::Blocked => "blocked: too steep, or the ground ends",
             Self::Jammed => "jammed: the cable is in its way",

@@ -49,7 +49,7 @@ fn jerk(cable: &Cable, answer: &CableSolution, peaks: &TensionPeaks, out: &mut V
     let TensionPeaks { greatest, held, .. } = *peaks;
     let (kind, top, limit, what) = if held.tension_n > breaking_n {
         let what = format!(
-            "in the mean over {over_s} s, above its breaking tension of {breaking_n} N: it would break; the answer is that of a cable that does not"
+            "in the mean over {over_s} s, above its breaking tension of {breaking_n} N: it would break here; the figures assume that it does not"
         );
         (WarningKind::BreakingTension, held, breaking_n, what)
     } else if greatest.tension_n > breaking_n {
@@ -148,7 +148,7 @@ fn loose(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
         && let Some(middle) = run.get(run.len() / 2)
     {
         let message = format!(
-            "{length:.2} m of `{}` round {:.3} m ({:.3} m, {:.3} m) have less than {limit_n:.3} N of tension: they lie or hang in a bight that can be run over, hook or loop; shorten the cable or pull it in",
+            "{length:.2} m of `{}` round {:.3} m ({:.3} m, {:.3} m) have less than {limit_n:.3} N of tension: this part may be run over, snag or loop; shorten the cable or pull it in",
             problem.cable.name, middle.arc_length_m, middle.x_m, middle.y_m
         );
         let name = &problem.cable.name;
@@ -183,7 +183,7 @@ fn tension(cable: &Cable, top: &Node, out: &mut Vec<Warning>) {
         (
             WarningKind::BreakingTension,
             cable.breaking_tension_n,
-            "it would break; the answer is that of a cable that does not",
+            "it would break here; the figures assume that it does not",
         )
     } else if top.tension_n > cable.service_tension_n {
         (

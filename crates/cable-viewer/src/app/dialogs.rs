@@ -10,6 +10,7 @@ use crate::state::dialog::{Dialog, Replacement};
 
 /// Draws the dialog, if one is open.
 pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
+    let panels = state.ui.panels;
     let Some(dialog) = &mut state.ui.dialog else { return };
     let name = state.document.scene.name.clone();
     let response = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
@@ -31,7 +32,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                 }
             }
             Dialog::OpenRun { path, hold } => {
-                let title = if *hold { "Hold a run to compare with" } else { "Open a run" };
+                let title = if *hold { "Pin a recorded run to compare with" } else { "Open a run" };
                 let note = "A folder with scene.toml, history.csv, nodes.csv and events.csv, as this window and cable run write them";
                 if let Some(path) = ask(ui, (title, "Open"), ("A folder", note), path, commands) {
                     let command = if *hold { FileCommand::HoldRun(path) } else { FileCommand::OpenRun(path) };
@@ -40,7 +41,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
             }
             Dialog::Feedback { answers, path } => crate::app::feedback_form::ui(ui, answers, path, commands),
             Dialog::About => about(ui, commands),
-            Dialog::Palette { text } => crate::app::palette::ui(ui, text, commands),
+            Dialog::Palette { text } => crate::app::palette::ui(ui, text, panels, commands),
             Dialog::ImportMap { path, text, unit_m } => import_map(ui, [path, text, unit_m], commands),
             Dialog::Unsaved { then } => unsaved(ui, &name, then, commands),
             Dialog::Recover { scene } => recover(ui, scene, commands),
@@ -105,7 +106,7 @@ fn ask(
 fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], commands: &mut Vec<Command>) {
     ui.heading("Import terrain and beams");
     ui.add_space(6.0);
-    ui.weak("A table of x and y (tab, comma, semicolon; decimal comma) or an SVG with paths. Open lines become ground, solid below; closed ones beams.");
+    ui.weak("A table of x and y (tab, comma, semicolon; decimal comma) or an SVG with paths. Open lines become ground, closed shapes become beams.");
     ui.horizontal(|ui| {
         let label = ui.label("File");
         ui.add(egui::TextEdit::singleline(path).desired_width(320.0)).labelled_by(label.id);
@@ -116,12 +117,12 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], commands: &mu
             .labelled_by(label.id);
     });
     ui.horizontal(|ui| {
-        let label = ui.label("Length of a unit, m");
+        let label = ui.label("Length of one unit, m");
         ui.add(egui::TextEdit::singleline(unit_m).desired_width(70.0)).labelled_by(label.id);
     });
     let unit = unit_m.trim().replacen(',', ".", 1).parse::<f64>().ok().filter(|u| *u > 0.0 && u.is_finite());
     if unit.is_none() {
-        ui.colored_label(ui.visuals().error_fg_color, "A unit is a number above 0");
+        ui.colored_label(ui.visuals().error_fg_color, "Type a length above 0");
     }
     ui.add_space(10.0);
     ui.horizontal(|ui| {
@@ -241,7 +242,7 @@ fn unsaved(ui: &mut Ui, name: &str, then: &Replacement, commands: &mut Vec<Comma
             commands.push(close());
             commands.push(Command::File(FileCommand::Save));
         }
-        if ui.button("Go on without saving").clicked() {
+        if ui.button("Discard changes").clicked() {
             commands.push(Command::File(FileCommand::Discard(then.clone())));
         }
         if ui.button("Cancel").clicked() {
@@ -254,25 +255,23 @@ fn recover(ui: &mut Ui, scene: &cable_core::Scene, commands: &mut Vec<Command>) 
     ui.heading("Recover unsaved changes");
     ui.add_space(6.0);
     let name = if scene.name.is_empty() { "Untitled scene" } else { &scene.name };
-    ui.label(format!(
-        "The last window did not close properly. Changes to “{name}” that were not saved have been kept."
-    ));
+    ui.label(format!("The program closed unexpectedly. Unsaved changes to “{name}” have been kept."));
     ui.add_space(10.0);
     ui.horizontal(|ui| {
         if ui.button("Recover").on_hover_text("Opens them; nothing is overwritten").clicked() {
             commands.push(Command::File(FileCommand::Recover(Box::new(scene.clone()))));
         }
-        if ui.button("Delete them").on_hover_text("They cannot be brought back").clicked() {
+        if ui.button("Discard").on_hover_text("They cannot be recovered later").clicked() {
             commands.push(Command::File(FileCommand::ForgetRecovery));
         }
-        if ui.button("Decide later").clicked() {
+        if ui.button("Ask next time").clicked() {
             commands.push(close());
         }
     });
 }
 
 /// What pointer and keys do; docs/controls.md has the same table.
-const CONTROLS: [(&str, &str); 26] = [
+const CONTROLS: [(&str, &str); 27] = [
     ("Drag a support, waypoint or corner", "Moves it; the cable follows"),
     ("Drag an obstacle", "Moves all of it; click it to see its corners"),
     ("Double-click the cable", "Adds a waypoint"),
@@ -282,12 +281,13 @@ const CONTROLS: [(&str, &str); 26] = [
     ("Drag the background", "Moves the view"),
     ("Wheel", "Zooms at the pointer, in graphs too"),
     ("+, −, Shift+arrows", "Zooms about the middle; moves the view"),
-    ("Click the cable", "Takes its tension there apart"),
+    ("Click the cable", "Breaks down the tension there"),
     ("Click in a graph", "Sets a cursor; a second one tells the difference"),
     ("Tab, Enter, Esc", "Next control; presses it; back to the canvas"),
     ("Left, right in a graph", "Moves its cursor; with Shift what is in view"),
     ("Up, down, Enter in a graph", "Zooms; sets another cursor"),
     ("F, C", "Fits the scene, recentres on the cable"),
+    ("[, ], G", "Folds the edit panel, the results, graphs and timeline"),
     ("Space", "Runs or pauses"),
     ("Arrow right, left", "One step of 1/60 s; one picture back"),
     ("Hold A, D", "Drives the robot left, right"),
@@ -297,8 +297,8 @@ const CONTROLS: [(&str, &str); 26] = [
     ("N, Shift+N, M", "Picks the next thing, the one before, one more"),
     ("Alt+arrows", "Moves what is picked by a grid line"),
     ("Ctrl+C, X, V, A", "Copy, cut, paste, pick everything"),
-    ("Ctrl+O, Ctrl+S", "Open, save"),
-    ("Ctrl+P", "Everything by name"),
+    ("Ctrl+N, Ctrl+O, Ctrl+S", "New, open, save"),
+    ("Ctrl+P", "Every command, by name"),
 ];
 
 fn help(ui: &mut Ui, commands: &mut Vec<Command>) {

@@ -9,7 +9,7 @@ use crate::widgets::field;
 /// Draws it.
 pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut Vec<Command>) {
     ui.heading("What do you think of it?");
-    ui.weak("1: not at all, 5: fully. Kept in a table of yours; nothing is sent anywhere.");
+    ui.weak("1: not at all, 5: fully. Saved to a CSV file on this computer; nothing is sent anywhere.");
     ui.add_space(6.0);
     egui::Grid::new("feedback").num_columns(2).spacing([14.0, 4.0]).show(ui, |ui| {
         for ((_, question), mark) in QUESTIONS.iter().zip(&mut answers.marks) {
@@ -26,10 +26,10 @@ pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut 
             ui.end_row();
         }
     });
-    let label = ui.label("What confused you, or should be otherwise");
+    let label = ui.label("What was confusing or should change?");
     ui.add(TextEdit::multiline(&mut answers.words).desired_rows(3).desired_width(f32::INFINITY)).labelled_by(label.id);
     if answers.wants_words() {
-        ui.colored_label(ui.visuals().warn_fg_color, format!("Below {MIN_GOOD_MARK}: please say what confused you"));
+        ui.colored_label(ui.visuals().warn_fg_color, format!("Below {MIN_GOOD_MARK}: please say what was confusing"));
     }
     ui.horizontal(|ui| {
         let label = ui.label("Table");
@@ -38,7 +38,7 @@ pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut 
     ui.add_space(10.0);
     ui.horizontal(|ui| {
         let ready = answers.complete() && !path.trim().is_empty();
-        let save = ui.add_enabled(ready, egui::Button::new("Keep"));
+        let save = ui.add_enabled(ready, egui::Button::new("Save feedback"));
         if save.on_disabled_hover_text("Every question needs a mark, and a low one a few words").clicked() {
             let path = std::path::PathBuf::from(path.trim());
             commands.push(Command::File(FileCommand::SaveFeedback(path, answers.clone())));

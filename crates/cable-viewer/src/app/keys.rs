@@ -6,8 +6,8 @@ use crate::canvas::layers::grid;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::geometry::handles;
 use crate::panels::robot;
-use crate::state::AppState;
 use crate::state::dialog::Dialog;
+use crate::state::{AppState, OpenPanels};
 
 /// Ctrl or ⌘ with a key.
 const fn with_command(key: Key) -> KeyboardShortcut {
@@ -22,6 +22,10 @@ pub const SAVE: KeyboardShortcut = with_command(Key::S);
 pub const SAVE_AS: KeyboardShortcut = KeyboardShortcut::new(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S);
 /// Everything by name.
 pub const PALETTE: KeyboardShortcut = with_command(Key::P);
+/// Closes the window.
+pub const QUIT: KeyboardShortcut = with_command(Key::Q);
+/// An empty scene.
+pub const NEW: KeyboardShortcut = with_command(Key::N);
 /// Copies what is picked. (egui turns these three into events of their own.)
 pub const COPY: KeyboardShortcut = with_command(Key::C);
 /// Cuts it out.
@@ -48,6 +52,8 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         (SAVE_AS, Command::File(FileCommand::AskSaveAs)),
         (SAVE, Command::File(FileCommand::Save)),
         (OPEN, Command::File(FileCommand::AskOpen)),
+        (NEW, Command::File(FileCommand::New)),
+        (QUIT, Command::File(FileCommand::Quit)),
         (PALETTE, Command::File(FileCommand::SetDialog(Some(Dialog::Palette { text: String::new() })))),
     ] {
         if ctx.input_mut(|i| i.consume_shortcut(&shortcut)) {
@@ -72,6 +78,16 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
     }
     if plain(Key::C) {
         commands.push(Command::View(ViewCommand::Recentre));
+    }
+    let panels = state.ui.panels;
+    for (key, panels) in [
+        (Key::OpenBracket, OpenPanels { edit: !panels.edit, ..panels }),
+        (Key::CloseBracket, OpenPanels { results: !panels.results, ..panels }),
+        (Key::G, OpenPanels { graphs: !panels.graphs, ..panels }),
+    ] {
+        if plain(key) {
+            commands.push(Command::View(ViewCommand::ShowPanels(panels)));
+        }
     }
     if plain(Key::Space) {
         commands.push(Command::Playback(PlaybackCommand::TogglePause));

@@ -3,6 +3,7 @@
 use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui};
 
 use crate::app::{menu, tutorial_bar};
+use crate::canvas::layers::legend;
 use crate::command::Command;
 use crate::state::AppState;
 use crate::{canvas, panels};
@@ -35,12 +36,22 @@ const UNMARKED: &str = "Tension at a place";
 
 /// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than
 /// its labels.
-const WIDE: f32 = 1100.0;
+const WIDE: f32 = 1000.0;
 /// Lower windows (points) have one side panel, and the graphs in it: nothing would be left of the
 /// canvas above them.
 const LEAST_FOR_GRAPHS: f32 = 520.0;
-/// Lowest panel of graphs, points.
-const LEAST_GRAPHS: f32 = 130.0;
+/// Width of the panels as a part of the window's, and the least and greatest, points: what is in
+/// them never moves the canvas. Wider: the canvas has less than 60 % of 1280×800; narrower: a name,
+/// a number and its unit do not fit in a line.
+const EDIT_WIDTH: (f32, [f32; 2]) = (0.198, [246.0, 336.0]);
+/// As [`EDIT_WIDTH`].
+const RESULTS_WIDTH: (f32, [f32; 2]) = (0.155, [196.0, 320.0]);
+/// Height of the graphs with the timeline as a part of the window's, and the least, points.
+const GRAPHS_HEIGHT: (f32, f32) = (0.19, 120.0);
+
+fn part((fraction, [least, most]): (f32, [f32; 2]), of: f32) -> f32 {
+    (fraction * of).clamp(least, most).round()
+}
 
 /// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its
 /// own size.
@@ -49,35 +60,49 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     if state.ui.tutorial.is_some() {
         Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
     }
-    Panel::bottom("status").show(ui, |ui| menu::status(ui, state));
-    Panel::bottom("playback").show(ui, |ui| {
-        panels::timeline::ui(ui, state, commands);
-        panels::playback::ui(ui, state, commands);
-    });
+    Panel::bottom("playback").show(ui, |ui| panels::playback::ui(ui, state, commands));
     let [width, height] = ui.ctx().content_rect().size().into();
     let graphs = height >= LEAST_FOR_GRAPHS;
-    if width >= WIDE && graphs {
-        side(ui, "edit", EDIT, state, commands);
-        side(ui, "read", READ, state, commands);
-    } else {
+    let open = state.ui.panels;
+    let wide = width >= WIDE && graphs;
+    state.ui.legend_beside = wide && open.results;
+    if wide {
+        if open.edit {
+            side(ui, Panel::left("edit"), part(EDIT_WIDTH, width), |ui| scroll(ui, "edit", EDIT, state, commands));
+        }
+        if open.results {
+            side(ui, Panel::right("read"), part(RESULTS_WIDTH, width), |ui| {
+                legend::beside(ui, state);
+                scroll(ui, "read", READ, state, commands);
+            });
+        }
+    } else if open.edit || open.results {
         tabs(ui, state, !graphs, commands);
     }
-    if !graphs {
-        CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
-        return;
+    // A past that is shown must not be forgotten about.
+    let past = state.live.recording.shown_s.is_some();
+    if graphs && open.graphs {
+        let high = (GRAPHS_HEIGHT.0 * height).max(GRAPHS_HEIGHT.1);
+        Panel::bottom("plots").resizable(true).default_size(high).size_range(GRAPHS_HEIGHT.1..=500.0).show(ui, |ui| {
+            // A panel takes the height of what is in it: without this it shrinks by a margin a
+            // frame.
+            ui.set_min_height(ui.available_height());
+            panels::timeline::ui(ui, state, commands);
+            panels::plots::ui(ui, state, commands);
+        });
+    } else if past || (graphs && state.live.before_reset.is_some()) {
+        Panel::bottom("timeline").show(ui, |ui| panels::timeline::ui(ui, state, commands));
     }
-    let high = (0.3 * height).clamp(LEAST_GRAPHS, 240.0);
-    Panel::bottom("plots").resizable(true).default_size(high).size_range(LEAST_GRAPHS..=500.0).show(ui, |ui| {
-        // A panel takes the height of what is in it: without this it shrinks by a margin a frame.
-        ui.set_min_height(ui.available_height());
-        panels::plots::ui(ui, state, commands);
-    });
     CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
 }
 
-fn side(ui: &mut Ui, id: &'static str, sections: &[Section], state: &AppState, commands: &mut Vec<Command>) {
-    let panel = if id == "edit" { Panel::left(id).default_size(336.0) } else { Panel::right(id).default_size(320.0) };
-    panel.size_range(220.0..=420.0).show(ui, |ui| scroll(ui, id, sections, state, commands));
+/// A side panel of a width that its contents do not change.
+fn side(ui: &mut Ui, panel: Panel, width: f32, contents: impl FnOnce(&mut Ui)) {
+    let frame = Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(5, 2));
+    panel.frame(frame).resizable(false).exact_size(width).show(ui, |ui| {
+        ui.set_max_width(ui.available_width());
+        contents(ui);
+    });
 }
 
 /// What the one panel of a small window shows.
@@ -94,12 +119,12 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
     // A large scale on a small screen: half of it stays for the picture.
     let most = 0.5 * ui.ctx().content_rect().width();
     let range = most.min(220.0)..=most.min(420.0);
-    Panel::left("narrow").default_size(most.min(320.0)).size_range(range).show(ui, |ui| {
+    Panel::left("narrow").default_size(most.min(300.0)).size_range(range).show(ui, |ui| {
         let id = Id::unique("narrow tab");
         let mut tab: Tab = ui.data(|d| d.get_temp(id)).unwrap_or_default();
         ui.horizontal(|ui| {
             ui.selectable_value(&mut tab, Tab::Edit, "Edit").on_hover_text("Scene, robot, cable, environment, solver");
-            ui.selectable_value(&mut tab, Tab::Read, "Read")
+            ui.selectable_value(&mut tab, Tab::Read, "Results")
                 .on_hover_text("Warnings, readouts, safe reach, tension at a place, compare");
             if graphs {
                 ui.selectable_value(&mut tab, Tab::Graphs, "Graphs")
@@ -107,14 +132,15 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
             }
             let warnings = state.live.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
             if state.document.fault.is_some() || state.live.snapshot.error.is_some() || warnings > 0 {
-                ui.add(
-                    egui::Label::new(RichText::new("Warnings: see Read").color(ui.visuals().warn_fg_color)).truncate(),
-                );
+                ui.add(egui::Label::new(RichText::new("See results").color(ui.visuals().warn_fg_color)).truncate());
             }
         });
         ui.data_mut(|d| d.insert_temp(id, tab));
         match tab {
-            Tab::Graphs if graphs => panels::plots::ui(ui, state, commands),
+            Tab::Graphs if graphs => {
+                panels::timeline::ui(ui, state, commands);
+                panels::plots::ui(ui, state, commands);
+            }
             Tab::Read => scroll(ui, "read", READ, state, commands),
             Tab::Edit | Tab::Graphs => scroll(ui, "edit", EDIT, state, commands),
         }
@@ -122,7 +148,9 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
 }
 
 fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, commands: &mut Vec<Command>) {
-    ScrollArea::vertical().id_salt(id).auto_shrink(false).show(ui, |ui| {
+    // What is too wide scrolls: it must not push the canvas aside.
+    ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
+        let width = ui.available_width();
         for (title, panel) in sections {
             let hidden = match *title {
                 "Robot" => state.document.scene.robot.is_none(),
@@ -133,7 +161,11 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
             if hidden {
                 continue;
             }
-            CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| panel(ui, state, commands));
+            CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| {
+                // One section that is too wide does not widen the others.
+                ui.set_max_width(width);
+                panel(ui, state, commands);
+            });
         }
     });
 }

@@ -2,20 +2,21 @@
 
 use cable_core::scene::catalog;
 use cable_core::verify::Verification;
-use egui::{Button, Color32, KeyboardShortcut, MenuBar, Sense, Ui, Vec2};
+use egui::{Align, Button, Color32, KeyboardShortcut, Label, Layout, MenuBar, RichText, Sense, Ui, Vec2};
 
 use crate::app::keys;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use crate::panels::readouts::DIMMED;
 use crate::render::colour::{ColourMap, Quantity};
 use crate::state::dialog::Dialog;
-use crate::state::{AppState, WorkerStatus};
+use crate::state::{AppState, Freshness, WorkerStatus};
 use crate::units::system::System;
-use crate::units::{labels, translate};
+use crate::units::{format, translate};
 
 /// The menu bar.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| file(ui, commands));
+        ui.menu_button("File", |ui| file(ui, state, commands));
         ui.menu_button("Edit", |ui| edit(ui, state, commands));
         ui.menu_button("View", |ui| view(ui, state, commands));
         ui.menu_button("Scenes", |ui| scenes(ui, commands));
@@ -26,12 +27,60 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if ui.button("About").on_hover_text("What was checked and what was not").clicked() {
             commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::About))));
         }
-        if ui.button("Feedback").on_hover_text("Four questions, kept in a table of yours").clicked() {
+        if ui.button("Feedback").on_hover_text("Four questions, saved to a CSV file on this computer").clicked() {
             commands.push(Command::File(feedback()));
         }
         ui.separator();
-        ui.strong(title(state));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            results(ui, state, commands);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.add(Label::new(RichText::new(title(state)).strong()).truncate());
+            });
+        });
     });
+}
+
+/// What an engineer looks at first, always in sight: the greatest tension, how much of the service
+/// tension that is, and whether the answer was checked. From right to left.
+fn results(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(answer) = state.live.snapshot.solution.as_deref() else { return };
+    let current = state.is_current();
+    if !current {
+        let said = match state.freshness() {
+            Freshness::Outdated => "not this scene",
+            _ => "solving…",
+        };
+        ui.colored_label(ui.visuals().warn_fg_color, said)
+            .on_hover_text("The figure beside is not of the scene as it is");
+    }
+    let most = answer.max_tension();
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
+    if let Some(verification) = answer.verification.as_ref().filter(|_| current) {
+        light(ui, verification);
+        ui.separator();
+    }
+    if let Some(cable) = scene.cables.get(most.cable).filter(|_| current) {
+        let share = most.tension_n / cable.service_tension_n;
+        let colour = if most.tension_n > cable.breaking_tension_n {
+            ui.visuals().error_fg_color
+        } else if share > 1.0 {
+            ui.visuals().warn_fg_color
+        } else {
+            ui.visuals().text_color()
+        };
+        let help = format!("Service tension {}", format::force(cable.service_tension_n));
+        ui.colored_label(colour, format!("{} of service", format::percent(share))).on_hover_text(help);
+    }
+    let text = RichText::new(format!("Max {}", format::force(most.tension_n))).size(14.0);
+    let text = if current { text.strong() } else { text.color(ui.visuals().text_color().gamma_multiply(DIMMED)) };
+    let figure = ui.add(Button::new(text).frame(false));
+    if figure.on_hover_text("Greatest tension of all cables; click to see where").clicked() {
+        let at = answer.cables.get(most.cable).and_then(|c| {
+            let k = c.nodes.partition_point(|n| n.arc_length_m < most.arc_length_m);
+            c.nodes.get(k).or(c.nodes.last())
+        });
+        commands.extend(at.map(|n| Command::View(ViewCommand::ZoomOn([n.x_m, n.y_m]))));
+    }
 }
 
 /// Asks what the user thinks.
@@ -44,7 +93,9 @@ pub fn feedback() -> FileCommand {
 pub fn title(state: &AppState) -> String {
     let name = if state.document.scene.name.is_empty() { "Untitled scene" } else { &state.document.scene.name };
     let mark = if state.document.unsaved() { " (not saved)" } else { "" };
-    format!("{name}{mark}")
+    let file = state.document.path.as_deref().and_then(|p| p.file_name());
+    let file = file.map_or_else(String::new, |f| format!(" – {}", f.to_string_lossy()));
+    format!("{name}{mark}{file}")
 }
 
 fn entry(ui: &mut Ui, text: &str, shortcut: Option<&KeyboardShortcut>) -> bool {
@@ -62,43 +113,68 @@ fn entry(ui: &mut Ui, text: &str, shortcut: Option<&KeyboardShortcut>) -> bool {
 /// What an entry does, where its name leaves something open.
 fn help(text: &str) -> &'static str {
     match text {
+        "New" => "A scene with one cable; asks first if this one is not saved",
         "Open…" => "A scene file; asks first if this one is not saved",
-        "Save" => "To where it came from; the old file stays whole if the disk refuses",
+        "Save" => "To the same file; the old one stays intact if saving fails",
         "Save as…" => "To another file",
         "Import map…" => "Terrain and beams from a table or an SVG, added to the scene",
-        "Open run…" => "A folder with all that was recorded",
-        "Save run…" => "All that was recorded, as tables in a folder",
+        "Open run…" => "A folder with a recording",
+        "Save run…" => "The whole recording, as tables in a folder",
         "Quit" => "Asks first if the scene is not saved",
         "Undo" => "Back by one edit; a drag is one",
         "Redo" => "Forward by one edit",
-        "Command palette…" => "Everything that can be done, by name",
-        "Copy" => "What is picked; other programs get its points as a table",
-        "Cut" => "Copies what is picked and takes it out",
-        "Paste" => "What was copied, at the pointer or a little beside where it was",
-        "Remove selected" => "Takes out what is picked; the ends of a cable become free",
+        "Command palette…" => "Every command, by name",
+        "Copy" => "The selection; other programs receive its points as a table",
+        "Cut" => "Copies the selection and removes it",
+        "Paste" => "At the pointer, or a little beside the original",
+        "Remove selected" => "Removes the selection; cable ends become free",
         "Add a cable" => "Like the present one, half a metre above it",
-        "Reset to start (R)" => "Back to the start, bit for bit",
+        "Reset to start (R)" => "Back to the start",
         "Restart the solver" => "The scene stays as it is",
-        "Fit scene (F)" => "All of it in view",
-        "Recentre on the cable (C)" => "Its middle in the middle, same scale",
+        "Fit scene (F)" => "Shows the whole scene",
+        "Recentre on the cable (C)" => "Centres the cable, same scale",
         _ => "Opens this scene; asks first if the present one is not saved",
     }
 }
 
-fn file(ui: &mut Ui, commands: &mut Vec<Command>) {
+fn file(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     for (text, shortcut, command) in [
+        ("New", Some(&keys::NEW), FileCommand::New),
         ("Open…", Some(&keys::OPEN), FileCommand::AskOpen),
         ("Save", Some(&keys::SAVE), FileCommand::Save),
         ("Save as…", Some(&keys::SAVE_AS), FileCommand::AskSaveAs),
         ("Import map…", None, import_map()),
         ("Open run…", None, FileCommand::SetDialog(Some(Dialog::OpenRun { path: "run".to_owned(), hold: false }))),
         ("Save run…", None, FileCommand::SetDialog(Some(Dialog::SaveRun { path: "run".to_owned() }))),
-        ("Quit", None, FileCommand::Quit),
+        ("Quit", Some(&keys::QUIT), FileCommand::Quit),
     ] {
         if entry(ui, text, shortcut) {
             commands.push(Command::File(command));
         }
+        if text == "Open…" {
+            recent(ui, state, commands);
+        }
     }
+}
+
+/// The files opened and saved last.
+fn recent(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let help = "Files opened and saved last";
+    let list = ui.add_enabled_ui(!state.ui.recent.is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            for path in &state.ui.recent {
+                let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+                if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                    commands.push(Command::File(FileCommand::Open(path.clone())));
+                    ui.close();
+                }
+            }
+        })
+        .response
+        .on_hover_text(help)
+        .on_disabled_hover_text("No file was opened or saved yet")
+    });
+    list.response.on_hover_text(help);
 }
 
 /// Asks what to import.
@@ -152,6 +228,14 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(Command::View(ViewCommand::Recentre));
     }
     ui.separator();
+    let mut panels = state.ui.panels;
+    ui.checkbox(&mut panels.edit, "Edit panel ([)").on_hover_text("Scene, robot, cable, environment, solver");
+    ui.checkbox(&mut panels.results, "Results panel (])").on_hover_text("Warnings, readouts, safe reach, compare");
+    ui.checkbox(&mut panels.graphs, "Graphs and timeline (G)").on_hover_text("The drawer below the canvas");
+    if panels != state.ui.panels {
+        commands.push(Command::View(ViewCommand::ShowPanels(panels)));
+    }
+    ui.separator();
     let mut layers = state.view.layers;
     ui.checkbox(&mut layers.grid, "Grid").on_hover_text("Lines and numbered axes");
     ui.checkbox(&mut layers.labels, "Labels").on_hover_text("Names, coordinates and figures");
@@ -159,7 +243,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         "Where the cable touches: normal force and friction; filled and blue where it holds, hollow and orange where it slides",
     );
     ui.checkbox(&mut layers.forces, "Forces").on_hover_text("Loads, and what the cable does to its supports");
-    ui.checkbox(&mut layers.components, "Parts of forces").on_hover_text("Of each force, to the right and upwards");
+    ui.checkbox(&mut layers.components, "Force components").on_hover_text("Horizontal and vertical part of each force");
     ui.checkbox(&mut layers.nodes, "Nodes").on_hover_text("The points the model works with");
     ui.separator();
     ui.checkbox(&mut layers.snap, "Snap to grid").on_hover_text("Dragged points land on the finest grid lines shown");
@@ -177,7 +261,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     ui.separator();
     let mut theme = state.view.theme;
-    ui.radio_value(&mut theme, egui::ThemePreference::System, "Theme of the system")
+    ui.radio_value(&mut theme, egui::ThemePreference::System, "Match system theme")
         .on_hover_text("Dark where it does not say");
     ui.radio_value(&mut theme, egui::ThemePreference::Light, "Light theme").on_hover_text("Dark on light");
     ui.radio_value(&mut theme, egui::ThemePreference::Dark, "Dark theme").on_hover_text("Light on dark");
@@ -209,7 +293,7 @@ fn colours(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let help =
             "On: the colours keep the values they have now; off: they follow the least and greatest of each answer";
         let present = state.live.snapshot.solution.as_deref().map(|s| state.view.colour.range(s));
-        if ui.checkbox(&mut fixed, "Keep the range").on_hover_text(help).changed() {
+        if ui.checkbox(&mut fixed, "Lock colour range").on_hover_text(help).changed() {
             colour.fixed = present.filter(|_| fixed);
         }
     });
@@ -237,9 +321,9 @@ const SOUND: Color32 = Color32::from_rgb(64, 170, 110);
 fn light(ui: &mut Ui, verification: &Verification) {
     let visuals = ui.visuals();
     let (lamp, colour, text) = match (verification.is_sound(), verification.not_checked.is_empty()) {
-        (true, true) => (SOUND, visuals.text_color(), "checked: sound"),
-        (true, false) => (visuals.weak_text_color(), visuals.weak_text_color(), "checked in part: sound"),
-        (false, _) => (visuals.error_fg_color, visuals.error_fg_color, "NOT SOUND"),
+        (true, true) => (SOUND, visuals.text_color(), "verified"),
+        (true, false) => (visuals.weak_text_color(), visuals.weak_text_color(), "partly verified"),
+        (false, _) => (visuals.error_fg_color, visuals.error_fg_color, "VERIFICATION FAILED"),
     };
     let laws: Vec<&str> = verification.checked.iter().map(|l| l.name()).collect();
     let help = format!("{}. Checked: {}", translate::display(&verification.summary()), laws.join(", "));
@@ -248,41 +332,4 @@ fn light(ui: &mut Ui, verification: &Verification) {
     let (place, _) = ui.allocate_exact_size(Vec2::splat(LIGHT_SIZE), Sense::hover());
     ui.painter().circle_filled(place.center(), 0.5 * LIGHT_SIZE, lamp);
     ui.colored_label(colour, text).on_hover_text(help);
-}
-
-/// The status line: cursor, model, time taken.
-pub fn status(ui: &mut Ui, state: &AppState) {
-    ui.horizontal(|ui| {
-        let (length, si) = labels::of_length();
-        match state.selection.cursor_m.map(|p| p.map(|v| v / si)) {
-            Some([x, y]) => ui.monospace(format!("x {x:9.3} {length}   y {y:9.3} {length}")),
-            None => ui.monospace(format!("x         – {length}   y         – {length}")),
-        };
-        ui.separator();
-        if let Some(solution) = &state.live.snapshot.solution {
-            ui.label(format!("{} model", solution.model)).on_hover_text(&solution.reason);
-            ui.separator();
-            if let Some(verification) = &solution.verification {
-                light(ui, verification);
-                ui.separator();
-            }
-            ui.label(format!("t = {:.3} s", solution.time_s));
-            ui.separator();
-        }
-        ui.label(format!("solved in {:.2} ms", state.live.snapshot.solve_wall_s * 1e3));
-        if let Some(latency) = state.solver.edit_latency_s {
-            ui.separator();
-            ui.label(format!("edit to picture {:.0} ms", latency * 1e3))
-                .on_hover_text("From the last edit to the first picture that shows it");
-        }
-        if let Some(fault) = &state.ui.autosave_fault {
-            ui.separator();
-            ui.colored_label(ui.visuals().warn_fg_color, "changes are not kept for recovery").on_hover_text(fault);
-        }
-        if state.live.snapshot.draft {
-            ui.separator();
-            ui.label("draft, settling…")
-                .on_hover_text("Few segments, not yet at rest, while the scene is being moved; the answer follows");
-        }
-    });
 }

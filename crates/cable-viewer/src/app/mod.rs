@@ -17,13 +17,14 @@ pub mod tutorials;
 
 use std::collections::VecDeque;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use cable_core::Scene;
 
 use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::{self, Command};
 use crate::io::autosave::Autosave;
+use crate::io::recent_files;
 use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach};
 use crate::render::theme;
 use crate::state::analysis::hold;
@@ -36,6 +37,10 @@ use crate::worker::engine::Report;
 
 /// Most unanswered edits whose delay is measured; of more, those in between are not.
 const MAX_ASKED: usize = 64;
+
+/// Between two frames while an answer is sought. Longer: the seconds jump, and a solve that nobody
+/// waits for is given up late.
+const SOLVING_REPAINT: Duration = Duration::from_millis(30);
 
 /// The eframe application.
 pub struct ViewerApp {
@@ -50,6 +55,10 @@ pub struct ViewerApp {
     /// Numbers of the edits not yet answered and when they were sent, oldest first; at most
     /// [`MAX_ASKED`].
     asked: VecDeque<(u64, Instant)>,
+    /// Where recent files are listed, and what stands there.
+    recent_list: Option<(PathBuf, Vec<PathBuf>)>,
+    /// Since when an answer has been sought.
+    solving_since: Option<Instant>,
     /// The map of where the robot can go, while it is computed.
     reach: Option<safe_reach::Job>,
     /// Every model being asked.
@@ -83,6 +92,8 @@ impl ViewerApp {
             title: String::new(),
             autosave: None,
             asked: VecDeque::new(),
+            solving_since: None,
+            recent_list: None,
             reach: None,
             models: None,
             bending: None,
@@ -97,13 +108,21 @@ impl ViewerApp {
     /// From now on unsaved changes are kept in a file; if there are some from a window that died,
     /// they are offered.
     pub fn keep_changes_in(&mut self, path: PathBuf) {
+        let list = path.with_file_name("recent.txt");
+        for path in recent_files::load(&list).into_iter().rev() {
+            self.state.ui.add_recent(path);
+        }
+        if let Some(path) = self.state.document.path.clone() {
+            self.state.ui.add_recent(path);
+        }
+        self.recent_list = Some((list, Vec::new()));
         let autosave = Autosave::new(path);
         self.state.ui.dialog = match autosave.found() {
             None => None,
             Some(Ok(scene)) => Some(Dialog::Recover { scene: Box::new(scene) }),
             Some(Err(text)) => Some(Dialog::Message {
                 title: "Unsaved changes could not be recovered".to_owned(),
-                text: format!("The last window did not close properly, and what it had kept cannot be read: {text}"),
+                text: format!("The program closed unexpectedly, and the changes it had kept cannot be read: {text}"),
             }),
         };
         self.autosave = Some(autosave);
@@ -195,6 +214,7 @@ impl ViewerApp {
         self.update_neglected_bending(ctx);
         self.update_friction_range(ctx);
         self.state.solver.status = self.worker.status();
+        self.time_solve(ctx);
         if !self.threaded && !self.state.live.playback.paused {
             ctx.request_repaint();
         }
@@ -203,6 +223,21 @@ impl ViewerApp {
             self.state.live.snapshot.stale = true;
             self.asked.clear();
         }
+    }
+
+    /// How long an answer has been sought; the window counts the seconds.
+    fn time_solve(&mut self, ctx: &egui::Context) {
+        let waits = !self.asked.is_empty() || self.state.live.latest.draft;
+        let dead = matches!(self.state.solver.status, WorkerStatus::Dead(_));
+        // A draft that only follows the hand while time runs is not waited for.
+        let coarse = self.state.live.latest.draft && !self.state.live.playback.paused;
+        if !waits || dead || coarse {
+            self.solving_since = None;
+        } else {
+            self.solving_since.get_or_insert_with(Instant::now);
+            ctx.request_repaint_after(SOLVING_REPAINT);
+        }
+        self.state.solver.solving_s = self.solving_since.map(|since| since.elapsed().as_secs_f64());
     }
 
     /// Looks after what neglecting bending stiffness changes: a question about what is no longer on
@@ -263,8 +298,7 @@ impl ViewerApp {
     fn show(&mut self, report: Report) {
         let state = &mut self.state;
         if report.history_restarts {
-            state.live.history.clear();
-            state.live.recording.clear();
+            state.live.restart_history();
         }
         for answer in report.answers {
             state.live.record(answer);
@@ -273,6 +307,15 @@ impl ViewerApp {
             state.live.playback.paused = true;
         }
         state.live.receive(report.snapshot);
+        // The way that the cable takes becomes part of the scene, but not of one that was edited
+        // meanwhile.
+        if state.live.latest.edit == state.solver.edits_sent {
+            for (cable, way) in report.routes {
+                if let Some(cable) = state.document.scene.cables.get_mut(cable) {
+                    cable.route_m = way;
+                }
+            }
+        }
         if report.history_restarts && !state.live.reopened_run.is_empty() {
             let answers = std::mem::take(&mut state.live.reopened_run);
             let last_s = answers.last().map(|a| a.time_s);
@@ -318,6 +361,12 @@ impl eframe::App for ViewerApp {
         }
         self.apply(&ctx, commands);
         self.update_autosave(&ctx);
+        if let Some((list, written)) = &mut self.recent_list
+            && *written != self.state.ui.recent
+        {
+            written.clone_from(&self.state.ui.recent);
+            recent_files::save(list, written);
+        }
         let title = format!("{} – Cable simulator", menu::title(&self.state));
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));

@@ -6,19 +6,48 @@ use egui::{Key, ScrollArea, TextEdit, Ui};
 
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::render::colour::{ColourScale, Quantity};
+use crate::state::OpenPanels;
 use crate::state::dialog::Dialog;
 use crate::units::system::System;
 
+/// Other words that people look for, and a part of the name that they mean.
+const SYNONYMS: [(&str, &str); 22] = [
+    ("pin this result", "hold keep compare reference remember"),
+    ("pin a recorded run", "hold compare"),
+    ("compare all models", "hold every solver"),
+    ("unpin all", "let go clear compare"),
+    ("save run", "export record csv table"),
+    ("save as", "export write"),
+    ("open a file", "load read"),
+    ("import map", "terrain ground svg csv"),
+    ("fit scene", "zoom all view extents home"),
+    ("recentre", "center middle"),
+    ("reset to the start", "restart rewind begin"),
+    ("play or pause", "run stop start time"),
+    ("real-time speed", "1x normal"),
+    ("slow motion", "slower"),
+    ("find safe reach", "map reachability range"),
+    ("resume from", "go on continue"),
+    ("show the latest", "present now end"),
+    ("restart the solver", "crash thread"),
+    ("cancel solving", "stop abort"),
+    ("quit", "exit close"),
+    ("new scene", "create empty"),
+    ("colour by", "color"),
+];
+
 /// Everything, with the words it is found by.
-fn entries() -> Vec<(String, Command)> {
+fn entries(panels: OpenPanels) -> Vec<(String, Command)> {
+    let show = |panels| Command::View(ViewCommand::ShowPanels(panels));
     let file = |dialog| Command::File(FileCommand::SetDialog(Some(dialog)));
     let theme = |theme| Command::View(ViewCommand::SetTheme(theme));
     let fixed = [
+        ("New scene", Command::File(FileCommand::New)),
         ("Open a file…", Command::File(FileCommand::AskOpen)),
         ("Save", Command::File(FileCommand::Save)),
         ("Save as…", Command::File(FileCommand::AskSaveAs)),
         ("Open run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: false })),
-        ("Hold a run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: true })),
+        ("Pin a recorded run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: true })),
         ("Save run…", file(Dialog::SaveRun { path: "run".to_owned() })),
         ("Import map…", Command::File(crate::app::menu::import_map())),
         ("Undo", Command::Scene(SceneCommand::Undo)),
@@ -28,30 +57,35 @@ fn entries() -> Vec<(String, Command)> {
         ("Step", Command::Playback(PlaybackCommand::Step)),
         ("Step back", Command::Playback(PlaybackCommand::StepBack)),
         ("Reset to the start", Command::Playback(PlaybackCommand::Reset)),
-        ("Show the present", Command::Playback(PlaybackCommand::Show(None))),
+        ("Show the latest", Command::Playback(PlaybackCommand::Show(None))),
         ("Real-time speed", Command::Playback(PlaybackCommand::SetSpeed(1.0))),
         ("Slow motion 0.1×", Command::Playback(PlaybackCommand::SetSpeed(0.1))),
         ("Robot: follow path", Command::Playback(PlaybackCommand::DriveRobot(None))),
         ("Robot: stop", Command::Playback(PlaybackCommand::DriveRobot(Some(0.0)))),
         ("Fit scene", Command::View(ViewCommand::Fit)),
         ("Recentre on the cable", Command::View(ViewCommand::Recentre)),
-        ("Hold this answer", Command::View(ViewCommand::Hold)),
-        ("Hold every model", Command::View(ViewCommand::HoldModels(true))),
-        ("Let all held answers go", Command::View(ViewCommand::LetGo(None))),
+        ("Pin this result", Command::View(ViewCommand::Hold)),
+        ("Compare all models", Command::View(ViewCommand::HoldModels(true))),
+        ("Unpin all", Command::View(ViewCommand::LetGo(None))),
         ("Find safe reach", Command::View(ViewCommand::Reach(true))),
         ("Cancel or clear the safe reach", Command::View(ViewCommand::Reach(false))),
         ("Light theme", theme(egui::ThemePreference::Light)),
         ("Dark theme", theme(egui::ThemePreference::Dark)),
-        ("Theme of the system", theme(egui::ThemePreference::System)),
+        ("Match system theme", theme(egui::ThemePreference::System)),
         ("SI units", Command::View(ViewCommand::SetUnits(System::Si))),
         ("US units", Command::View(ViewCommand::SetUnits(System::Us))),
         ("Add a cable", Command::Scene(SceneCommand::AddCable)),
-        ("Go on from the time shown", Command::Playback(PlaybackCommand::GoOn)),
+        ("Resume from the time shown", Command::Playback(PlaybackCommand::GoOn)),
         ("Restart the solver", Command::File(FileCommand::RestartWorker)),
         ("Help: pointer and keys", file(Dialog::Help)),
         ("Give feedback…", Command::File(crate::app::menu::feedback())),
         ("About: what was checked", file(Dialog::About)),
         ("Quit", Command::File(FileCommand::Quit)),
+        ("Undo reset", Command::Playback(PlaybackCommand::UndoReset)),
+        ("Cancel solving", Command::Playback(PlaybackCommand::CancelSolve)),
+        ("Show or fold the edit panel", show(OpenPanels { edit: !panels.edit, ..panels })),
+        ("Show or fold the results panel", show(OpenPanels { results: !panels.results, ..panels })),
+        ("Show or fold graphs and timeline", show(OpenPanels { graphs: !panels.graphs, ..panels })),
     ];
     let colour = |quantity| Command::View(ViewCommand::SetColour(ColourScale { quantity, ..ColourScale::default() }));
     let mut all: Vec<(String, Command)> = fixed.map(|(name, command)| (name.to_owned(), command)).into();
@@ -65,35 +99,42 @@ fn entries() -> Vec<(String, Command)> {
 }
 
 /// Those that have every word of a text in their name.
-fn found(text: &str) -> Vec<(String, Command)> {
+fn found(text: &str, panels: OpenPanels) -> Vec<(String, Command)> {
     let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
-    let mut all = entries();
-    all.retain(|(name, _)| {
-        let name = name.to_lowercase();
-        words.iter().all(|w| name.contains(w))
-    });
+    let mut all = entries(panels);
+    let matches = |name: &str, also: bool| {
+        let mut text = name.to_lowercase();
+        if also {
+            let more = SYNONYMS.iter().filter(|(part, _)| text.contains(part)).map(|(_, more)| *more);
+            text = more.fold(text.clone(), |all, more| all + " " + more);
+        }
+        words.iter().all(|w| text.contains(w))
+    };
+    all.retain(|(name, _)| matches(name, true));
+    // What is called so comes before what is meant by it.
+    all.sort_by_key(|(name, _)| !matches(name, false));
     all
 }
 
 /// Draws it; Enter does the first found.
-pub fn ui(ui: &mut Ui, text: &mut String, commands: &mut Vec<Command>) {
-    let field = TextEdit::singleline(text).hint_text("What to do").desired_width(f32::INFINITY);
+pub fn ui(ui: &mut Ui, text: &mut String, panels: OpenPanels, commands: &mut Vec<Command>) {
+    let field = TextEdit::singleline(text).hint_text("Type a command…").desired_width(f32::INFINITY);
     let field = ui.add(field);
     crate::widgets::field::name(&field, "Command");
     let entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
     if !entered {
         field.request_focus();
     }
-    let found = found(text);
+    let found = found(text, panels);
     let mut chosen = found.first().filter(|_| entered).map(|(_, command)| command.clone());
-    ScrollArea::vertical().max_height(320.0).auto_shrink([false, true]).show(ui, |ui| {
+    ScrollArea::vertical().max_height(320.0).min_scrolled_height(320.0).auto_shrink([false, true]).show(ui, |ui| {
         for (k, (name, command)) in found.iter().enumerate() {
             if ui.selectable_label(k == 0, name).clicked() {
                 chosen = Some(command.clone());
             }
         }
         if found.is_empty() {
-            ui.weak("Nothing is called so");
+            ui.weak(format!("No command matches “{}”", text.trim()));
         }
     });
     if let Some(command) = chosen {
@@ -109,9 +150,14 @@ mod tests {
 
     #[test]
     fn words_are_found_in_any_order_and_case() {
+        let found = |text: &str| found(text, OpenPanels::default());
         assert_eq!(found("THEME dark")[0].0, "Dark theme");
         assert!(found("tank out")[0].0.starts_with("Open scene: Tank"));
         assert!(found("no such thing").is_empty());
-        assert_eq!(found("").len(), entries().len());
+        assert_eq!(found("").len(), entries(OpenPanels::default()).len());
+        assert!(found("comp").iter().any(|(name, _)| name == "Compare all models"));
+        assert!(found("export").iter().any(|(name, _)| name == "Save run…"));
+        assert_eq!(found("hold this")[0].0, "Pin this result");
+        assert_eq!(found("hold")[0].0, "Pin a recorded run…");
     }
 }

@@ -112,7 +112,7 @@ pub const TUTORIALS: [Tutorial; 6] = [
             act("Drag the timeline below the canvas, or press the left arrow, to look at an earlier time", |s| {
                 s.live.recording.shown_s.is_some()
             }),
-            act("Go on from there, or press Present to come back", |s| s.live.recording.shown_s.is_none()),
+            act("Resume from there, or press Latest to come back", |s| s.live.recording.shown_s.is_none()),
         ],
     },
     Tutorial {
@@ -135,7 +135,7 @@ pub const TUTORIALS: [Tutorial; 6] = [
         title: "Compare and keep",
         scene: "hanging-span",
         steps: &[
-            act("Press Hold this answer under Compare on the right", |s| !s.analysis.references.is_empty()),
+            act("Press Pin this result under Compare on the right", |s| !s.analysis.references.is_empty()),
             act("Change the length: both are drawn, and what differs is told under Compare", |s| {
                 !s.analysis.references.is_empty() && changed(s)
             }),

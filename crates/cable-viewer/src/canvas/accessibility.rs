@@ -10,7 +10,7 @@ use crate::geometry::arrows::load_at;
 use crate::geometry::handles;
 use crate::geometry::robot::path_flags;
 use crate::geometry::supports::support_position;
-use crate::state::{AppState, Item};
+use crate::state::{AppState, Freshness, Item};
 use crate::units::{format, translate, unit};
 
 /// Most contacts of a cable that are named: what lies on rubble has one a stone.
@@ -98,7 +98,10 @@ pub fn summary(state: &AppState) -> String {
         });
         out.push(format!("{}: {}", c.name, supports.collect::<Vec<_>>().join(", ")));
     }
-    if let Some(answer) = &state.live.snapshot.solution {
+    if matches!(state.freshness(), Freshness::Solving | Freshness::Draft) {
+        out.push("solving".to_owned());
+    }
+    if let Some(answer) = state.live.snapshot.solution.as_ref().filter(|_| state.is_current()) {
         let most = answer.max_tension();
         let on = answer.cables.get(most.cable).map_or("", |c| &c.name);
         out.push(format!(

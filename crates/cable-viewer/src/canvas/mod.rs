@@ -10,17 +10,19 @@ pub mod layers;
 mod pointer;
 mod view;
 
-use egui::{Role, Sense, Ui, WidgetInfo};
+use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 
 use crate::canvas::layers::{
     cable, compare_overlay, contact, forces, grid, legend, obstacles, robot, robot_path, safe_reach, supports,
     tension_marker,
 };
 use crate::canvas::view::CanvasView;
-use crate::command::Command;
+use crate::command::{Command, PlaybackCommand};
 use crate::geometry::bounds;
 use crate::render::theme;
 use crate::state::AppState;
+use crate::state::camera::{BORDER, BORDER_WITHOUT_LEGEND};
+use crate::units::labels;
 
 /// Draws the scene into the rest of the window and reads the pointer.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
@@ -34,9 +36,12 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         return;
     }
     let answered = state.live.snapshot.solution.is_some() || state.live.snapshot.error.is_some();
-    if state.view.camera.fit_wanted && answered {
+    // What was fitted stays so in a canvas of another size.
+    let resized = state.view.camera.fitted_to.is_some_and(|size| size != <[f32; 2]>::from(rect.size()));
+    if (state.view.camera.fit_wanted || resized) && answered {
+        let border = if state.ui.legend_beside { BORDER_WITHOUT_LEGEND } else { BORDER };
         let bounds = bounds::scene(state);
-        state.view.camera.fit(rect, bounds);
+        state.view.camera.fit(rect, bounds, border);
     }
     let [low, high] = [rect.left_bottom(), rect.right_top()].map(|p| state.view.camera.to_world(rect, p));
     state.view.visible_m = [low, high];
@@ -51,6 +56,30 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         avoided: Vec::new(),
     };
     draw(&mut view, state);
+    badge(ui, rect, state, commands);
+}
+
+/// Time (s) after which a solve is said on the canvas, and after which it can be cancelled. Shorter:
+/// they flicker in a drag.
+const BADGE_AFTER_S: [f64; 2] = [0.25, 0.8];
+
+/// That an answer is being sought, for how long, and a way out.
+fn badge(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>) {
+    let Some(seconds) = state.solving().filter(|s| *s > BADGE_AFTER_S[0]) else { return };
+    let top = egui::pos2(rect.center().x, rect.min.y + 12.0);
+    let area = egui::Area::new(egui::Id::unique("solving")).fixed_pos(top).pivot(egui::Align2::CENTER_TOP);
+    area.order(egui::Order::Middle).show(ui.ctx(), |ui| {
+        egui::Frame::popup(ui.style()).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.add(egui::Spinner::new().size(14.0));
+                ui.strong(labels::solving(seconds));
+                let help = "Stops solving; the scene stays as it is, without an answer";
+                if seconds > BADGE_AFTER_S[1] && ui.button("Cancel").on_hover_text(help).clicked() {
+                    commands.push(Command::Playback(PlaybackCommand::CancelSolve));
+                }
+            });
+        });
+    });
 }
 
 /// All layers, back to front.
@@ -65,19 +94,26 @@ fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     safe_reach::line(view, state, &mut figures);
     robot::draw(view, state);
     compare_overlay::draw(view, state);
-    contact::draw(view, state);
+    let current = state.is_current();
+    if current {
+        contact::draw(view, state);
+    }
     cable::draw(view, state);
     forces::draw(view, state, &mut figures);
     supports::draw(view, state);
-    tension_marker::draw(view, state, &mut figures);
+    if current {
+        tension_marker::draw(view, state, &mut figures);
+    }
     robot_path::draw(view, state, &mut figures);
     pointer::frame(view, state);
     if state.view.layers.grid {
         grid::axes(view);
         grid::scale_bar(view);
     }
-    legend::draw(view, state);
-    legend::contacts(view, state);
+    if !state.ui.legend_beside {
+        legend::draw(view, state);
+        legend::contacts(view, state);
+    }
     legend::banner(view, state);
     safe_reach::legend(view, state);
     if state.view.layers.labels {

@@ -27,19 +27,24 @@ pub struct Effects {
 
 /// Sends a change of the scene to the worker: the present simulation is carried over.
 pub fn submit_edit(state: &mut AppState, effects: &mut Effects) {
-    submit(state, false, effects);
+    submit(state, [false, false], effects);
+}
+
+/// Sends a scene of before to the worker: the cable lies as it did then.
+pub fn submit_undone(state: &mut AppState, effects: &mut Effects) {
+    submit(state, [false, true], effects);
 }
 
 /// Sends another scene to the worker: nothing of the present simulation is carried over.
 pub fn submit_new_scene(state: &mut AppState, effects: &mut Effects) {
-    submit(state, true, effects);
+    submit(state, [true, true], effects);
 }
 
-fn submit(state: &mut AppState, fresh: bool, effects: &mut Effects) {
+fn submit(state: &mut AppState, [fresh, as_laid]: [bool; 2], effects: &mut Effects) {
     // An edit is of the present.
     state.live.show_time(None);
-    let edit =
-        Edit { scene: state.document.scene.clone(), model: state.solver.model, settings: state.solver.settings, fresh };
+    let (scene, model, settings) = (state.document.scene.clone(), state.solver.model, state.solver.settings);
+    let edit = Edit { scene, model, settings, fresh, as_laid };
     effects.request.merge(Request {
         edit: Some(edit),
         playback: Some(state.live.playback),

@@ -24,6 +24,8 @@ use crate::state::{AppState, Document, Reference};
 /// Files and the window.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileCommand {
+    /// A scene with one cable and nothing else.
+    New,
     /// Asks which file to open.
     AskOpen,
     /// Opens a file; on an error the present scene stays.
@@ -87,6 +89,7 @@ pub fn apply(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
 
 fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
     match command {
+        FileCommand::New => open(state, new_scene(), None, effects),
         FileCommand::AskOpen => state.ui.dialog = Some(Dialog::Open { path: path_text(state) }),
         FileCommand::AskSaveAs => state.ui.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
         FileCommand::Open(path) => match scene_file::load(&path) {
@@ -141,7 +144,11 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             Ok(opened) => hold(state, &path, opened),
             Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
         },
-        FileCommand::SetDialog(dialog) => state.ui.dialog = dialog,
+        FileCommand::SetDialog(dialog) => {
+            let message = matches!(state.ui.dialog, Some(Dialog::Message { .. }));
+            let then = state.ui.after_message.take().filter(|_| message && dialog.is_none());
+            state.ui.dialog = dialog.or(then);
+        }
         FileCommand::Recover(scene) => {
             open(state, *scene, None, effects);
             state.document.recovered = true;
@@ -169,6 +176,7 @@ impl FileCommand {
     /// What takes the place of the present scene; None: it stays.
     fn replacement(&self) -> Option<Replacement> {
         Some(match self {
+            Self::New => Replacement::New,
             Self::Open(path) => Replacement::Open(path.clone()),
             Self::OpenRun(path) => Replacement::OpenRun(path.clone()),
             Self::OpenCatalogue(id) => Replacement::OpenCatalogue(id.clone()),
@@ -182,6 +190,7 @@ impl FileCommand {
 impl From<Replacement> for FileCommand {
     fn from(action: Replacement) -> Self {
         match action {
+            Replacement::New => Self::New,
             Replacement::Open(path) => Self::Open(path),
             Replacement::OpenRun(path) => Self::OpenRun(path),
             Replacement::OpenCatalogue(id) => Self::OpenCatalogue(id),
@@ -191,13 +200,24 @@ impl From<Replacement> for FileCommand {
     }
 }
 
+/// One cable between two points.
+fn new_scene() -> Scene {
+    Scene { name: "New scene".to_owned(), ..catalog::hanging_span() }
+}
+
 fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut Effects) {
+    // Pins belong to their scene.
+    state.analysis.references.retain(|pin| pin.scene.name == scene.name);
+    if let Some(path) = &path {
+        state.ui.add_recent(path.clone());
+    }
     state.document = Document::new(scene, path);
     (state.selection.selected, state.selection.also) = (None, Vec::new());
     (state.selection.hovered, state.analysis.tension_marker) = (None, None);
     state.live.playback.paused = true;
     state.live.robot_order = None;
     state.live.reopened_run = Vec::new();
+    (state.live.before_reset, state.live.reset_is_last, state.live.resets) = (None, false, false);
     state.ui.tutorial = None;
     state.analysis.safe_reach = crate::jobs::safe_reach::SafeReachState::default();
     effects.reach = Some(None);
@@ -235,11 +255,16 @@ fn save(state: &mut AppState, path: &Path) {
     match scene_file::save(path, &state.document.scene) {
         Ok(()) => {
             state.document.path = Some(path.to_owned());
+            state.ui.add_recent(path.to_owned());
             state.document.saved = state.document.scene.clone();
             state.document.recovered = false;
             state.ui.dialog = None;
         }
-        Err(text) => complain(state, &format!("“{}” was not saved", path.display()), text),
+        Err(text) => {
+            complain(state, &format!("“{}” was not saved", path.display()), text);
+            // What was typed is not lost: it is asked again.
+            state.ui.after_message = Some(Dialog::SaveAs { path: path.display().to_string() });
+        }
     }
 }
 

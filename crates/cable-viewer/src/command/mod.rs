@@ -17,7 +17,7 @@ pub mod scene;
 pub mod support_kind;
 pub mod view;
 
-pub use crate::command::effects::{Effects, submit_edit, submit_new_scene};
+pub use crate::command::effects::{Effects, submit_edit, submit_new_scene, submit_undone};
 pub use crate::command::file::FileCommand;
 pub use crate::command::playback::PlaybackCommand;
 pub use crate::command::scene::SceneCommand;

@@ -2,7 +2,7 @@
 
 use cable_core::scene::SupportKind;
 
-use crate::command::effects::{Effects, next_number};
+use crate::command::effects::{Effects, next_number, submit_edit};
 use crate::state::dialog::Dialog;
 use crate::state::undo::EditKind;
 use crate::state::{AppState, Playback};
@@ -31,8 +31,15 @@ pub enum PlaybackCommand {
     GoOn,
     /// A replay begins anew at its end, or ends there.
     SetLoop(bool),
-    /// Back to the start, bit for bit; pauses.
+    /// Back to the start, bit for bit; pauses, and the robot's task starts again.
     Reset,
+    /// Takes the last reset back: what was recorded before it is there again, and time goes on from
+    /// its end.
+    UndoReset,
+    /// Gives up what is being solved.
+    CancelSolve,
+    /// Solves what was given up.
+    Solve,
     /// The robot goes at this speed, m/s, positive to the right; None: along its path.
     DriveRobot(Option<f64>),
     /// Speed it is driven with by hand, m/s.
@@ -75,8 +82,20 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
         PlaybackCommand::Reset => {
             state.live.playback.paused = true;
             state.live.show_time(None);
-            effects.request.merge(Request { reset: true, number: next_number(state), ..Request::default() });
+            (state.live.resets, state.live.robot_order) = (true, None);
+            let number = next_number(state);
+            effects.request.merge(Request { reset: true, robot: Some(None), number, ..Request::default() });
         }
+        PlaybackCommand::UndoReset => {
+            if state.live.undo_reset() {
+                go_on(state, effects);
+            }
+        }
+        PlaybackCommand::CancelSolve => {
+            state.live.playback.paused = true;
+            effects.request.merge(Request { cancel: true, number: next_number(state), ..Request::default() });
+        }
+        PlaybackCommand::Solve => submit_edit(state, effects),
         PlaybackCommand::DriveRobot(order) => {
             // Who drives wants to see it: time runs, from the present on.
             if order.is_some_and(|v| v != 0.0) {
@@ -134,6 +153,7 @@ fn go_on(state: &mut AppState, effects: &mut Effects) {
         model: state.solver.model,
         settings: state.solver.settings,
         fresh: false,
+        as_laid: false,
     };
     let resume = Some(Box::new(Resume { edit, answer }));
     effects.request.merge(Request { resume, number: next_number(state), ..Request::default() });

@@ -4,10 +4,11 @@ use cable_core::math::Point;
 use cable_core::scene::{Environment, RobotTask, Support};
 use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
-use crate::command::effects::{Effects, next_number, submit_edit};
+use crate::command::effects::{Effects, next_number, submit_edit, submit_undone};
 use crate::command::items::{
     add_waypoint, drop_lost_selection, hitched, move_item, remove_all, set, set_robot, unique,
 };
+use crate::command::playback::{self, PlaybackCommand};
 use crate::command::{clipboard, route};
 use crate::state::undo::EditKind;
 use crate::state::{AppState, Item};
@@ -131,6 +132,9 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         SceneCommand::EditDone => return state.document.undo.close_entry(),
         SceneCommand::Copy => return clipboard::copy(state, effects),
         SceneCommand::Cut => clipboard::copy(state, effects),
+        SceneCommand::Undo if state.live.reset_is_last => {
+            return playback::apply(state, PlaybackCommand::UndoReset, effects);
+        }
         SceneCommand::Undo | SceneCommand::Redo => {
             let other = match command {
                 SceneCommand::Undo => state.document.undo.back(&state.document.scene),
@@ -139,7 +143,8 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
             let Some(other) = other else { return };
             state.document.scene = other;
             drop_lost_selection(state);
-            after_edit(state, None, effects);
+            state.document.validate();
+            submit_undone(state, effects);
             return;
         }
         _ => {}
@@ -169,6 +174,7 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         state.document.undo.close_entry();
     }
     drop_lost_selection(state);
+    state.live.reset_is_last = false;
     after_edit(state, dragged, effects);
 }
 

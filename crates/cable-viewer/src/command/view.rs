@@ -11,7 +11,8 @@ use crate::record::run::Run;
 use crate::render::colour::ColourScale;
 use crate::state::questions::{bending_query, reach_target};
 use crate::state::tutorial_place::TutorialPlace;
-use crate::state::{AppState, Grab, Item, Layers, Reference, TensionMarker};
+use crate::state::{AppState, Grab, Item, Layers, OpenPanels, Reference, TensionMarker};
+use crate::units::labels;
 use crate::units::system::System;
 
 /// Changes what is shown.
@@ -46,6 +47,10 @@ pub enum ViewCommand {
     Recentre,
     /// A point in the middle, same scale, m.
     CentreOn(Point),
+    /// Puts a point (m) in the middle and shows what lies round it.
+    ZoomOn(Point),
+    /// Opens and folds parts of the window.
+    ShowPanels(OpenPanels),
     /// How the cable is coloured.
     SetColour(ColourScale),
     /// What is drawn.
@@ -72,6 +77,10 @@ pub enum ViewCommand {
     /// Lets one go, or all.
     LetGo(Option<usize>),
 }
+
+/// Part of the scene that is shown round a place. More: the place is not found in it; less: nobody
+/// sees where it is.
+const PLACE_FRACTION: f64 = 0.25;
 
 /// Does one of them.
 pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) {
@@ -108,13 +117,25 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         ViewCommand::Fit => state.view.camera.fit_wanted = true,
         ViewCommand::Recentre => {
             let [low, high] = crate::geometry::bounds::cables(state);
-            state.view.camera.centre_m = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
+            state.view.camera.centre_on([0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])]);
         }
         ViewCommand::CentreOn(p) => {
             if p.iter().all(|v| v.is_finite()) {
-                state.view.camera.centre_m = p;
+                state.view.camera.centre_on(p);
             }
         }
+        ViewCommand::ZoomOn(p) => {
+            if p.iter().all(|v| v.is_finite()) {
+                let [low, high] = crate::geometry::bounds::scene(state);
+                let [left, right] = state.view.visible_m;
+                let (part, shown) = (PLACE_FRACTION * (high[0] - low[0]).max(high[1] - low[1]), right[0] - left[0]);
+                state.view.camera.centre_on(p);
+                if part > 0.0 && shown > part {
+                    state.view.camera.zoom(p, shown / part);
+                }
+            }
+        }
+        ViewCommand::ShowPanels(panels) => state.ui.panels = panels,
         ViewCommand::SetColour(colour) => state.view.colour = colour,
         ViewCommand::SetLayers(layers) => state.view.layers = layers,
         ViewCommand::SetTheme(theme) => state.view.theme = theme,
@@ -158,7 +179,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 (state.live.snapshot.solution.clone(), state.live.snapshot.scene.clone())
                 && state.analysis.references.len() < Reference::MAX_COUNT
             {
-                let name = format!("{}, {} model, {:.2} s", scene.name, solution.model, solution.time_s);
+                let name = format!("{}, {} model, {:.2} s", scene.name, labels::model(solution.model), solution.time_s);
                 let recording = &state.live.recording;
                 let run = Run::of(state.live.history.samples.iter(), recording.answers(), recording.events().len());
                 let (run, wall_s) = (run.map(Arc::new), state.live.snapshot.solve_wall_s);

@@ -50,14 +50,15 @@ pub fn cables(state: &AppState) -> [Point; 2] {
     bounds.or_unit()
 }
 
-/// Least and greatest corner of the whole scene, m.
+/// Least and greatest corner of cables, obstacles and robot, with the ground below them, m.
 #[must_use]
 pub fn scene(state: &AppState) -> [Point; 2] {
     let mut bounds = Bounds::EMPTY;
     add_cables(state, &mut bounds);
     for obstacle in &state.document.scene.obstacles {
         match &obstacle.shape {
-            Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
+            Shape::Terrain { .. } => {}
+            Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
                 points_m.iter().for_each(|&p| bounds.add(p));
             }
             Shape::Circle { center_m, radius_m } => {
@@ -67,7 +68,21 @@ pub fn scene(state: &AppState) -> [Point; 2] {
         }
     }
     crate::geometry::robot::robot_outline(state).into_iter().for_each(|p| bounds.add(p));
+    crate::geometry::robot::path_flags(state).into_iter().for_each(|(_, p, _)| bounds.add(p));
+    add_ground(state, &mut bounds);
     bounds.or_unit()
+}
+
+/// Adds the ground below what is there already: the whole of it may be a hundred times as long.
+fn add_ground(state: &AppState, bounds: &mut Bounds) {
+    let others = *bounds;
+    let found = others.low[0] <= others.high[0];
+    for obstacle in &state.document.scene.obstacles {
+        if let Shape::Terrain { points_m } = &obstacle.shape {
+            let beside = |p: &&Point| !found || (others.low[0]..=others.high[0]).contains(&p[0]);
+            points_m.iter().filter(beside).for_each(|&p| bounds.add(p));
+        }
+    }
 }
 
 /// Left and right end of the ground, where there is some, within what a robot could be led to by

@@ -24,6 +24,19 @@ pub struct Sheet {
     pub bounds: [f64; 4],
     /// The lines, every sample, SI.
     pub lines: Vec<Series>,
+    /// Service and breaking limit, SI; those that are not finite or not in view are left out.
+    pub limits: [f64; 2],
+}
+
+/// What the limits are called, and their colours.
+const LIMITS: [(&str, [u8; 3]); 2] = [("service limit", [230, 159, 0]), ("breaking limit", [213, 60, 40])];
+
+/// The limits that are in view, in the unit shown.
+fn limits(sheet: &Sheet) -> impl Iterator<Item = (f64, &'static str, [u8; 3])> {
+    let [_, bottom, _, top] = sheet.bounds;
+    let shown = sheet.limits.map(|limit| limit / sheet.si[1]);
+    let named = shown.into_iter().zip(LIMITS).map(|(limit, (name, colour))| (limit, name, colour));
+    named.filter(move |(limit, ..)| limit.is_finite() && *limit > bottom && *limit < top)
 }
 
 /// Size of a drawing, points.
@@ -125,6 +138,17 @@ pub fn svg(sheet: &Sheet) -> String {
         let at = ROOM[0] + 150.0 * k as f64;
         let _ = writeln!(out, "<text x=\"{at}\" y=\"36\" fill=\"{colour}\">{}</text>", escaped(&line.name));
     }
+    for (limit, name, [r, g, b]) in limits(sheet) {
+        let (at, right, colour) = (y(limit), ROOM[0] + width, format!("#{r:02x}{g:02x}{b:02x}"));
+        let _ = writeln!(
+            out,
+            "<line x1=\"{}\" y1=\"{at:.2}\" x2=\"{right}\" y2=\"{at:.2}\" stroke=\"{colour}\" stroke-dasharray=\"8 4\"/>\n\
+             <text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\" fill=\"{colour}\">{name}</text>",
+            ROOM[0],
+            right - 6.0,
+            at - 5.0
+        );
+    }
     let (middle, low) = (ROOM[0] + width / 2.0, SIZE[1] - 14.0);
     let _ = writeln!(
         out,
@@ -165,11 +189,14 @@ fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
         .renderer(crate::render::offscreen::renderer()?)
         .build_ui(move |ui| {
             crate::render::theme::install(ui.ctx());
+            // The paper reaches the edges, and nothing on it touches them.
+            ui.painter().rect_filled(ui.ctx().content_rect(), 0.0, ui.visuals().panel_fill);
             ui.strong(&sheet.title);
             let [left, bottom, right, top] = sheet.bounds;
             egui_plot::Plot::new("export")
                 .x_axis_label(sheet.across[0].clone())
                 .y_axis_label(sheet.up[0].clone())
+                .y_axis_min_width(60.0)
                 .legend(egui_plot::Legend::default())
                 .height(size[1] - 50.0)
                 .show(ui, |plot| {
@@ -180,6 +207,10 @@ fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
                             visible(line, &sheet).iter().map(|p| [p[0] / sheet.si[0], p[1] / sheet.si[1]]).collect();
                         let drawn = egui_plot::Line::new(line.name.clone(), points).color(colour).width(2.0);
                         plot.line(drawn.style(style));
+                    }
+                    for (limit, name, [r, g, b]) in limits(&sheet) {
+                        let line = egui_plot::HLine::new(name, limit).color(egui::Color32::from_rgb(r, g, b));
+                        plot.hline(line.style(egui_plot::LineStyle::dashed_loose()));
                     }
                 });
         });
@@ -206,6 +237,7 @@ mod tests {
             up: ["Tension, kN".to_owned(), "tension_n".to_owned()],
             si: [1.0, 1e3],
             bounds: [2.0, 0.0, 5.0, 1.0],
+            limits: [800.0, 10e3],
             lines: vec![line("Maximum", |x| 100.0 * x.sin() + 0.1), line("At left, end", |x| 1.0 / (x - 3.0))],
         }
     }
@@ -231,6 +263,7 @@ mod tests {
         let text = svg(&sheet());
         assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
         assert!(text.contains("Over &lt;time&gt;") && text.matches("<polyline").count() == 2 && !text.contains("NaN"));
+        assert!(text.contains("service limit") && !text.contains("breaking limit"), "10 kN is not in view");
         assert!(!svg(&Sheet { bounds: [0.0, 0.0, 1.0, 1.0], si: [1.0; 2], ..Sheet::default() }).contains("NaN"));
     }
 

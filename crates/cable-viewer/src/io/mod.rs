@@ -2,6 +2,7 @@
 //! show.
 //!
 //! - `scene_file`: scenes
+//! - `recent_files`: what was opened last
 //! - `saved_run`: the folder of a run, read again
 //! - `graph_file`: what is in view of a graph, as CSV, SVG or PNG
 //! - `autosave`: unsaved changes, kept for a window that dies
@@ -10,5 +11,6 @@
 pub mod autosave;
 pub mod feedback;
 pub mod graph_file;
+pub mod recent_files;
 pub mod saved_run;
 pub mod scene_file;

@@ -5,6 +5,7 @@
 //! - `readouts`, `warnings`, `analysis`: what was answered, on the right
 //! - `plots`, `playback`, `timeline`: graphs and time, below
 //! - `scene_errors`: what is wrong with the scene, beside the field where it was typed
+//! - `words`: keys of scene files and names of models as the window says them
 
 pub mod analysis;
 pub mod cable;
@@ -18,3 +19,4 @@ pub mod scene_errors;
 pub mod solver;
 pub mod timeline;
 pub mod warnings;
+pub mod words;

@@ -3,9 +3,9 @@
 use egui::{Button, Slider, SliderClamping, Ui};
 
 use crate::command::{Command, PlaybackCommand};
-use crate::state::{AppState, Playback};
-use crate::units::format;
+use crate::state::{AppState, Freshness, Playback};
 use crate::units::unit::Unit;
+use crate::units::{format, labels};
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
 
@@ -27,7 +27,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 commands.push(Command::Playback(command));
             }
         };
-        button(ui, (Icon::ToStart, "Reset"), "Back to the start, bit for bit", PlaybackCommand::Reset);
+        button(ui, (Icon::ToStart, "Reset"), "Back to the start", PlaybackCommand::Reset);
         if state.live.playback.paused {
             button(ui, (Icon::Play, "Play"), "Let time run", PlaybackCommand::SetPaused(false));
         } else {
@@ -40,6 +40,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
         ui.label(format!("Time {time_s:.3} s")).on_hover_text("Simulated time since the start");
         real_time(ui, state);
+        ui.separator();
+        status(ui, state);
     });
 }
 
@@ -90,5 +92,33 @@ fn real_time(ui: &mut Ui, state: &AppState) {
             .on_hover_text(format!("{help}. The solver does not keep up: fewer segments or a looser tolerance help"));
     } else {
         ui.label(text).on_hover_text(help);
+    }
+}
+
+/// How the solver is doing, beside the transport.
+fn status(ui: &mut Ui, state: &AppState) {
+    if let Some(solution) = &state.live.snapshot.solution {
+        ui.label(format!("{} model", labels::model(solution.model))).on_hover_text(&solution.reason);
+        ui.separator();
+    }
+    let solved = format!("Solved in {:.2} ms", state.live.snapshot.solve_wall_s * 1e3);
+    match (state.solving(), state.freshness(), state.solver.edit_latency_s) {
+        (Some(seconds), ..) => {
+            ui.label(labels::solving(seconds)).on_hover_text("The answer to the last edits is being sought");
+        }
+        (None, Freshness::Outdated, _) => {
+            ui.label("Not solved");
+        }
+        (None, _, Some(latency)) => {
+            let help = format!("From the last edit to the first frame that shows it. {solved}");
+            ui.label(format!("Updated in {:.0} ms", latency * 1e3)).on_hover_text(help);
+        }
+        (None, _, None) => {
+            ui.label(solved);
+        }
+    }
+    if let Some(fault) = &state.ui.autosave_fault {
+        ui.separator();
+        ui.colored_label(ui.visuals().warn_fg_color, "changes are not kept for recovery").on_hover_text(fault);
     }
 }

@@ -3,6 +3,7 @@
 use egui::{ComboBox, Id, Ui};
 
 use crate::command::{Command, FileCommand};
+use crate::panels::readouts::DIMMED;
 use crate::plot::{GraphResponse, GraphView, along, time};
 use crate::record::measure::Measure;
 use crate::render::colour::Quantity;
@@ -85,9 +86,8 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
     });
     field::name(&shown.response, "Time window");
     shown.response.on_hover_text("How much of the past the time graph follows");
-    if state.live.history.samples.len() < 2 {
-        ui.weak("Press play to record over time");
-    } else if state.document.scene.cables.len() > 1
+    if state.live.history.samples.len() >= 2
+        && state.document.scene.cables.len() > 1
         && matches!(view.measure, Measure::Cable(Quantity::Stress | Quantity::Strain))
     {
         ui.weak("Over time: tension, as there are several cables");
@@ -115,7 +115,13 @@ fn along_cable(ui: &mut Ui, state: &AppState, view: GraphView, height: f32) -> G
             let present = state.live.snapshot.solution.as_ref().map(|s| s.time_s);
             let found = friction_answer(state).filter(|(_, ask)| present == Some(ask.span_s));
             let ribbon = found.and_then(|(s, _)| s.along.get(index)).map_or(&[][..], Vec::as_slice);
-            along::ui(ui, cable, (solved, ribbon), view, height)
+            ui.scope(|ui| {
+                if !state.is_current() {
+                    ui.multiply_opacity(DIMMED);
+                }
+                along::ui(ui, cable, (solved, ribbon), view, height)
+            })
+            .inner
         }
         _ => {
             ui.weak("Nothing solved yet");

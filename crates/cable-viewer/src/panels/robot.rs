@@ -5,16 +5,16 @@ use cable_core::robot::RobotReport;
 use cable_core::scene::RobotTask;
 use cable_core::scene::preset::robot_preset;
 use cable_core::scene::robot::{ROLLING_RESISTANCE, TRACK_FRICTION};
-use egui::{Grid, Ui};
+use egui::Ui;
 
 use crate::command::{Command, PlaybackCommand, SceneCommand};
 use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
-use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
+use crate::widgets::{field, readout};
 
 /// Width of a number, points: “12.34 m/s” fits.
 const WIDTH: f32 = 72.0;
@@ -77,8 +77,8 @@ fn by_hand(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             }
         }
     });
-    labelled(ui, "Hand speed", "Hand speed", |ui| {
-        let entry = field::number(ui, "Hand speed", Unit::M_PER_S, speed, WIDTH);
+    labelled(ui, "Manual speed", "Manual speed", |ui| {
+        let entry = field::number(ui, "Manual speed", Unit::M_PER_S, speed, WIDTH);
         if let Some(speed) = entry.value {
             commands.push(Command::Playback(PlaybackCommand::SetRobotSpeed(speed)));
         }
@@ -88,22 +88,18 @@ fn by_hand(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn readouts(ui: &mut Ui, r: &RobotReport) {
     let share = if r.traction_n > 0.0 { r.thrust_n.abs() / r.traction_n } else { 0.0 };
+    let Unit { symbol, si, .. } = Unit::M_PER_S.display();
+    let speed = |v: f64| format!("{} {symbol}", significant(v / si, 3));
     let rows = [
         ("Motion", r.going.name().to_owned(), "Why it is as fast as it is"),
-        (
-            "Speed",
-            {
-                let Unit { symbol, si, .. } = Unit::M_PER_S.display();
-                let shown = |v: f64| significant(v / si, 3);
-                format!("{} {symbol}, told {} {symbol}", shown(r.speed_m_per_s), shown(r.commanded_m_per_s))
-            },
-            "Along the ground, and what it is told by hand or by its path",
-        ),
+        ("Speed", speed(r.speed_m_per_s), "Along the ground"),
+        ("Commanded speed", speed(r.commanded_m_per_s), "By hand or by its path"),
         ("Slope", format!("{:.1}°", r.pitch_deg).replace('-', "−"), "Positive where it climbs to the right"),
+        ("Track force", format::force(r.thrust_n), "Force of the tracks along the ground"),
         (
-            "Track force",
-            format!("{}, {} of what holds", format::force(r.thrust_n), format::percent(share)),
-            "Force of the tracks along the ground, and its share of friction times normal force",
+            "Available traction",
+            format!("{} used", format::percent(share)),
+            "Track force as a share of friction times normal force: at 100 % the tracks slip",
         ),
         ("Normal force", format::force(r.normal_n), "Of the ground on its tracks; the cable can lift or press"),
         (
@@ -112,18 +108,14 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
             "On its hitch; it slows the robot by the balance of forces",
         ),
         (
-            "Press of the cable",
+            "Cable contact force",
             format::force(r.push_x_n.hypot(r.push_y_n)),
-            "On its outline, where the cable lies on it or is pushed along",
+            "On its body, where the cable lies on it or is pushed along",
         ),
     ];
-    Grid::new("robot readouts").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
-        for (name, value, help) in rows {
-            ui.weak(name).on_hover_text(help);
-            ui.label(value).on_hover_text(help);
-            ui.end_row();
-        }
-    });
+    for (name, value, help) in rows {
+        readout::row(ui, name, &value, help, |_| {});
+    }
 }
 
 fn set(robot: Robot, commands: &mut Vec<Command>) {
@@ -232,7 +224,7 @@ fn leg(
         }
         let remove = icon::plain_button(ui, Icon::Remove, true);
         field::name(&remove, &format!("Remove leg {number}"));
-        if remove.on_hover_text("Takes this leg out").clicked() {
+        if remove.on_hover_text("Removes this leg").clicked() {
             put(None, commands);
         }
     });

@@ -6,6 +6,7 @@ use cable_core::{Cable, SceneError};
 use egui::Ui;
 
 use crate::command::{Command, SceneCommand};
+use crate::panels::words;
 use crate::state::AppState;
 use crate::units::unit::Unit;
 use crate::units::{format, translate};
@@ -52,7 +53,7 @@ pub fn whole(state: &AppState) -> Option<String> {
         let property = crate::panels::cable::property::PROPERTIES.iter().find(|p| p.key == key)?;
         Some(format!("{} of {}", property.quantity.name, state.document.scene.cables.get(index)?.name))
     });
-    Some(format!("{} {}", named.unwrap_or_else(|| found.path.clone()), sentence(&found.fault)))
+    Some(format!("{} {}", named.unwrap_or_else(|| format!("{}:", words::place(&found.path))), sentence(&found.fault)))
 }
 
 /// Rounded up to the next hundredth, so that the figure shown is long enough.

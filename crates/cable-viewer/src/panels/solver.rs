@@ -167,7 +167,7 @@ fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
     let step = if cost.inner_step_s > 0.0 { format::duration(cost.inner_step_s) } else { "none, at rest".to_owned() };
     let segments = largest_mesh(Some(answer)).map_or_else(|| "–".to_owned(), |n| n.to_string());
     let rows = [
-        ("Wall time", format::duration(state.live.snapshot.solve_wall_s), "Time the last solve or step took"),
+        ("Solve time", format::duration(state.live.snapshot.solve_wall_s), "How long the last solve or step took"),
         (
             "Iterations",
             cost.iterations.to_string(),
@@ -182,17 +182,20 @@ fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
             "Largest force left unbalanced at a node: the smaller, the closer to equilibrium",
         ),
         ("Inner time step", step, "The step the model takes inside a frame"),
-        ("Halved steps", cost.halved_steps.to_string(), "Steps that failed and were taken in halves"),
+        ("Steps halved", cost.halved_steps.to_string(), "Steps that failed and were taken in halves"),
         ("Segments", segments, "Segments of the finest cable as solved"),
-        ("Solver thread", status.to_owned(), "The thread that solves while the window stays usable"),
+        ("Solver", status.to_owned(), "The thread that solves while the window stays usable"),
     ];
     ui.separator();
-    Grid::new("cost").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
-        for (name, value, help) in rows {
-            ui.weak(name).on_hover_text(help);
-            ui.label(value).on_hover_text(help);
-            ui.end_row();
-        }
+    let diagnostics = egui::CollapsingHeader::new("Diagnostics").id_salt("cost");
+    diagnostics.show_unindented(ui, |ui| {
+        Grid::new("cost").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {
+            for (name, value, help) in rows {
+                ui.weak(name).on_hover_text(help);
+                ui.label(value).on_hover_text(help);
+                ui.end_row();
+            }
+        });
     });
 }
 

@@ -16,7 +16,7 @@ const MARK_REACH: f32 = 4.0;
 /// Why its controls are off.
 const NOTHING: &str = "Nothing is recorded yet: press play";
 /// Why what leads back to the present is off.
-const PRESENT: &str = "The present is shown";
+const PRESENT: &str = "The latest frame is shown";
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -25,13 +25,13 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let mut push = |command| commands.push(Command::Playback(command));
         ui.add_enabled_ui(span.is_some(), |ui| {
-            let back = ui.button("Step back").on_hover_text("The picture before this one (arrow left)");
+            let back = ui.button("Step back").on_hover_text("The frame before this one (arrow left)");
             let back = back.on_disabled_hover_text(NOTHING);
             if back.clicked() {
                 push(PlaybackCommand::StepBack);
             }
             let mut looped = state.live.recording.looped;
-            let help = "Play begins anew at the end of what was recorded; off, it goes on from there";
+            let help = "Playback starts again at the end of the recording; off, the simulation goes on from there";
             if ui.checkbox(&mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NOTHING).changed() {
                 push(PlaybackCommand::SetLoop(looped));
                 // A loop of what is not shown begins at its start.
@@ -40,18 +40,23 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 }
             }
             let shown = state.live.recording.shown_s.is_some();
-            let help = "Ends the look at the past";
-            let present = ui.add_enabled(shown, egui::Button::new("Present")).on_hover_text(help);
+            let help = "Returns to the latest frame";
+            let present = ui.add_enabled(shown, egui::Button::new("Latest")).on_hover_text(help);
             if present.on_disabled_hover_text(PRESENT).clicked() {
                 push(PlaybackCommand::Show(None));
             }
-            let help =
-                "Takes the time shown as the present: what came after it is forgotten, and friction takes hold anew";
-            let on = ui.add_enabled(shown, egui::Button::new("Go on from here")).on_hover_text(help);
+            let help = "Continues from the time shown: later frames are dropped, and friction starts fresh";
+            let on = ui.add_enabled(shown, egui::Button::new("Resume from here")).on_hover_text(help);
             if on.on_disabled_hover_text(PRESENT).clicked() {
                 push(PlaybackCommand::GoOn);
             }
         });
+        if state.live.before_reset.is_some() {
+            let help = "Brings back what was recorded before the last reset, and goes on from its end (Ctrl+Z)";
+            if ui.button("Undo reset").on_hover_text(help).clicked() {
+                push(PlaybackCommand::UndoReset);
+            }
+        }
         let [first, last] = span.unwrap_or([0.0, 1.0]);
         ui.spacing_mut().slider_width = (ui.available_width() - BESIDE).max(80.0);
         let mut time_s = state.live.recording.shown_s.unwrap_or(now_s).clamp(first, last);

@@ -4,13 +4,15 @@
 use cable_core::scene::SupportKind;
 use cable_core::solution::{Warning, WarningKind};
 use cable_core::{Settings, Solution};
-use egui::{Color32, Frame, RichText, ScrollArea, Ui};
+use egui::{Align, Button, Color32, Label, Layout, RichText, ScrollArea, Sense, Ui, vec2};
 
-use crate::command::{Command, FileCommand, SceneCommand, ViewCommand};
+use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene_errors::{self, Fix};
 use crate::state::{AppState, Item, WorkerStatus};
 use crate::units::{format, translate, unit};
+use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
+use crate::worker::engine::CANCELLED;
 
 /// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a
 /// node.
@@ -34,7 +36,11 @@ enum Severity {
 /// One entry of the list.
 struct Entry {
     severity: Severity,
+    /// What it is about, as long as it lasts; figures are in the title.
+    kind: String,
     title: String,
+    /// The title in two parts, for a narrow panel: what, and figures with their place.
+    parts: Option<[String; 2]>,
     text: String,
     /// Where to look, m.
     at_m: Option<[f64; 2]>,
@@ -48,16 +54,21 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let entries = entries(state);
     if entries.is_empty() {
         ui.horizontal(|ui| {
-            icon::sign(ui, Icon::Check, ui.visuals().text_color());
-            ui.weak("Nothing to warn of");
+            if state.is_current() {
+                icon::sign(ui, Icon::Check, ui.visuals().text_color());
+                ui.weak("No warnings");
+            } else {
+                ui.weak("Warnings follow once this is solved");
+            }
         });
         return;
     }
     let high = SHARE * ui.ctx().content_rect().height();
     let area = ScrollArea::vertical().id_salt("warnings").max_height(high).min_scrolled_height(high);
     area.auto_shrink([false, true]).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
         for (k, entry) in entries.iter().take(MAX_ROWS).enumerate() {
-            ui.push_id(k, |ui| card(ui, k, entry, commands));
+            row(ui, k, entry, commands);
         }
         if entries.len() > MAX_ROWS {
             ui.weak(format!("and {} more", entries.len() - MAX_ROWS));
@@ -70,11 +81,15 @@ fn entries(state: &AppState) -> Vec<Entry> {
     list.extend(dead_worker(state));
     list.extend(scene_fault(state));
     if let (Some(error), None) = (&state.live.snapshot.error, &state.document.fault) {
+        let cancelled = error == CANCELLED;
         let error = capital(&translate::display(error));
         let text = format!("{error}. The picture and the figures are of the last scene that was solved.");
-        list.push(Entry { title: "No answer".to_owned(), ..entry(Severity::Stop, text) });
+        let solve = Fix { label: "Solve".to_owned(), command: Command::Playback(PlaybackCommand::Solve) };
+        let (title, fix) = if cancelled { ("Not solved", Some(solve)) } else { ("No answer", None) };
+        list.push(Entry { title: title.to_owned(), fix, ..entry(Severity::Stop, text) });
     }
-    if let Some(answer) = state.live.snapshot.solution.as_deref() {
+    // What a draft or the answer to another scene warns of says nothing of this one.
+    if let Some(answer) = state.live.snapshot.solution.as_deref().filter(|_| state.is_current()) {
         list.extend(answer.warnings.iter().map(|w| of_warning(state, answer, w)));
     }
     // A stable sort: equals stay in the order of the answer.
@@ -83,7 +98,7 @@ fn entries(state: &AppState) -> Vec<Entry> {
 }
 
 fn entry(severity: Severity, text: String) -> Entry {
-    Entry { severity, title: String::new(), text, at_m: None, item: None, fix: None }
+    Entry { severity, kind: String::new(), title: String::new(), parts: None, text, at_m: None, item: None, fix: None }
 }
 
 fn capital(text: &str) -> String {
@@ -94,7 +109,7 @@ fn capital(text: &str) -> String {
 
 fn dead_worker(state: &AppState) -> Option<Entry> {
     let WorkerStatus::Dead(words) = &state.solver.status else { return None };
-    let fix = Fix { label: "Start it again".to_owned(), command: Command::File(FileCommand::RestartWorker) };
+    let fix = Fix { label: "Restart the solver".to_owned(), command: Command::File(FileCommand::RestartWorker) };
     let text = format!("{}. The scene is safe; nothing is solved until it runs again.", capital(words));
     Some(Entry { title: "The solver stopped".to_owned(), fix: Some(fix), ..entry(Severity::Stop, text) })
 }
@@ -112,30 +127,39 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::Broken => (Severity::Stop, "Broken"),
         WarningKind::MayBreak => (Severity::Caution, "May break"),
         WarningKind::Kink => (Severity::Caution, "Kinked"),
-        WarningKind::SidewallPressure => (Severity::Caution, "Pressed too hard sideways"),
+        WarningKind::SidewallPressure => (Severity::Caution, "Sidewall pressure too high"),
         WarningKind::Loop => (Severity::Caution, "Crosses itself"),
-        WarningKind::Curl => (Severity::Caution, "Curls up"),
+        WarningKind::Curl => (Severity::Caution, "Tight curl"),
         WarningKind::Wrapped => (Severity::Caution, "Wrapped round an obstacle"),
         WarningKind::Snag => (Severity::Caution, "Snagged"),
         WarningKind::Slack => (Severity::Note, "Slack"),
-        WarningKind::ServiceTension => (Severity::Caution, "Above the service tension"),
-        WarningKind::BendRadius => (Severity::Caution, "Bent too tightly"),
-        WarningKind::Accuracy => (Severity::Caution, "Less accurate than asked"),
-        WarningKind::SupportHeld => (Severity::Caution, "A support was held back"),
-        WarningKind::InitialPenetration => (Severity::Note, "Put outside of an obstacle"),
+        WarningKind::ServiceTension => (Severity::Caution, "Above service tension"),
+        WarningKind::BendRadius => (Severity::Caution, "Bend too tight"),
+        WarningKind::Accuracy => (Severity::Caution, "Accuracy below target"),
+        WarningKind::SupportHeld => (Severity::Caution, "Support blocked"),
+        WarningKind::InitialPenetration => (Severity::Note, "Moved out of an obstacle"),
         WarningKind::ThroughRobot => (Severity::Caution, "Lies through the robot"),
-        WarningKind::Stabilised => (Severity::Caution, "The motion was stabilised"),
-        WarningKind::EnergyGrows => (Severity::Stop, "Energy from nowhere"),
-        WarningKind::NotUnique => (Severity::Note, "One of several resting places"),
+        WarningKind::Stabilised => (Severity::Caution, "Motion was stabilised"),
+        WarningKind::EnergyGrows => (Severity::Stop, "Energy error"),
+        WarningKind::NotUnique => (Severity::Note, "Rest shape depends on how the cable was laid"),
     };
     let index = state.document.scene.cables.iter().position(|c| c.name == warning.cable);
-    let since = warning.since_s.map_or_else(String::new, |t| format!(" since {t:.2}\u{a0}s"));
+    let since = warning.since_s.map_or_else(String::new, |t| format!(", since {t:.2}\u{a0}s"));
     let along = unit::Unit { decimals: Some(2), ..unit::Unit::M }.text(warning.arc_length_m);
-    let place = format!("{} at {}{since}", warning.cable, along.replace(' ', "\u{a0}"));
-    let figures = figures(warning).map_or_else(String::new, |f| format!(" – {f}"));
+    // The name only where there is a choice.
+    let of = if answer.cables.len() > 1 { format!(" of {}", warning.cable) } else { String::new() };
+    let figures = figures(warning);
+    let told = figures.as_ref().map_or_else(String::new, |f| format!(": {f}"));
+    let along = along.replace(' ', "\u{a0}");
+    let whole = format!("{title} at {along}{of}{told}{since}");
     Entry {
         severity,
-        title: format!("{title}: {place}{figures}"),
+        kind: format!("{title} {}", warning.cable),
+        parts: Some([
+            title.to_owned(),
+            format!("{}at {along}{of}{since}", figures.map_or_else(String::new, |f| f + " ")),
+        ]),
+        title: whole,
         text: translate::display(&warning.message).into_owned(),
         at_m: position(answer, warning),
         item: index.map(Item::Cable),
@@ -148,23 +172,25 @@ fn figures(warning: &Warning) -> Option<String> {
     let Warning { value, limit, .. } = *warning;
     match warning.kind {
         WarningKind::ServiceTension | WarningKind::BreakingTension | WarningKind::MayBreak => {
-            Some(format::force_of(value, limit))
+            Some(format!("{}, limit {}", format::force(value), format::force(limit)))
         }
-        WarningKind::Broken => Some(format::force(limit)),
+        WarningKind::Broken => Some(format!("breaking tension {}", format::force(limit))),
         WarningKind::BendRadius | WarningKind::Kink => {
-            Some(format!("{}, least {}", format::length(value), format::length(limit)))
+            Some(format!("{}, min {}", format::length(value), format::length(limit)))
         }
-        WarningKind::Slack => Some(format::length(value)),
+        WarningKind::Slack => Some(format!("{} of cable", format::length(value))),
         WarningKind::SidewallPressure => {
             let per_metre = |v| unit::Unit { decimals: Some(0), ..unit::Unit::N_PER_M }.text(v).replace(' ', "\u{a0}");
-            Some(format!("{} of {}", per_metre(value), per_metre(limit)))
+            Some(format!("{}, limit {}", per_metre(value), per_metre(limit)))
         }
         WarningKind::Wrapped => Some(format!("{value:.2} turns")),
-        WarningKind::Curl => Some(format!("{value:.0}° of {limit:.0}°")),
+        WarningKind::Curl => Some(format!("{value:.0}°")),
         WarningKind::Snag => Some(format!("tension ratio {value:.2}")),
-        WarningKind::EnergyGrows => Some(format!("{} more than given", format::energy(value))),
+        WarningKind::EnergyGrows => Some(format!("{} too much", format::energy(value))),
         WarningKind::Loop => None,
-        WarningKind::Accuracy => Some(format!("{} of {}", format::percent(value), format::percent(limit))),
+        WarningKind::Accuracy => {
+            Some(format!("{} estimated, target {}", format::percent(value), format::percent(limit)))
+        }
         WarningKind::InitialPenetration
         | WarningKind::NotUnique
         | WarningKind::SupportHeld
@@ -213,41 +239,84 @@ fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -
     Some(Fix { label, command: Command::Scene(command) })
 }
 
-fn card(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
-    let colour = match entry.severity {
-        Severity::Stop => ui.visuals().error_fg_color,
-        Severity::Caution => ui.visuals().warn_fg_color,
-        Severity::Note => ui.visuals().weak_text_color.unwrap_or(Color32::GRAY),
+/// One line: severity, what, value of limit, place. A click on it shows the place; the text and the
+/// fix are behind the arrow.
+fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
+    let (colour, sign) = match entry.severity {
+        Severity::Stop => (ui.visuals().error_fg_color, Icon::Stop),
+        Severity::Caution => (ui.visuals().warn_fg_color, Icon::Caution),
+        Severity::Note => (ui.visuals().weak_text_color.unwrap_or(Color32::GRAY), Icon::Note),
     };
-    let sign = match entry.severity {
-        Severity::Stop => Icon::Stop,
-        Severity::Caution => Icon::Caution,
-        Severity::Note => Icon::Note,
-    };
-    Frame::group(ui.style()).inner_margin(6).show(ui, |ui| {
-        ui.set_width(ui.available_width());
-        ui.horizontal_top(|ui| {
-            icon::sign(ui, sign, colour);
-            ui.vertical(|ui| {
-                ui.label(RichText::new(&entry.title).strong());
-                ui.label(&entry.text);
-                if entry.at_m.is_some() || entry.fix.is_some() {
-                    ui.horizontal_wrapped(|ui| actions(ui, number, entry, commands));
+    // Remembered by what it says: the next warning in its place is another one.
+    let id = ui.scope_id().with((entry.severity as u8, &entry.kind));
+    let mut open = ui.data(|d| d.get_temp(id)).unwrap_or(entry.severity == Severity::Stop);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        icon::sign(ui, sign, colour);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let arrow = ui.add(Button::new(if open { "−" } else { "+" }).small().min_size(vec2(16.0, 0.0)));
+            field::name(&arrow, &format!("Details of warning {}", number + 1));
+            if arrow.on_hover_text("What it means, and what can be done").clicked() {
+                open = !open;
+                ui.data_mut(|d| d.insert_temp(id, open));
+            }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                let narrow = ui.available_width() < ONE_LINE;
+                let parts = entry.parts.as_ref().filter(|_| narrow);
+                let plain = |text: RichText| Button::new(text).frame(false).truncate();
+                let line = match parts {
+                    None => ui.add(plain(RichText::new(&entry.title).strong())),
+                    Some([what, rest]) => {
+                        ui.vertical(|ui| {
+                            ui.spacing_mut().item_spacing.y = 0.0;
+                            let wrapped =
+                                |text: RichText| Label::new(text).wrap().selectable(false).sense(Sense::click());
+                            let first = ui.add(Button::new(RichText::new(what).strong()).frame(false).wrap());
+                            first | ui.add(wrapped(RichText::new(rest).small()))
+                        })
+                        .inner
+                    }
+                };
+                field::name(&line, &entry.title);
+                let help = match entry.at_m {
+                    Some(at_m) => format!("{}\n\nClick: zooms on {}", entry.text, format::position(at_m)),
+                    None => entry.text.clone(),
+                };
+                if line.on_hover_text(help).clicked() {
+                    show(entry, commands);
                 }
             });
         });
     });
+    if open {
+        ui.indent(id, |ui| {
+            ui.add(egui::Label::new(&entry.text).wrap());
+            if entry.at_m.is_some() || entry.fix.is_some() {
+                ui.horizontal_wrapped(|ui| actions(ui, number, entry, commands));
+            }
+        });
+    }
+}
+
+/// Below this width a warning stands in two lines, points.
+const ONE_LINE: f32 = 330.0;
+
+/// Zooms on where it is and picks what it is about.
+fn show(entry: &Entry, commands: &mut Vec<Command>) {
+    if let Some(at_m) = entry.at_m {
+        commands.push(Command::View(ViewCommand::ZoomOn(at_m)));
+        if entry.item.is_some() {
+            commands.push(Command::View(ViewCommand::Select(entry.item)));
+        }
+    }
 }
 
 fn actions(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
     if let Some(at_m) = entry.at_m {
-        let show = ui.button("Show").on_hover_text(format!("Centres the picture on {}", format::position(at_m)));
-        crate::widgets::field::name(&show, &format!("Show warning {}", number + 1));
-        if show.clicked() {
-            commands.push(Command::View(ViewCommand::CentreOn(at_m)));
-            if entry.item.is_some() {
-                commands.push(Command::View(ViewCommand::Select(entry.item)));
-            }
+        let button = ui.button("Show").on_hover_text(format!("Zooms on {}", format::position(at_m)));
+        field::name(&button, &format!("Show warning {}", number + 1));
+        if button.clicked() {
+            show(entry, commands);
         }
     }
     if let Some(fix) = &entry.fix

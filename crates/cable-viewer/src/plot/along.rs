@@ -31,6 +31,7 @@ pub fn ui(
         measure: Measure::Cable(quantity),
         across: ("Arc length", Unit::M),
         range: [0.0, cable.length_m],
+        last: cable.length_m * (1.0 + 1e-9),
         limits: tension_limits(quantity, cable),
         follow,
         height,

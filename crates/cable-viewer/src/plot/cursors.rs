@@ -28,6 +28,15 @@ impl Cursors {
         self.keep(ui, title);
     }
 
+    /// Takes away those beyond all data: of another scene, or of a run before a reset.
+    pub fn forget_without_data(&mut self, ui: &Ui, title: &str, last: f64) {
+        let before = self.0.len();
+        self.0.retain(|x| *x <= last);
+        if self.0.len() != before {
+            self.keep(ui, title);
+        }
+    }
+
     /// Moves the last one to `x`, or sets the first there.
     pub fn put_last(&mut self, ui: &Ui, title: &str, x: f64) {
         match self.0.last_mut() {

@@ -42,7 +42,7 @@ const HEADROOM: f64 = 0.12;
 /// title.
 const UPRIGHT: f32 = 110.0;
 /// Lowest graph that can still be read, points.
-const LEAST_HEIGHT: f32 = 70.0;
+const LEAST_HEIGHT: f32 = 42.0;
 /// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not
 /// to touch.
 const COLUMN: f32 = 66.0;
@@ -90,6 +90,8 @@ pub struct Graph<'a> {
     pub across: (&'a str, Unit),
     /// Left and right end in view while following, SI.
     pub range: [f64; 2],
+    /// Last place that there are data of or that is in view, SI: cursors beyond it are forgotten.
+    pub last: f64,
     /// Service and breaking limit, SI.
     pub limits: [f64; 2],
     /// The view follows the data; else it can be dragged and zoomed.
@@ -144,6 +146,8 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let top = ui.cursor().top();
     let (title, export) = legend(ui, graph, lines, high);
     let mut cursors = Cursors::load(ui, graph.group);
+    // Those of a run that is no more read nothing.
+    cursors.forget_without_data(ui, graph.group, graph.last);
     let cursor_text = cursors.text([(across_symbol, x_si), (symbol, si)], lines.first());
     let height = (graph.height - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
     let columns = f64::from(ui.available_width() / COLUMN).max(1.0);
@@ -215,6 +219,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         si: [x_si, si],
         bounds: [bounds.min()[0], bounds.min()[1], bounds.max()[0], bounds.max()[1]],
         lines: lines.to_vec(),
+        limits: graph.limits,
     };
     GraphResponse { zoomed: asked.zoomed, export: export.then(|| Box::new(sheet())) }
 }

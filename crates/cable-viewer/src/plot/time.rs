@@ -45,6 +45,14 @@ fn graph(ui: &mut Ui, state: &AppState, view: GraphView, title: &str, height: f3
     let now_s = state.live.history.samples.back().map_or(0.0, |s| s.time_s);
     let first_s = state.live.history.samples.front().map_or(0.0, |s| s.time_s);
     let left_s = view.window_s.map_or(first_s, |w| (now_s - w).max(first_s));
+    let recorded_s = now_s;
+    let runs_end_s = state.analysis.references.iter().filter_map(|r| Some(r.run.as_ref()?.span_s()[1]));
+    // A past that is shown is in view: all graphs follow the timeline.
+    let left_s = match (state.live.recording.shown_s, view.window_s) {
+        (Some(shown), Some(w)) if shown < left_s || shown > now_s => (shown - 0.5 * w).max(first_s),
+        _ => left_s,
+    };
+    let now_s = view.window_s.map_or(now_s, |w| now_s.min(left_s + w));
     let range = [left_s, now_s.max(left_s + view.window_s.unwrap_or(SHORTEST_S).max(SHORTEST_S))];
     // A zoomed graph shows what it showed in the frame before, and a little on each side.
     let seen = if view.follow { None } else { in_view(ui, title) }.unwrap_or(range);
@@ -57,6 +65,7 @@ fn graph(ui: &mut Ui, state: &AppState, view: GraphView, title: &str, height: f3
         measure,
         across: ("Time", Unit::S),
         range,
+        last: runs_end_s.fold(recorded_s.max(range[1]), f64::max),
         limits: measure.limits(cable),
         follow: view.follow,
         height,

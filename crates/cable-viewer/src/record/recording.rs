@@ -136,9 +136,7 @@ impl Recording {
         let megabytes = self.frames.bytes() as f64 / f64::from(1 << 20);
         let most = BUDGET_BYTES >> 20;
         let count = self.frames.entries().len();
-        format!(
-            "{count} pictures kept in {megabytes:.1} of {most} MiB; once full, every second one of the older ones is left out"
-        )
+        format!("{count} frames ({megabytes:.1} of {most} MiB). When full, older frames are thinned")
     }
 }
 

@@ -7,6 +7,7 @@ use cable_core::{Scene, Solution};
 use crate::jobs::model_comparison::{self, Outcome};
 use crate::jobs::{friction_range, neglected_bending, safe_reach};
 use crate::record::run::Run;
+use crate::units::labels;
 
 /// What is asked beyond the answer itself.
 #[derive(Debug, Default)]
@@ -67,7 +68,7 @@ impl Reference {
 pub fn hold(all: &mut Vec<Reference>, found: &Outcome) {
     for answer in &found.answers {
         let Ok((solution, wall_s)) = &answer.result else { continue };
-        let name = format!("{}, {} model at rest", found.scene.name, answer.model);
+        let name = format!("{}, {} model at rest", found.scene.name, labels::model(answer.model));
         let scene = Arc::clone(&found.scene);
         let held = Reference { name, scene, solution: Arc::clone(solution), wall_s: *wall_s, run: None };
         let before = all.iter().position(|h| h.name == held.name && h.run.is_none() && h.scene == held.scene);

@@ -12,11 +12,13 @@ pub struct Camera {
     pub points_per_m: f64,
     /// Fit the scene at the next frame (the canvas size is not known before).
     pub fit_wanted: bool,
+    /// Size of the canvas that the scene was fitted to, points, until the view is moved by hand.
+    pub fitted_to: Option<[f32; 2]>,
 }
 
 impl Default for Camera {
     fn default() -> Self {
-        Self { centre_m: [0.0; 2], points_per_m: 50.0, fit_wanted: true }
+        Self { centre_m: [0.0; 2], points_per_m: 50.0, fit_wanted: true, fitted_to: None }
     }
 }
 
@@ -26,7 +28,9 @@ const SCALE: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 
 /// Free border of a fitted scene, points: left (axis numbers), right (legend), top, bottom.
 /// Smaller and labels or the legend cover the ends of the cable; larger wastes the window.
-const BORDER: [f32; 4] = [84.0, 146.0, 56.0, 64.0];
+pub const BORDER: [f32; 4] = [84.0, 146.0, 56.0, 64.0];
+/// The same where the legend stands beside the canvas.
+pub const BORDER_WITHOUT_LEGEND: [f32; 4] = [70.0, 56.0, 40.0, 52.0];
 
 impl Camera {
     /// World (m) to screen.
@@ -51,6 +55,7 @@ impl Camera {
 
     /// Moves the world with the pointer.
     pub fn pan(&mut self, delta: Vec2) {
+        self.fitted_to = None;
         self.centre_m[0] -= f64::from(delta.x) / self.points_per_m;
         self.centre_m[1] += f64::from(delta.y) / self.points_per_m;
     }
@@ -60,6 +65,7 @@ impl Camera {
         if !(factor.is_finite() && factor > 0.0) {
             return;
         }
+        self.fitted_to = None;
         let scale = (self.points_per_m * factor).clamp(*SCALE.start(), *SCALE.end());
         let k = self.points_per_m / scale;
         for i in 0..2 {
@@ -68,14 +74,20 @@ impl Camera {
         self.points_per_m = scale;
     }
 
-    /// Puts a world rectangle (least and greatest corner, m) in view.
-    pub fn fit(&mut self, canvas: Rect, [low, high]: [Point; 2]) {
+    /// Puts a point (m) in the middle.
+    pub fn centre_on(&mut self, p: Point) {
+        (self.centre_m, self.fitted_to) = (p, None);
+    }
+
+    /// Puts a world rectangle (least and greatest corner, m) in view, with free borders (points).
+    pub fn fit(&mut self, canvas: Rect, [low, high]: [Point; 2], border: [f32; 4]) {
         self.fit_wanted = false;
+        self.fitted_to = Some(canvas.size().into());
         if !(low.iter().chain(&high).all(|v| v.is_finite()) && canvas.is_positive()) {
             return;
         }
         // In a small canvas the border gives way, the scene does not.
-        let share = |k: usize, points: f32| BORDER[k] * (0.5 * points / (BORDER[k & 2] + BORDER[(k & 2) + 1])).min(1.0);
+        let share = |k: usize, points: f32| border[k] * (0.5 * points / (border[k & 2] + border[(k & 2) + 1])).min(1.0);
         let (width, height) = (canvas.width(), canvas.height());
         let [left, right, top, bottom] = [share(0, width), share(1, width), share(2, height), share(3, height)];
         let room =
@@ -98,7 +110,7 @@ mod tests {
 
     #[test]
     fn screen_and_world_are_inverse_and_zoom_keeps_the_point_under_the_pointer() {
-        let mut camera = Camera { centre_m: [3.0, -2.0], points_per_m: 37.0, fit_wanted: false };
+        let mut camera = Camera { centre_m: [3.0, -2.0], points_per_m: 37.0, fit_wanted: false, fitted_to: None };
         let pointer = pos2(431.0, 222.0);
         let before = camera.to_world(CANVAS, pointer);
         assert!(camera.to_screen(CANVAS, before).distance(pointer) < 1e-3);
@@ -112,7 +124,7 @@ mod tests {
     fn a_fitted_scene_lies_inside_its_border() {
         let mut camera = Camera::default();
         for bounds in [[[0.0, 0.0], [10.0, 1.0]], [[-5.0, 100.0], [-4.0, 220.0]], [[2.0, 2.0], [2.0, 2.0]]] {
-            camera.fit(CANVAS, bounds);
+            camera.fit(CANVAS, bounds, BORDER);
             let free = Rect::from_min_max(CANVAS.min + egui::vec2(83.0, 55.0), CANVAS.max - egui::vec2(145.0, 63.0));
             for corner in bounds {
                 assert!(free.contains(camera.to_screen(CANVAS, corner)), "{bounds:?}");

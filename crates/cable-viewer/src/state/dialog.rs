@@ -10,6 +10,8 @@ use crate::io::graph_file::Sheet;
 /// An action that takes the place of the present scene, and so asks first if it is not saved.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Replacement {
+    /// A new scene.
+    New,
     /// Opens a scene file.
     Open(PathBuf),
     /// Opens the folder of a run.

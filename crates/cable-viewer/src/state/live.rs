@@ -23,6 +23,12 @@ pub struct Live {
     pub history: History,
     /// Instants of a run that was opened, to be recorded once its scene is solved.
     pub reopened_run: Vec<Solution>,
+    /// What was recorded before the last reset, until the next one or another scene.
+    pub before_reset: Option<Box<BeforeReset>>,
+    /// The reset is the last thing that was done: undo takes it back.
+    pub reset_is_last: bool,
+    /// The next history that restarts is that of a reset.
+    pub resets: bool,
     /// Speed of the robot by hand, m/s, positive to the right; None: it follows its path.
     pub robot_order: Option<f64>,
     /// Speed the robot is driven with by hand, m/s; None: its greatest.
@@ -38,6 +44,9 @@ impl Default for Live {
             recording: Recording::default(),
             history: History::default(),
             reopened_run: Vec::new(),
+            before_reset: None,
+            reset_is_last: false,
+            resets: false,
             robot_order: None,
             robot_speed: None,
         }
@@ -49,6 +58,29 @@ impl Live {
     pub fn receive(&mut self, snapshot: Snapshot) {
         self.latest = snapshot;
         self.refresh();
+    }
+
+    /// Begins recording anew; what a reset ends is kept.
+    pub fn restart_history(&mut self) {
+        let (recording, history) = (std::mem::take(&mut self.recording), std::mem::take(&mut self.history));
+        self.recording.looped = recording.looped;
+        let moved = recording.span_s().is_some_and(|[first, last]| last > first);
+        if !std::mem::take(&mut self.resets) {
+            self.before_reset = None;
+        } else if moved {
+            self.before_reset = Some(Box::new(BeforeReset { recording, history }));
+            self.reset_is_last = true;
+        }
+    }
+
+    /// Puts back what was recorded before the last reset and shows its end; whether there was any.
+    pub fn undo_reset(&mut self) -> bool {
+        self.reset_is_last = false;
+        let Some(before) = self.before_reset.take() else { return false };
+        (self.recording, self.history) = (before.recording, before.history);
+        let last_s = self.recording.span_s().map(|[_, last]| last);
+        self.show_time(last_s);
+        last_s.is_some()
     }
 
     /// Adds an instant to the recording and to the graphs.
@@ -79,6 +111,13 @@ impl Live {
     pub fn now_s(&self) -> f64 {
         self.latest.solution.as_ref().map_or(0.0, |s| s.time_s)
     }
+}
+
+/// What was recorded before a reset.
+#[derive(Debug)]
+pub struct BeforeReset {
+    recording: Recording,
+    history: History,
 }
 
 /// Whether and how fast time runs.

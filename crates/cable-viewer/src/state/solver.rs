@@ -15,6 +15,8 @@ pub struct Solver {
     pub edits_sent: u64,
     /// Time from the last edit to the first picture that shows it, s.
     pub edit_latency_s: Option<f64>,
+    /// How long an answer has been sought, s; None: nothing is asked for.
+    pub solving_s: Option<f64>,
 }
 
 impl Default for Solver {
@@ -25,6 +27,7 @@ impl Default for Solver {
             status: WorkerStatus::Idle,
             edits_sent: 0,
             edit_latency_s: None,
+            solving_s: None,
         }
     }
 }

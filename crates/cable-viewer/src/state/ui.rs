@@ -1,17 +1,57 @@
 //! The window itself has a dialog, a tutorial and what concerns closing it.
 
+use std::path::PathBuf;
+
 use crate::state::dialog::Dialog;
 use crate::state::tutorial_place::TutorialPlace;
+
+/// Which parts of the window are open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OpenPanels {
+    /// What is edited, on the left.
+    pub edit: bool,
+    /// What is read off, on the right.
+    pub results: bool,
+    /// Timeline and graphs, below.
+    pub graphs: bool,
+}
+
+impl Default for OpenPanels {
+    fn default() -> Self {
+        Self { edit: true, results: true, graphs: true }
+    }
+}
 
 /// The window around the scene.
 #[derive(Debug, Default)]
 pub struct Ui {
+    /// Which parts of the window are open.
+    pub panels: OpenPanels,
+    /// The colours are explained beside the canvas, not on it.
+    pub legend_beside: bool,
     /// The dialog that is open.
     pub dialog: Option<Dialog>,
+    /// The dialog that comes back once the message over it is closed.
+    pub after_message: Option<Dialog>,
+    /// Files opened and saved last, the latest first.
+    pub recent: Vec<PathBuf>,
     /// The tutorial that is on.
     pub tutorial: Option<TutorialPlace>,
     /// Why unsaved changes could not be kept for recovery.
     pub autosave_fault: Option<String>,
     /// The user agreed to close the window without saving.
     pub closing: bool,
+}
+
+/// Most recent files that are offered: more is a list to search.
+const MAX_RECENT: usize = 8;
+
+impl Ui {
+    /// Remembers a file that was opened or saved.
+    pub fn add_recent(&mut self, path: PathBuf) {
+        let path = std::path::absolute(&path).unwrap_or(path);
+        self.recent.retain(|p| *p != path);
+        self.recent.insert(0, path);
+        self.recent.truncate(MAX_RECENT);
+    }
 }

@@ -26,13 +26,6 @@ pub fn force(value_n: f64) -> String {
     scaled(value_n, system::Kind::Force)
 }
 
-/// A force and what it is measured against, N, in the unit of the larger.
-#[must_use]
-pub fn force_of(value_n: f64, limit_n: f64) -> String {
-    let (symbol, si) = system::for_size(system::Kind::Force, value_n.abs().max(limit_n.abs()));
-    format!("{} of {}", significant(value_n / si, DIGITS), with_symbol(significant(limit_n / si, DIGITS), symbol))
-}
-
 /// A stress with Pa, kPa, MPa or GPa, Pa.
 #[must_use]
 pub fn stress(value_pa: f64) -> String {
@@ -92,7 +85,7 @@ fn scaled(value: f64, kind: system::Kind) -> String {
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
-        return "not a number".to_owned();
+        return "no data".to_owned();
     }
     if value == 0.0 {
         return "0".to_owned();
@@ -135,10 +128,21 @@ impl Unit {
     /// A value (SI) with all its digits and the unit, to be edited.
     #[must_use]
     pub fn exact(self, value: f64) -> String {
+        // Division by the unit may add a last wrong digit; 15 digits are what decimal text keeps.
+        self.rounded(value, 15)
+    }
+
+    /// A value (SI) with at most six digits and the unit, to be read: `28 mm`, `463.228 N`.
+    #[must_use]
+    pub fn brief(self, value: f64) -> String {
+        self.rounded(value, 6)
+    }
+
+    fn rounded(self, value: f64, digits: usize) -> String {
         let unit = self.display();
         let shown = value / unit.si;
-        // Division by the unit may add a last wrong digit; 15 digits are what decimal text keeps.
-        let rounded = format!("{shown:.14e}").parse().unwrap_or(shown);
+        let last = digits.saturating_sub(1);
+        let rounded: f64 = format!("{shown:.last$e}").parse().unwrap_or(shown);
         let written = if (1e-4..1e9).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") };
         with_symbol(if rounded == 0.0 { "0".to_owned() } else { written }, unit.symbol)
     }
@@ -158,7 +162,7 @@ mod tests {
             (-0.5, "−0.5000"),
             (123_456.7, "123457"),
             (1.5e-9, "1.500e−9"),
-            (f64::NAN, "not a number"),
+            (f64::NAN, "no data"),
         ] {
             assert_eq!(significant(value, 4), text);
         }

@@ -1,5 +1,7 @@
 //! Labels on the canvas are figures with their unit, as short as their accuracy allows.
 
+use cable_core::Model;
+
 use crate::units::system;
 use crate::units::unit::Unit;
 
@@ -60,4 +62,23 @@ pub fn decimals_of(step: f64) -> usize {
 pub fn speed(metres_per_second: f64) -> String {
     let Unit { symbol, si, .. } = Unit::M_PER_S.display();
     format!("{} {symbol}", digits(metres_per_second / si))
+}
+
+/// That an answer is being sought, and for how long, s.
+#[must_use]
+pub fn solving(seconds: f64) -> String {
+    if seconds < 1.0 { "Solving…".to_owned() } else { format!("Solving… {seconds:.0} s") }
+}
+
+/// A model as the window calls it.
+#[must_use]
+pub fn model(model: Model) -> &'static str {
+    match model {
+        Model::Auto => "Automatic",
+        Model::Catenary => "Catenary",
+        Model::Spans => "Spans",
+        Model::Fem => "FEM",
+        Model::MassSpring => "Mass-spring",
+        Model::External => "External model",
+    }
 }

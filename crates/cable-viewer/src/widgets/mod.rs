@@ -8,4 +8,5 @@
 pub mod field;
 pub mod icon;
 pub mod property;
+pub mod readout;
 pub mod time_table;

@@ -60,24 +60,29 @@ const LEAST_OF_TOP: f64 = 1e-4;
 pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
     let mut change = Change::default();
     let mut fault = None;
+    let spent = NAME_WIDTH + FIELD_WIDTH + RESET_WIDTH + 3.0 * 4.0;
+    // In a narrow panel the slider has a line of its own: it is aimed at with a hand.
+    let narrow = ui.available_width() < spent + LEAST_SLIDER;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let left = ui.available_width();
+        let name_width = if narrow { left - FIELD_WIDTH - 8.0 - RESET_WIDTH - 2.0 * 4.0 } else { NAME_WIDTH };
         let mark = if known.estimated { " ≈" } else { "" };
         let label = ui
             .allocate_ui_with_layout(
-                egui::vec2(NAME_WIDTH, ui.spacing().interact_size.y),
+                egui::vec2(name_width, ui.spacing().interact_size.y),
                 egui::Layout::left_to_right(egui::Align::Center),
                 |ui| {
-                    ui.set_min_width(NAME_WIDTH);
+                    ui.set_min_width(name_width);
                     ui.add(egui::Label::new(format!("{}{mark}", quantity.name)).truncate().selectable(false))
                 },
             )
             .inner;
         let label_id = label.on_hover_ui(|ui| explanation(ui, quantity, known)).id;
-        let spent = NAME_WIDTH + FIELD_WIDTH + RESET_WIDTH + 3.0 * 4.0;
-        ui.spacing_mut().slider_width = (left - spent).max(LEAST_SLIDER);
-        slider(ui, quantity, known, &mut change);
+        if !narrow {
+            ui.spacing_mut().slider_width = (left - spent).max(LEAST_SLIDER);
+            slider(ui, quantity, known, &mut change);
+        }
         let entry = field::number(ui, quantity.name, quantity.unit, known.value, FIELD_WIDTH);
         let response = entry.response.labelled_by(label_id);
         field::name(&response, quantity.name);
@@ -92,6 +97,14 @@ pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
             change = Change { value: known.origin.as_ref().map(|(v, _)| *v), done: true };
         }
     });
+    if narrow {
+        ui.spacing_mut().slider_width = ui.available_width() - 4.0;
+        let mut slid = Change::default();
+        slider(ui, quantity, known, &mut slid);
+        if change.value.is_none() {
+            change = Change { done: change.done || slid.done, ..slid };
+        }
+    }
     if let Some(fault) = fault {
         field::fault(ui, &fault);
     }
@@ -124,8 +137,8 @@ fn reset(ui: &mut Ui, quantity: &Quantity, known: &Provenance, typed_wrong: bool
     let response = icon::plain_button(ui, Icon::Reset, differs);
     field::name(&response, &format!("Reset {}", quantity.name.to_lowercase()));
     let text = known.origin.as_ref().map_or_else(
-        || "Nothing to go back to".to_owned(),
-        |(v, from)| format!("Back to {} ({from})", quantity.unit.exact(*v)),
+        || "No default to go back to".to_owned(),
+        |(v, from)| format!("Back to {} ({from})", quantity.unit.brief(*v)),
     );
     response.on_hover_text(&text).on_disabled_hover_text(text).clicked()
 }
@@ -134,12 +147,12 @@ fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Provenance) {
     ui.set_max_width(300.0);
     ui.label(RichText::new(quantity.name).strong());
     ui.label(quantity.help);
-    ui.label(format!("Now {}", quantity.unit.exact(known.value)));
+    ui.label(format!("Now {}", quantity.unit.brief(known.value)));
     let [low, high] = quantity.usual;
     ui.weak(format!(
         "Usually {} to {}; other values can be typed",
-        quantity.unit.exact(low),
-        quantity.unit.exact(high)
+        quantity.unit.brief(low),
+        quantity.unit.brief(high)
     ));
     if let Some(source) = &known.source {
         ui.separator();

@@ -11,7 +11,7 @@ use crate::widgets::icon::{self, Icon};
 /// Height of a table, points: about six rows.
 const HEIGHT: f32 = 140.0;
 /// Width of a number, points.
-const WIDTH: f32 = 62.0;
+const WIDTH: f32 = 46.0;
 /// Between columns, points.
 const GAP: f32 = 3.0;
 
@@ -67,7 +67,20 @@ pub fn ui(ui: &mut Ui, table: &Table<'_>, knots: &Knots, faults: &mut Vec<String
     let mut changed = knots.clone();
     let (mut gone, mut doubled) = (None, None);
     let symbol = table.unit.display().symbol;
-    ui.weak(format!("Time, s; {}, {}, {symbol}", table.columns[0], table.columns[1]));
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
+        let heads = [
+            "Time, s".to_owned(),
+            format!("{}, {symbol}", table.columns[0]),
+            format!("{}, {symbol}", table.columns[1]),
+        ];
+        for head in heads {
+            ui.add_sized(
+                [WIDTH + 8.0, ui.spacing().interact_size.y],
+                egui::Label::new(egui::RichText::new(head).weak()),
+            );
+        }
+    });
     let height = ui.spacing().interact_size.y;
     let area = ScrollArea::vertical().id_salt(("times", table.of)).max_height(HEIGHT).auto_shrink([false, true]);
     area.show_rows(ui, height, knots.times_s.len(), |ui, rows| {
@@ -122,7 +135,7 @@ fn row(ui: &mut Ui, table: &Table<'_>, k: usize, changed: &mut Knots, faults: &m
     let add = add.on_hover_text("Adds a time halfway to the next").clicked();
     let remove = icon::plain_button(ui, Icon::Remove, true);
     field::name(&remove, &of("Remove time"));
-    RowButtons([add, remove.on_hover_text("Takes this time out").clicked()])
+    RowButtons([add, remove.on_hover_text("Removes this row").clicked()])
 }
 
 /// A box that says whether something changes with time; what it is to be once it was clicked.

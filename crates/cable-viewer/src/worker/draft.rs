@@ -8,7 +8,7 @@
 
 use cable_core::contact::World;
 use cable_core::math::vec2;
-use cable_core::{Error, Model, Simulation, SolveError};
+use cable_core::{Model, Simulation, SolveError};
 
 use crate::worker::request::Edit;
 use crate::worker::timing::FRAME_S;
@@ -114,18 +114,6 @@ pub fn with_mesh(edit: &Edit, old: &Simulation, mesh: Mesh) -> Option<Simulation
         next.drag_support(cable, support, vec2(at));
     }
     Some(next)
-}
-
-/// The state of a draft as one at rest, for the answer to begin from.
-///
-/// # Errors
-/// As [`Simulation::set_states`].
-pub fn at_rest(draft: &mut Simulation) -> Result<(), Error> {
-    let mut states = draft.states();
-    for v in states.iter_mut().flat_map(|s| &mut s.velocity_m_per_s) {
-        *v *= 0.0;
-    }
-    Ok(draft.set_states(&states)?)
 }
 
 fn carry(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {

@@ -6,13 +6,17 @@ use std::time::Instant;
 use cable_core::math::{Point, vec2};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
-use cable_core::timeline::RunMonitor;
+use cable_core::timeline::{RunMonitor, RunPeaks};
 use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 
 use crate::state::{Playback, Snapshot};
 use crate::worker::draft::{self, Mesh};
+use crate::worker::passing;
 use crate::worker::request::{Drag, Edit, Request, Resume};
 use crate::worker::timing::{DRAFT_AFTER_S, FRAME_S, MAX_ANSWERS, QUIET_S};
+
+/// Why there is no answer after the user gave up waiting for it.
+pub const CANCELLED: &str = "solving was cancelled";
 
 /// What `auto` is asked once time runs.
 const MOTION: Question = Question::History(Inertia::Dynamic);
@@ -29,6 +33,11 @@ pub struct Engine {
     before_motion: Option<Simulation>,
     playback: Playback,
     snapshot: Snapshot,
+    /// The last answer that was no draft: what is shown of a scene that has none.
+    last_answer: Option<LastAnswer>,
+    /// Ways of cables that the scene is to keep, by the number of the cable: the last edit would
+    /// have moved them through an obstacle.
+    routes: Vec<(usize, Vec<Point>)>,
     answers: Vec<Solution>,
     /// The history starts again before the first of `answers`.
     history_restarts: bool,
@@ -75,6 +84,14 @@ enum Phase {
     },
 }
 
+/// The last answer that was no draft.
+#[derive(Clone, Debug)]
+struct LastAnswer {
+    scene: Option<Arc<Scene>>,
+    solution: Arc<Solution>,
+    peaks: Vec<RunPeaks>,
+}
+
 /// A hand that holds a support by a spring.
 #[derive(Clone, Copy, Debug)]
 struct Hand {
@@ -95,6 +112,8 @@ pub struct Report {
     pub history_restarts: bool,
     /// New answers; at most [`MAX_ANSWERS`].
     pub answers: Vec<Solution>,
+    /// Ways of cables (by number) that the scene of this answer is to keep.
+    pub routes: Vec<(usize, Vec<Point>)>,
     /// The worker paused itself because a step failed.
     pub paused_itself: bool,
 }
@@ -108,6 +127,8 @@ impl Default for Engine {
             before_motion: None,
             playback: Playback { paused: true, speed: 1.0 },
             snapshot: Snapshot::default(),
+            last_answer: None,
+            routes: Vec::new(),
             answers: Vec::new(),
             robot_order: None,
             history_restarts: false,
@@ -126,6 +147,24 @@ impl Engine {
     #[must_use]
     pub fn with_drafts() -> Self {
         Self { drafts: true, ..Self::default() }
+    }
+
+    /// As it is now, to go on from where what follows is given up.
+    #[must_use]
+    pub fn spare(&self) -> Self {
+        Self {
+            simulation: self.simulation.clone(),
+            edit: self.edit.clone(),
+            phase: self.phase.clone(),
+            before_motion: self.before_motion.clone(),
+            snapshot: self.snapshot.clone(),
+            last_answer: self.last_answer.clone(),
+            routes: self.routes.clone(),
+            answers: self.answers.clone(),
+            // Two coarser runs beside this one: they begin again with the next start.
+            monitor: None,
+            ..*self
+        }
     }
 
     /// What is shown is a draft.
@@ -159,10 +198,15 @@ impl Engine {
             self.robot_order = order;
         }
         let began = Instant::now();
+        let runs = !self.playback.paused;
+        let resumed = request.resume.as_ref().map(|r| Arc::clone(&r.answer));
         let dragging = request.drag.is_some() && request.edit.is_none() && request.resume.is_none() && !request.reset;
         let mut solved = request.edit.is_some() || request.resume.is_some() || request.reset || request.steps > 0;
         let mut result = Ok(());
-        if let Some(edit) = request.edit {
+        if request.cancel {
+            self.cancel(request.edit);
+            solved = true;
+        } else if let Some(edit) = request.edit {
             let stays = self.playback.paused && !request.reset && request.steps == 0;
             result = if stays && self.show_draft(&edit) { Ok(()) } else { self.take_edit(edit) };
         } else if self.draft() && (request.reset || request.steps > 0 || !self.playback.paused) {
@@ -186,7 +230,7 @@ impl Engine {
             }
         }
         // Time must not run in a scene that is no longer the one on screen.
-        let held_back = self.refused() && !self.playback.paused;
+        let held_back = self.refused() && runs;
         self.playback.paused |= held_back;
         if dragging && self.playing() {
             // The next frame shows it, not this report.
@@ -196,7 +240,15 @@ impl Engine {
         self.snapshot.edit = request.number.max(self.dragged).max(self.snapshot.edit);
         if solved {
             self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
+            let resumed = resumed.filter(|_| result.is_ok() && request.steps == 0);
             self.show(result);
+            if let Some(answer) = resumed {
+                // No step was taken yet: what held the cable then is known from the recording only.
+                self.answers.clear();
+                self.answers.push((*answer).clone());
+                self.snapshot.solution = Some(answer);
+                self.keep_answer();
+            }
         }
         self.report(held_back)
     }
@@ -281,6 +333,16 @@ impl Engine {
         self.report(true)
     }
 
+    /// The scene stays without an answer.
+    fn cancel(&mut self, edit: Option<Edit>) {
+        if let Some(edit) = edit {
+            self.history_restarts |= edit.fresh;
+            self.edit = Some(edit);
+        }
+        self.phase = Phase::Refused { reason: CANCELLED.to_owned() };
+        self.playback.paused = true;
+    }
+
     /// Shows an edit with few segments, if answering it in full would take long; whether it did.
     fn show_draft(&mut self, edit: &Edit) -> bool {
         let Some(last) = &self.edit else { return false };
@@ -303,10 +365,7 @@ impl Engine {
     }
 
     fn solve_draft(&mut self) -> Result<(), Error> {
-        let (Phase::Draft { settling }, Some(edit)) = (&self.phase, self.edit.clone()) else { return Ok(()) };
-        if let (true, Some(simulation)) = (*settling, &mut self.simulation) {
-            draft::at_rest(simulation)?;
-        }
+        let (Phase::Draft { .. }, Some(edit)) = (&self.phase, self.edit.clone()) else { return Ok(()) };
         self.take_edit(edit)
     }
 
@@ -316,6 +375,7 @@ impl Engine {
         if edit.fresh {
             self.simulation = None;
             self.snapshot.solution = None;
+            self.last_answer = None;
             self.history_restarts = true;
             self.answers.clear();
         }
@@ -325,7 +385,10 @@ impl Engine {
         // model left the cable.
         let same_model = self.edit.as_ref().is_some_and(|e| e.model == edit.model && e.settings == edit.settings);
         let from = old.as_ref().filter(|o| same_model || o.time_s() > 0.0);
-        let rebuilt = self.rebuild(&edit, from);
+        let at_rest = self.playback.paused && from.is_none_or(|o| o.time_s() <= 0.0);
+        self.routes.clear();
+        let mut edit = edit;
+        let rebuilt = if at_rest { self.lay(&mut edit, from).map(|s| (s, true)) } else { self.rebuild(&edit, from) };
         self.edit = Some(edit);
         self.solve_s = began.elapsed().as_secs_f64();
         match rebuilt {
@@ -343,6 +406,44 @@ impl Engine {
                 self.phase = Phase::Refused { reason: e.to_string() };
                 Err(e)
             }
+        }
+    }
+
+    /// The simulation of a scene at rest: a function of the scene alone, so that typing, undo, load
+    /// and reset give the same answer for the same scene. Where that would move a cable through an
+    /// obstacle that stays where it is, the way the cable takes now becomes part of the scene.
+    fn lay(&mut self, edit: &mut Edit, old: Option<&Simulation>) -> Result<Simulation, Error> {
+        let of = |scene: &Scene| -> Result<Simulation, Error> {
+            let mut fresh = Simulation::for_question(scene.clone(), edit.model, edit.settings, Question::Rest)?;
+            fresh.settle()?;
+            Ok(fresh)
+        };
+        let laid = of(&edit.scene);
+        let Some(old) = old.filter(|o| !edit.as_laid && draft::same_cables(edit, o)) else { return laid };
+        let jumped = match &laid {
+            Ok(laid) => passing::jumped(old, laid),
+            // Only a scene that could be solved from where the cable is gets a second look.
+            Err(_) if draft::buried(edit, old) => return laid,
+            Err(_) => (0..edit.scene.cables.len()).collect(),
+        };
+        if jumped.is_empty() {
+            return laid;
+        }
+        let mut scene = edit.scene.clone();
+        let routes: Vec<(usize, Vec<Point>)> =
+            jumped.iter().filter_map(|&k| Some((k, passing::way(old, k)?))).collect();
+        for (k, way) in &routes {
+            if let Some(cable) = scene.cables.get_mut(*k) {
+                cable.route_m.clone_from(way);
+            }
+        }
+        match of(&scene) {
+            Ok(led) if laid.is_err() || passing::jumped(old, &led).len() < jumped.len() => {
+                self.routes = routes;
+                edit.scene = scene;
+                Ok(led)
+            }
+            _ => laid,
         }
     }
 
@@ -455,7 +556,8 @@ impl Engine {
             }
             simulation.reset();
         } else if let Some(edit) = self.edit.clone() {
-            self.simulation = Some(self.rebuild(&edit, None)?.0);
+            let mut edit = edit;
+            self.simulation = Some(self.lay(&mut edit, None)?);
             self.before_motion = None;
             self.phase = Phase::Answer { start_kept: true };
         }
@@ -517,18 +619,46 @@ impl Engine {
                 };
                 self.snapshot.stale = self.refused();
                 self.snapshot.draft = self.draft() || self.coarse();
-                if !self.refused() {
+                if self.refused() {
+                    self.show_last_answer();
+                } else {
                     self.snapshot.scene = scene;
+                    self.keep_answer();
                 }
             }
-            (Ok(()), None) => {}
+            (Ok(()), None) => {
+                if let Phase::Refused { reason } = &self.phase {
+                    self.snapshot.error = Some(reason.clone());
+                    self.snapshot.stale = true;
+                }
+            }
             (Err(e), _) => {
                 self.snapshot.error = Some(e.to_string());
                 self.snapshot.stale = true;
+                self.show_last_answer();
             }
         }
         if self.playback.paused {
             self.snapshot.real_speed = None;
+        }
+    }
+
+    /// What is on screen is an answer: it stays while later scenes have none.
+    fn keep_answer(&mut self) {
+        if let (false, Some(solution)) = (self.snapshot.draft, &self.snapshot.solution) {
+            let Snapshot { scene, peaks, .. } = &self.snapshot;
+            let (scene, solution, peaks) = (scene.clone(), Arc::clone(solution), peaks.clone());
+            self.last_answer = Some(LastAnswer { scene, solution, peaks });
+        }
+    }
+
+    /// A draft of a scene is no answer, least of all to another one.
+    fn show_last_answer(&mut self) {
+        self.snapshot.draft = false;
+        if let Some(last) = &self.last_answer {
+            self.snapshot.solution = Some(Arc::clone(&last.solution));
+            self.snapshot.scene.clone_from(&last.scene);
+            self.snapshot.peaks.clone_from(&last.peaks);
         }
     }
 
@@ -537,6 +667,7 @@ impl Engine {
             snapshot: self.snapshot.clone(),
             history_restarts: std::mem::take(&mut self.history_restarts),
             answers: std::mem::take(&mut self.answers),
+            routes: self.routes.clone(),
             paused_itself,
         }
     }

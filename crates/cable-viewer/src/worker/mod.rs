@@ -3,13 +3,19 @@
 //! Both ways hold one slot, not a queue: requests merge into the waiting one, the latest answer
 //! replaces the one not yet shown, so memory and delay are bounded whatever the pointer does.
 //!
+//! A solve cannot be stopped from outside. Where a later edit, an undo or the user does not want to
+//! wait for it, its thread is given up: another one goes on from where the engine was before that
+//! solve, and what the first one finds is dropped.
+//!
 //! - `engine`: the simulation, requests and time, without threads
+//! - `passing`: whether a cable passed an obstacle
 //! - `request`: what the window asks
 //! - `draft`: coarse answers that follow the hand
 //! - `timing`: frames, drafts and bounds
 
 pub mod draft;
 pub mod engine;
+mod passing;
 pub mod request;
 pub mod timing;
 
@@ -28,8 +34,11 @@ pub struct Worker {
     kind: Kind,
 }
 
+/// Called whenever there is something new to show.
+type Shown = Arc<dyn Fn() + Send + Sync>;
+
 enum Kind {
-    Thread { shared: Arc<Shared>, handle: Option<JoinHandle<()>> },
+    Thread { shared: Arc<Shared>, shown: Shown, handle: Option<JoinHandle<()>>, patience: Patience },
     Inline { engine: Box<Engine>, report: Option<Report> },
 }
 
@@ -42,9 +51,39 @@ struct Shared {
 #[derive(Default)]
 struct Slots {
     request: Option<Request>,
+    /// When the waiting request came.
+    asked_at: Option<Instant>,
     report: Option<Report>,
     busy: bool,
     stop: bool,
+    /// What is being solved, where it may be given up.
+    solve: Option<Solve>,
+    /// Number of the thread that is listened to; the others have been given up.
+    thread: u64,
+    /// Reports so far: a solve that ends resets the patience.
+    reports: u64,
+}
+
+/// A solve that may be given up.
+struct Solve {
+    began: Instant,
+    /// The engine as it was before.
+    engine: Box<Engine>,
+    /// What it solves; None: the answer to a draft.
+    request: Option<Request>,
+}
+
+/// How long a request waits for a solve that it makes worthless.
+struct Patience {
+    wait: Duration,
+    /// Reports when it was last set.
+    reports: u64,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Self { wait: GIVE_UP_AFTER, reports: 0 }
+    }
 }
 
 impl Shared {
@@ -64,6 +103,7 @@ impl Report {
             self.answers.clear();
         }
         self.answers.extend(later.answers);
+        self.routes = later.routes;
         let excess = self.answers.len().saturating_sub(MAX_ANSWERS);
         self.answers.drain(..excess);
     }
@@ -72,12 +112,10 @@ impl Report {
 impl Worker {
     /// Starts the thread; `shown` is called whenever there is something new to show.
     #[must_use]
-    pub fn thread(shown: impl Fn() + Send + 'static) -> Self {
-        let shared = Arc::new(Shared::default());
-        let theirs = Arc::clone(&shared);
-        let handle =
-            std::thread::Builder::new().name("cable solver".to_owned()).spawn(move || work(&theirs, &shown)).ok();
-        Self { kind: Kind::Thread { shared, handle } }
+    pub fn thread(shown: impl Fn() + Send + Sync + 'static) -> Self {
+        let (shared, shown): (_, Shown) = (Arc::new(Shared::default()), Arc::new(shown));
+        let handle = start(&shared, &shown, Engine::with_drafts(), 0);
+        Self { kind: Kind::Thread { shared, shown, handle, patience: Patience::default() } }
     }
 
     /// Does the work in [`Self::submit`] and [`Self::poll`] themselves, for tests and still
@@ -92,12 +130,15 @@ impl Worker {
         match &mut self.kind {
             Kind::Thread { shared, .. } => {
                 let mut slots = shared.lock();
+                slots.asked_at.get_or_insert_with(Instant::now);
                 match &mut slots.request {
                     Some(waiting) => waiting.merge(request),
                     None => slots.request = Some(request),
                 }
                 drop(slots);
-                shared.wake.notify_one();
+                // Threads that have been given up may sleep here too.
+                shared.wake.notify_all();
+                self.give_up_what_is_worthless();
             }
             Kind::Inline { engine, report } => keep(report, guarded(engine, |e| e.handle(request))),
         }
@@ -105,6 +146,7 @@ impl Worker {
 
     /// What is new since the last call. Inline: lets one frame pass first if time runs.
     pub fn poll(&mut self) -> Option<Report> {
+        self.give_up_what_is_worthless();
         match &mut self.kind {
             Kind::Thread { shared, .. } => shared.lock().report.take(),
             Kind::Inline { engine, report } => {
@@ -116,12 +158,44 @@ impl Worker {
         }
     }
 
+    /// Gives up a solve that nobody waits for any more, or that the user has cancelled; to be called
+    /// often.
+    fn give_up_what_is_worthless(&mut self) {
+        let Kind::Thread { shared, shown, handle, patience } = &mut self.kind else { return };
+        let mut slots = shared.lock();
+        if patience.reports != slots.reports {
+            *patience = Patience { wait: GIVE_UP_AFTER, reports: slots.reports };
+        }
+        let Some(asked_at) = slots.asked_at else { return };
+        let Some(waiting) = slots.request.as_ref().filter(|r| r.solves() || r.cancel) else { return };
+        let wait = if waiting.cancel { Duration::ZERO } else { patience.wait };
+        let old = slots.solve.as_ref().is_some_and(|s| s.began.elapsed() >= wait);
+        if !old || asked_at.elapsed() < wait || Arc::strong_count(shared) > MAX_THREADS {
+            return;
+        }
+        let Some(Solve { engine, request, .. }) = slots.solve.take() else { return };
+        // Twice as long each time: a hand that never rests must not keep every answer from coming.
+        patience.wait *= 2;
+        slots.thread += 1;
+        let waiting = slots.request.take();
+        slots.request = match (request, waiting) {
+            (Some(mut first), Some(then)) => {
+                first.merge(then);
+                Some(first)
+            }
+            (first, then) => first.or(then),
+        };
+        let thread = slots.thread;
+        drop(slots);
+        *handle = start(shared, shown, *engine, thread);
+    }
+
     /// How it is doing.
     #[must_use]
     pub fn status(&self) -> WorkerStatus {
         match &self.kind {
             Kind::Inline { .. } => WorkerStatus::Idle,
-            Kind::Thread { shared, handle } => match handle {
+            Kind::Thread { shared, handle, .. } => match handle {
                 Some(handle) if !handle.is_finished() => {
                     let slots = shared.lock();
                     if slots.busy || slots.request.is_some() { WorkerStatus::Busy } else { WorkerStatus::Idle }
@@ -138,7 +212,7 @@ impl Drop for Worker {
         if let Kind::Thread { shared, .. } = &self.kind {
             // Not joined: a long solve must not keep the window from closing.
             shared.lock().stop = true;
-            shared.wake.notify_one();
+            shared.wake.notify_all();
         }
     }
 }
@@ -154,8 +228,20 @@ fn keep(slot: &mut Option<Report>, report: Report) {
 /// mouse; larger: the hand waits.
 const LEAST_SHARE: f64 = 0.4;
 
-fn work(shared: &Shared, shown: &impl Fn()) {
-    let mut engine = Engine::with_drafts();
+/// Time (s) that a request waits for a solve that it makes worthless. Shorter: a drag restarts solves
+/// that would have been in the next frames; longer: an undo is felt to hang.
+const GIVE_UP_AFTER: Duration = Duration::from_millis(70);
+/// Most threads with the window's own handle counted: more would share the processor with the one
+/// that is listened to.
+const MAX_THREADS: usize = 6;
+
+fn start(shared: &Arc<Shared>, shown: &Shown, engine: Engine, thread: u64) -> Option<JoinHandle<()>> {
+    let (shared, shown) = (Arc::clone(shared), Arc::clone(shown));
+    let run = move || work(&shared, &*shown, engine, thread);
+    std::thread::Builder::new().name("cable solver".to_owned()).spawn(run).ok()
+}
+
+fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
     let frame = Duration::from_secs_f64(FRAME_S);
     let mut next_tick = Instant::now();
     let mut last_tick = next_tick;
@@ -164,9 +250,11 @@ fn work(shared: &Shared, shown: &impl Fn()) {
     loop {
         let request = {
             let mut slots = shared.lock();
-            slots.busy = engine.draft();
+            if slots.thread == thread {
+                slots.busy = engine.draft();
+            }
             loop {
-                if slots.stop {
+                if slots.stop || slots.thread != thread {
                     return;
                 }
                 let now = Instant::now();
@@ -188,8 +276,14 @@ fn work(shared: &Shared, shown: &impl Fn()) {
                 };
             }
             slots.busy = slots.request.is_some() || engine.draft();
+            slots.asked_at = None;
             slots.request.take()
         };
+        let refines = request.is_none() && !engine.playing() && (!engine.settling() || Instant::now() >= refine_at);
+        if refines || request.as_ref().is_some_and(Request::solves) {
+            let solve = Solve { began: Instant::now(), engine: Box::new(engine.spare()), request: request.clone() };
+            shared.lock().solve = Some(solve);
+        }
         let report = match request {
             Some(request) => {
                 let drag = request.drag.is_some();
@@ -221,7 +315,14 @@ fn work(shared: &Shared, shown: &impl Fn()) {
                 guarded(&mut engine, Engine::tick)
             }
         };
-        keep(&mut shared.lock().report, report);
+        let mut slots = shared.lock();
+        if slots.thread != thread {
+            return;
+        }
+        slots.solve = None;
+        slots.reports += 1;
+        keep(&mut slots.report, report);
+        drop(slots);
         shown();
     }
 }
@@ -263,7 +364,10 @@ mod tests {
             let mut scene = scene.clone();
             scene.name = name.to_owned();
             let (model, settings) = (cable_core::Model::Auto, cable_core::Settings::default());
-            Request { edit: Some(request::Edit { scene, model, settings, fresh }), ..Request::default() }
+            Request {
+                edit: Some(request::Edit { scene, model, settings, fresh, as_laid: false }),
+                ..Request::default()
+            }
         };
         let mut waiting = edit(true, "first");
         for _ in 0..1000 {

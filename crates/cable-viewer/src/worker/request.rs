@@ -21,6 +21,8 @@ pub struct Request {
     pub resume: Option<Box<Resume>>,
     /// Back to the start.
     pub reset: bool,
+    /// Give up what is being solved: the scene stays, without an answer.
+    pub cancel: bool,
     /// Time runs or stands still.
     pub playback: Option<Playback>,
     /// Single steps to take.
@@ -40,6 +42,9 @@ pub struct Edit {
     pub settings: Settings,
     /// Another scene, not a change of the present one: nothing is carried over.
     pub fresh: bool,
+    /// The cable lies as the scene says, wherever it is now: an undo leads back to the answer that
+    /// was, even where the cable passes an obstacle on the way.
+    pub as_laid: bool,
 }
 
 /// An earlier instant to go on from.
@@ -72,6 +77,8 @@ const MAX_STEPS: u32 = 60;
 impl Request {
     /// Takes in a later request.
     pub fn merge(&mut self, later: Self) {
+        // What is asked after it is to be solved.
+        self.cancel = later.cancel || (self.cancel && !later.solves());
         if let Some(edit) = later.edit {
             let fresh = edit.fresh || self.edit.as_ref().is_some_and(|e| e.fresh);
             if edit.fresh {
@@ -103,10 +110,17 @@ impl Request {
         self.number = self.number.max(later.number);
     }
 
+    /// It asks for an answer that takes the place of the one being sought.
+    #[must_use]
+    pub fn solves(&self) -> bool {
+        self.edit.is_some() || self.resume.is_some() || self.reset
+    }
+
     /// Nothing is asked.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.edit.is_none()
+            && !self.cancel
             && self.drag.is_none()
             && self.resume.is_none()
             && !self.reset

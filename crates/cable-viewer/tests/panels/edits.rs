@@ -178,6 +178,7 @@ fn the_model_and_its_mesh_can_be_chosen() {
     harness.get_by_label("Segments per cable slider").set_value_accesskit(200.0);
     harness.run();
     assert_eq!(harness.state().state.solver.settings.segments, Some(200));
+    click(&mut harness, "Diagnostics");
     harness.get_by_label("1.234 ms");
 }
 
@@ -304,9 +305,12 @@ fn warnings_show_their_place_and_offer_the_fix() {
     let mut state = state();
     warn(&mut state);
     let mut harness = open_with(state, panels::warnings::ui);
-    harness.get_by_label_contains("912.0 of 800.0 N");
+    harness.get_by_label_contains("Above service tension at 0.00");
+    assert!(harness.query_by_label("Show warning 1").is_none(), "one line each");
+    click(&mut harness, "Details of warning 1");
     click(&mut harness, "Show warning 1");
-    assert!(matches!(harness.state().commands.first(), Some(Command::View(ViewCommand::CentreOn(_)))));
+    assert!(matches!(harness.state().commands.first(), Some(Command::View(ViewCommand::ZoomOn(_)))));
+    click(&mut harness, "Details of warning 2");
     click(&mut harness, "Use 96 segments");
     assert_eq!(harness.state().state.solver.settings.segments, Some(96));
 }
@@ -323,7 +327,7 @@ fn a_broken_scene_and_a_dead_solver_are_said_with_their_fix() {
     click(&mut harness, "Set to 10.00 m");
     assert_eq!(harness.state().state.document.fault, None);
     harness.get_by_label_contains("Something.");
-    click(&mut harness, "Start it again");
+    click(&mut harness, "Restart the solver");
     assert!(harness.state().commands.contains(&Command::File(FileCommand::RestartWorker)));
     assert!(harness.state().commands.contains(&Command::Scene(SceneCommand::EditDone)));
 }
@@ -391,7 +395,7 @@ fn a_support_moves_lets_go_and_pulls_by_times() {
     let mut harness = open_with(state, panels::scene::ui);
     let right = |h: &Harness<'static, Bench>| h.state().state.document.scene.cables[0].supports[1].clone();
     let at_m = right(&harness).at_m.unwrap();
-    click(&mut harness, "Moves with time");
+    click(&mut harness, "Follows a schedule");
     enter(&mut harness, "x 2 of right", "11");
     let motion = right(&harness).motion.expect("a motion");
     assert_eq!((motion.times_s, motion.points_m), (vec![0.0, 5.0], vec![at_m, [11.0, at_m[1]]]));
@@ -399,13 +403,13 @@ fn a_support_moves_lets_go_and_pulls_by_times() {
     enter(&mut harness, "y 1 of right", "4.5");
     assert_eq!(right(&harness).at_m, Some([at_m[0], 4.5]));
     assert_eq!(harness.state().state.document.fault, None);
-    click(&mut harness, "Moves with time");
+    click(&mut harness, "Follows a schedule");
     assert_eq!(right(&harness).motion, None);
-    click(&mut harness, "Lets go");
-    enter(&mut harness, "Lets go at", "2.5");
+    click(&mut harness, "Releases the cable at a set time");
+    enter(&mut harness, "Release time", "2.5");
     assert_eq!(right(&harness).release_s, Some(2.5));
     assert_eq!(harness.state().state.document.fault, None);
-    click(&mut harness, "Lets go");
+    click(&mut harness, "Releases the cable at a set time");
     assert_eq!(right(&harness).release_s, None);
     // A dead load of a support.
     let support = &mut harness.state_mut().state.document.scene.cables[0].supports[1];

@@ -244,7 +244,7 @@ fn s08_time_goes_on_from_an_earlier_picture() {
     harness.run_steps(60);
     apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.5))));
     let then = state(&harness).live.snapshot.solution.clone().unwrap();
-    click(&mut harness, "Go on from here");
+    click(&mut harness, "Resume from here");
     let now = state(&harness).live.snapshot.solution.clone().unwrap();
     assert_eq!(state(&harness).live.snapshot.error, None);
     assert_eq!(now.time_s, then.time_s);

@@ -89,7 +89,7 @@ fn s05_the_cable_stops_on_itself_and_what_tangles_is_named() {
     let least = state(&harness).live.recording.answers().iter().map(|a| least_gap(a, 3.0 * diameter));
     assert!(least.fold(f64::INFINITY, f64::min) < 0.5 * diameter, "now it goes through itself");
     let named = |h: &Harness<'_, ViewerApp>| {
-        ["Crosses itself", "Curls up", "Kinked"].iter().any(|t| h.query_all_by_label_contains(t).next().is_some())
+        ["Crosses itself", "Tight curl", "Kinked"].iter().any(|t| h.query_all_by_label_contains(t).next().is_some())
     };
     let told = !state(&harness).live.recording.events().is_empty() || named(&harness);
     assert!(told, "what tangles is named: {:?}", answer(&harness).warnings);
@@ -134,11 +134,11 @@ fn s09_maps_are_picked_and_pasted_while_the_window_runs() {
         answer(&harness).cables[0].contacts
     );
 
-    // Time runs on it, and both edits are taken back.
+    // Time runs on it, and the reset and both edits are taken back.
     seconds(&mut harness, 0.1);
     harness.key_press(Key::R);
     harness.run_steps(3);
-    for _ in 0..2 {
+    for _ in 0..3 {
         harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         harness.run_steps(3);
     }
@@ -295,8 +295,8 @@ fn a_whole_session_by_keys_alone() {
     harness.key_press(Key::ArrowLeft);
     harness.run_steps(2);
     assert!(answer(&harness).time_s < now_s, "an earlier picture");
-    command(&mut harness, "show the present");
-    command(&mut harness, "hold this answer");
+    command(&mut harness, "show the latest");
+    command(&mut harness, "pin this result");
     assert_eq!(state(&harness).analysis.references.len(), 1);
     harness.key_press(Key::R);
     harness.run_steps(3);
@@ -312,6 +312,10 @@ fn a_whole_session_by_keys_alone() {
     path(&mut harness, run.display().to_string());
     assert!(run.join("history.csv").exists(), "{:?}", state(&harness).ui.dialog);
     assert!(state(&harness).ui.dialog.is_none() && !state(&harness).document.unsaved());
+    // The reset was the last thing done.
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(3);
+    assert!(answer(&harness).time_s > 0.0);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(3);
     assert!(state(&harness).document.unsaved() && state(&harness).document.scene.cables[0].length_m < length_m);

@@ -168,7 +168,7 @@ fn t01_six_guided_scenes_lead_from_step_to_step() {
         harness.run_steps(4);
         // The scene before may have unsaved changes.
         if state(&harness).ui.dialog.is_some() {
-            harness.get_by_label("Go on without saving").click();
+            harness.get_by_label("Discard changes").click();
             harness.run_steps(4);
         }
         assert_eq!(state(&harness).ui.tutorial.map(|p| (p.tutorial, p.step)), Some((k, 0)), "{}", guide.title);
@@ -300,7 +300,7 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
     harness.key_press(Key::ArrowLeft);
     harness.run_steps(3);
     assert_eq!(at(&harness), Some(3));
-    harness.get_by_label("Present").click();
+    harness.get_by_label("Latest").click();
     harness.run_steps(3);
     harness.get_by_label("Done");
 
@@ -321,12 +321,12 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
 
     // 6. Compare.
     let mut harness = start(5);
-    harness.get_by_label("Hold this answer").click();
+    harness.get_by_label("Pin this result").click();
     harness.run_steps(3);
     assert_eq!(at(&harness), Some(1));
     typed(&mut harness, "Length", "12.5");
     assert_eq!(at(&harness), Some(2));
-    harness.get_by_label_contains("length_m");
+    harness.get_by_label_contains("Length: ");
     assert!(harness.get_all_by_label_contains("Export").count() >= 2, "one beside each graph");
     harness.get_by_label("File").click();
     harness.run_steps(3);
@@ -384,7 +384,7 @@ fn small_windows_keep_a_canvas_and_have_all_panels() {
             let graph = harness.get_by_label("Along the cable").rect();
             assert!(graph.height() > 60.0, "{size:?}: {graph}");
         }
-        harness.get_by_label("Read").click();
+        harness.get_by_label("Results").click();
         harness.run_steps(3);
         harness.get_by_label("Max tension");
         // The menu of the same name is above it.
@@ -418,7 +418,7 @@ fn the_keyboard_alone_opens_edits_runs_and_reads() {
     // Everything else by name.
     harness.key_press_modifiers(Modifiers::COMMAND, Key::P);
     harness.run_steps(4);
-    harness.get_by_label("Command").type_text("hold this");
+    harness.get_by_label("Command").type_text("pin this");
     harness.run_steps(3);
     key(&mut harness, Key::Enter);
     harness.run_steps(3);

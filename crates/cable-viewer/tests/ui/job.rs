@@ -80,9 +80,9 @@ fn a_tank_job_is_set_up_and_driven_from_the_first_scene() {
     click(&mut harness, &map.name);
     click(&mut harness, "Robot");
     click(&mut harness, &preset::robot_presets()[0].name);
-    click(&mut harness, "Cable in by the opening");
+    click(&mut harness, "Route the cable through the tank opening");
     assert_eq!(state(&harness).document.scene.cables[0].supports[0].at_m, Some(map.riser_at_m));
-    assert!(harness.query_by_label("Cable in by the opening").is_none(), "it is there");
+    assert!(harness.query_by_label("Route the cable through the tank opening").is_none(), "it is there");
     // Too short for that, which is said with the remedy.
     assert!(state(&harness).document.fault.is_some());
     harness.get_all_by_label_contains("Set to ").next().expect("the fix is offered").click();
@@ -119,7 +119,7 @@ fn asked(harness: &mut Harness<'_, ViewerApp>) {
 #[test]
 fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
     let mut harness = tall(catalog::over_beam());
-    click(&mut harness, "Hold every model");
+    click(&mut harness, "Compare all models");
     asked(&mut harness);
     let models: Vec<Model> = state(&harness).analysis.references.iter().map(|h| h.solution.model).collect();
     assert_eq!(models, [Model::Spans, Model::Fem, Model::MassSpring]);
@@ -133,14 +133,14 @@ fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
         assert!(harness.query_all_by_label(&cost).next().is_some(), "{cost}");
     }
     // Again: in their place, not beside them.
-    click(&mut harness, "Hold every model");
+    click(&mut harness, "Compare all models");
     asked(&mut harness);
     assert_eq!(state(&harness).analysis.references.len(), 3);
     // On the way its progress is shown, and it can be ended.
     harness.state_mut().state.analysis.models = Progress::Running(0.5, None);
     harness.run_steps(2);
-    harness.get_by_label("Progress of every model");
-    click(&mut harness, "Cancel every model");
+    harness.get_by_label("Progress of the comparison");
+    click(&mut harness, "Cancel comparison");
     assert!(matches!(state(&harness).analysis.models, Progress::None));
     // What was ended holds nothing, however soon it comes.
     apply(&mut harness, Command::View(ViewCommand::LetGo(None)));

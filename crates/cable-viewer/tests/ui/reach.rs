@@ -122,7 +122,7 @@ fn safe_reach_of_an_end_is_a_map_of_the_plane_found_by_keys_alone_and_told_in_wo
         harness.step();
         matches!(reach(&harness).progress, Progress::Done(_))
     });
-    harness.get_by_label("Of the scene before the last edits");
+    harness.get_by_label("Out of date: edited since");
     let Some((Maps::Area(there, Some(ways)), _)) = reach(&harness).found().cloned() else {
         panic!("{:?}", reach(&harness))
     };
@@ -178,7 +178,7 @@ fn what_is_taken_somewhere_is_the_robot_else_what_is_picked_else_an_end_and_can_
     let moved = |harness: &Harness<'_, ViewerApp>| cable_viewer::state::questions::reach_target(&harness.state().state);
     let mut harness = tall(catalog::robot_drive());
     assert_eq!(moved(&harness), Some(ReachSubject::Robot));
-    harness.get_by_label("What is taken somewhere").click();
+    harness.get_by_label("What is moved").click();
     harness.run_steps(3);
     let riser = harness.state().state.document.scene.cables[0].supports[0].name.clone();
     let label = format!("Support {riser} of {}", harness.state().state.document.scene.cables[0].name);

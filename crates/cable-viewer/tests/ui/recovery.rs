@@ -38,7 +38,7 @@ fn kept_changes_can_be_deleted() {
     let mut harness = open(catalog::hanging_span());
     harness.state_mut().keep_changes_in(path.clone());
     harness.run_steps(2);
-    harness.get_by_label("Delete them").click();
+    harness.get_by_label("Discard").click();
     harness.run_steps(2);
     assert!(!path.exists() && harness.state().state.ui.dialog.is_none());
 }

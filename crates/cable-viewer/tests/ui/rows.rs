@@ -239,14 +239,15 @@ fn s13_two_levels_of_tension_are_warned_of_with_their_place() {
     let most = answer(&harness).max_tension();
     set_cable(&mut harness, |c| c.service_tension_n = 0.9 * most.tension_n);
     assert!(warned(&harness, WarningKind::ServiceTension));
-    harness.get_by_label_contains("Above the service tension: cable at ");
+    harness.get_by_label_contains("Above service tension at ");
+    click(&mut harness, "Details of warning 1");
     click(&mut harness, "Show warning 1");
     set_cable(&mut harness, |c| {
         c.service_tension_n = 0.5 * most.tension_n;
         c.breaking_tension_n = 0.95 * most.tension_n;
     });
     assert!(warned(&harness, WarningKind::BreakingTension), "{:?}", answer(&harness).warnings);
-    harness.get_by_label_contains("Breaks here: cable at ");
+    harness.get_by_label_contains("Breaks here at ");
 }
 
 #[test]

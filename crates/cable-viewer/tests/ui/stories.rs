@@ -272,10 +272,10 @@ fn s09_a_pasted_table_becomes_ground_and_undo_takes_it_back() {
 fn s16_four_answers_are_held_and_their_differences_told() {
     let mut harness = open_span();
     // Tall enough that the whole table is in sight.
-    harness.set_size(egui::Vec2::new(1280.0, 1000.0));
+    harness.set_size(egui::Vec2::new(1280.0, 1600.0));
     harness.run_steps(3);
     for k in 0..4 {
-        click(&mut harness, "Hold this answer");
+        click(&mut harness, "Pin this result");
         let mut cable = harness.state().state.document.scene.cables[0].clone();
         cable.length_m += 0.1 * f64::from(k + 1);
         let edit = cable_viewer::command::SceneCommand::SetCable { cable: 0, value: Box::new(cable) };
@@ -284,11 +284,11 @@ fn s16_four_answers_are_held_and_their_differences_told() {
     let state = &harness.state().state;
     assert_eq!(state.analysis.references.len(), 4);
     let told = cable_viewer::panels::analysis::compare::differences(&state.analysis.references[0], state);
-    assert!(told.iter().any(|l| l.starts_with("length_m 12")), "{told:?}");
+    assert!(told.iter().any(|l| l.starts_with("Length: 12")), "{told:?}");
     assert!(harness.get_all_by_label_contains(" %").count() >= 8, "differences of tension and sag");
-    click(&mut harness, "Let go 2");
+    click(&mut harness, "Unpin 2");
     assert_eq!(harness.state().state.analysis.references.len(), 3);
-    click(&mut harness, "Let all go");
+    click(&mut harness, "Unpin all");
     assert!(harness.state().state.analysis.references.is_empty());
 }
 

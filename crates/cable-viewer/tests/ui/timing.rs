@@ -186,3 +186,34 @@ fn a_drag_of_a_slow_scene_ends_at_the_answer_and_not_at_a_draft() {
         assert_eq!(state.live.snapshot.scene.as_deref(), Some(&state.document.scene));
     }
 }
+
+/// From an edit to the first frame whose figures are those of the edited scene, and so not dimmed, with the model that
+/// `auto` chooses: the median and the worst of ten edits a scene, printed.
+#[test]
+fn timed_edits_to_undimmed_figures() {
+    const EDITS: usize = 10;
+    for (id, scene) in catalog::all() {
+        let mut harness = Harness::builder()
+            .with_size(Vec2::new(1280.0, 800.0))
+            .with_step_dt(1.0 / 60.0)
+            .allow_missing_glyphs()
+            .build_eframe(|cc| ViewerApp::new(&cc.egui_ctx, scene, None));
+        wait(&mut harness);
+        let last = harness.state().state.document.scene.cables[0].supports.len() - 1;
+        let Some(at) = harness.state().state.document.scene.cables[0].supports[last].at_m else { continue };
+        let mut times = Vec::new();
+        for k in 1..=EDITS {
+            let item = Item::Support { cable: 0, support: last };
+            let to_m = [at[0] - 0.02 * k as f64, at[1] + 0.01 * k as f64];
+            let began = Instant::now();
+            submit(&mut harness, Command::Scene(SceneCommand::Move { item, to_m }));
+            while !harness.state().settled() || harness.state().state.live.snapshot.draft {
+                assert!(began.elapsed() < PATIENCE, "{id}");
+                harness.step();
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            times.push(began.elapsed().as_secs_f64() * 1e3);
+        }
+        print(&format!("{id}, edit to undimmed figures"), times);
+    }
+}

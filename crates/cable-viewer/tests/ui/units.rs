@@ -37,6 +37,10 @@ fn warnings_and_refusals_are_read_in_us_units() {
     set_cable(&mut harness, |c| (c.service_tension_n, c.min_bend_radius_m) = (0.9 * most, 30.0));
     assert!(answer(&harness).warnings.len() >= 2, "{:?}", answer(&harness).warnings);
     assert!(!metric(&harness).is_empty(), "the measure sees SI figures");
+    for k in 1..=answer(&harness).warnings.len() {
+        harness.get_by_label(&format!("Details of warning {k}")).click();
+        harness.run_steps(2);
+    }
     apply(&mut harness, Command::View(ViewCommand::SetUnits(System::Us)));
     harness.run_steps(2);
     assert_eq!(metric(&harness), Vec::<String>::new());

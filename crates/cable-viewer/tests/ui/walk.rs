@@ -211,7 +211,7 @@ fn walk_e_sizes() {
         walk.view(ViewCommand::Fit);
         walk.look(&format!("e{k}-size-{}x{}-at-{scale}", size[0], size[1]));
         if (2..=4).contains(&k) {
-            walk.click("Read");
+            walk.click("Results");
             walk.look(&format!("e{k}-size-{}x{}-at-{scale}-read", size[0], size[1]));
         }
     }

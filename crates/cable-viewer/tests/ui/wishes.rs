@@ -96,7 +96,7 @@ fn u09_tangles_and_tight_bends_are_warned_of() {
     apply(&mut harness, Command::SetModel(Model::Fem));
     set_cable(&mut harness, |c| c.min_bend_radius_m = 5.0);
     assert!(warned(&harness, WarningKind::BendRadius), "{:?}", answer(&harness).warnings);
-    harness.get_by_label_contains("Bent too tightly");
+    harness.get_by_label_contains("Bend too tight");
 }
 
 #[test]
@@ -266,17 +266,17 @@ fn t05_marks_are_kept_and_a_low_one_with_what_confused() {
         harness.run_steps(2);
     };
     mark(&mut harness, [5, 4, 5, 4]);
-    click(&mut harness, "Keep");
+    click(&mut harness, "Save feedback");
     assert!(state(&harness).ui.dialog.is_none());
     mark(&mut harness, [4, 2, 5, 4]);
-    click(&mut harness, "Keep");
+    click(&mut harness, "Save feedback");
     assert!(state(&harness).ui.dialog.is_some(), "a low mark without words is not taken");
-    harness.get_by_label_contains("please say what confused you");
-    harness.get_by_label("What confused you, or should be otherwise").focus();
+    harness.get_by_label_contains("please say what was confusing");
+    harness.get_by_label("What was confusing or should change?").focus();
     harness.run_steps(2);
-    harness.get_by_label("What confused you, or should be otherwise").type_text("which end, \"left\"?");
+    harness.get_by_label("What was confusing or should change?").type_text("which end, \"left\"?");
     harness.run_steps(2);
-    click(&mut harness, "Keep");
+    click(&mut harness, "Save feedback");
     assert!(state(&harness).ui.dialog.is_none());
     let text = std::fs::read_to_string(&path).unwrap();
     let rows: Vec<&str> = text.lines().collect();

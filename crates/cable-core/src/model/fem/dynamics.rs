@@ -591,7 +591,7 @@ impl Dynamics {
         let held = self.answers.held_back.iter().filter_map(|&k| {
             let (node, s) = (node_of(k)?, self.problem.supports.get(k)?);
             let behind = (self.task.target.get(node)? - self.motion.x[node]).norm();
-            let message = format!("support `{}` does not come where it is sent: an obstacle is in its way", s.name);
+            let message = format!("support `{}` cannot reach where it is sent: an obstacle blocks it", s.name);
             let (name, arc_length) = (&self.problem.cable.name, self.mesh.arc_length[node]);
             Some(Warning::new(WarningKind::SupportHeld, name, arc_length, [behind, 0.0], message))
         });

@@ -354,9 +354,9 @@ impl Mechanics for SpansModel {
             report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
         } else if self.rubs() && mobilised.is_default() {
             let message = if taken.eased {
-                "With friction the resting place depends on how the cable was laid. None was found by laying it along its way: this is the one it finds without friction, which friction then holds"
+                "With friction the resting place depends on how the cable was laid. Shown: the frictionless shape, held by friction"
             } else {
-                "With friction the resting place depends on how the cable was laid: this is the one laid along its way with the least sliding"
+                "With friction the resting place depends on how the cable was laid. Shown: the one laid along its route with the least sliding"
             };
             let name = &self.problem.cable.name;
             let message = format!("{message}{range}");

@@ -114,7 +114,7 @@ impl Scene {
         }
         if cable.service_tension_n > cable.breaking_tension_n {
             return Err(at.key("service_tension_n").shape(format!(
-                "{} N is above breaking_tension_n ({} N): a warning after the break warns nobody",
+                "{} N must not be above the breaking tension ({} N)",
                 cable.service_tension_n, cable.breaking_tension_n
             )));
         }

@@ -7,7 +7,7 @@ use egui::{Color32, Mesh, Pos2, Stroke, Vec2, vec2};
 use crate::canvas::view::CanvasView;
 use crate::plot;
 use crate::render::colour::ColourScale;
-use crate::state::{AppState, Item};
+use crate::state::{AppState, Freshness, Item};
 
 /// Thinnest ribbon, points: the true diameter is drawn only where it is wider.
 pub const LEAST_WIDTH: f32 = 4.5;
@@ -25,7 +25,11 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let range = state.view.colour.range(solution);
     let mut mesh = Mesh::default();
-    let fade = |c: Color32| if state.live.snapshot.stale { grey(c) } else { c };
+    let freshness = state.freshness();
+    let (current, casing) = (freshness == Freshness::Current, view.palette.casing);
+    // Colours are figures too: what is not the answer has none.
+    let plain = if freshness == Freshness::Draft { view.palette.weak_text } else { grey(view.palette.weak_text) };
+    let fade = |c: Color32| if current { c } else { grey(c) };
     for (k, answer) in solution.cables.iter().enumerate() {
         let Some(cable) = solved.cables.get(k) else { continue };
         let width = view.points(cable.diameter_m).max(LEAST_WIDTH);
@@ -37,11 +41,16 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
             if state.selection.contains(Item::Cable(k)) || picked(state.selection.hovered) {
                 line.add(&mut mesh, width + 7.0, |_| Some(view.palette.accent.gamma_multiply(0.55)));
             }
-            line.add(&mut mesh, width + 6.0, |i| (nodes[i].tension_n > service).then_some(fade(view.palette.risk)));
-            line.add(&mut mesh, width + 1.6, |_| Some(fade(view.palette.casing)));
+            line.add(&mut mesh, width + 6.0, |i| {
+                (current && nodes[i].tension_n > service).then_some(view.palette.risk)
+            });
+            line.add(&mut mesh, width + 1.6, |_| Some(fade(casing)));
             line.add(&mut mesh, width, |i| {
+                if !current {
+                    return Some(plain);
+                }
                 let fraction = ColourScale::fraction(state.view.colour.quantity.of(&nodes[i]), range);
-                Some(fade(state.view.colour.map.at(fraction)))
+                Some(state.view.colour.map.at(fraction))
             });
         }
     }

@@ -3,10 +3,11 @@
 //! filled and hollow by every eye.
 
 use cable_core::solution::{CableSolution, ContactPart, ContactReport, ContactState, Node};
-use egui::{Mesh, Pos2, Rect, Stroke, StrokeKind, vec2};
+use egui::{Mesh, Painter, Pos2, Rect, Stroke, StrokeKind, vec2};
 
 use crate::canvas::layers::cable::{LEAST_WIDTH, Ribbon, seen};
 use crate::canvas::view::CanvasView;
+use crate::render::theme::Palette;
 use crate::state::AppState;
 
 /// How much wider than the cable the band is, points.
@@ -111,12 +112,12 @@ pub fn at(answer: &CableSolution, s: f64) -> Option<Node> {
 }
 
 /// A piece of band for the legend.
-pub fn sample(view: &CanvasView<'_>, rect: Rect, holds: bool) {
+pub fn sample(painter: &Painter, palette: &Palette, rect: Rect, holds: bool) {
     if holds {
-        view.painter.rect_filled(rect, 0.0, view.palette.normal);
+        painter.rect_filled(rect, 0.0, palette.normal);
     } else {
-        let line = Stroke::new(EDGE / 2.0, view.palette.friction);
-        view.painter.rect(rect, 0.0, view.palette.background, line, StrokeKind::Inside);
+        let line = Stroke::new(EDGE / 2.0, palette.friction);
+        painter.rect(rect, 0.0, palette.background, line, StrokeKind::Inside);
     }
-    view.painter.rect_filled(Rect::from_center_size(rect.center(), vec2(rect.width(), 3.0)), 0.0, view.palette.casing);
+    painter.rect_filled(Rect::from_center_size(rect.center(), vec2(rect.width(), 3.0)), 0.0, palette.casing);
 }

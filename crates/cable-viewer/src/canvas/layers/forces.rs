@@ -19,14 +19,18 @@ const LENGTH: [f64; 2] = [64.0, 9.0];
 /// All arrows; their figures go to `figures` for the labels to place.
 pub fn draw(view: &mut CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
     let Some(solution) = &state.live.snapshot.solution else { return };
+    // What holds the cable now is known of answers only; loads are given.
+    let current = state.is_current();
     let greatest = greatest(state);
     let scale = |f: Point| screen_vector(f, greatest);
     for (k, cable) in solution.cables.iter().enumerate() {
-        if state.view.layers.contacts {
+        if state.view.layers.contacts && current {
             contacts(view, cable, &scale);
         }
         if state.view.layers.forces {
-            reactions(view, state, cable, (&scale, figures));
+            if current {
+                reactions(view, state, cable, (&scale, figures));
+            }
             loads(view, state, k, cable, figures);
         }
     }

@@ -178,7 +178,7 @@ pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
     let line = Stroke::new(1.0, view.palette.plate_line);
     view.painter.rect(plate, 4.0, view.palette.plate, line, StrokeKind::Inside);
     let title = if state.analysis.safe_reach.choice.back { "Safe reach, there and back" } else { "Safe reach" };
-    let title = if **scene == state.document.scene { title.to_owned() } else { format!("{title} (before edits)") };
+    let title = if **scene == state.document.scene { title.to_owned() } else { format!("{title} (out of date)") };
     view.text(plate.min + vec2(9.0, 6.0), Align2::LEFT_TOP, &title, 11.5, view.palette.text);
     let bar = Rect::from_min_size(plate.min + vec2(9.0, 24.0), vec2(LEGEND[0] - 18.0, 9.0));
     let mut mesh = Mesh::default();
@@ -207,7 +207,7 @@ pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
     }
     let over = match maps {
         Maps::Line(_) => "above service".to_owned(),
-        Maps::Area(..) => format!("above; thick line: breaks, {}", labels::force(breaking_n)),
+        Maps::Area(..) => format!("above service; thick line: breaks, {}", labels::force(breaking_n)),
     };
     view.text(sample + vec2(27.0, 0.0), Align2::LEFT_CENTER, &over, 10.5, view.palette.text);
     view.taken.push(plate);

@@ -107,7 +107,7 @@ pub fn labels(view: &mut CanvasView<'_>, state: &AppState, figures: Vec<(Pos2, S
     for (p, text) in &spots {
         view.label(*p, text, text_colour, Place::Must);
     }
-    if let Some(solution) = &state.live.snapshot.solution {
+    if let Some(solution) = state.live.snapshot.solution.as_ref().filter(|_| state.is_current()) {
         let most = solution.max_tension();
         let cable = solution.cables.get(most.cable);
         if let Some(n) = cable.and_then(|c| c.nodes.iter().find(|n| n.arc_length_m >= most.arc_length_m)) {

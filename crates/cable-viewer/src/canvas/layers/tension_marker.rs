@@ -1,4 +1,4 @@
-//! A marker on the cable shows the place whose tension is taken apart.
+//! A marker on the cable shows the place whose tension is broken down.
 
 use egui::{Color32, Pos2, Stroke, vec2};
 

@@ -8,41 +8,45 @@ use egui::{Grid, Id, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, FileCommand, ViewCommand};
 use crate::jobs::background::Progress;
+use crate::panels::words;
 use crate::record::measure::Measure;
 use crate::record::run::Peak;
 use crate::render::colour::{LINES, Quantity};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Reference};
-use crate::units::{format, translate};
-use crate::widgets::field;
+use crate::units::{format, labels, translate};
+use crate::widgets::{field, readout};
 
 /// Most lines of difference told; more are counted.
 const MAX_LINES: usize = 12;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let full = state.analysis.references.len() == Reference::MAX_COUNT;
-        let help =
-            if full { "No more can be held: let one go" } else { "Keeps this answer on screen beside what follows" };
+        let help = if full {
+            "No more can be pinned: unpin one first"
+        } else {
+            "Keeps this result on screen beside later ones"
+        };
         let can = state.live.snapshot.solution.is_some() && !full;
-        if ui.add_enabled(can, egui::Button::new("Hold this answer")).on_hover_text(help).clicked() {
+        if ui.add_enabled(can, egui::Button::new("Pin this result")).on_hover_text(help).clicked() {
             commands.push(Command::View(ViewCommand::Hold));
         }
-        let help = "Reads a run from its folder and holds it";
-        if ui.add_enabled(!full, egui::Button::new("Hold a run…")).on_hover_text(help).clicked() {
+        let help = "Reads a recorded run from its folder and pins it";
+        if ui.add_enabled(!full, egui::Button::new("Pin a recorded run…")).on_hover_text(help).clicked() {
             let dialog = Dialog::OpenRun { path: "run".to_owned(), hold: true };
             commands.push(Command::File(FileCommand::SetDialog(Some(dialog))));
         }
         if !state.analysis.references.is_empty()
-            && ui.button("Let all go").on_hover_text("None is held any more").clicked()
+            && ui.button("Unpin all").on_hover_text("Removes every pinned result").clicked()
         {
             commands.push(Command::View(ViewCommand::LetGo(None)));
         }
     });
     every_model(ui, state, commands);
     if state.analysis.references.is_empty() {
-        ui.weak("Nothing held: hold an answer, then change the scene or the model");
+        ui.weak("Nothing pinned. Pin a result, then change something to compare");
         return;
     }
     let present = state
@@ -51,27 +55,32 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         .solution
         .as_deref()
         .map(|s| Figures::of(s, &state.document.scene, state.live.snapshot.solve_wall_s));
-    Grid::new("compare").num_columns(6).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
-        for title in ["", "Tension", "Sag", "Energy", "Cost", ""] {
-            ui.weak(title);
-        }
-        ui.end_row();
-        if let Some(present) = &present {
-            ui.strong("Now").on_hover_text("What is on screen");
-            row(ui, present, None);
-            ui.end_row();
-        }
-        for (k, held) in state.analysis.references.iter().enumerate() {
-            let colour = LINES[k % LINES.len()];
-            ui.label(RichText::new(format!("{}", k + 1)).color(colour).strong()).on_hover_text(&held.name);
-            row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), present.as_ref());
-            let away = crate::widgets::icon::plain_button(ui, crate::widgets::icon::Icon::Remove, true);
-            field::name(&away, &format!("Let go {}", k + 1));
-            if away.on_hover_text("Not held any more").clicked() {
-                commands.push(Command::View(ViewCommand::LetGo(Some(k))));
+    readout::wide(ui, "compare", |ui| {
+        Grid::new("compare").num_columns(5).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
+            for title in ["", "Tension", "Sag", "Energy", "Cost"] {
+                ui.weak(title);
             }
             ui.end_row();
-        }
+            if let Some(present) = &present {
+                ui.strong("Now").on_hover_text("What is on screen");
+                row(ui, present, None);
+                ui.end_row();
+            }
+            for (k, held) in state.analysis.references.iter().enumerate() {
+                let colour = LINES[k % LINES.len()];
+                ui.horizontal(|ui| {
+                    ui.spacing_mut().item_spacing.x = 2.0;
+                    let away = crate::widgets::icon::plain_button(ui, crate::widgets::icon::Icon::Remove, true);
+                    field::name(&away, &format!("Unpin {}", k + 1));
+                    if away.on_hover_text("Unpins this result").clicked() {
+                        commands.push(Command::View(ViewCommand::LetGo(Some(k))));
+                    }
+                    ui.label(RichText::new(format!("{}", k + 1)).color(colour).strong()).on_hover_text(&held.name);
+                });
+                row(ui, &Figures::of(&held.solution, &held.scene, held.wall_s), present.as_ref());
+                ui.end_row();
+            }
+        });
     });
     runs(ui, state);
     for (k, held) in state.analysis.references.iter().enumerate() {
@@ -86,16 +95,16 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Progress::Running(share, _) = state.analysis.models {
         let bar = ui.add(ProgressBar::new(share as f32).show_percentage().desired_height(16.0));
-        field::name(&bar, "Progress of every model");
-        if ui.button("Cancel every model").on_hover_text("Ends it; nothing is held").clicked() {
+        field::name(&bar, "Progress of the comparison");
+        if ui.button("Cancel comparison").on_hover_text("Stops it; nothing is pinned").clicked() {
             commands.push(Command::View(ViewCommand::HoldModels(false)));
         }
         return;
     }
-    let help = "Solves the scene at rest with each model in turn, beside the window, and holds what they answer: tension, sag, \
+    let help = "Solves the scene at rest with each model in turn, in the background, and pins the results: tension, sag, \
                 energy and cost side by side";
     let can = state.document.fault.is_none();
-    let button = ui.add_enabled(can, egui::Button::new("Hold every model")).on_hover_text(help);
+    let button = ui.add_enabled(can, egui::Button::new("Compare all models")).on_hover_text(help);
     if button.on_disabled_hover_text("The scene has a fault: see Warnings").clicked() {
         commands.push(Command::View(ViewCommand::HoldModels(true)));
     }
@@ -105,7 +114,7 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             for answer in &found.answers {
                 if let Err(why) = &answer.result {
                     // Most refusals begin with the model's name.
-                    let name = if why.contains(answer.model.name()) { "" } else { answer.model.name() };
+                    let name = if why.contains(answer.model.name()) { "" } else { labels::model(answer.model) };
                     let colon = if name.is_empty() { "" } else { ": " };
                     ui.label(RichText::new(format!("{name}{colon}{}", translate::display(why))).small());
                 }
@@ -127,36 +136,38 @@ fn runs(ui: &mut Ui, state: &AppState) {
     });
     ui.separator();
     ui.strong("Whole runs");
-    Grid::new("runs").num_columns(5).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
-        for (title, help) in [
-            ("", ""),
-            ("Lasts", "From its first to its last picture"),
-            ("Most tension", "Over the whole run, and when"),
-            ("Most pull", "Of the cable on the robot"),
-            ("Events", "Warnings that began"),
-        ] {
-            let title = ui.weak(title);
-            if !help.is_empty() {
-                title.on_hover_text(help);
+    readout::wide(ui, "runs", |ui| {
+        Grid::new("runs").num_columns(5).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
+            for (title, help) in [
+                ("", ""),
+                ("Lasts", "From its first to its last picture"),
+                ("Most tension", "Over the whole run, and when"),
+                ("Most pull", "Of the cable on the robot"),
+                ("Events", "Warnings that began"),
+            ] {
+                let title = ui.weak(title);
+                if !help.is_empty() {
+                    title.on_hover_text(help);
+                }
             }
-        }
-        ui.end_row();
-        let held = state.analysis.references.iter().enumerate();
-        let held = held.filter_map(|(k, h)| {
-            let run = h.run.as_deref()?;
-            Some((format!("{}", k + 1), Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
-        });
-        for (name, k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
-            let text = RichText::new(name).strong();
-            ui.label(k.map_or(text.clone(), |k| text.color(LINES[k % LINES.len()])));
-            ui.label(format::duration(last - first));
-            for peak in peaks {
-                let at = |p: Peak| format!("{} at {:.2} s", format::force(p.value), p.time_s);
-                ui.label(peak.map_or_else(|| "–".to_owned(), at));
-            }
-            ui.label(events.to_string());
             ui.end_row();
-        }
+            let held = state.analysis.references.iter().enumerate();
+            let held = held.filter_map(|(k, h)| {
+                let run = h.run.as_deref()?;
+                Some((format!("{}", k + 1), Some(k), (run.span_s(), measures.map(|m| run.peak(m)), run.events)))
+            });
+            for (name, k, ([first, last], peaks, events)) in own.into_iter().chain(held) {
+                let text = RichText::new(name).strong();
+                ui.label(k.map_or(text.clone(), |k| text.color(LINES[k % LINES.len()])));
+                ui.label(format::duration(last - first));
+                for peak in peaks {
+                    let at = |p: Peak| format!("{} at {:.2} s", format::force(p.value), p.time_s);
+                    ui.label(peak.map_or_else(|| "–".to_owned(), at));
+                }
+                ui.label(events.to_string());
+                ui.end_row();
+            }
+        });
     });
 }
 
@@ -243,22 +254,25 @@ pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
     if let Some(present) = &state.live.snapshot.solution
         && present.model != held.solution.model
     {
-        out.push(format!("model {} to {}", held.solution.model, present.model));
+        out.push(format!("Model: {} → {}", labels::model(held.solution.model), labels::model(present.model)));
     }
     let (a, b) = (held.scene.to_toml(), state.document.scene.to_toml());
     let (a, b): (Vec<&str>, Vec<&str>) = (a.lines().collect(), b.lines().collect());
     if a.len() == b.len() {
         let pairs = a.iter().zip(&b).filter(|(x, y)| x != y);
         out.extend(pairs.map(|(x, y)| match (x.split_once(" = "), y.split_once(" = ")) {
-            (Some((key, was)), Some((_, is))) => format!("{} {} to {}", key.trim(), short(was), short(is)),
-            _ => format!("{} to {}", short(x), short(y)),
+            (Some((key, was)), Some((_, is))) => {
+                format!("{}: {} → {}", words::property(key.trim()), words::value(key, was), words::value(key, is))
+            }
+            _ => format!("{} → {}", words::line(x), words::line(y)),
         }));
     } else {
-        out.extend(a.iter().filter(|x| !b.contains(x)).map(|x| format!("− {}", short(x))));
-        out.extend(b.iter().filter(|y| !a.contains(y)).map(|y| format!("+ {}", short(y))));
+        let told = |line: &&&str| line.contains(" = ");
+        out.extend(a.iter().filter(|x| !b.contains(x)).filter(told).map(|x| words::removed(x)));
+        out.extend(b.iter().filter(|y| !a.contains(y)).filter(told).map(|y| words::added(y)));
     }
     if out.is_empty() {
-        out.push("the same input".to_owned());
+        out.push("Same inputs".to_owned());
     }
     if out.len() > MAX_LINES {
         let more = out.len() - MAX_LINES;
@@ -266,9 +280,4 @@ pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
         out.push(format!("and {more} more"));
     }
     out
-}
-
-fn short(text: &str) -> String {
-    let text = text.trim();
-    if text.chars().count() > 40 { text.chars().take(40).collect::<String>() + "…" } else { text.to_owned() }
 }

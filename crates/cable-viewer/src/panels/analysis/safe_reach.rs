@@ -13,10 +13,14 @@ use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::field;
 
+/// Width of a slider's value beside it, points.
+const SPIN_WIDTH: f32 = 72.0;
+
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing.x = 5.0;
     let Some(moved) = reach_target(state) else {
-        ui.weak("Nothing here has a place to be taken from");
+        ui.weak("Nothing in this scene can be moved");
         return;
     };
     let view = &state.analysis.safe_reach;
@@ -28,7 +32,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Some(share) = running {
         let bar = ui.add(ProgressBar::new(share as f32).show_percentage().desired_height(16.0));
         field::name(&bar, "Progress of the safe reach");
-        if ui.button("Cancel safe reach").on_hover_text("Ends the search; nothing is kept").clicked() {
+        if ui.button("Cancel safe reach").on_hover_text("Stops the search").clicked() {
             commands.push(Command::View(ViewCommand::Reach(false)));
         }
     } else {
@@ -42,7 +46,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             let shown = !matches!(view.progress, Progress::None);
             if ui
                 .add_enabled(shown, egui::Button::new("Clear"))
-                .on_hover_text("Takes the map away")
+                .on_hover_text("Removes the map")
                 .on_disabled_hover_text("There is no map yet")
                 .clicked()
             {
@@ -56,7 +60,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some((maps, scene)) = view.found() else { return };
     both_ways(ui, view.choice, commands);
     if **scene != state.document.scene {
-        ui.colored_label(ui.visuals().warn_fg_color, "Of the scene before the last edits");
+        ui.colored_label(ui.visuals().warn_fg_color, "Out of date: edited since");
     }
     for line in describe(maps, view.choice.back) {
         ui.label(line);
@@ -75,17 +79,18 @@ fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Ve
                 }
             }
         });
-        field::name(&shown.response, "What is taken somewhere");
+        field::name(&shown.response, "What is moved");
         shown
             .response
             .on_hover_text("The robot along its ground, or a support by a hand or a crane through free space");
     });
     if moved != ReachSubject::Robot {
         ui.horizontal(|ui| {
-            ui.label("Places side by side");
+            ui.label("Grid resolution");
             let mut across = choice.across;
+            ui.spacing_mut().slider_width = (ui.available_width() - SPIN_WIDTH).max(30.0);
             let slider = ui.add(Slider::new(&mut across, ACROSS[0]..=ACROSS[1]));
-            field::name(&slider, "Places side by side");
+            field::name(&slider, "Grid resolution");
             let help =
                 "How finely the part of the picture in view is looked at: twice as many take up to four times as long";
             if slider.on_hover_text(help).changed() {
@@ -98,7 +103,7 @@ fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Ve
 fn both_ways(ui: &mut Ui, choice: Choice, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let there = "The largest tension with the end at each place";
-        let back = "Snags: the largest tension on the way there and back";
+        let back = "The largest tension on the way there and back, snags included";
         for (back, text, help) in [(false, "There", there), (true, "There and back", back)] {
             if ui.radio(choice.back == back, text).on_hover_text(help).clicked() {
                 commands.push(set(Choice { back, ..choice }));
@@ -119,7 +124,7 @@ pub fn describe(maps: &Maps, back: bool) -> Vec<String> {
         .map(|(name, tension_n)| match maps {
             Maps::Line(map) => of_line(map, back, name, tension_n),
             Maps::Area(there, None) if !back => of_area(there, name, tension_n),
-            Maps::Area(_, None) => "The ways back are not known yet".to_owned(),
+            Maps::Area(_, None) => "The way back has not been computed yet".to_owned(),
             Maps::Area(there, Some(ways)) => of_area(if back { ways } else { there }, name, tension_n),
         })
         .collect()
@@ -131,33 +136,34 @@ fn to(x: f64) -> String {
 
 fn of_line(map: &ReachMap, back: bool, name: &str, tension_n: f64) -> String {
     let Some([left, right]) = map.safe_m(tension_n, back) else {
-        return format!("Above {name} {} where it stands", format::force(tension_n));
+        return format!("Above {name} tension ({}) at its present position", format::force(tension_n));
     };
     let why = |x: f64, side: f64| {
         let next = map.places.iter().filter(|p| side * (p.at_m[0] - x) > 0.0);
         let next = next.min_by(|a, b| (a.at_m[0] - x).abs().total_cmp(&(b.at_m[0] - x).abs()));
         match next.map(|p| (p.jammed, if back { p.there_and_back_n } else { p.there_n })) {
             None => "",
-            Some((true, _)) => " (its cable in the way)",
-            Some((_, n)) if n.is_nan() => " (no answer)",
-            Some((_, n)) if n.is_infinite() => " (cable too short)",
+            Some((true, _)) => " (beyond, its cable is in the way)",
+            Some((_, n)) if n.is_nan() => " (beyond, no solution)",
+            Some((_, n)) if n.is_infinite() => " (beyond, the cable is too short)",
             Some(_) => "",
         }
     };
-    let force = format::force(tension_n);
-    format!("Below {name} {force} from x = {}{} to {}{}", to(left), why(left, -1.0), to(right), why(right, 1.0))
+    // The first line is of the service tension, which is what safe means.
+    let from = if name == "service" { "Safe from" } else { "No break from" };
+    format!("{from} x = {}{} to {}{}", to(left), why(left, -1.0), to(right), why(right, 1.0))
 }
 
 fn of_area(area: &Area, name: &str, tension_n: f64) -> String {
     let force = format::force(tension_n);
     match area.below(tension_n) {
         Some((_, [low, high])) => format!(
-            "Below {name} {force} between x = {} and {}, y = {} and {}",
+            "Below {name} tension ({force}) between x = {} and {}, y = {} and {}",
             to(low[0]),
             to(high[0]),
             to(low[1]),
             to(high[1])
         ),
-        None => format!("Nowhere below {name} {force}"),
+        None => format!("Nowhere below {name} tension ({force})"),
     }
 }

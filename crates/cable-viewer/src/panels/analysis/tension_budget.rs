@@ -34,20 +34,20 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     };
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     ui.horizontal_wrapped(|ui| {
-        let help = "Takes the largest tension apart: what of it is weight, friction of each contact, pull at the end";
+        let help = "Breaks the largest tension down into weight, friction at each contact and pull at the end";
         if ui.button("At the largest").on_hover_text(help).clicked() {
             let most = answer.max_tension();
             let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
             let probe = TensionMarker { cable: most.cable, arc_length_m: most.arc_length_m, from };
             commands.push(Command::View(ViewCommand::MarkTension(Some(probe))));
         }
-        let help = "No place is marked any more";
+        let help = "Removes the mark";
         if state.analysis.tension_marker.is_some() && ui.button("Unmark").on_hover_text(help).clicked() {
             commands.push(Command::View(ViewCommand::MarkTension(None)));
         }
     });
     let Some(probe) = state.analysis.tension_marker else {
-        ui.weak("Click on the cable: where does its tension come from?");
+        ui.weak("Click the cable to break its tension down");
         return;
     };
     let Some(found) = tension_budget(scene, answer, probe.cable, probe.arc_length_m, probe.from) else {
@@ -72,7 +72,7 @@ fn place(ui: &mut Ui, scene: &Scene, probe: TensionMarker, commands: &mut Vec<Co
         unit: Unit::COORDINATE,
         usual: [0.0, cable.length_m],
         logarithmic: false,
-        help: "Unstretched length from the start of the cable to the place whose tension is taken apart",
+        help: "Unstretched length from the start of the cable to the place whose tension is broken down",
     };
     let change = row(ui, &quantity, &Provenance { value: probe.arc_length_m, ..Provenance::default() });
     if let Some(value) = change.value {
@@ -83,7 +83,7 @@ fn place(ui: &mut Ui, scene: &Scene, probe: TensionMarker, commands: &mut Vec<Co
         ui.weak("From").on_hover_text("The end at which the sum begins");
         let name = |end: Option<&cable_core::Support>, other: &str| end.map_or(other.to_owned(), |s| s.name.clone());
         let ends = [
-            (StartEnd::Slacker, "the slacker end".to_owned()),
+            (StartEnd::Slacker, "the lower-tension end".to_owned()),
             (StartEnd::Start, name(cable.supports.first(), "start")),
             (StartEnd::End, name(cable.supports.last(), "end")),
         ];

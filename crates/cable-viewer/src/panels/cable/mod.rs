@@ -167,7 +167,7 @@ fn count(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command
         let several = state.document.scene.cables.len() > 1;
         let remove = ui.add_enabled(several, egui::Button::new("Remove cable"));
         let remove =
-            remove.on_hover_text("Takes this cable out, with its loads").on_disabled_hover_text("The last one stays");
+            remove.on_hover_text("Removes this cable and its loads").on_disabled_hover_text("The last one stays");
         if remove.clicked() {
             commands.push(Command::Scene(SceneCommand::Remove(Item::Cable(index))));
         }

@@ -34,12 +34,12 @@ fn source(property: &Property, figure: &Figure) -> String {
         Confidence::C => "estimated",
     };
     let band = match (figure.low, figure.high) {
-        (Some(low), Some(high)) => format!("\nMay lie between {} and {}.", unit.exact(low), unit.exact(high)),
-        (Some(low), None) => format!("\nAt least {}.", unit.exact(low)),
-        (None, Some(high)) => format!("\nAt most {}.", unit.exact(high)),
+        (Some(low), Some(high)) => format!("\nMay lie between {} and {}.", unit.brief(low), unit.brief(high)),
+        (Some(low), None) => format!("\nAt least {}.", unit.brief(low)),
+        (None, Some(high)) => format!("\nAt most {}.", unit.brief(high)),
         (None, None) => String::new(),
     };
-    format!("{}: {sure} (confidence {:?}), {}.{band}", unit.exact(figure.value), figure.confidence, figure.source)
+    format!("{}: {sure} (confidence {:?}), {}.{band}", unit.brief(figure.value), figure.confidence, figure.source)
 }
 
 fn figure(preset: Option<&str>, key: &str) -> Option<&'static Figure> {

@@ -11,15 +11,19 @@ use cable_core::scene::View;
 use cable_core::solution::{CableSolution, ContactState, Node};
 use cable_core::summary::{CablePlace, CableSummary, EndForce, summary};
 use cable_core::timeline::{RunPeaks, TensionRanges};
-use egui::{Color32, Grid, ProgressBar, RichText, Ui};
+use egui::{Color32, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
-use crate::state::AppState;
 use crate::state::questions::{bending_query, bending_query_fits};
+use crate::state::{AppState, Freshness};
 use crate::units::{format, unit};
-use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
+use crate::widgets::{field, readout};
+
+/// Opacity of figures that are not of the scene as it is. More: they are read as answers; less: what
+/// was there cannot be read at all.
+pub const DIMMED: f32 = 0.4;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -34,21 +38,30 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.weak("This cable is not solved yet");
         return;
     };
-    if state.live.snapshot.stale {
+    let freshness = state.freshness();
+    let (said, help) = match freshness {
+        Freshness::Current => ("", ""),
+        Freshness::Solving => ("Solving… these figures are of the scene before", "They belong to the last answer"),
+        Freshness::Draft => ("Draft, not at rest yet", "Few segments follow the hand; the answer comes once it rests"),
+        Freshness::Outdated => ("Last valid result, not this scene", "The present scene has no answer"),
+    };
+    if freshness != Freshness::Current {
         ui.horizontal(|ui| {
             let colour = ui.visuals().warn_fg_color;
             icon::sign(ui, Icon::Caution, colour);
-            ui.colored_label(colour, "Of the last scene that was solved");
+            ui.colored_label(colour, said);
         })
         .response
-        .on_hover_text("The present scene has no answer, or is still being solved");
+        .on_hover_text(help);
+        ui.multiply_opacity(DIMMED);
     }
     if answer.cables.len() > 1 {
         ui.strong(&solved.name);
     }
-    tension(ui, cable, solved, commands);
+    tension(ui, cable, solved, freshness == Freshness::Current, commands);
     ui.separator();
-    Grid::new(("figures", index)).num_columns(3).spacing([10.0, 3.0]).show(ui, |ui| {
+    ui.push_id(("figures", index), |ui| {
+        ui.spacing_mut().item_spacing.y = 2.0;
         let first = summary(scene, cable, solved, answer.time_s);
         ends(ui, &first);
         shape(ui, scene.view, &first, commands);
@@ -64,7 +77,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 /// The largest tension, where it is, and how much of the limits it takes.
-fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec<Command>) {
+fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, current: bool, commands: &mut Vec<Command>) {
     let Some((tension_n, node)) = figures::greatest(solved, |n| n.tension_n) else {
         ui.weak("No tension in this answer");
         return;
@@ -82,7 +95,8 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Ve
         let share = tension_n / limit_n;
         let text = format!("{} of {name} {}", format::percent(share), format::force(limit_n));
         let bar = ProgressBar::new(share.clamp(0.0, 1.0) as f32)
-            .fill(bar_colour(share, name == "break", ui.visuals().dark_mode))
+            // No verdict on what is not the answer.
+            .fill(bar_colour(if current { share } else { 0.0 }, name == "break", ui.visuals().dark_mode))
             .text(text.clone())
             .desired_height(16.0)
             .corner_radius(2);
@@ -105,15 +119,11 @@ fn bar_colour(share: f64, breaking: bool, dark: bool) -> Color32 {
 
 /// A row of the grid: name, value, and a button that shows the place or nothing.
 fn figure(ui: &mut Ui, name: &str, value: String, help: &str, at: Option<(&Node, &mut Vec<Command>)>) {
-    ui.label(name).on_hover_text(help);
-    ui.label(value).on_hover_text(help);
-    match at {
-        Some((node, commands)) => place(ui, &format!("Show {}", name.to_lowercase()), node, commands),
-        None => {
-            ui.label("");
+    readout::row(ui, name, &value, help, |ui| {
+        if let Some((node, commands)) = at {
+            place(ui, &format!("Show {}", name.to_lowercase()), node, commands);
         }
-    }
-    ui.end_row();
+    });
 }
 
 fn along(node: &Node) -> String {
@@ -297,16 +307,15 @@ fn bending_stiffness(
         figure(ui, name, text, &format!("{help}{more}"), None);
         return;
     }
-    ui.label(name).on_hover_text(&help);
-    ui.label("neglected").on_hover_text(&help);
-    let can = bending_query(state).is_some();
-    let button = ui.add_enabled(can, egui::Button::new("Compare").small());
-    field::name(&button, "Compare with the likely bending stiffness");
-    let does = format!("Answers once more with {likely}, and says what that changes");
-    if button.on_hover_text(does).on_disabled_hover_text("Of a cable at rest only").clicked() {
-        commands.push(Command::View(ViewCommand::AskBending));
-    }
-    ui.end_row();
+    readout::row(ui, name, "neglected", &help, |ui| {
+        let can = bending_query(state).is_some();
+        let button = ui.add_enabled(can, egui::Button::new("Compare").small());
+        field::name(&button, "Compare with the likely bending stiffness");
+        let does = format!("Solves once more with {likely}, and says what that changes");
+        if button.on_hover_text(does).on_disabled_hover_text("Of a cable at rest only").clicked() {
+            commands.push(Command::View(ViewCommand::AskBending));
+        }
+    });
 }
 
 /// What came of comparing an answer with one that has the likely bending stiffness, in short and in

@@ -6,7 +6,7 @@ use egui::{Align2, Grid, RichText, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, ve
 
 use crate::command::{Command, ViewCommand};
 use crate::units::{format, unit};
-use crate::widgets::field;
+use crate::widgets::{field, readout};
 
 /// Side of the square an arrow is drawn in, points.
 const ARROW: f32 = 18.0;
@@ -18,24 +18,26 @@ pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec
     ui.label(RichText::new("Force of the cable on its supports").strong())
         .on_hover_text("What each support must hold; the force on the cable is the opposite");
     let largest = solved.supports.iter().map(size).fold(0.0, f64::max);
-    Grid::new(("reactions", &solved.name)).num_columns(5).spacing([8.0, 3.0]).show(ui, |ui| {
-        for text in ["", "Support", "Force", "Right", "Up"] {
-            ui.weak(text);
-        }
-        ui.end_row();
-        for (k, s) in solved.supports.iter().enumerate() {
-            arrow(ui, s, largest);
-            let name = if s.name.is_empty() { format!("support {}", k + 1) } else { s.name.clone() };
-            let link = ui.add(egui::Button::new(&name).frame(false).truncate());
-            field::name(&link, &format!("Show support {name}"));
-            if link.on_hover_text(explanation(cable, s)).clicked() {
-                commands.push(Command::View(ViewCommand::CentreOn([s.x_m, s.y_m])));
+    readout::wide(ui, "reactions", |ui| {
+        Grid::new(("reactions", &solved.name)).num_columns(5).spacing([8.0, 3.0]).show(ui, |ui| {
+            for text in ["", "Support", "Force", "Right", "Up"] {
+                ui.weak(text);
             }
-            ui.label(format::force(size(s)));
-            ui.label(format::force(s.reaction_x_n));
-            ui.label(format::force(s.reaction_y_n));
             ui.end_row();
-        }
+            for (k, s) in solved.supports.iter().enumerate() {
+                arrow(ui, s, largest);
+                let name = if s.name.is_empty() { format!("support {}", k + 1) } else { s.name.clone() };
+                let link = ui.add(egui::Button::new(&name).frame(false).truncate());
+                field::name(&link, &format!("Show support {name}"));
+                if link.on_hover_text(explanation(cable, s)).clicked() {
+                    commands.push(Command::View(ViewCommand::CentreOn([s.x_m, s.y_m])));
+                }
+                ui.label(format::force(size(s)));
+                ui.label(format::force(s.reaction_x_n));
+                ui.label(format::force(s.reaction_y_n));
+                ui.end_row();
+            }
+        });
     });
     for s in &solved.supports {
         hand(ui, s);

@@ -5,7 +5,7 @@ use egui::{ComboBox, Ui};
 
 use crate::command::{Command, SceneCommand};
 use crate::panels::scene::rows::{
-    GAP, KIND_WIDTH, NUMBER_WIDTH, components, headings, name_width, remove, selectable_name, show_faults,
+    GAP, KIND_WIDTH, components, headings, name_width, number_width, remove, selectable_name, show_faults,
 };
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
@@ -33,7 +33,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if !state.document.scene.loads.is_empty() {
         let (length, force) = (Unit::M.display().symbol, Unit::N.display().symbol);
         let [at, right, up] = [format!("At, {length}"), format!("Right, {force}"), format!("Up, {force}")];
-        let columns = [("Name", name_width(ui)), (&*at, KIND_WIDTH), (&*right, NUMBER_WIDTH), (&*up, NUMBER_WIDTH)];
+        let columns =
+            [("Name", name_width(ui)), (&*at, KIND_WIDTH), (&*right, number_width(ui)), (&*up, number_width(ui))];
         headings(ui, &columns);
     }
     for (k, load) in state.document.scene.loads.iter().enumerate() {

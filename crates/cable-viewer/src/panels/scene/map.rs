@@ -17,7 +17,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let text = match present {
             Some(map) => map.name.as_str(),
             None if state.document.scene.obstacles.is_empty() => "None",
-            None => "Own",
+            None => "Custom",
         };
         let combo = ComboBox::from_id_salt("map").selected_text(text).width(ui.available_width() - 8.0).truncate();
         let shown = combo.show_ui(ui, |ui| {
@@ -47,7 +47,7 @@ fn opening(ui: &mut Ui, state: &AppState, map: &MapPreset, commands: &mut Vec<Co
         format::position(at),
         format::position(map.riser_at_m)
     );
-    if ui.button("Cable in by the opening").on_hover_text(help).clicked() {
+    if ui.button("Route the cable through the tank opening").on_hover_text(help).clicked() {
         commands.push(Command::Scene(SceneCommand::EditDone));
         commands.push(Command::Scene(SceneCommand::Move { item, to_m: map.riser_at_m }));
         commands.push(Command::Scene(SceneCommand::EditDone));

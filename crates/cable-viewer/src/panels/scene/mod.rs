@@ -22,6 +22,7 @@ use crate::widgets::property::labelled;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let width = ui.available_width();
     name(ui, state, commands);
     pickers(ui, state, commands);
     scene_errors::inline(ui, state, "version", commands);
@@ -31,15 +32,18 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         Some(cable) if state.document.scene.cables.len() > 1 => format!("Supports of {} ({supports})", cable.name),
         _ => format!("Supports ({supports})"),
     };
-    list(ui, "supports", &title, |ui| supports::ui(ui, state, index, commands));
+    list(ui, width, ("supports", &title), |ui| supports::ui(ui, state, index, commands));
     let title = format!("Obstacles ({})", state.document.scene.obstacles.len());
-    list(ui, "obstacles", &title, |ui| obstacles::ui(ui, state, commands));
+    list(ui, width, ("obstacles", &title), |ui| obstacles::ui(ui, state, commands));
     let title = format!("Loads ({})", state.document.scene.loads.len());
-    list(ui, "loads", &title, |ui| loads::ui(ui, state, commands));
+    list(ui, width, ("loads", &title), |ui| loads::ui(ui, state, commands));
 }
 
-fn list(ui: &mut Ui, id: &str, title: &str, contents: impl FnOnce(&mut Ui)) {
-    CollapsingHeader::new(title).id_salt(id).default_open(true).show_unindented(ui, contents);
+fn list(ui: &mut Ui, width: f32, (id, title): (&str, &str), contents: impl FnOnce(&mut Ui)) {
+    CollapsingHeader::new(title).id_salt(id).default_open(true).show_unindented(ui, |ui| {
+        ui.set_max_width(width);
+        contents(ui);
+    });
 }
 
 fn name(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -61,7 +65,10 @@ fn name(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     labelled(ui, "Open", "Open scene", |ui| {
-        let combo = ComboBox::from_id_salt("scene").selected_text("Choose a scene…").width(ui.available_width() - 8.0);
+        let combo = ComboBox::from_id_salt("scene")
+            .selected_text("Choose a scene…")
+            .width(ui.available_width() - 8.0)
+            .truncate();
         let shown = combo.show_ui(ui, |ui| {
             for (id, scene) in catalog::all() {
                 if ui.selectable_label(scene.name == state.document.scene.name, &scene.name).clicked() {

@@ -7,7 +7,7 @@ use egui::{Button, Frame, ScrollArea, Ui};
 
 use crate::command::{Command, SceneCommand};
 use crate::panels::scene::rows::{
-    GAP, KIND_WIDTH, NUMBER_WIDTH, cell, coordinates, headings, name_width, optional, remove, selectable_name,
+    GAP, KIND_WIDTH, cell, coordinates, headings, name_width, number_width, optional, remove, selectable_name,
     show_faults,
 };
 use crate::panels::scene_errors;
@@ -24,7 +24,7 @@ const CORNERS_HEIGHT: f32 = 240.0;
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if !state.document.scene.obstacles.is_empty() {
         let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.display().symbol));
-        headings(ui, &[("Name", name_width(ui)), ("Form", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
+        headings(ui, &[("Name", name_width(ui)), ("Form", KIND_WIDTH), (&x, number_width(ui)), (&y, number_width(ui))]);
     }
     for (k, obstacle) in state.document.scene.obstacles.iter().enumerate() {
         ui.push_id(k, |ui| line(ui, state, k, obstacle, commands));
@@ -97,7 +97,7 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, obstacle: &Obstacle, commands: 
                 commands.push(Command::Scene(SceneCommand::EditDone));
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                remove(ui, item, &obstacle.name, "Takes it out", commands);
+                remove(ui, item, &obstacle.name, "Removes it", commands);
             });
             selected
         })
@@ -122,7 +122,7 @@ fn details(ui: &mut Ui, k: usize, obstacle: &Obstacle, commands: &mut Vec<Comman
     });
     let mut own = obstacle.friction.is_some();
     let help = "Off: the cable's own coefficient";
-    if ui.checkbox(&mut own, "Own friction").on_hover_text(help).changed() {
+    if ui.checkbox(&mut own, "Custom friction").on_hover_text(help).changed() {
         value.friction = own.then_some(0.5);
     }
     if let Some(mu) = obstacle.friction {
@@ -178,7 +178,7 @@ fn corners(ui: &mut Ui, k: usize, points_m: &mut Vec<Point>, faults: &mut Vec<St
                     }
                     let remove = icon::plain_button(ui, Icon::Remove, true);
                     field::name(&remove, &format!("Remove {name}"));
-                    if remove.on_hover_text("Takes this corner out").clicked() {
+                    if remove.on_hover_text("Removes this corner").clicked() {
                         gone = Some(i);
                     }
                 });

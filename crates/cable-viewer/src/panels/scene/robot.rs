@@ -104,8 +104,8 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
 
 fn placed(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     let mut faults = Vec::new();
-    let at = format!("Stands at, {}", Unit::M.display().symbol);
-    labelled(ui, &at, "Robot stands at", |ui| {
+    let at = format!("Position, {}", Unit::M.display().symbol);
+    labelled(ui, &at, "Robot position", |ui| {
         let label = ui.weak("x, y");
         if let Some(at_m) = coordinates(ui, "robot", robot.at_m, &mut faults) {
             set(Some(Robot { at_m, ..robot.clone() }), commands);
@@ -114,7 +114,7 @@ fn placed(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
             "Where the middle of its tracks touches the ground; dragged on the canvas it stays on the ground",
         )
     });
-    labelled(ui, "Looks", "Robot looks", |ui| {
+    labelled(ui, "Facing", "Robot facing", |ui| {
         let mut heading = robot.heading;
         let left = ui.selectable_value(&mut heading, Heading::Left, "Left");
         let help = "Its hitch is at its other end";

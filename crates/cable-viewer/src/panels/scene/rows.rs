@@ -10,20 +10,30 @@ use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
 
-/// Width of a number in a list, points: “−123.456” fits.
-pub const NUMBER_WIDTH: f32 = 60.0;
+/// Width of a number in a list, points: “−12.345” fits; in a narrow window “−12.34”.
+const NUMBER_WIDTHS: [f32; 2] = [47.0, 41.0];
+/// Narrower windows (points) have narrow panels.
+const NARROW_WINDOW: f32 = 1400.0;
+/// What a field has beside its text, points.
+const FIELD_MARGIN: f32 = 8.0;
+
+fn is_narrow(ui: &Ui) -> bool {
+    ui.ctx().content_rect().width() < NARROW_WINDOW
+}
+
+/// Width of a number in a list, points.
+pub fn number_width(ui: &Ui) -> f32 {
+    NUMBER_WIDTHS[usize::from(is_narrow(ui))]
+}
 
 /// Width of a number with its unit, points: “−123.456 m” fits.
 pub const VALUE_WIDTH: f32 = 84.0;
 
 /// Narrowest and widest column of names, points: what is left of the panel beside the others.
-pub const NAME_WIDTH: [f32; 2] = [70.0, 100.0];
-
-/// Width of the columns beside the names and of the cross at the end, points.
-pub const BESIDE_NAME: f32 = KIND_WIDTH + 2.0 * NUMBER_WIDTH + 3.0 * GAP + 28.0;
+pub const NAME_WIDTH: [f32; 2] = [36.0, 100.0];
 
 /// Width of the kind in a list, points.
-pub const KIND_WIDTH: f32 = 70.0;
+pub const KIND_WIDTH: f32 = 60.0;
 
 /// Gap between columns, points.
 pub const GAP: f32 = 3.0;
@@ -44,7 +54,9 @@ pub fn selectable_name(ui: &mut Ui, state: &AppState, item: Item, name: &str, co
 
 /// Width of the column of names at the start of a line, points.
 pub fn name_width(ui: &Ui) -> f32 {
-    (ui.available_width() - BESIDE_NAME).clamp(NAME_WIDTH[0], NAME_WIDTH[1])
+    // The other columns and the cross at the end.
+    let beside = KIND_WIDTH + 2.0 * (number_width(ui) + FIELD_MARGIN) + 3.0 * GAP + 17.0;
+    (ui.available_width() - beside).clamp(NAME_WIDTH[0], NAME_WIDTH[1])
 }
 
 /// A cell of a list, so that columns stand under each other.
@@ -97,15 +109,18 @@ pub fn components(
     faults: &mut Vec<String>,
 ) -> Option<Point> {
     let mut entered = None;
+    // In a narrow list the last decimal is left to the hover text and to who types.
+    let decimals = if is_narrow(ui) { unit.decimals.map(|d| d.min(2)) } else { unit.decimals };
+    let (shown, width) = (Unit { decimals, ..unit.bare() }, number_width(ui));
     for (k, label) in labels.iter().enumerate() {
-        let entry = field::number(ui, label, unit.bare(), value[k], NUMBER_WIDTH);
+        let entry = field::number(ui, label, shown, value[k], width);
         if let Some(component) = entry.value {
             let mut changed = value;
             changed[k] = component;
             entered = Some(changed);
         }
         faults.extend(entry.fault);
-        entry.response.on_hover_text(format!("{label}: {}", unit.exact(value[k])));
+        entry.response.on_hover_text(format!("{label}: {}", unit.brief(value[k])));
     }
     entered
 }

@@ -9,7 +9,7 @@ use crate::command::support_kind::{KINDS, of_kind, refusal};
 use crate::command::{Command, SceneCommand};
 use crate::panels::scene::loads::FIRST_SPAN_S;
 use crate::panels::scene::rows::{
-    GAP, KIND_WIDTH, NUMBER_WIDTH, cell, components, coordinates, headings, name_width, optional, remove,
+    GAP, KIND_WIDTH, cell, components, coordinates, headings, name_width, number_width, optional, remove,
     selectable_name, show_faults,
 };
 use crate::panels::scene_errors;
@@ -53,7 +53,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
     let Some(cable) = state.document.scene.cables.get(index) else { return };
     let last = cable.supports.len().saturating_sub(1);
     let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.display().symbol));
-    headings(ui, &[("Name", name_width(ui)), ("Kind", KIND_WIDTH), (&x, NUMBER_WIDTH), (&y, NUMBER_WIDTH)]);
+    headings(ui, &[("Name", name_width(ui)), ("Kind", KIND_WIDTH), (&x, number_width(ui)), (&y, number_width(ui))]);
     for (support, value) in cable.supports.iter().enumerate() {
         let end = support == 0 || support == last;
         let row = Row { cable: index, support, value, end, now: place_now(state, index, support, cable) };
@@ -111,14 +111,14 @@ fn line(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
                 None => {
                     let (at_m, _) = row.now;
                     for v in at_m {
-                        cell(ui, NUMBER_WIDTH, |ui| {
+                        cell(ui, number_width(ui), |ui| {
                             ui.weak(Unit::COORDINATE.bare().text(v)).on_hover_text("Where it is now; not held there");
                         });
                     }
                 }
             }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let help = if row.end { "An end becomes free" } else { "Takes it out" };
+                let help = if row.end { "Frees this end" } else { "Removes it" };
                 if !(row.end && row.value.kind == SupportKind::Free) {
                     remove(ui, row.item(), &row.value.name, help, commands);
                 }
@@ -200,12 +200,12 @@ fn release(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut
     if matches!(s.kind, SupportKind::Load | SupportKind::Free) {
         return;
     }
-    let help = "From a time on it does not hold the cable any more";
-    if let Some(on) = time_table::toggle(ui, "Lets go", s.release_s.is_some(), help) {
+    let help = "From this time on the support no longer holds the cable";
+    if let Some(on) = time_table::toggle(ui, "Releases the cable at a set time", s.release_s.is_some(), help) {
         row.changed(commands, |s| s.release_s = on.then_some(1.0));
     }
     if s.release_s.is_some() {
-        let text = ["Lets go at", "Time at which it lets go"];
+        let text = ["Release time", "Time at which it releases the cable"];
         if let Some(v) = optional(ui, text, Unit::S, s.release_s, faults) {
             row.changed(commands, |s| s.release_s = Some(v));
         }
@@ -217,7 +217,7 @@ fn motion(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut 
     let s = row.value;
     let Some(at_m) = s.at_m else { return };
     let help = "It follows points at times, smoothly, and stays at the last; all of them move along when it is moved";
-    if let Some(on) = time_table::toggle(ui, "Moves with time", s.motion.is_some(), help) {
+    if let Some(on) = time_table::toggle(ui, "Follows a schedule", s.motion.is_some(), help) {
         let Knots { times_s, values } = Knots::steady(at_m, FIRST_SPAN_S);
         row.changed(commands, |s| s.motion = on.then_some(Motion { times_s, points_m: values }));
         return;

@@ -1,0 +1,53 @@
+//! Whether what is on screen answers the scene as it is: figures, warnings and verdicts are only shown
+//! as such where it does.
+
+use crate::state::app_state::AppState;
+
+/// Time (s) that an edit may wait before the picture counts as older than the scene. Shorter:
+/// figures flicker in a drag whose answers are in the next frames; longer: old figures are read as
+/// new ones.
+const GRACE_S: f64 = 0.12;
+
+/// Whether what is on screen answers the scene as it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Freshness {
+    /// It does.
+    Current,
+    /// The answer is being sought; what is on screen is of the scene before the last edits.
+    Solving,
+    /// Few segments, not at rest yet: a draft while the scene is being moved.
+    Draft,
+    /// The scene has no answer; what is on screen is of the last one that has.
+    Outdated,
+}
+
+impl AppState {
+    /// Whether what is on screen answers the scene as it is.
+    #[must_use]
+    pub fn freshness(&self) -> Freshness {
+        let Self { live, solver, .. } = self;
+        if live.snapshot.stale || live.snapshot.error.is_some() {
+            Freshness::Outdated
+        } else if live.snapshot.draft {
+            Freshness::Draft
+        } else if live.snapshot.edit < solver.edits_sent && solver.solving_s.is_some_and(|t| t > GRACE_S) {
+            Freshness::Solving
+        } else {
+            Freshness::Current
+        }
+    }
+
+    /// Figures on screen are of the scene as it is.
+    #[must_use]
+    pub fn is_current(&self) -> bool {
+        self.freshness() == Freshness::Current
+    }
+
+    /// An answer is being sought: what to say of it, and how long that has taken, s.
+    #[must_use]
+    pub fn solving(&self) -> Option<f64> {
+        let waits = matches!(self.freshness(), Freshness::Solving | Freshness::Draft)
+            || (self.freshness() == Freshness::Outdated && self.live.snapshot.edit < self.solver.edits_sent);
+        self.solver.solving_s.filter(|_| waits)
+    }
+}
