@@ -4,36 +4,13 @@ import math
 
 import numpy as np
 import openseespy.opensees as ops
-from scipy.optimize import brentq
 
 import scenes
+from guess import guess
 from measure import Point, cannot, least
 from scenes import AT_REST, IN_MOTION, rest
 
 MESHES = [5, 10, 20, 40, 80, 160, 320]
-
-
-def guess(scene, n, floor_m=None):
-    """A parabola between the ends, a little longer than the cable, at equal parts of its length.
-
-    Above a floor the rest of it lies on that.
-    """
-    length, _, load = scene.warm
-    start, end = scene.ends
-    down = load / np.linalg.norm(load)
-    u = np.linspace(0.0, 1.0, 2001)
-
-    def shape(sag):
-        places = start + np.outer(u, end - start) + np.outer(4 * sag * u * (1 - u), down)
-        if floor_m is not None:
-            places[:, 1] = np.maximum(places[:, 1], floor_m)
-        return places
-
-    long = lambda sag: np.linalg.norm(np.diff(shape(sag), axis=0), axis=1).sum()
-    sag = brentq(lambda sag: long(sag) - length * (1.0 + 1e-4), 0.0, 100.0 * length)
-    at = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(shape(sag), axis=0), axis=1))])
-    even = np.linspace(0.0, at[-1], n + 1)
-    return np.column_stack([np.interp(even, at, shape(sag)[:, i]) for i in range(2)])
 
 
 def truss(k, i, j, natural_m, stiffness_n, density, places):

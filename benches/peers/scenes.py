@@ -61,11 +61,11 @@ class Rest:
     def warm(self):
         """Length, stiffness and load of the same cable with its heat strain taken as natural.
 
-        The tension EA(λ − 1 − a) of a cable that heat has strained by a is EA'(λ' − 1) of one
-        that is 1 + a times as long and as stiff.
+        The stretch of a cable that heat has strained by a is (1 + a)(1 + T/EA) here, as in the
+        reference; another convention would differ in the seventh digit.
         """
         a = 1.0 + self.heat_strain
-        return self.length_m * a, self.axial_stiffness_n * a, self.load_n_per_m / a
+        return self.length_m * a, self.axial_stiffness_n, self.load_n_per_m / a
 
     def place(self, arc_m):
         """Where material points are, m: cubics between nodes of the reference."""
@@ -118,7 +118,7 @@ def reference(scene_path, model, heat_strain, stiffness_n):
         twice = bool(arc) and node["arc_length_m"] <= arc[-1]
         force = np.array(node["force_n"])
         pull = np.linalg.norm(force)
-        along = force / pull * (1.0 + heat_strain + pull / stiffness_n)
+        along = force / pull * (1.0 + heat_strain) * (1.0 + pull / stiffness_n)
         if twice:
             slope[-1] = along
             continue
