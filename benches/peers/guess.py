@@ -10,8 +10,11 @@ def guess(scene, n, floor_m=None):
     Above a floor the rest of it lies on that.
     """
     length, _, load = scene.warm
-    start, end = scene.ends
-    down = load / np.linalg.norm(load)
+    return sagging(*scene.ends, length, load / np.linalg.norm(load), n, floor_m)
+
+
+def sagging(start, end, length, down, n, floor_m=None):
+    """The same between two points."""
     u = np.linspace(0.0, 1.0, 2001)
 
     def shape(sag):

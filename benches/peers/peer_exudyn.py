@@ -12,7 +12,7 @@ from exudyn.itemInterface import (
 )
 
 import scenes
-from guess import guess
+from guess import guess, sagging
 from measure import Point, cannot, least
 from scenes import IN_MOTION, rest
 
@@ -25,7 +25,7 @@ class Cable:
     """A cable of ANCF elements in a system of its own, its ends held."""
 
     def __init__(self, places, slopes, parts_m, stiffness_n, density, pull_n_per_kg, held, bending=0.0,
-                 moves=None, speeds=None, kinks=()):
+                 moves=None, speeds=None, kinks=None):
         container = exu.SystemContainer()
         self.container, self.mbs = container, container.AddSystem()
         mbs = self.mbs
@@ -36,10 +36,10 @@ class Cable:
             speed = [0.0] * 4 if speeds is None else list(speeds[k])
             node = NodePoint2DSlope1(referenceCoordinates=[*x, *t], initialVelocities=speed)
             self.nodes.append(mbs.AddNode(node))
-        # At a kink two nodes share a place and each has its slope.
+        # At a kink two nodes share a place and each has its slope: here that of what follows.
         twins = {}
-        for k in kinks:
-            twins[k] = mbs.AddNode(NodePoint2DSlope1(referenceCoordinates=[*places[k], *slopes[k]]))
+        for k in kinks or {}:
+            twins[k] = mbs.AddNode(NodePoint2DSlope1(referenceCoordinates=[*places[k], *kinks[k]]))
             for axis in range(2):
                 pair = [mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=number, coordinate=axis))
                         for number in (self.nodes[k], twins[k])]
@@ -156,11 +156,18 @@ def at_rest(scene, n, steps=1):
     arcs = np.linspace(0.0, length, n + 1)
     for s, _ in scene.loads:
         arcs[np.argmin(abs(arcs - s * a))] = s * a
+    loaded = [int(np.argmin(abs(arcs - s * a))) for s, _ in scene.loads]
     radius = 0.5 * scene.diameter_m
     floor = radius if scene.id == "slack-to-floor" else None
     places, slopes = parabola(scene, arcs, floor)
     if scene.id == "over-beam":
-        places, slopes = along([scene.ends[0], BEAM_M + [0.0, radius], scene.ends[1]], arcs)
+        # Two parabolas that meet over the corner, both as much longer than their chords.
+        corner = BEAM_M + [0.6 * radius, 0.8 * radius]
+        chords = [np.linalg.norm(corner - end) for end in scene.ends]
+        parts = [length * c / sum(chords) for c in chords]
+        down = np.array([0.0, -1.0])
+        first = sagging(scene.ends[0], corner, parts[0], down, 2000)
+        places, slopes = along([*first, *sagging(corner, scene.ends[1], parts[1], down, 2000)[1:]], arcs)
     density = scene.density_kg_per_m
     setting = f"ANCF N={n}"
     note = ""
@@ -172,7 +179,7 @@ def at_rest(scene, n, steps=1):
 
     def build():
         cable = Cable(places, slopes, np.diff(arcs), stiffness, density, load / density, [0, n],
-                      kinks=[int(np.argmin(abs(arcs - s * a))) for s, _ in scene.loads])
+                      kinks={k: slopes[k] for k in loaded})
         for s, force in scene.loads:
             cable.push(int(np.argmin(abs(arcs - s * a))), force)
         if scene.id == "slack-to-floor":
@@ -203,12 +210,14 @@ def chain(scene_id, n, dt, spectral):
     """The swing, the fold or the snap."""
     setting = f"ANCF N={n} dt=1/{round(1 / dt)} rho={spectral}"
     even = np.linspace(0.0, 10.0, n + 1)
-    speeds, density, stiffness, kinks = None, 1.0, 1e7, ()
+    speeds, density, stiffness, kinks = None, 1.0, 1e7, None
     if scene_id == "swing":
         places, slopes = np.column_stack([even, 0 * even]), np.tile([1.0, 0.0], (n + 1, 1))
     elif scene_id == "fold":
         places = scenes.folded(n)
-        slopes = np.vstack([np.diff(places, axis=0) * n / 10.0, [0.0, 1.0]])
+        links = np.diff(places, axis=0) * n / 10.0
+        slopes = np.vstack([links[:1], links])
+        kinks = {k: links[k] for k in ((n - 1) // 2, (n - 1) // 2 + 1)}
     else:
         places, slopes = np.column_stack([0 * even, -even]), np.tile([0.0, -1.0], (n + 1, 1))
         v = -scenes.SNAP_SPEED / 10.0
@@ -316,9 +325,10 @@ def points(scene_id):
         for n in [8, 16, 32, 64, 128]:
             yield at_rest(rest(scene_id), n)
     elif scene_id in ("swing", "fold", "snap"):
-        meshes = {"swing": [5, 10, 20, 40], "fold": [11, 21, 41, 81], "snap": [1, 4]}[scene_id]
-        for dt in [1 / 240, 1 / 960, 1 / 3840]:
-            for n in meshes:
+        # Finer swings and folds take seconds, as steps are halved where Newton fails.
+        meshes = {"swing": [5, 10, 20, 40], "fold": [11, 21, 41], "snap": [1, 4]}[scene_id]
+        for n in meshes:
+            for dt in [1 / 240, 1 / 960, 1 / 3840]:
                 yield chain(scene_id, n, dt, 0.9)
     elif scene_id in ("drag", "capstan-half"):
         for n, dt in [(30, 1 / 240), (30, 1 / 960), (60, 1 / 960), (60, 1 / 3840)]:

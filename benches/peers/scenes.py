@@ -231,7 +231,7 @@ def greatest(pulls):
     """The greatest of a row of pulls, by a parabola through three: it lies between two steps."""
     best = 0.0
     for a, b, c in zip(pulls, pulls[1:], pulls[2:]):
-        if b > a and b > c:
+        if b >= a and b >= c and 2.0 * b > a + c:
             best = max(best, b + 0.125 * (c - a) ** 2 / (2.0 * b - a - c))
     return best
 
