@@ -264,30 +264,34 @@ def chain(scene_id, n, dt, spectral):
 
 def hauled(scene_id, n, dt):
     """The capstan and the drag: a hand draws, the mean of its pull is wanted."""
-    setting = f"ANCF N={n} dt=1/{round(1 / dt)} rho=0.6"
+    setting = f"ANCF N={n} dt=1/{round(1 / dt)} rho=0.3"
     if scene_id == "drag":
         length, density, stiffness, friction = 6.6, 1.246, 2e6, 0.5
-        hand, law, axis, end_s, from_s = [6.0, 0.35], scenes.hand_of_drag, 0, 6.0, 4.0
+        hand, axis, end_s, from_s = [6.0, 0.35], 0, 6.0, 4.0
         lying = 5.3
         up = math.sqrt((length - lying) ** 2 - (0.35 - 0.014) ** 2)
         corners = [[6.0 - up - lying, 0.014], [6.0 - up, 0.014], hand]
         center, radius, exact = [3.0, -FLOOR_RADIUS_M], FLOOR_RADIUS_M + 0.014, scenes.DRAG_PULL_N
         law = lambda t: tuple(np.array(scenes.hand_of_drag(t)) - [6.0, 0.0])
-        contact = {"stiffness": 1e5, "penalty": 1e4, "damping": 1e2, "segments": 4}
+        gravity, note = -scenes.GRAVITY, "bending of 1e-3 N m²; friction of a slip speed, 1e3 N s/m"
+        contact = {"stiffness": 1e5, "penalty": 1e3, "damping": 1e2, "segments": 4}
     else:
-        length, density, stiffness, friction = 0.6 + 0.101 * math.pi, 1e-5, 1e4, scenes.RUBS
+        length, density, stiffness, friction = 0.6 + 0.101 * math.pi, 0.05, 1e4, scenes.RUBS
         round_ = [[-0.101 * math.cos(b), 0.101 * math.sin(b)] for b in np.linspace(0, math.pi, 400)]
         hand, axis, end_s, from_s = [0.101, -0.3], 1, 1.5, 0.75
         corners = [[-0.101, -0.3], *round_, hand]
         center, radius, exact = [0.0, 0.0], 0.101, scenes.CAPSTAN_RATIO * scenes.HUNG_N
         law = lambda t: tuple(-x for x in scenes.hand_of_capstan(t))
-        contact = {"stiffness": 1e5, "penalty": 1e3, "damping": 0.0, "segments": 4}
+        # A cord of no mass and no bending fails in its second step.
+        gravity, note = 0.0, "0.05 kg/m without weight, bending of 1e-3 N m²; friction of a slip speed, 1e2 N s/m"
+        contact = {"stiffness": 1e5, "penalty": 1e2, "damping": 10.0, "segments": 4}
     arcs = np.linspace(0.0, length, n + 1)
     places, slopes = along(corners, arcs)
 
     def build():
         moves = {(n, axis): (lambda mbs, t, i, offset: law(t)[0], lambda mbs, t, i, offset: law(t)[1])}
-        cable = Cable(places, slopes, np.diff(arcs), stiffness, density, [0.0, -scenes.GRAVITY], [n], moves=moves)
+        cable = Cable(places, slopes, np.diff(arcs), stiffness, density, [0.0, gravity], [n], moves=moves,
+                      bending=1e-3)
         if scene_id == "capstan-half":
             cable.push(0, [0.0, -scenes.HUNG_N])
         cable.touch(center, radius, friction=friction, **contact)
@@ -297,9 +301,13 @@ def hauled(scene_id, n, dt):
         return cable.assemble()
 
     def solve(cable):
-        settings = cable.settings(end_s, dt, 0.6)
+        settings = cable.settings(end_s, dt, 0.3)
         settings.solutionSettings.sensorsWritePeriod = dt
         settings.timeIntegration.newton.useModifiedNewton = False
+        settings.timeIntegration.newton.relativeTolerance = 1e-5
+        settings.timeIntegration.discontinuous.iterationTolerance = 1.0
+        settings.timeIntegration.discontinuous.maxIterations = 3
+        settings.timeIntegration.discontinuous.ignoreMaxIterations = True
         cable.mbs.SolveDynamic(settings)
         return cable
 
@@ -310,7 +318,7 @@ def hauled(scene_id, n, dt):
     both = [cable.mbs.GetSensorStoredData(s) for s in cable.sensors]
     pulls = np.hypot(both[0][:, 1], both[1][:, 1])[both[0][:, 0] > from_s]
     error = abs(pulls.mean() / exact - 1.0)
-    return Point(setting, cost, float(error), None, f"friction slips at a speed, {contact['penalty']:.0e} N s/m")
+    return Point(setting, cost, float(error), None, note)
 
 
 def points(scene_id):
@@ -331,7 +339,7 @@ def points(scene_id):
             for dt in [1 / 240, 1 / 960, 1 / 3840]:
                 yield chain(scene_id, n, dt, 0.9)
     elif scene_id in ("drag", "capstan-half"):
-        for n, dt in [(30, 1 / 240), (30, 1 / 960), (60, 1 / 960), (60, 1 / 3840)]:
+        for n, dt in [(30, 1 / 960), (30, 1 / 3840), (60, 1 / 3840)]:
             yield hauled(scene_id, n, dt)
     elif scene_id == "round-post":
         yield cannot("friction at rest that depends on the laying")
