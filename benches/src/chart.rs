@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// Points of one kind.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// What the legend calls it.
+    /// What the legend calls it; empty: it is not in the legend.
     pub name: String,
     /// Stroke and fill, from the palette of M. Okabe and K. Ito (2008), told apart with any colour vision.
     pub colour: &'static str,
@@ -57,10 +57,10 @@ pub fn svg(panels: &[Panel], columns: usize) -> String {
 "##
     );
     let mut x = LEFT;
-    for s in panels.first().map_or(&[][..], |p| &p.series) {
+    for s in panels.first().map_or(&[][..], |p| &p.series).iter().filter(|s| !s.name.is_empty()) {
         mark(&mut out, s, (x, LEGEND / 2.0));
         let _ = writeln!(out, r#"<text x="{}" y="{}">{}</text>"#, x + 10.0, LEGEND / 2.0 + 4.0, s.name);
-        x += 40.0 + 7.0 * s.name.len() as f64;
+        x += 30.0 + 6.5 * s.name.len() as f64;
     }
     for (k, p) in panels.iter().enumerate() {
         panel(&mut out, p, ((k % columns) as f64 * WIDTH, (k / columns) as f64 * HEIGHT + LEGEND));

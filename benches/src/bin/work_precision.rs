@@ -51,20 +51,18 @@ const GOALS: [f64; 3] = [1e-2, 1e-3, 1e-6];
 
 /// Colour and mark of everyone who answers. Colours are those of M. Okabe and K. Ito, "Color universal design"
 /// (2008), and grey tones for peers beyond eight.
-const MARKS: [(&str, &str, u32); 14] = [
+const MARKS: [(&str, &str, u32); 12] = [
     ("catenary", "#000000", 4),
     ("spans", "#009E73", 3),
     ("fem", "#0072B2", 0),
     ("mass-spring", "#D55E00", 4),
-    ("MoorPy", "#CC79A7", 5),
-    ("MoorDyn", "#CC79A7", 3),
-    ("OpenSees", "#56B4E9", 5),
-    ("Exudyn", "#56B4E9", 3),
-    ("MuJoCo", "#E69F00", 5),
+    ("moorpy", "#CC79A7", 5),
+    ("moordyn", "#CC79A7", 3),
+    ("opensees", "#56B4E9", 5),
+    ("exudyn", "#56B4E9", 3),
+    ("mujoco", "#E69F00", 5),
     ("pymunk", "#E69F00", 3),
-    ("Box2D", "#999999", 5),
-    ("rapier2d", "#999999", 3),
-    ("CableDyn", "#666666", 6),
+    ("box2d", "#999999", 5),
     ("other", "#BBBBBB", 6),
 ];
 
