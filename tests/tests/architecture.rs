@@ -30,6 +30,36 @@ fn architecture_names_only_paths_that_exist() {
     assert!(missing.is_empty(), "ARCHITECTURE.md names what is not there: {missing:?}");
 }
 
+/// The files below a folder.
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let (mut found, mut folders) = (Vec::new(), vec![folder.to_owned()]);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() { folders.push(path) } else { found.push(path) }
+        }
+    }
+    found
+}
+
+#[test]
+fn documents_name_only_source_files_that_exist() {
+    let sources: Vec<String> = ["crates", "tests", "benches"]
+        .iter()
+        .flat_map(|f| files_below(&root().join(f)))
+        .map(|f| f.to_string_lossy().into_owned())
+        .collect();
+    let mut missing = Vec::new();
+    for document in files_below(&root().join("docs")).iter().filter(|f| f.extension().is_some_and(|e| e == "md")) {
+        let text = std::fs::read_to_string(document).expect("a document");
+        let words = text.split('`').skip(1).step_by(2).filter(|w| w.ends_with(".rs") && !w.contains(' '));
+        for word in words.filter(|w| !sources.iter().any(|s| s.ends_with(&format!("/{w}")))) {
+            missing.push(format!("{}: {word}", document.display()));
+        }
+    }
+    assert!(missing.is_empty(), "documents name files that are not there:\n{}", missing.join("\n"));
+}
+
 #[test]
 fn every_core_module_has_a_line_in_architecture() {
     let text = read("ARCHITECTURE.md");
@@ -67,24 +97,16 @@ fn every_viewer_wing_has_a_line_in_architecture() {
 /// Every module of a crate (`a::b`) and its code, without comments and unit tests.
 fn modules(source: &Path) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
-    let mut folders = vec![source.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder).expect("a folder of sources") {
-            let path = entry.expect("an entry").path();
-            if path.is_dir() {
-                folders.push(path);
-                continue;
-            }
-            let relative = path.strip_prefix(source).expect("below the source").with_extension("");
-            let name = relative.to_str().expect("a name").replace('/', "::");
-            if path.extension().is_none_or(|e| e != "rs") || ["lib", "main"].contains(&name.as_str()) {
-                continue;
-            }
-            let text = std::fs::read_to_string(&path).expect("a source");
-            let text = text.split("#[cfg(test)]\n").next().unwrap_or_default();
-            let code = |line: &str| line.split("//").next().unwrap_or_default().to_owned() + "\n";
-            found.insert(name.trim_end_matches("::mod").to_owned(), text.lines().map(code).collect());
+    for path in files_below(source).iter().filter(|f| f.extension().is_some_and(|e| e == "rs")) {
+        let relative = path.strip_prefix(source).expect("below the source").with_extension("");
+        let name = relative.to_str().expect("a name").replace('/', "::");
+        if ["lib", "main"].contains(&name.as_str()) {
+            continue;
         }
+        let text = std::fs::read_to_string(path).expect("a source");
+        let text = text.split("#[cfg(test)]\n").next().unwrap_or_default();
+        let code = |line: &str| line.split("//").next().unwrap_or_default().to_owned() + "\n";
+        found.insert(name.trim_end_matches("::mod").to_owned(), text.lines().map(code).collect());
     }
     found
 }
