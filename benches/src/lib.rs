@@ -9,6 +9,7 @@ pub mod ridges;
 pub mod table;
 
 use cable_core::catenary::Span;
+use cable_core::math::vec2;
 use cable_core::{Model, Scene, Settings, Simulation, Vec2};
 
 /// Weight of the grid's spans, N/m.
@@ -41,6 +42,21 @@ pub fn span_grid() -> Vec<Span> {
         }
     }
     out
+}
+
+/// The span of a scene of one cable between two supports at fixed places, whatever else is in it; None of any other scene.
+#[must_use]
+pub fn span_of(scene: &Scene) -> Option<Span> {
+    let [cable] = scene.cables.as_slice() else { return None };
+    let [a, b] = cable.supports.as_slice() else { return None };
+    let weight = cable.linear_density_kg_per_m * scene.environment.gravity_m_per_s2;
+    Some(Span {
+        chord: vec2(b.at_m?) - vec2(a.at_m?),
+        length: cable.length_m,
+        weight: vec2(scene.environment.wind_n_per_m) - Vec2::y() * weight,
+        axial_stiffness: cable.axial_stiffness_n,
+        thermal_stretch: 1.0 + cable.thermal_expansion_per_k * scene.environment.temperature_change_k,
+    })
 }
 
 /// A simulation of a scene by a model at `segments` elements a cable, at rest. None, with a line on stderr,

@@ -305,25 +305,10 @@ fn round(model: Model, [degrees, stiffness]: [f64; 2]) -> Result<Asked, Error> {
 
 fn corner(model: Model, [degrees, friction]: [f64; 2]) -> Result<Asked, Error> {
     let angle = degrees.to_radians();
-    // A wedge whose faces are those along which the cord comes and goes.
+    // A wedge at whose faces the cord comes and goes.
     let (sin, cos) = angle.sin_cos();
-    let shape = Shape::Polygon { points_m: vec![[0.0, 0.0], [0.0, -0.2], [0.2 * sin, -0.2 * cos]] };
-    let obtuse = Shape::Polygon { points_m: vec![[0.0, 0.0], [0.0, -0.2], [0.2, -0.2], [0.2 * sin, -0.2 * cos]] };
-    let shape = if degrees < 60.0 {
-        flat_wedge(angle)
-    } else if degrees < 90.0 {
-        obtuse
-    } else {
-        shape
-    };
+    let shape = Shape::Polygon { points_m: vec![[0.0, 0.0], [0.0, -0.2], [0.2 * sin, 0.2 * cos]] };
     drawn(over(shape, [CORD_RADIUS, friction, angle], 1e5), model, (friction * angle).exp())
-}
-
-/// A wedge of an obtuse corner at the origin, whose faces end 0.2 m from it.
-fn flat_wedge(angle: f64) -> Shape {
-    let (sin, cos) = angle.sin_cos();
-    let below = [0.2, -0.4];
-    Shape::Polygon { points_m: vec![[0.0, 0.0], [0.0, -0.2], below, [0.2 * sin, 0.2 * cos]] }
 }
 
 fn drag(model: Model, [speed, friction]: [f64; 2]) -> Result<Asked, Error> {
@@ -369,7 +354,7 @@ fn pendulum(model: Model, [step_s, stiffness]: [f64; 2]) -> Result<Asked, Error>
         for (at, s) in state.position_m.iter_mut().zip(&state.arc_length_m) {
             *at = Vec2::new(swing.sin(), -swing.cos()) * (hung * s / length);
         }
-        state.velocity_m_per_s = vec![Vec2::new(0.0, -1e-12); state.position_m.len()];
+        state.in_motion = true;
     }
     simulation.set_states(&states)?;
     let x = |s: &Simulation| s.states().first().and_then(|s| s.position_m.last().map(|p| p.x)).unwrap_or(f64::NAN);

@@ -72,8 +72,8 @@ impl Run {
         let mut states = self.sim.states();
         if let Some(state) = states.first_mut() {
             shape(state);
-            // As good as at rest: a state that moves is taken over as it is.
-            state.velocity_m_per_s = vec![Vec2::new(0.0, -1e-12); state.position_m.len()];
+            state.velocity_m_per_s = vec![Vec2::zeros(); state.position_m.len()];
+            state.in_motion = true;
         }
         self.sim.set_states(&states)
     }

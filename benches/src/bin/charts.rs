@@ -14,9 +14,8 @@ use std::time::Instant;
 use cable_benches::chart::{Panel, Series, svg};
 use cable_benches::compare::{self, Question, Reference, lies_in_itself};
 use cable_benches::table::{self, Record};
-use cable_benches::{dots, fresh};
-use cable_core::catenary::{Catenary, Span};
-use cable_core::math::vec2;
+use cable_benches::{dots, fresh, span_of};
+use cable_core::catenary::Catenary;
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene, Solution, Vec2};
 
@@ -123,18 +122,7 @@ fn draw() -> Result<(), Box<dyn Error>> {
 
 /// The catenary of a scene of two fixed supports.
 fn exact(scene: &Scene) -> Result<Catenary, Box<dyn Error>> {
-    let cable = scene.cables.first().ok_or("the scene has no cable")?;
-    let ends: Vec<Vec2> = cable.supports.iter().filter_map(|s| s.at_m.map(vec2)).collect();
-    let [a, b] = ends[..] else { return Err("the scene is no single span".into()) };
-    let weight = cable.linear_density_kg_per_m * scene.environment.gravity_m_per_s2;
-    let span = Span {
-        chord: b - a,
-        length: cable.length_m,
-        weight: vec2(scene.environment.wind_n_per_m) - Vec2::y() * weight,
-        axial_stiffness: cable.axial_stiffness_n,
-        thermal_stretch: 1.0 + cable.thermal_expansion_per_k * scene.environment.temperature_change_k,
-    };
-    Ok(Catenary::solve(&span)?)
+    Ok(Catenary::solve(&span_of(scene).ok_or("the scene is no single span")?)?)
 }
 
 /// Cost and errors of one model and mesh; None, with a note, where it does not answer.

@@ -19,8 +19,8 @@ use cable_benches::chart::{Panel, Series, svg};
 use cable_benches::compare::{self, Question, Reference, lies_in_itself};
 use cable_benches::dots::{self, Dot, Line, Plot};
 use cable_benches::motion::{Motion, motions};
-use cable_core::catenary::{Catenary, Span};
-use cable_core::math::vec2;
+use cable_benches::span_of;
+use cable_core::catenary::Catenary;
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene, Vec2};
 use serde::{Deserialize, Serialize};
@@ -125,7 +125,7 @@ fn at_rest(id: &'static str, scene: &Scene) -> Vec<Point> {
     };
     let mut out: Vec<Point> = catenary_alone(id, scene).into_iter().collect();
     let mut ask = |model: Model, segments: Option<usize>| {
-        let point = measured((id, scene), &reference, (model, segments))?;
+        let point = measured(id, scene, &reference, model, segments)?;
         out.push(point.clone());
         point.cost_s
     };
@@ -143,9 +143,11 @@ fn at_rest(id: &'static str, scene: &Scene) -> Vec<Point> {
 
 /// A model on a scene; None, with a line on stderr, where it has no answer.
 fn measured(
-    (id, scene): (&'static str, &Scene),
+    id: &'static str,
+    scene: &Scene,
     reference: &Reference,
-    (model, segments): (Model, Option<usize>),
+    model: Model,
+    segments: Option<usize>,
 ) -> Option<Point> {
     let row = compare::measure(id, scene, reference, (model, segments))?;
     let own = reference.by == model.name();
@@ -169,18 +171,8 @@ fn measured(
 
 /// The catenary as a function, without a simulation, of a scene of one span; its closure is its error.
 fn catenary_alone(id: &str, scene: &Scene) -> Option<Point> {
-    let [cable] = scene.cables.as_slice() else { return None };
-    let ends: Vec<Vec2> = cable.supports.iter().filter_map(|s| s.at_m.map(vec2)).collect();
-    let plain = scene.obstacles.is_empty() && scene.loads.is_empty() && cable.bending_stiffness_n_m2 == 0.0;
-    let ([a, b], true) = (ends.as_slice(), plain && cable.supports.len() == 2) else { return None };
-    let weight = cable.linear_density_kg_per_m * scene.environment.gravity_m_per_s2;
-    let span = Span {
-        chord: b - a,
-        length: cable.length_m,
-        weight: vec2(scene.environment.wind_n_per_m) - Vec2::y() * weight,
-        axial_stiffness: cable.axial_stiffness_n,
-        thermal_stretch: 1.0 + cable.thermal_expansion_per_k * scene.environment.temperature_change_k,
-    };
+    let flexible = scene.cables.iter().all(|c| c.bending_stiffness_n_m2 == 0.0);
+    let span = span_of(scene).filter(|_| scene.obstacles.is_empty() && scene.loads.is_empty() && flexible)?;
     let mut least = f64::INFINITY;
     for _ in 0..FUNCTION_REPEATS {
         let clock = Instant::now();
