@@ -21,14 +21,6 @@ const SEGMENTS: usize = 60;
 /// rests; smaller: it hangs in the air behind the hand. 0.85 leaves 1 % of it after half a second.
 const SPEED_RETENTION: f64 = 0.85;
 
-/// A speed that moves nothing, m/s, and tells `fem` that the state is one of motion: it would relax
-/// it first.
-const WAKE_M_PER_S: f64 = 1e-100;
-
-/// Breaking tension of a draft, N: it jerks where the hand jumps, and would break where the answer
-/// does not.
-const UNBREAKABLE_N: f64 = 1e15;
-
 /// A draft of `edit` that goes on where `old` is; None where this kind of draft does not apply or
 /// fails.
 pub fn settling_draft(edit: &Edit, old: &Simulation) -> Option<Simulation> {
@@ -39,11 +31,9 @@ pub fn settling_draft(edit: &Edit, old: &Simulation) -> Option<Simulation> {
     }
     let mut settings = edit.settings;
     settings.segments = Some(SEGMENTS);
-    let mut scene = edit.scene.clone();
-    for cable in &mut scene.cables {
-        cable.breaking_tension_n = UNBREAKABLE_N;
-    }
-    let mut draft = Simulation::with_settings(scene, Model::MOST_CAPABLE, settings).ok()?;
+    // It jerks where the hand jumps, and would break where the answer does not.
+    settings.breaks = false;
+    let mut draft = Simulation::with_settings(edit.scene.clone(), Model::MOST_CAPABLE, settings).ok()?;
     carry(&mut draft, old).ok()?;
     advance_frame(&mut draft).ok()?;
     Some(draft)
@@ -118,8 +108,9 @@ pub fn with_mesh(edit: &Edit, old: &Simulation, mesh: Mesh) -> Option<Simulation
 
 fn carry(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {
     let mut states = old.states();
-    for v in states.iter_mut().filter_map(|s| s.velocity_m_per_s.first_mut()) {
-        v.x += WAKE_M_PER_S;
+    for state in &mut states {
+        // `fem` would bring a state at rest to rest on the new mesh first.
+        state.in_motion = true;
     }
     draft.set_states(&states)
 }
