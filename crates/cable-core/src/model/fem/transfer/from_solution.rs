@@ -388,6 +388,7 @@ impl Arc {
         self.turn = whole.abs();
         self.material = [on[0].arc_length_m, on[on.len() - 1].arc_length_m];
         self.node.end.sense = if whole < 0.0 { -1.0 } else { 1.0 };
-        self.node.end.mark = (on[0].at() - center) / radius;
+        // Nodes of the answer lie on the round within a part of its radius.
+        self.node.end.mark = (on[0].at() - center).try_normalize(0.0).unwrap_or(self.node.end.mark);
     }
 }
