@@ -202,7 +202,7 @@ pub fn maps() -> Vec<Map> {
     for (id, model) in [("bending-fem", Model::Fem), ("bending-mass-spring", Model::MassSpring)] {
         out.push(Map {
             id,
-            about: "a clamped bar of hardly any weight, a small load across its end: its deflection, against P L³/3EI",
+            about: "a clamped bar, a small load across its end: its deflection, against (P/3 + w L/8) L³/EI",
             model,
             axes: [logarithmic("EI, N m²", [1e-3, 1e4]), logarithmic("elements", [3.0, 200.0])],
             tolerance: 2e-2,
@@ -272,6 +272,15 @@ fn moving(name: &str, from: [f64; 2], to: [f64; 2], seconds: f64) -> Support {
     Support { motion: Some(motion), ..Support::fixed(name, from) }
 }
 
+/// An end that gets to a velocity (m/s) in a fifth of a time (s), and keeps it to the end of that time.
+fn moving_evenly(name: &str, from: [f64; 2], velocity: f64, seconds: f64) -> Support {
+    let times_s: Vec<f64> = (0..=6).map(|k| 0.2 * f64::from(k) * seconds).collect();
+    // In the first fifth it is half as fast; the last knot, at which it stops, is not reached.
+    let way = |t: f64| velocity * if t > 0.0 { t - 0.1 * seconds } else { 0.0 };
+    let points_m = times_s.iter().map(|t| [from[0] + way(*t), from[1]]).collect();
+    Support { motion: Some(Path { times_s, points_m }), ..Support::fixed(name, from) }
+}
+
 /// A cord from a load plumb below a round's left side, over it by an angle (rad), and on to a hand.
 fn over(shape: Shape, [radius, friction, angle]: [f64; 3], stiffness: f64) -> Scene {
     use std::f64::consts::PI;
@@ -313,12 +322,9 @@ fn corner(model: Model, [degrees, friction]: [f64; 2]) -> Result<Asked, Error> {
 
 fn drag(model: Model, [speed, friction]: [f64; 2]) -> Result<Asked, Error> {
     let (length, density, lies) = (5.0, 1.0, 0.01);
-    // All of it slides once the hand is at its speed: it gets there in a tenth of a second, so that inertia is gone.
-    let seconds = 0.5 + 1.0 / speed.max(1.0);
-    let supports = vec![
-        Support::new("tail", SupportKind::Free),
-        moving("hand", [length, lies], [length + speed * seconds, lies], seconds),
-    ];
+    // All of it slides evenly once the hand is at its speed, and has gone a tenth of the length.
+    let seconds = 0.5 + 1.0 / speed;
+    let supports = vec![Support::new("tail", SupportKind::Free), moving_evenly("hand", [length, lies], speed, seconds)];
     let mut scene = catalog::cable_alone([length, density, 1e5], supports);
     let floor = Shape::Terrain { points_m: vec![[-20.0, 0.0], [40.0, 0.0]] };
     scene.obstacles = vec![Obstacle { name: "floor".into(), shape: floor, friction: Some(friction) }];
@@ -383,13 +389,15 @@ fn bending(model: Model, [stiffness, elements]: [f64; 2]) -> Result<Asked, Error
     let load = 0.03 * stiffness / (length * length);
     let clamp = Support { at_m: Some([0.0, 0.0]), angle_deg: Some(0.0), ..Support::new("wall", SupportKind::Clamped) };
     let end = Support { force_n: Some([0.0, -load]), ..Support::new("end", SupportKind::Load) };
-    let mut scene = catalog::cable_alone([length, 1e-6 * load / G, 1e8], vec![clamp, end]);
+    // No scene has a lighter cable.
+    let density = (1e-6 * load / G).max(1e-6);
+    let mut scene = catalog::cable_alone([length, density, 1e8], vec![clamp, end]);
     for cable in &mut scene.cables {
         cable.bending_stiffness_n_m2 = stiffness;
     }
     let (_, answer) = settled(scene, model, elements.round() as usize)?;
     let tip = answer.cables.first().and_then(|c| c.nodes.last()).map_or(f64::NAN, |n| -n.y_m);
-    let right = load * length.powi(3) / (3.0 * stiffness);
+    let right = (load / 3.0 + density * G * length / 8.0) * length.powi(3) / stiffness;
     let warned = warned(&answer);
     Ok(Asked { error: (tip / right - 1.0).abs(), answer, warned })
 }

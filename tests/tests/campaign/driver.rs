@@ -222,7 +222,7 @@ fn unsound(answer: &Solution) -> bool {
     answer.model == Model::MassSpring && answer.verification.as_ref().is_some_and(|v| !v.is_sound())
 }
 
-fn distance(a: Point, b: Point) -> f64 {
+pub fn distance(a: Point, b: Point) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 

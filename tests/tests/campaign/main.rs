@@ -16,12 +16,14 @@
 //! | `judge.rs` | the laws, by brute force |
 //! | `relations.rs` | scenes that must have the same answer |
 //! | `driver.rs` | one case from scene to verdict |
+//! | `choice.rs` | what `auto` costs beside other settings |
 //! | `known.rs` | open faults, by family and count |
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod case;
 mod chance;
+mod choice;
 mod closed;
 mod driver;
 mod families;
@@ -100,4 +102,28 @@ fn campaign() {
         ..Plan::default()
     };
     judged(&run(&plan), &[]);
+}
+
+/// `auto` is within its tolerance, and costs no more than three times the cheapest setting that is.
+#[test]
+#[ignore = "minutes: every scene by three models on seven meshes"]
+fn auto_is_near_and_cheap() {
+    let first = number("CAMPAIGN_SEED").unwrap_or(2000);
+    let found = choice::compare(first, number("CAMPAIGN_CASES").unwrap_or(15) as usize, &names());
+    let count = found.ratios.len();
+    let share = |most: f64| found.ratios.iter().filter(|r| **r <= most).count() as f64 / count as f64;
+    println!(
+        "{} scenes, {} within the tolerance, {} more say that they are not",
+        found.scenes, found.within, found.flagged
+    );
+    println!(
+        "cost over the cheapest that is near enough, of {count}: median {:.2}, at most 3 in {:.1} %, 10 in {:.1} %",
+        found.ratios[count / 2],
+        100.0 * share(3.0),
+        100.0 * share(10.0)
+    );
+    for (ratio, scene) in found.dearest.iter().take(12) {
+        println!("  {ratio:.1} {scene}");
+    }
+    assert!(100 * (found.within + found.flagged) >= 99 * found.scenes, "{} of {}", found.within, found.scenes);
 }
