@@ -5,7 +5,7 @@ use cable_core::solution::{
     Bend, CableSolution, ContactReport, ContactSample, ContactState, Node, Pressure, Solution, SupportReaction,
     TensionPeaks, Warning,
 };
-use cable_core::summary::{CableSummary, EndStiffness, NeglectedBending};
+use cable_core::summary::{CableSummary, Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::timeline::RunPeaks;
 use cable_core::verify::Verification;
 use serde::Serialize;
@@ -45,6 +45,23 @@ pub struct Answer<'a> {
     pub warnings: &'a [Warning],
     /// What the laws say of the answer.
     pub verification: Option<&'a Verification>,
+    /// What other models and meshes answer, with `--compare`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub compared: &'a Vec<ComparedEntry>,
+}
+
+/// What another model or mesh answers.
+#[derive(Clone, Debug, Serialize)]
+pub struct ComparedEntry {
+    #[serde(flatten)]
+    pub setting: Setting,
+    pub wall_time_s: f64,
+    /// None where it has no answer.
+    #[serde(flatten)]
+    pub answer: Option<Compared>,
+    /// Why it has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
 }
 
 /// The greatest tensions of a run so far, and from what to what they may be.
@@ -96,6 +113,8 @@ pub struct Figures {
     pub bending: Vec<NeglectedBending>,
     /// The greatest tensions of a run so far, one a cable.
     pub run_peaks: Vec<RunPeaksEntry>,
+    /// What other models and meshes answer, where it was asked for.
+    pub compared: Vec<ComparedEntry>,
 }
 
 /// Something of one cable, which is named where there are several.
@@ -195,6 +214,7 @@ pub fn answer<'a>(
         contacts: Vec::new(),
         warnings: &s.warnings,
         verification: s.verification.as_ref(),
+        compared: &figures.compared,
     };
     for c in &s.cables {
         let cable = name(c);

@@ -6,11 +6,11 @@ use std::sync::mpsc::{RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
 use cable_core::model::Settings;
-use cable_core::summary::{end_stiffness, neglected_bending, settle_with_bending, summaries};
-use cable_core::{Model, Scene, SolveError, files};
+use cable_core::summary::{Setting, answer_with, end_stiffness, neglected_bending, settle_with_bending, summaries};
+use cable_core::{Model, Scene, Solution, SolveError, files};
 
 use crate::Done;
-use crate::answer::{Figures, NoAnswer, answer};
+use crate::answer::{ComparedEntry, Figures, NoAnswer, answer};
 use crate::args::{Common, SolveArguments};
 use crate::output::{Failure, Printer};
 use crate::table::table;
@@ -57,7 +57,9 @@ pub fn solve(arguments: &SolveArguments) -> Done {
             let stiffness = stiffness.map_err(|e| Failure::from_core(&a.scene, e))?;
             let neglected = || neglected_bending(&scene, &solution, settings(a));
             let bending = if arguments.no_bending { Vec::new() } else { neglected() };
-            let figures = Figures { cables: summaries(&scene, &solution), stiffness, bending, ..Figures::default() };
+            let compared = if arguments.compare { compared(&scene, &solution, a) } else { Vec::new() };
+            let cables = summaries(&scene, &solution);
+            let figures = Figures { cables, stiffness, bending, compared, ..Figures::default() };
             let printable = answer(&solution, &figures, wall_time_s, None).map_err(Failure::NonFinite)?;
             if a.json {
                 out.json(&printable)?;
@@ -73,6 +75,18 @@ pub fn solve(arguments: &SolveArguments) -> Done {
             Err(Failure::from_core(&a.scene, e))
         }
     }
+}
+
+/// What every model and mesh answers beside an answer, and how long each took.
+fn compared(scene: &Scene, given: &Solution, a: &Common) -> Vec<ComparedEntry> {
+    let ask = |setting| {
+        let began = Instant::now();
+        let found = answer_with(setting, scene, given, settings(a));
+        let wall_time_s = began.elapsed().as_secs_f64();
+        let error = found.as_ref().err().map(ToString::to_string);
+        ComparedEntry { setting, wall_time_s, answer: found.ok(), error }
+    };
+    Setting::all().map(ask).collect()
 }
 
 /// Largest table of a run that is checked, bytes. More would not fit into the memory of a small machine.

@@ -1,11 +1,46 @@
 //! An answer as text.
 
+use std::cmp::Ordering;
 use std::fmt::Write as _;
 
 use cable_core::solution::{ContactState, Solution};
 
-use crate::answer::Figures;
+use crate::answer::{ComparedEntry, Figures};
 use crate::summary;
+
+/// Greatest length of a reason why a setting has no answer.
+const REASON_LETTERS: usize = 90;
+
+/// Other models and meshes, the quickest first; those without an answer last.
+fn compared(t: &mut String, entries: &[ComparedEntry]) {
+    if entries.is_empty() {
+        return;
+    }
+    let _ = writeln!(t, "\nOther settings, beside this answer");
+    let _ = writeln!(
+        t,
+        "  {:<12} {:>8} {:>10}  {:>16}  {:>12}  {:>14}",
+        "model", "elements", "time ms", "forces differ by", "shape by m", "it says itself"
+    );
+    let mut sorted: Vec<&ComparedEntry> = entries.iter().collect();
+    sorted.sort_by(|a, b| {
+        (a.answer.is_none(), a.wall_time_s).partial_cmp(&(b.answer.is_none(), b.wall_time_s)).unwrap_or(Ordering::Equal)
+    });
+    for e in sorted {
+        let elements = e.setting.elements.map_or_else(|| "–".to_owned(), |n| n.to_string());
+        let _ = write!(t, "  {:<12} {elements:>8} {:>10.3}  ", e.setting.model.name(), 1e3 * e.wall_time_s);
+        let _ = match (&e.answer, &e.error) {
+            (Some(a), _) => {
+                let said = a.stated_error.map_or_else(|| "nothing".to_owned(), |s| format!("{s:.1e}"));
+                writeln!(t, "{:>16.1e}  {:>12.1e}  {said:>14}", a.force_difference, a.shape_difference_m)
+            }
+            (None, Some(why)) if why.chars().count() > REASON_LETTERS => {
+                writeln!(t, "{}…", why.chars().take(REASON_LETTERS).collect::<String>())
+            }
+            (None, why) => writeln!(t, "{}", why.as_deref().unwrap_or("no answer")),
+        };
+    }
+}
 
 /// A table with units. Writing to a `String` cannot fail, so its results are not looked at.
 pub fn table(s: &Solution, figures: &Figures) -> String {
@@ -40,6 +75,7 @@ pub fn table(s: &Solution, figures: &Figures) -> String {
         supports(&mut t, c);
         contacts(&mut t, c);
     }
+    compared(&mut t, &figures.compared);
     for w in &s.warnings {
         let _ = writeln!(t, "\nWarning: {}", w.message);
     }

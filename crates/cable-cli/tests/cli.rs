@@ -299,6 +299,25 @@ fn solve_tells_the_tightest_bend_and_the_highest_pressure() {
 
 /// What is read first is in JSON and text, and the tightest bend is the greatest curvature of the nodes.
 #[test]
+fn solve_compares_models_and_meshes() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = span(folder.path());
+    let o = cable(&["solve", file.to_str().unwrap(), "--json", "--compare"]);
+    let answer: Value = serde_json::from_slice(&o.stdout).unwrap();
+    let compared = answer["compared"].as_array().unwrap();
+    let of = |model: &str, elements: Option<u64>| {
+        let found = compared.iter().find(|c| c["model"] == model && c["elements"].as_u64() == elements);
+        found.unwrap_or_else(|| panic!("{model} {elements:?}"))
+    };
+    let differs = |n: u64| of("mass-spring", Some(n))["force_difference"].as_f64().unwrap();
+    assert!(differs(400) < 0.1 * differs(50), "springs are of the second order");
+    assert!(of("catenary", None)["force_difference"].as_f64().unwrap() < 1e-9);
+    assert!(compared.iter().all(|c| c["wall_time_s"].as_f64().unwrap() > 0.0));
+    let table = text(&cable(&["solve", file.to_str().unwrap(), "--compare"]).stdout);
+    assert!(table.contains("Other settings, beside this answer"), "{table}");
+}
+
+#[test]
 fn solve_tells_what_is_read_first() {
     let folder = tempfile::tempdir().unwrap();
     let file = span(folder.path());

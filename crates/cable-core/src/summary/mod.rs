@@ -9,6 +9,7 @@
 //! | `balance.rs` | the sum of all forces on a cable |
 //! | `stiffness.rs` | change of force per metre that an end is moved |
 //! | `bending.rs` | what neglected bending stiffness would change |
+//! | `settings_compared.rs` | what other models and meshes would answer |
 //!
 //! Everything is read from a scene and an answer, so that it is the same for every model; command
 //! line, JSON and window only write it down. Accuracy is that of the answer's nodes: of a free span
@@ -16,6 +17,7 @@
 
 mod balance;
 mod bending;
+mod settings_compared;
 mod shape;
 pub mod stiffness;
 #[cfg(test)]
@@ -29,6 +31,7 @@ use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Solution}
 
 pub use balance::ForceBalance;
 pub use bending::{Bending, NeglectedBending, neglected_bending, settle_with_bending};
+pub use settings_compared::{COMPARED_ELEMENTS, Compared, Setting, answer_with};
 pub use shape::{sag, stretched_length_m};
 pub use stiffness::{EndStiffness, end_stiffness};
 

@@ -1,0 +1,80 @@
+//! Other settings answer a scene once more: other models, on coarser and finer meshes, each compared
+//! with the answer that was given.
+//!
+//! It shows what the next cheaper choice would have cost in error. This module has no clock: who asks
+//! takes the time of each call of [`answer_with`].
+
+use serde::{Deserialize, Serialize};
+
+use crate::any_error::Error;
+use crate::math::larger;
+use crate::model::{Model, Settings};
+use crate::scene::Scene;
+use crate::simulation::Simulation;
+use crate::solution::{ErrorEstimates, Solution};
+
+/// Elements that a cable is divided into by models that have any.
+pub const COMPARED_ELEMENTS: [usize; 5] = [25, 50, 100, 200, 400];
+
+/// A model and its mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Setting {
+    /// The model.
+    pub model: Model,
+    /// Elements of each cable; None of a model without.
+    pub elements: Option<usize>,
+}
+
+impl Setting {
+    /// All that are compared: `catenary`, `spans`, and `fem` and `mass-spring` on five meshes.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let without = [Model::Catenary, Model::Spans].map(|model| Self { model, elements: None });
+        let with = [Model::Fem, Model::MassSpring].into_iter();
+        let meshes = with.flat_map(|model| COMPARED_ELEMENTS.map(|n| Self { model, elements: Some(n) }));
+        without.into_iter().chain(meshes)
+    }
+}
+
+/// What a setting answers beside the answer that was given.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Compared {
+    /// Greatest tension of all cables, N.
+    pub greatest_tension_n: f64,
+    /// Greatest difference of a support's force and of a greatest tension, in parts of the greatest
+    /// tension of that cable in the given answer.
+    pub force_difference: f64,
+    /// Greatest distance of a point of a cable from where the given answer has it, m.
+    pub shape_difference_m: f64,
+    /// Relative error of the greatest tension that the setting states; None where it states none.
+    pub stated_error: Option<f64>,
+}
+
+/// The scene at rest with a setting, beside an answer of the same scene.
+///
+/// # Errors
+/// Why the setting has no answer.
+pub fn answer_with(setting: Setting, scene: &Scene, given: &Solution, settings: Settings) -> Result<Compared, Error> {
+    let settings = Settings { segments: setting.elements, histories: false, ..settings };
+    // A number of elements that the scene gives would stand for every setting.
+    let mut scene = scene.clone();
+    scene.cables.iter_mut().for_each(|cable| cable.segments = None);
+    let mut simulation = Simulation::with_settings(scene, setting.model, settings)?;
+    let answer = simulation.settle()?;
+    let mut found = Compared {
+        greatest_tension_n: answer.max_tension().tension_n,
+        force_difference: 0.0,
+        shape_difference_m: 0.0,
+        stated_error: answer.cables.iter().filter_map(|c| c.error_estimate).reduce(larger),
+    };
+    for (own, of_given) in answer.cables.iter().zip(&given.cables) {
+        let apart = ErrorEstimates::between(own, of_given);
+        let greatest = of_given.nodes.iter().map(|n| n.tension_n.abs()).fold(0.0, larger);
+        for force in [apart.max_tension_n, apart.support_force_n].into_iter().flatten() {
+            // Where nothing pulls, a difference is told as it is.
+            let part = if greatest > 0.0 { force / greatest } else { force };
+            found.force_difference = larger(found.force_difference, part);
+        }
+        found.shape_difference_m = larger(found.shape_difference_m, apart.position_m.unwrap_or(0.0));
+    }
+    Ok(found)
+}
