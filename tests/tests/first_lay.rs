@@ -24,8 +24,7 @@ fn apart(a: &Solution, b: &Solution) -> f64 {
 #[test]
 fn all_models_begin_at_the_same_rest() {
     let scenes = [
-        // Open: 1e-2 by mass-spring before flexible bars of the shape it begins with only pulled.
-        ("tank", catalog::tank(), 4e-3, 7e-2),
+        ("tank", catalog::tank(), 4e-3, 1e-2),
         ("over-beam", catalog::over_beam(), 2e-4, 2e-2),
         ("round-post", catalog::round_post(), 2e-3, 1e-2),
         ("robot-drive", catalog::robot_drive(), 3e-3, 3e-3),
@@ -45,6 +44,23 @@ fn all_models_begin_at_the_same_rest() {
         }
     }
     assert!(!wrong);
+}
+
+/// On 14 of 44 meshes `fem` was off by 24 % on the robot's floor, and in the tank on two by 5 %: where Newton's method alone did not
+/// come from the shape of `spans` to that of bars, they were laid by themselves.
+#[test]
+fn every_mesh_begins_at_the_same_rest() {
+    let scenes = [
+        ("robot-drive", catalog::robot_drive(), &[56, 69, 160, 212, 277, 303, 511][..]),
+        ("tank", catalog::tank(), &[108, 350, 400]),
+    ];
+    for (id, scene, meshes) in scenes {
+        let exact = rest(&scene, Model::Spans, None);
+        for &n in meshes {
+            let off = apart(&exact, &rest(&scene, Model::Fem, Some(n)));
+            assert!(off < 1e-2, "{id} with {n} elements: {off:.1e}");
+        }
+    }
 }
 
 /// Laid by itself a cable of 0.05 N m² differed from one that does not resist bending at all by 22 % on the robot's floor.

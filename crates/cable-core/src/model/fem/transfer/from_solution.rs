@@ -126,7 +126,10 @@ impl Dynamics {
         self.renew_task();
         self.adopt_friction(&curve);
         self.adopt_floor_friction(&curve);
-        if self.rest_step(time_s, dragged).is_ok() {
+        // Bars that stick from node to node are far from their balance by hardly any way: where
+        // Newton's method alone does not find it, a resistance that fades leads there.
+        let found = self.rest_step(time_s, dragged).or_else(|_| self.relax(time_s, dragged));
+        if found.is_ok() {
             self.rested = true;
         } else {
             self.restore();
