@@ -30,13 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let asked: Vec<String> = std::env::args().skip(1).collect();
     let mut measured = Vec::new();
     for map in maps().into_iter().filter(|m| asked.is_empty() || asked.iter().any(|a| a == m.id)) {
-        let cells: Vec<Cell> = (0..CELLS * CELLS)
-            .map(|k| {
-                let at = [map.axes[0].value(k % CELLS, CELLS), map.axes[1].value(k / CELLS, CELLS)];
-                let (verdict, error) = map.cell(at);
-                Cell { at, verdict, error }
-            })
-            .collect();
+        let cells = cells(&map);
         println!("{}: {}", map.id, counts(&cells).join(", "));
         for cell in cells.iter().filter(|c| !asked.is_empty() && c.verdict != Verdict::Right) {
             println!("  {:.4e} {:.4e}: {}, {:?}", cell.at[0], cell.at[1], cell.verdict.name(), cell.error);
@@ -52,6 +46,26 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::fs::write(format!("{FOLDER}/maps.md"), page(&measured, wrong))?;
     }
     if wrong > 0 { Err("some cells are wrong in silence".into()) } else { Ok(()) }
+}
+
+/// All cells of a map, measured on all cores.
+fn cells(map: &Map) -> Vec<Cell> {
+    let measure = |k: usize| {
+        let at = [map.axes[0].value(k % CELLS, CELLS), map.axes[1].value(k / CELLS, CELLS)];
+        let (verdict, error) = map.cell(at);
+        Cell { at, verdict, error }
+    };
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let mut numbered: Vec<(usize, Cell)> = std::thread::scope(|scope| {
+        let shares = (0..threads).map(|t| {
+            scope.spawn(move || (t..CELLS * CELLS).step_by(threads).map(|k| (k, measure(k))).collect::<Vec<_>>())
+        });
+        let shares: Vec<_> = shares.collect();
+        // A thread that panics has printed why; its cells are then missing.
+        shares.into_iter().flat_map(|share| share.join().unwrap_or_default()).collect()
+    });
+    numbered.sort_by_key(|(k, _)| *k);
+    numbered.into_iter().map(|(_, cell)| cell).collect()
 }
 
 /// How many cells have each verdict, but for none.
