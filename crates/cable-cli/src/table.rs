@@ -2,7 +2,9 @@
 
 use std::fmt::Write as _;
 
+use cable_core::UnitSystem;
 use cable_core::solution::{ContactState, Solution};
+use cable_core::wording::Sentence;
 
 use crate::answer::Figures;
 use crate::summary;
@@ -30,7 +32,7 @@ pub fn table(s: &Solution, figures: &Figures) -> String {
     }
     let _ = writeln!(t, "Residual          {:.2e} N after {} iterations", s.cost.residual_n, s.cost.iterations);
     if let Some(v) = &s.verification {
-        let _ = writeln!(t, "Laws              {}", v.summary());
+        let _ = writeln!(t, "Laws              {}", v.sentence(UnitSystem::Si));
         if v.folded_m > 0.0 {
             let _ = writeln!(t, "In folds          {:.4} m of cable beyond the way it lies on", v.folded_m);
         }
@@ -41,7 +43,7 @@ pub fn table(s: &Solution, figures: &Figures) -> String {
         contacts(&mut t, c);
     }
     for w in &s.warnings {
-        let _ = writeln!(t, "\nWarning: {}", w.message);
+        let _ = writeln!(t, "\nWarning: {w}");
     }
     t
 }

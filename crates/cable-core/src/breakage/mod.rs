@@ -694,7 +694,8 @@ fn add(sum: &mut StepReport, more: StepReport) {
     }
     for warning in more.warnings {
         // Of the parts of a step each says the same again.
-        sum.warnings.retain(|w| w.kind != warning.kind || w.message != warning.message);
+        let again = warning.to_string();
+        sum.warnings.retain(|w| w.kind != warning.kind || w.to_string() != again);
         sum.warnings.push(warning);
     }
 }

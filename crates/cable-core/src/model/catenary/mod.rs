@@ -23,7 +23,7 @@ use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{FailureCause, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Cost, Node, SupportReaction, Warning, WarningKind};
+use crate::solution::{CableSolution, Cost, Histories, Node, ShownEquilibrium, SupportReaction, Warning, WarningCause};
 use crate::state::State;
 
 /// Supports move by at most this part of the cable in one solve of a slow motion. Larger: slip that
@@ -215,9 +215,7 @@ impl CatenaryModel {
 /// What there is to say of a weightless cable that is slack.
 pub(super) fn slack_without_weight(problem: &Problem, nodes: &[Node]) -> Option<Warning> {
     let slack = nodes.iter().find(|n| n.tension_n == 0.0)?;
-    let message = "The cable has no weight: where it is slack it has no tension and any shape is at rest; this one is that of a very light cable";
-    let (kind, at) = (WarningKind::NotUnique, slack.arc_length_m);
-    Some(Warning::new(kind, &problem.cable.name, at, [0.0; 2], message.to_owned()))
+    Some(Warning::new(WarningCause::Weightless, &problem.cable.name, slack.arc_length_m, [0.0; 2]))
 }
 
 /// The way the cable is laid, its material spread evenly along it.
@@ -255,9 +253,9 @@ impl Mechanics for CatenaryModel {
         };
         let mut report = self.accept(&layout, e, self.time_s, true)?;
         if self.has_friction() {
-            let message = "With friction the resting place depends on how the cable was laid: this is the one laid evenly along its way with the least sliding";
-            let name = &self.problem.cable.name;
-            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
+            let (shown, histories) = (ShownEquilibrium::EvenlyLaid, Histories::NotSought);
+            let cause = WarningCause::ManyEquilibria { shown, histories };
+            report.warnings.push(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]));
         }
         if layout.hint > 0.0 {
             report.warnings.extend(slack_without_weight(&self.problem, &self.nodes));

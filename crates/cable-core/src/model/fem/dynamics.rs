@@ -25,7 +25,7 @@ use crate::model::input_filter::held_warning;
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::{Problem, Series};
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost, Warning, WarningKind};
+use crate::solution::{CableSolution, Cost, Warning, WarningCause};
 use crate::state::State;
 
 /// Longest inner time step, s. At 1/240 the tip of a falling chain of 10 m is within 5e-4 m of that
@@ -591,9 +591,8 @@ impl Dynamics {
         let held = self.answers.held_back.iter().filter_map(|&k| {
             let (node, s) = (node_of(k)?, self.problem.supports.get(k)?);
             let behind = (self.task.target.get(node)? - self.motion.x[node]).norm();
-            let message = format!("support `{}` cannot reach where it is sent: an obstacle blocks it", s.name);
-            let (name, arc_length) = (&self.problem.cable.name, self.mesh.arc_length[node]);
-            Some(Warning::new(WarningKind::SupportHeld, name, arc_length, [behind, 0.0], message))
+            let cause = WarningCause::Blocked { support: s.name.clone() };
+            Some(Warning::new(cause, &self.problem.cable.name, self.mesh.arc_length[node], [behind, 0.0]))
         });
         let drawn = self.motion.followers.iter().enumerate().filter_map(|(k, f)| {
             let (f, node) = (f.as_ref().filter(|f| f.behind_m() > 0.0)?, node_of(k)?);

@@ -45,7 +45,7 @@ use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Sett
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::ErrorEstimates;
-use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
+use crate::solution::{CableSolution, Cost, Node, Warning, WarningCause};
 use crate::state::State;
 use elastica::Elastica;
 
@@ -259,11 +259,8 @@ impl FemModel {
         if off <= limit {
             return None;
         }
-        let message = format!(
-            "{} bars show the bend of a stiff cable where it is led round something to {off:.1e} of the greatest tension only; {limit:.1e} was asked for: use more segments",
-            self.dynamics.meshing.even_bars
-        );
-        Some(Warning::new(WarningKind::Accuracy, &self.problem.cable.name, s, [off, limit], message))
+        let cause = WarningCause::CoarseBend { bars: self.dynamics.meshing.even_bars };
+        Some(Warning::new(cause, &self.problem.cable.name, s, [off, limit]))
     }
 
     /// Begins a first rest of a fine mesh at that of a coarse one (nested iteration): the way down
@@ -329,10 +326,8 @@ impl FemModel {
     /// What there is to say of a stiff cable's rest whose error is more than was asked for.
     fn bent_warning(&self) -> Option<Warning> {
         let (estimate, asked) = (self.bent.as_ref()?.error_estimate?, self.settings.tolerance);
-        (estimate > asked).then(|| {
-            let message = format!("The contacts of this stiff cable are known to a chain of bars only, which gives the forces to about {estimate:.1e} of the greatest tension; {asked:.1e} was asked for");
-            Warning::new(WarningKind::Accuracy, &self.problem.cable.name, 0.0, [estimate, asked], message)
-        })
+        let cause = WarningCause::BarContacts;
+        (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
     }
 
     fn take_bent(&mut self, mut found: Elastica) -> Option<Cost> {
@@ -373,13 +368,8 @@ impl FemModel {
     /// What there is to say of a mesh that is coarser than the tolerance asks for.
     fn coarse_warning(&self) -> Option<Warning> {
         let (estimate, asked) = (self.meshes.errors.relative(&self.dynamics.solution())?, self.settings.tolerance);
-        (estimate > asked).then(|| {
-            let message = format!(
-                "{} elements give the forces to about {estimate:.1e} of the greatest tension; {asked:.1e} was asked for: use more segments",
-                self.dynamics.meshing.even_bars
-            );
-            Warning::new(WarningKind::Accuracy, &self.problem.cable.name, 0.0, [estimate, asked], message)
-        })
+        let cause = WarningCause::CoarseForces { elements: self.dynamics.meshing.even_bars };
+        (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
     }
 
     /// Makes `part` the one that holds the present state.
