@@ -7,8 +7,8 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | `boundary` | the boundary as the centre line runs along it, and the capstan law on it |
-//! | `contact` | a contact: friction memory, equations, loads on it, supports on it, wheels |
+//! | `boundary` | the boundary as the centre line runs along it, the capstan law and friction memory |
+//! | `contact` | a contact: equations, loads on it, supports on it, wheels |
 //! | `run` | free spans and contacts in a row between two grips: the unknowns |
 //! | `boundary_conditions` | supports and loads at an instant, and how a cable falls into runs |
 //! | `newton`, `numerics` | all unknowns of a run at once; band LU, root finding |
@@ -43,8 +43,8 @@ use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
 use crate::model::catenary::slack_without_weight;
 use crate::model::gauge::TensionGauge;
-use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, Layout, unsupported};
-use crate::model::spans::continuation::{CableEquilibrium, SearchStart, StepStats, Unfound};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, CableEquilibrium, Layout, unsupported};
+use crate::model::spans::continuation::{SearchStart, StepStats, Unfound};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::Work;
 use crate::model::spans::results::Report;
