@@ -213,20 +213,17 @@ fn modules_of_viewer_and_program_import_one_way() {
     }
 }
 
-/// The core's top floor has no loops. Inside it there still are: their number may not grow.
+/// Neither the core's top floor nor the wings of a model have loops. A folder and its files still do: their number may
+/// not grow.
 #[test]
 fn the_core_imports_one_way() {
     let files = files_of("cable-core");
-    let top = wings_of(&files, "");
-    assert!(in_loops(&top).is_empty(), "these import each other in a loop: {:?}", in_loops(&top));
-    for (below, most) in [("model::fem", 10), ("model::spans", 0), ("model::mass_spring", 0)] {
+    for below in ["", "model::fem", "model::spans", "model::mass_spring"] {
         let wings = wings_of(&files, below);
-        assert!(wings.len() > 5, "{below} has wings");
-        assert!(in_loops(&wings).len() <= most, "{below}: {:?}", in_loops(&wings));
-        println!("{below}: {} of {} wings in loops: {:?}", in_loops(&wings).len(), wings.len(), in_loops(&wings));
+        assert!(wings.len() > 5, "`{below}` has wings");
+        assert!(in_loops(&wings).is_empty(), "`{below}`: these import each other in a loop: {:?}", in_loops(&wings));
     }
-    println!("{} of {} files in loops", in_loops(&files).len(), files.len());
-    assert!(in_loops(&files).len() <= 71, "{:?}", in_loops(&files));
+    assert!(in_loops(&files).len() <= 52, "{:?}", in_loops(&files));
 }
 
 /// A module is reached by following imports from itself.

@@ -6,19 +6,19 @@ use std::sync::Arc;
 use crate::contact::barrier::Barrier;
 use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
-use crate::model::fem::equilibrium::initial_guess::{lay, push_out, way};
 use crate::model::fem::mesh::sliding_node::Seat;
+use crate::model::fem::newton::initial_guess::{lay, push_out, way};
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::mixed_free::FreeStep;
-use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose, StepInput, WorkBudget};
-use crate::model::fem::newton::step_setup::{load_scale, tolerance};
-use crate::model::fem::obstacle::moving_outline::MovingOutline;
+use crate::model::fem::state::history::{Checkpoint, Motion};
+use crate::model::fem::state::moving_outline::MovingOutline;
+use crate::model::fem::state::stepping::Sleep;
+use crate::model::fem::state::stepping::StepSizeController;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::friction_state::{ContactPair, ContactSet, SLIDE, slip_at_rest};
 use crate::model::fem::system::loss::Loss;
-use crate::model::fem::time::history::{Checkpoint, Motion};
-use crate::model::fem::time::sleeping::Sleep;
-use crate::model::fem::time::step_size::StepSizeController;
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose, StepInput, WorkBudget};
+use crate::model::fem::system::step_input::{load_scale, tolerance};
 use crate::model::fem::touches_nothing;
 use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::held_warning;
@@ -636,11 +636,6 @@ impl Dynamics {
         if self.answers.keeps && self.answers.kept.is_none() {
             self.answers.kept = Some(Box::new(self.solution_now()));
         }
-    }
-
-    /// The same, with the mesh as it is.
-    pub(super) fn solution_now(&self) -> CableSolution {
-        crate::model::fem::results::solution(self, &self.motion.x, &self.motion.v)
     }
 
     /// Smallest gap of any free node or segment, m (infinite if nothing is near).

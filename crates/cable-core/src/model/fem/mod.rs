@@ -4,19 +4,18 @@
 //! | room | what it holds |
 //! |---|---|
 //! | `dynamics` | the cable in contact: its mesh, contacts, history and settings in one place |
-//! | `free` | equilibrium of a flexible cable that touches nothing but its supports |
-//! | `beam`, `elastica` | equilibrium of a stiff cable, free and in contact |
+//! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
 //! | `equilibrium` | equilibria in contact, and steps without inertia |
-//! | `time` | BDF2, step sizes, sleep, hands, momentum |
-//! | `newton` | one step: its input, its Newton iterations, and what bounds them |
-//! | `system` | the energies of a step: value, gradient and banded Hessian |
-//! | `mesh` | sliding nodes, paths round corners, edits between steps |
+//! | `time` | setup of a step, BDF2, step sizes, sleep, hands, momentum |
+//! | `state` | history, momentum account, sleep, step size, outline: the parts of `dynamics` |
+//! | `newton` | one step: its initial guess, its Newton iterations, and what bounds them |
+//! | `system` | input and energies of a step: value, gradient and banded Hessian |
+//! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
 //! | `obstacle`, `transfer` | the robot's outline; states and answers of other models |
 //! | `results`, `mesh_comparison` | what is read out of a state, and how wrong it is |
 //!
 //! [`FemModel`] decides which part answers, and hands the state over when the question changes.
 
-mod beam;
 mod dynamics;
 mod elastica;
 mod equilibrium;
@@ -25,7 +24,9 @@ mod mesh;
 mod mesh_comparison;
 pub(in crate::model) mod newton;
 mod obstacle;
+mod remesh;
 mod results;
+mod state;
 pub mod system;
 #[cfg(test)]
 mod tests;
@@ -38,7 +39,7 @@ use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::model::fem::mesh_comparison::{Refinement, TwoMeshes};
-use crate::model::fem::newton::step_input::WorkBudget;
+use crate::model::fem::system::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
 use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
@@ -551,7 +552,7 @@ impl Mechanics for FemModel {
     fn borrow(&mut self, own: Option<OwnedResources>) {
         let own = own.unwrap_or_else(|| OwnedResources {
             memory: None,
-            problem: obstacle::moving_outline::with_outline(self.problem.clone()),
+            problem: state::moving_outline::with_outline(self.problem.clone()),
         });
         self.dynamics.solver.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
         self.dynamics.problem = own.problem;

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
-use crate::model::fem::beam::equilibrium::{Beam, Outcome};
+use crate::model::fem::free::beam::equilibrium::{Beam, Outcome};
 use crate::model::fem::free::dual_weighted_residual;
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::pulley_balance::{Failure, Network};
