@@ -10,7 +10,7 @@ use super::self_touch::{SelfTouch, first_self_touch};
 use super::{length_check, support_rules};
 use crate::error::{SceneError, SceneFault};
 use crate::math::Point;
-use crate::scene::{Cable, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset};
+use crate::scene::{Cable, LineEnds, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset};
 
 /// Most cables. More would be solved, slowly; a file with more is surely a slip.
 const MAX_CABLES: usize = 1000;
@@ -229,16 +229,16 @@ fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneErro
         (Shape::Polygon { .. }, _, _) if !(area(corners).abs() > 0.0) => {
             Err(line.shape("a polygon needs an area: these points lie on a line or cross it back"))
         }
-        (Shape::Terrain { .. }, _, _) => not_crossing(&line, corners, false),
-        (Shape::Polygon { .. }, _, _) => not_crossing(&line, corners, true),
+        (Shape::Terrain { .. }, _, _) => not_crossing(&line, corners, LineEnds::Open),
+        (Shape::Polygon { .. }, _, _) => not_crossing(&line, corners, LineEnds::Joined),
         _ => Ok(()),
     }?;
     Ok(corners.len())
 }
 
 /// A line with an inside must not cross or touch itself.
-fn not_crossing(at: &Path<'_>, line: &[Point], closed: bool) -> Checked {
-    match first_self_touch(line, closed) {
+fn not_crossing(at: &Path<'_>, line: &[Point], ends: LineEnds) -> Checked {
+    match first_self_touch(line, ends) {
         None => Ok(()),
         Some(SelfTouch::Edges(i, j)) => {
             let end = |k: usize| line.get(k + 1).or(line.first()).copied().unwrap_or_default();
