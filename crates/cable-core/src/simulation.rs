@@ -17,7 +17,10 @@ use crate::problem::{Problem, problems};
 use crate::robot::Vehicle;
 use crate::scene::Scene;
 use crate::solution::ErrorEstimates;
-use crate::solution::{CableSolution, Cost, Energy, MaxTension, Node, Solution, Warning, WarningKind};
+use crate::solution::{
+    CableSolution, Cost, Energy, Histories, MaxTension, Node, ShownEquilibrium, Solution, Warning, WarningCause,
+    WarningKind,
+};
 use crate::state::State;
 use crate::verify::{Depth, Verification, Verifier};
 use crate::warnings::{Bends, Observed, WarningMonitor};
@@ -221,10 +224,8 @@ impl Simulation {
             let problem = cable.problem();
             let Some(outline) = problem.outline.as_ref().filter(|_| cable.robot_contact().is_none()) else { continue };
             if !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius) {
-                let message =
-                    format!("`{}` lies through the robot: {} knows nothing of it", answer.name, cable.model());
-                let kind = WarningKind::ThroughRobot;
-                self.warnings.push(Warning::new(kind, &answer.name, problem.length, [0.0, 0.0], message));
+                let cause = WarningCause::RobotIgnored { model: cable.model() };
+                self.warnings.push(Warning::new(cause, &answer.name, problem.length, [0.0; 2]));
             }
         }
     }
@@ -381,22 +382,18 @@ impl Simulation {
             let mut known: Vec<Warning> = known.map(|lay| lay.warnings).unwrap_or_default();
             known.retain(said);
             if known.is_empty() {
-                let range = if self.settings.histories { self.describe_histories(k) } else { None };
-                let range = range.unwrap_or_else(|| ", no other was sought".to_owned());
-                let message = format!(
-                    "With friction the resting place depends on how the cable was laid: this is the one found from its way{range}"
-                );
-                let name = &problem.cable.name;
-                known.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
+                let found = if self.settings.histories { self.other_histories(k) } else { None };
+                let histories = found.unwrap_or(Histories::NotSought);
+                let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
+                known.push(Warning::new(cause, &problem.cable.name, 0.0, [0.0; 2]));
             }
             self.warnings.append(&mut known);
         }
     }
 
-    /// What other histories would have left in a cable, in words: in plan view, where a floor that
-    /// rubs everywhere chose the rest and `spans` has no answer; None where none was sought or
-    /// found.
-    fn describe_histories(&self, k: usize) -> Option<String> {
+    /// Other histories of a cable in plan view, where a floor that rubs everywhere chose the rest
+    /// and `spans` has no answer; None where none was sought or found.
+    fn other_histories(&self, k: usize) -> Option<Histories> {
         let cable = self
             .cables
             .get(k)

@@ -131,6 +131,15 @@ struct BreakPoint {
     at: rupture::Rupture,
 }
 
+/// The hold that draws a support.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Grasp {
+    /// The support goes where it is sent.
+    Rigid,
+    /// A spring pulls it there.
+    Spring,
+}
+
 /// What became of a piece in a step.
 enum StepOutcome {
     Intact,
@@ -361,25 +370,25 @@ impl BreakableCable {
 
     /// From now on a support follows what leads it.
     pub fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        self.draw_support(support, target_m, false);
+        self.draw_support(support, target_m, Grasp::Rigid);
     }
 
     /// From now on a hand holds a support by a spring.
     pub fn pull_support(&mut self, support: usize, hand_m: Vec2) {
-        self.draw_support(support, hand_m, true);
+        self.draw_support(support, hand_m, Grasp::Spring);
     }
 
-    fn draw_support(&mut self, support: usize, to: Vec2, by_spring: bool) {
+    fn draw_support(&mut self, support: usize, to: Vec2, grasp: Grasp) {
         if !to.iter().all(|c| c.is_finite()) {
             return;
         }
         if let (Some(d), Some(pulled)) = (self.dragged.get_mut(support), self.pulled.get_mut(support)) {
-            (*d, *pulled) = (Some(to), by_spring);
+            (*d, *pulled) = (Some(to), grasp == Grasp::Spring);
         }
         for piece in &mut self.pieces {
             let own = piece.part.supports.iter().position(|k| *k == Some(support));
             match own {
-                Some(own) if by_spring => piece.mechanics.pull_support(own, to),
+                Some(own) if grasp == Grasp::Spring => piece.mechanics.pull_support(own, to),
                 Some(own) => piece.mechanics.drag_support(own, to),
                 None => {}
             }
@@ -694,7 +703,8 @@ fn add(sum: &mut StepReport, more: StepReport) {
     }
     for warning in more.warnings {
         // Of the parts of a step each says the same again.
-        sum.warnings.retain(|w| w.kind != warning.kind || w.message != warning.message);
+        let again = warning.to_string();
+        sum.warnings.retain(|w| w.kind != warning.kind || w.to_string() != again);
         sum.warnings.push(warning);
     }
 }

@@ -22,7 +22,7 @@ use super::Gap;
 use super::distance::nearest_fraction;
 use super::outline::Outline;
 use crate::math::{Point, RigidPose, Vec2, cross, perp, vec2};
-use crate::scene::{Obstacle, Shape};
+use crate::scene::{LineEnds, Obstacle, Shape};
 
 /// Edges that turn by less (rad) are one edge: a corner the cable cannot feel would only cost time.
 const MIN_EDGE_TURN: f64 = 1e-12;
@@ -310,10 +310,10 @@ impl Geometry {
         let mut bodies: Vec<Body> = Vec::with_capacity(obstacles.len());
         for (obstacle, o) in obstacles.iter().enumerate() {
             let (points, closed, solid, center, grow) = match &o.shape {
-                Shape::Terrain { points_m } => (left_to_right(clean(points_m, false)), false, true, None, 0.0),
-                Shape::Polygon { points_m } => (clockwise(clean(points_m, true)), true, true, None, 0.0),
+                Shape::Terrain { points_m } => (left_to_right(clean(points_m, LineEnds::Open)), false, true, None, 0.0),
+                Shape::Polygon { points_m } => (clockwise(clean(points_m, LineEnds::Joined)), true, true, None, 0.0),
                 Shape::Polyline { points_m, thickness_m } => {
-                    (clean(points_m, false), false, false, None, thickness_m / 2.0)
+                    (clean(points_m, LineEnds::Open), false, false, None, thickness_m / 2.0)
                 }
                 Shape::Circle { center_m, radius_m } => (Vec::new(), false, true, Some(vec2(*center_m)), *radius_m),
             };
@@ -425,7 +425,8 @@ impl Body {
 }
 
 /// Points as vectors without repeats, non-finite ones and corners that do not turn.
-fn clean(points: &[Point], closed: bool) -> Vec<Vec2> {
+fn clean(points: &[Point], ends: LineEnds) -> Vec<Vec2> {
+    let closed = ends == LineEnds::Joined;
     let mut out: Vec<Vec2> = Vec::with_capacity(points.len());
     for p in points.iter().map(|p| vec2(*p)).filter(|p| p.iter().all(|c| c.is_finite())) {
         if out.last() != Some(&p) {

@@ -20,7 +20,7 @@
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{HandReport, Warning, WarningKind};
+use crate::solution::{HandReport, Warning, WarningCause};
 
 /// Time constant of each lag, s. Smaller: the cable feels the steps of the hand; larger: the
 /// support trails the hand by 3τ. Chosen so that the trailing (45 ms) is under three frames.
@@ -71,11 +71,8 @@ pub(crate) fn held_warning(
     fastest: f64,
 ) -> Warning {
     let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
-    let behind = f.behind_m();
-    let message =
-        format!("support `{name}` lags {behind:.2} m behind where it is sent: it follows at {fastest} m/s at most");
-    let speeds = [f.velocity().norm(), fastest];
-    Warning::new(WarningKind::SupportHeld, &problem.cable.name, arc_length_m, speeds, message)
+    let cause = WarningCause::Lags { support: name.to_owned(), behind_m: f.behind_m() };
+    Warning::new(cause, &problem.cable.name, arc_length_m, [f.velocity().norm(), fastest])
 }
 
 /// Stiffness of a hand's spring unless asked otherwise, N/m: with the whole load on a cable
@@ -157,22 +154,16 @@ impl Hand {
     ) -> Option<Warning> {
         let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
         let (slow, behind) = (self.end.behind_m(), (self.end.position() - at).norm());
-        let (k, pulls) = (self.stiffness, force.norm());
         let held = behind > HAND_GIVE_FRACTION * problem.length;
-        let mut told = Vec::new();
-        if held {
-            told.push(format!(
-                "is {behind:.2} m behind the hand, which pulls it with {pulls:.0} N by a spring of {k:.0} N/m"
-            ));
-        }
-        if slow > 0.0 {
-            let hand = if held { "the hand" } else { "its hand" };
-            told.push(format!("{hand} lags {slow:.2} m behind where it is sent: it follows at {fastest} m/s at most"));
-        }
-        let message = format!("support `{name}`: {}", told.join("; "));
+        let cause = WarningCause::HandLags {
+            support: name.to_owned(),
+            behind_m: held.then_some(behind),
+            hand_behind_m: slow,
+            pull_n: force.norm(),
+            stiffness_n_per_m: self.stiffness,
+        };
         let speeds = [self.end.velocity().norm(), fastest];
-        let name = &problem.cable.name;
-        (!told.is_empty()).then(|| Warning::new(WarningKind::SupportHeld, name, arc_length_m, speeds, message))
+        (held || slow > 0.0).then(|| Warning::new(cause, &problem.cable.name, arc_length_m, speeds))
     }
 }
 

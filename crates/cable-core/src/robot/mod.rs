@@ -347,9 +347,9 @@ impl Vehicle {
         let middle = 0.5 * (edges[0] + edges[1]);
         let mut found = None;
         for (edge, before) in edges.into_iter().zip([edges[0] - 1.0, middle]) {
-            if needed(edge) > grip.total(edge, false) {
+            if needed(edge) > grip.total(edge, Limit::Below) {
                 found = Some((before, None));
-            } else if needed(edge) >= grip.total(edge, true) {
+            } else if needed(edge) >= grip.total(edge, Limit::Above) {
                 found = Some((edge, Some(edge)));
             }
             if found.is_some() {
@@ -362,14 +362,14 @@ impl Vehicle {
             let tracks = grip.share(q, total);
             (q, tracks, total - tracks, q == 0.0 && grip.drives && grip.drive >= grip.hold)
         } else {
-            let rolls = grip.rolls(near, true);
+            let rolls = grip.rolls(near, Limit::Above);
             let reached =
                 |force: f64, falls: f64| (mass * v / drive.h + pull + rolls + force) / (mass / drive.h + falls);
-            let tracks = grip.tracks(near, true);
+            let tracks = grip.tracks(near, Limit::Above);
             let slid = reached(if tracks < 0.0 { -grip.hold } else { grip.hold }, 0.0);
             let driven = reached(grip.drive, grip.falls);
-            if grip.is_driven(near, true) && driven <= slid {
-                (driven, grip.tracks(driven, true), rolls, false)
+            if grip.is_driven(near, Limit::Above) && driven <= slid {
+                (driven, grip.tracks(driven, Limit::Above), rolls, false)
             } else {
                 (slid, if tracks < 0.0 { -grip.hold } else { grip.hold }, rolls, true)
             }
@@ -513,21 +513,28 @@ struct TrackGrip {
     falls: f64,
 }
 
+/// The side from which a speed is come to where forces jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Limit {
+    Below,
+    Above,
+}
+
 impl TrackGrip {
-    /// Whether a speed, or what is just below or `above` it, is beyond an edge.
-    fn is_beyond(q: f64, edge: f64, above: bool) -> bool {
-        q > edge || (q == edge && above)
+    /// Returns whether a speed is beyond an edge, in the limit from below or above.
+    fn is_beyond(q: f64, edge: f64, limit: Limit) -> bool {
+        q > edge || (q == edge && limit == Limit::Above)
     }
 
-    fn is_driven(&self, q: f64, above: bool) -> bool {
-        self.drives && Self::is_beyond(q, 0.0, above) && !Self::is_beyond(q, self.asked, above)
+    fn is_driven(&self, q: f64, limit: Limit) -> bool {
+        self.drives && Self::is_beyond(q, 0.0, limit) && !Self::is_beyond(q, self.asked, limit)
     }
 
     /// Force of the tracks, N.
-    fn tracks(&self, q: f64, above: bool) -> f64 {
-        if Self::is_beyond(q, self.asked, above) {
+    fn tracks(&self, q: f64, limit: Limit) -> f64 {
+        if Self::is_beyond(q, self.asked, limit) {
             -self.hold
-        } else if self.is_driven(q, above) {
+        } else if self.is_driven(q, limit) {
             smaller(larger(self.drive - self.falls * q, 0.0), self.hold)
         } else {
             self.hold
@@ -535,19 +542,19 @@ impl TrackGrip {
     }
 
     /// Rolling resistance, N.
-    fn rolls(&self, q: f64, above: bool) -> f64 {
-        if Self::is_beyond(q, 0.0, above) { -self.rolling } else { self.rolling }
+    fn rolls(&self, q: f64, limit: Limit) -> f64 {
+        if Self::is_beyond(q, 0.0, limit) { -self.rolling } else { self.rolling }
     }
 
-    fn total(&self, q: f64, above: bool) -> f64 {
-        self.tracks(q, above) + self.rolls(q, above)
+    fn total(&self, q: f64, limit: Limit) -> f64 {
+        self.tracks(q, limit) + self.rolls(q, limit)
     }
 
     /// What the tracks give of a `total` (N) at a speed where forces jump: rolling resistance is
     /// against the drive.
     fn share(&self, q: f64, total: f64) -> f64 {
-        let own = if q == 0.0 && !self.drives { total } else { total - self.rolls(q, true) };
-        bounded(own, self.tracks(q, true), self.tracks(q, false))
+        let own = if q == 0.0 && !self.drives { total } else { total - self.rolls(q, Limit::Above) };
+        bounded(own, self.tracks(q, Limit::Above), self.tracks(q, Limit::Below))
     }
 
     /// Why it comes from one speed to another, m/s.

@@ -671,10 +671,16 @@ impl CheckedCable<'_> {
         }
     }
 
-    /// How far a way may be from what it should be by rounding, and beside what touches, m.
+    /// Rounding (m) of the way of so much material, m.
+    fn length_rounding(&self, material: f64) -> f64 {
+        LENGTH * material + MATERIAL_TOLERANCE * self.cable.length_m
+    }
+
+    /// The most (m) by which a way may be from what it should be by rounding, and beside what
+    /// touches.
     fn length_slack(&self, material: f64, touches: bool) -> f64 {
         let aside = if touches { CONTACT_SHIFT_DIAMETERS * self.cable.diameter_m } else { 0.0 };
-        LENGTH * material + MATERIAL_TOLERANCE * self.cable.length_m + aside
+        self.length_rounding(material) + aside
     }
 
     /// How far the way of a bar of a flexible cable, whose internal force is `end` (N) of size `q`
@@ -760,8 +766,8 @@ impl CheckedCable<'_> {
         let pull = 0.5 * (a.tension_n + b.tension_n);
         let change = (b.tension_n - a.tension_n).abs() + self.body.norm() * material;
         let stretched = material * (1.0 + pull / self.cable.axial_stiffness_n);
-        let limit = self.length_slack(material, false)
-            + (TURN * bend * bend + change / self.cable.axial_stiffness_n) * material;
+        let limit =
+            self.length_rounding(material) + (TURN * bend * bend + change / self.cable.axial_stiffness_n) * material;
         Lengths { value: (bar.way.norm() - stretched).abs(), limit, folded: 0.0 }
     }
 

@@ -8,7 +8,7 @@ use crate::contact::outline::Outline;
 use crate::math::RigidPose;
 use crate::math::{Vec2, cross, vec2};
 use crate::robot::RobotReport;
-use crate::scene::{Obstacle, Scene, Shape};
+use crate::scene::{LineEnds, Obstacle, Scene, Shape};
 
 /// An edge of an obstacle, or a round (both ends in its centre).
 #[derive(Clone, Copy, Debug)]
@@ -289,24 +289,24 @@ fn bounds(points: impl Iterator<Item = Vec2>) -> (Vec2, Vec2) {
 }
 
 fn body(o: &Obstacle, index: usize, edges: &mut Vec<SolidEdge>) -> SolidBody {
-    let mut line = |points: &[[f64; 2]], closed: bool, thickness: f64| {
+    let mut line = |points: &[[f64; 2]], ends: LineEnds, thickness: f64| {
         let n = points.len();
-        for k in 0..if closed { n } else { n.saturating_sub(1) } {
+        for k in 0..if ends == LineEnds::Joined { n } else { n.saturating_sub(1) } {
             let (from, to) = (vec2(points[k]), vec2(points[(k + 1) % n]));
             edges.push(SolidEdge::new(from, to, thickness, index));
         }
     };
     let kind = match &o.shape {
         Shape::Terrain { points_m } => {
-            line(points_m, false, 0.0);
+            line(points_m, LineEnds::Open, 0.0);
             Kind::Below
         }
         Shape::Polygon { points_m } => {
-            line(points_m, true, 0.0);
+            line(points_m, LineEnds::Joined, 0.0);
             Kind::Inside
         }
         Shape::Polyline { points_m, thickness_m } => {
-            line(points_m, false, 0.5 * thickness_m);
+            line(points_m, LineEnds::Open, 0.5 * thickness_m);
             Kind::Line
         }
         Shape::Circle { center_m, radius_m } => {

@@ -10,8 +10,9 @@ use crate::panels::readouts::DIMMED;
 use crate::render::colour::{ColourMap, Quantity};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Freshness, WorkerStatus};
+use crate::units::format;
+use crate::units::sentence::sentence;
 use crate::units::system::System;
-use crate::units::{format, translate};
 
 /// The menu bar.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -326,7 +327,7 @@ fn light(ui: &mut Ui, verification: &Verification) {
         (false, _) => (visuals.error_fg_color, visuals.error_fg_color, "VERIFICATION FAILED"),
     };
     let laws: Vec<&str> = verification.checked.iter().map(|l| l.name()).collect();
-    let help = format!("{}. Checked: {}", translate::display(&verification.summary()), laws.join(", "));
+    let help = format!("{}. Checked: {}", sentence(verification), laws.join(", "));
     // The font has no signs for this: the light is painted, and the words say the same without its
     // colour.
     let (place, _) = ui.allocate_exact_size(Vec2::splat(LIGHT_SIZE), Sense::hover());

@@ -11,7 +11,8 @@ use crate::geometry::handles;
 use crate::geometry::robot::path_flags;
 use crate::geometry::supports::support_position;
 use crate::state::{AppState, Freshness, Item};
-use crate::units::{format, translate, unit};
+use crate::units::sentence::sentence;
+use crate::units::{format, unit};
 
 /// Most contacts of a cable that are named: what lies on rubble has one a stone.
 const MAX_CONTACTS: usize = 40;
@@ -124,7 +125,7 @@ pub fn summary(state: &AppState) -> String {
         ));
     }
     if let Some(error) = &state.live.snapshot.error {
-        out.push(format!("no answer: {}", translate::display(error)));
+        out.push(format!("no answer: {}", sentence(error)));
     }
     if let Some(item) = state.selection.selected {
         out.push(format!("picked: {}", title(state, item)));

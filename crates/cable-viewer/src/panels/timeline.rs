@@ -5,7 +5,8 @@ use egui::{Color32, Rect, Sense, Slider, Stroke, Ui, pos2, vec2};
 
 use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
-use crate::units::{format, translate};
+use crate::units::format;
+use crate::units::sentence::sentence;
 use crate::widgets::field;
 
 /// Room for the buttons beside it, points.
@@ -94,9 +95,9 @@ fn marks(ui: &mut Ui, state: &AppState, rail: Rect, [first, last]: [f64; 2]) {
         rail.left() + inset + share * (rail.width() - 2.0 * inset)
     };
     for event in state.live.recording.events() {
-        let colour = colour(ui, event.kind);
+        let colour = colour(ui, event.warning.kind);
         let top = pos2(x(event.time_s), rail.top());
-        let size = if event.kind == WarningKind::Broken { 4.0 } else { 3.0 };
+        let size = if event.warning.kind == WarningKind::Broken { 4.0 } else { 3.0 };
         ui.painter().line_segment([top, top + vec2(0.0, rail.height())], Stroke::new(1.5, colour));
         ui.painter().circle_filled(top, size, colour);
     }
@@ -104,8 +105,7 @@ fn marks(ui: &mut Ui, state: &AppState, rail: Rect, [first, last]: [f64; 2]) {
         return;
     };
     let near = state.live.recording.events().iter().filter(|e| (x(e.time_s) - pointer.x).abs() < MARK_REACH);
-    let text: Vec<String> =
-        near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, translate::display(&e.text))).collect();
+    let text: Vec<String> = near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, sentence(&e.warning))).collect();
     if !text.is_empty() {
         let spot = Rect::from_center_size(pointer, vec2(1.0, 1.0));
         ui.interact(spot, ui.scope_id().with("event"), Sense::hover()).on_hover_text(text.join("\n"));

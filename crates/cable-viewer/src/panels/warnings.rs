@@ -8,11 +8,11 @@ use egui::{Align, Button, Color32, Label, Layout, RichText, ScrollArea, Sense, U
 
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene_errors::{self, Fix};
-use crate::state::{AppState, Item, WorkerStatus};
-use crate::units::{format, translate, unit};
+use crate::state::{AppState, Item, NoAnswer, WorkerStatus};
+use crate::units::sentence::sentence;
+use crate::units::{format, unit};
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
-use crate::worker::engine::CANCELLED;
 
 /// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a
 /// node.
@@ -81,8 +81,8 @@ fn entries(state: &AppState) -> Vec<Entry> {
     list.extend(dead_worker(state));
     list.extend(scene_fault(state));
     if let (Some(error), None) = (&state.live.snapshot.error, &state.document.fault) {
-        let cancelled = error == CANCELLED;
-        let error = capital(&translate::display(error));
+        let cancelled = *error == NoAnswer::Cancelled;
+        let error = capital(&sentence(error));
         let text = format!("{error}. The picture and the figures are of the last scene that was solved.");
         let solve = Fix { label: "Solve".to_owned(), command: Command::Playback(PlaybackCommand::Solve) };
         let (title, fix) = if cancelled { ("Not solved", Some(solve)) } else { ("No answer", None) };
@@ -160,7 +160,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
             format!("{}at {along}{of}{since}", figures.map_or_else(String::new, |f| f + " ")),
         ]),
         title: whole,
-        text: translate::display(&warning.message).into_owned(),
+        text: sentence(warning),
         at_m: position(answer, warning),
         item: index.map(Item::Cable),
         fix: remedy(state, answer, warning, index),

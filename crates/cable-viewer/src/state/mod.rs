@@ -30,7 +30,7 @@ pub use crate::state::analysis::{Reference, TensionMarker};
 pub use crate::state::app_state::AppState;
 pub use crate::state::document::Document;
 pub use crate::state::freshness::Freshness;
-pub use crate::state::live::{Playback, Snapshot};
+pub use crate::state::live::{NoAnswer, Playback, Snapshot};
 pub use crate::state::selection::{Grab, Item};
 pub use crate::state::solver::WorkerStatus;
 pub use crate::state::ui::OpenPanels;

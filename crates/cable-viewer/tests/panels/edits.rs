@@ -4,7 +4,7 @@ use cable_core::Model;
 use cable_core::scene::SupportKind;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use cable_viewer::panels;
-use cable_viewer::state::{AppState, Item, WorkerStatus};
+use cable_viewer::state::{AppState, Item, NoAnswer, WorkerStatus};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -320,13 +320,13 @@ fn a_broken_scene_and_a_dead_solver_are_said_with_their_fix() {
     let mut state = state();
     state.document.scene.cables[0].length_m = 9.0;
     state.document.fault = state.document.scene.validate().err();
-    state.live.snapshot.error = Some("something".to_owned());
+    state.live.snapshot.error = Some(NoAnswer::Panicked { message: "something".to_owned() });
     state.solver.status = WorkerStatus::Dead("the solver thread has ended".to_owned());
     let mut harness = open_with(state, panels::warnings::ui);
     harness.get_by_label_contains("last scene that could be solved");
     click(&mut harness, "Set to 10.00 m");
     assert_eq!(harness.state().state.document.fault, None);
-    harness.get_by_label_contains("Something.");
+    harness.get_by_label_contains("The solver stopped by a fault of its own (something)");
     click(&mut harness, "Restart the solver");
     assert!(harness.state().commands.contains(&Command::File(FileCommand::RestartWorker)));
     assert!(harness.state().commands.contains(&Command::Scene(SceneCommand::EditDone)));

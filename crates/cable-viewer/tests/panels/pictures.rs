@@ -1,6 +1,8 @@
 //! A picture of each panel at the width it has in the window. They need a graphics adapter (software will do):
 //! without one they are skipped with a notice, where CI=true they fail.
 
+use cable_core::SolveError;
+use cable_core::error::Unsupported;
 use cable_viewer::jobs::{friction_range, model_comparison, safe_reach};
 use cable_viewer::panels;
 use cable_viewer::state::{AppState, Item};
@@ -105,8 +107,9 @@ fn compare() {
 fn compare_models() {
     let asked = || {
         let mut state = compared();
-        let why = "catenary cannot answer this scene: the cable reaches an obstacle 4.894 m along it".to_owned();
-        let answers = vec![model_comparison::Answer { model: cable_core::Model::Catenary, result: Err(why) }];
+        let (model, feature) = (cable_core::Model::Catenary, Unsupported::Obstacle { arc_length_m: 4.894 });
+        let why = SolveError::Unsupported { model, feature }.into();
+        let answers = vec![model_comparison::Answer { model, result: Err(why) }];
         let scene = std::sync::Arc::new(state.document.scene.clone());
         state.analysis.models = model_comparison::Progress::Done(model_comparison::Outcome { scene, answers });
         state

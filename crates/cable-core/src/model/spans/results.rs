@@ -6,14 +6,13 @@ use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point, forget_hint};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::boundary::friction_memory::{Mode, TensionProfile};
 use crate::model::spans::boundary::segment_cursor::{Pivot, SegmentCursor};
+use crate::model::spans::boundary_conditions::CableEquilibrium;
 use crate::model::spans::boundary_conditions::Layout;
-use crate::model::spans::contact::friction_memory::{Mode, TensionProfile};
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::continuation::CableEquilibrium;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
-use crate::model::spans::verify::penetration;
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Nodes on each stretch of an edge.
@@ -70,7 +69,7 @@ pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibriu
         }
         for k in 0..strand.spans() {
             if strand.has_span(k) {
-                penetration::shapes(strand, course, k, |s0, at, shape| nodes.catenary(s0, at, shape));
+                strand.shapes(course, k, |s0, at, shape| nodes.catenary(s0, at, shape));
             }
             if let Some(c) = strand.contacts.get(k) {
                 let track = course.track(c).seen_from(c.ends.p[0]);

@@ -14,7 +14,8 @@ use crate::record::run::Peak;
 use crate::render::colour::{LINES, Quantity};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Reference};
-use crate::units::{format, labels, translate};
+use crate::units::sentence::sentence;
+use crate::units::{format, labels};
 use crate::widgets::{field, readout};
 
 /// Most lines of difference told; more are counted.
@@ -114,9 +115,10 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             for answer in &found.answers {
                 if let Err(why) = &answer.result {
                     // Most refusals begin with the model's name.
+                    let why = sentence(why);
                     let name = if why.contains(answer.model.name()) { "" } else { labels::model(answer.model) };
                     let colon = if name.is_empty() { "" } else { ": " };
-                    ui.label(RichText::new(format!("{name}{colon}{}", translate::display(why))).small());
+                    ui.label(RichText::new(format!("{name}{colon}{why}")).small());
                 }
             }
         }

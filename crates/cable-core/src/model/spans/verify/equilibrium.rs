@@ -4,10 +4,10 @@
 
 use crate::math::{GAUSS, Vec2, bounded, cross};
 use crate::model::spans::boundary::capstan::{Step, Track};
+use crate::model::spans::boundary_conditions::CableEquilibrium;
 use crate::model::spans::boundary_conditions::Layout;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::continuation::CableEquilibrium;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::results;
 use crate::model::spans::run::{CableRun, Contact, Course, Tie};

@@ -1,7 +1,7 @@
 //! This module reads nodes out of a solved stiff cable: places, tensions, moments and curvatures.
 
 use crate::math::{Vec2, larger};
-use crate::model::fem::beam::equilibrium::{BEND_STIFFNESS_INTEGRALS, Beam, GAUSS, dot};
+use crate::model::fem::free::beam::equilibrium::{BEND_STIFFNESS_INTEGRALS, Beam, GAUSS, dot};
 use crate::model::fem::free::results::Point;
 use crate::model::fem::free::stations::Stop;
 

@@ -23,7 +23,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::linalg::{BandFactor, BandMatrix};
 use crate::math::{Vec2, larger, perp};
-use crate::model::fem::beam::mesh::places;
+use crate::model::fem::free::beam::mesh::places;
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::pulley_balance::Network;
 use crate::model::fem::free::stations::{Layout, SpanEnds, Stop};
