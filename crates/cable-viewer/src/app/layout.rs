@@ -2,10 +2,11 @@
 
 use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui};
 
-use crate::app::{menu, tutorial_bar};
+use crate::app::{first_steps, menu, tutorial_bar};
 use crate::canvas::layers::legend;
 use crate::command::Command;
 use crate::state::AppState;
+use crate::widgets::highlight;
 use crate::{canvas, panels};
 
 type PanelUi = fn(&mut Ui, &AppState, &mut Vec<Command>);
@@ -56,6 +57,7 @@ fn part((fraction, [least, most]): (f32, [f32; 2]), of: f32) -> f32 {
 /// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its
 /// own size.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
+    highlight::seek(ui.ctx(), tutorial_bar::points_at(state));
     Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
     if state.ui.tutorial.is_some() {
         Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
@@ -93,7 +95,9 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     } else if past || (graphs && state.live.before_reset.is_some()) {
         Panel::bottom("timeline").show(ui, |ui| panels::timeline::ui(ui, state, commands));
     }
-    CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
+    let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
+    first_steps::ui(ui, canvas.response.rect, state, commands);
+    highlight::frame(ui.ctx());
 }
 
 /// A side panel of a width that its contents do not change.
@@ -161,11 +165,12 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
             if hidden {
                 continue;
             }
-            CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| {
+            let section = CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| {
                 // One section that is too wide does not widen the others.
                 ui.set_max_width(width);
                 panel(ui, state, commands);
             });
+            highlight::offer(&section.header_response, &format!("{title} section"));
         }
     });
 }

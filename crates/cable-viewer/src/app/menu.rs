@@ -12,12 +12,14 @@ use crate::state::dialog::Dialog;
 use crate::state::{AppState, Freshness, WorkerStatus};
 use crate::units::system::System;
 use crate::units::{format, translate};
+use crate::widgets::highlight;
 
 /// The menu bar.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file(ui, state, commands));
-        ui.menu_button("Edit", |ui| edit(ui, state, commands));
+        let edit = ui.menu_button("Edit", |ui| edit(ui, state, commands));
+        highlight::offer(&edit.response, "Edit menu");
         ui.menu_button("View", |ui| view(ui, state, commands));
         ui.menu_button("Scenes", |ui| scenes(ui, commands));
         ui.menu_button("Learn", |ui| crate::app::tutorial_bar::menu(ui, commands));

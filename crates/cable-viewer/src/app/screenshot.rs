@@ -44,6 +44,8 @@ pub fn draw(
         .renderer(renderer()?)
         .build_eframe(|cc| {
             let mut app = ViewerApp::inline(&cc.egui_ctx, scene, None);
+            // A picture is of the scene, not of hints for a hand.
+            app.state.ui.first_steps.hide();
             prepare(&mut app, &cc.egui_ctx);
             app
         });

@@ -12,6 +12,7 @@ use crate::geometry::robot::path_flags;
 use crate::geometry::supports::support_position;
 use crate::state::{AppState, Freshness, Item};
 use crate::units::{format, translate, unit};
+use crate::widgets::highlight;
 
 /// Most contacts of a cable that are named: what lies on rubble has one a stone.
 const MAX_CONTACTS: usize = 40;
@@ -25,6 +26,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
         }
         let response = ui.interact(spot.intersect(canvas), ui.scope_id().with(id), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::GraphicsSymbol, true, &text));
+        highlight::offer(&response, &text);
     };
     let scene = &state.document.scene;
     for (cable, c) in scene.cables.iter().enumerate() {
@@ -32,6 +34,11 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
             if let Some(at) = support_position(state, cable, support) {
                 name(at, ("support", cable, support), format!("Support {} of {}", s.name, c.name));
             }
+        }
+    }
+    for (k, c) in state.live.snapshot.solution.iter().flat_map(|s| s.cables.iter().enumerate()) {
+        if let Some(n) = c.nodes.get(c.nodes.len() / 2) {
+            name([n.x_m, n.y_m], ("middle", k, 0), format!("Middle of {}", c.name));
         }
     }
     for (k, o) in scene.obstacles.iter().enumerate() {

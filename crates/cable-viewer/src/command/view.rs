@@ -66,6 +66,8 @@ pub enum ViewCommand {
     Spread(bool, [f64; 2]),
     /// Ask what neglecting bending stiffness changes.
     AskBending,
+    /// Does not show the hints of the first minute again.
+    HideFirstSteps,
     /// Leads to a step of a guided scene, or not any more.
     Guide(Option<TutorialPlace>),
     /// SI or US units; files stay SI.
@@ -172,6 +174,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 ..neglected_bending::NeglectedBendingState::default()
             }
         }
+        ViewCommand::HideFirstSteps => state.ui.first_steps.hide(),
         ViewCommand::Guide(place) => state.ui.tutorial = place,
         ViewCommand::SetUnits(units) => state.view.units = units,
         ViewCommand::Hold => {

@@ -3,6 +3,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod editing;
+mod first_minute;
 mod hands;
 mod help;
 mod job;

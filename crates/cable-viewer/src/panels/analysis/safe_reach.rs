@@ -11,7 +11,7 @@ use crate::state::AppState;
 use crate::state::questions::reach_target;
 use crate::units::format;
 use crate::units::unit::Unit;
-use crate::widgets::field;
+use crate::widgets::{field, highlight};
 
 /// Width of a slider's value beside it, points.
 const SPIN_WIDTH: f32 = 72.0;
@@ -40,7 +40,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             let help = "Looks at places along the ground, or all over the part of the picture that is in view, each there and back, \
                         from where the cable lies now; first coarsely, then finer. The window stays usable meanwhile. Nothing \
                         limits what moves: the question is what the cable would bear";
-            if ui.button("Find safe reach").on_hover_text(help).clicked() {
+            let find = ui.button("Find safe reach").on_hover_text(help);
+            highlight::offer(&find, "Find safe reach");
+            if find.clicked() {
                 commands.push(Command::View(ViewCommand::Reach(true)));
             }
             let shown = !matches!(view.progress, Progress::None);
