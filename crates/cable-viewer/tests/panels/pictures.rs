@@ -169,7 +169,7 @@ fn warnings() {
         state
     };
     // Tall: they take two fifths of a window.
-    picture("warnings", warned, panels::warnings::ui, [320.0, 1200.0]);
+    picture("warnings", warned, panels::warnings::ui, [320.0, 520.0]);
 }
 
 #[test]

@@ -23,6 +23,7 @@ mod timing;
 mod truth;
 mod units;
 mod walk;
+mod warnings;
 mod wishes;
 
 use cable_core::scene::{Shape, catalog};
