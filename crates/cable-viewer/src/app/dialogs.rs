@@ -274,7 +274,7 @@ fn recover(ui: &mut Ui, scene: &cable_core::Scene, commands: &mut Vec<Command>) 
 }
 
 /// What pointer and keys do; docs/controls.md has the same table.
-const CONTROLS: [(&str, &str); 27] = [
+const CONTROLS: [(&str, &str); 28] = [
     ("Drag a support, waypoint or corner", "Moves it; the cable follows"),
     ("Drag an obstacle", "Moves all of it; click it to see its corners"),
     ("Double-click the cable", "Adds a waypoint"),
@@ -285,6 +285,7 @@ const CONTROLS: [(&str, &str); 27] = [
     ("Wheel", "Zooms at the pointer, in graphs too"),
     ("+, −, Shift+arrows", "Zooms about the middle; moves the view"),
     ("Click the cable", "Breaks down the tension there"),
+    ("Drag in a graph over time", "Moves the playhead; in a zoomed graph the view"),
     ("Click in a graph", "Sets a cursor; a second one tells the difference"),
     ("Tab, Enter, Esc", "Next control; presses it; back to the canvas"),
     ("Left, right in a graph", "Moves its cursor; with Shift what is in view"),

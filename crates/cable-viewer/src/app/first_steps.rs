@@ -9,7 +9,7 @@ use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
 
 /// Distance from the foot of the canvas, points: the scale bar and the axis stay in sight.
-const ABOVE_FOOT: f32 = 34.0;
+const ABOVE_FOOT: f32 = 58.0;
 /// Height of the line, points: that of a button.
 const HEIGHT: f32 = 22.0;
 /// Half the width of the buttons beside the hints, points: both together stand in the middle.
@@ -62,8 +62,9 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState, commands: &mut Vec<Command>) 
 fn text(state: &AppState, step: FirstStep) -> String {
     match step {
         FirstStep::Drag => {
-            let last = state.document.scene.cables.first().and_then(|c| c.supports.last());
-            format!("Drag the {}", last.map_or("end of the cable", |s| &s.name))
+            // One that is held at a place: what hangs on the robot moves with it.
+            let held = state.document.scene.cables.first().and_then(|c| c.supports.iter().rfind(|s| s.at_m.is_some()));
+            format!("Drag the {}", held.map_or("end of the cable", |s| &s.name))
         }
         FirstStep::Play => "Press Space to play".to_owned(),
         FirstStep::Zoom => "Scroll to zoom".to_owned(),

@@ -14,15 +14,18 @@ type Section = (&'static str, PanelUi);
 
 /// What is edited.
 const EDIT: &[Section] = &[
+    ("Outline", panels::scene::outline::ui),
+    (SELECTED, panels::selected::ui),
     ("Scene", panels::scene::ui),
     ("Robot", panels::robot::ui),
     ("Cable", panels::cable::ui),
     ("Environment", panels::environment::ui),
     ("Solver", panels::solver::ui),
 ];
-/// What is read off. Where a place on the cable is marked its tension stands above the readouts,
+/// What is read off, first of what is selected. Where a place on the cable is marked its tension stands above the readouts,
 /// else at the end.
 const READ: &[Section] = &[
+    (SELECTED, panels::selected::ui),
     ("Warnings", panels::warnings::ui),
     (MARKED, panels::analysis::tension_budget::ui),
     ("Readouts", panels::readouts::ui),
@@ -32,6 +35,7 @@ const READ: &[Section] = &[
     ("Friction range", panels::analysis::friction_range::ui),
 ];
 
+const SELECTED: &str = "Selected";
 const MARKED: &str = "Tension at the marked place";
 const UNMARKED: &str = "Tension at a place";
 
@@ -127,7 +131,8 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
         let id = Id::unique("narrow tab");
         let mut tab: Tab = ui.data(|d| d.get_temp(id)).unwrap_or_default();
         ui.horizontal(|ui| {
-            ui.selectable_value(&mut tab, Tab::Edit, "Edit").on_hover_text("Scene, robot, cable, environment, solver");
+            ui.selectable_value(&mut tab, Tab::Edit, "Edit")
+                .on_hover_text("Outline, scene, robot, cable, environment, solver");
             ui.selectable_value(&mut tab, Tab::Read, "Results")
                 .on_hover_text("Warnings, readouts, safe reach, tension at a place, compare");
             if graphs {
@@ -158,6 +163,8 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
         for (title, panel) in sections {
             let hidden = match *title {
                 "Robot" => state.document.scene.robot.is_none(),
+                // On the right where there is such a panel, else below the outline.
+                SELECTED => !panels::selected::is_shown(state) || (id == "read") != state.ui.legend_beside,
                 MARKED => state.analysis.tension_marker.is_none(),
                 UNMARKED => state.analysis.tension_marker.is_some(),
                 _ => false,

@@ -231,7 +231,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     ui.separator();
     let mut panels = state.ui.panels;
-    ui.checkbox(&mut panels.edit, "Edit panel ([)").on_hover_text("Scene, robot, cable, environment, solver");
+    ui.checkbox(&mut panels.edit, "Edit panel ([)").on_hover_text("Outline, scene, robot, cable, environment, solver");
     ui.checkbox(&mut panels.results, "Results panel (])").on_hover_text("Warnings, readouts, safe reach, compare");
     ui.checkbox(&mut panels.graphs, "Graphs and timeline (G)").on_hover_text("The drawer below the canvas");
     if panels != state.ui.panels {

@@ -110,7 +110,7 @@ pub const TUTORIALS: [Tutorial; 6] = [
             }),
             act(
                 "Support waypoint of cable",
-                "Drag the waypoint upwards, and give it a wheel under Supports on the left if you like",
+                "Drag the waypoint upwards, and give it a wheel in the outline on the left if you like",
                 |s| {
                     let of = s.document.scene.cables.first().map(|c| &c.supports);
                     of.is_some_and(|list| {

@@ -229,7 +229,7 @@ mod tests {
         let line = |name: &str, f: fn(f64) -> f64| Series {
             name: name.to_owned(),
             points: (0..100).map(|k| f64::from(k) / 10.0).map(|x| [x, f(x)]).collect(),
-            reference: None,
+            ..Series::default()
         };
         Sheet {
             title: "Over <time>".to_owned(),

@@ -2,7 +2,7 @@
 //! else.
 //!
 //! - `scene`, `cable`, `environment`, `robot`, `solver`: what is edited, on the left
-//! - `readouts`, `warnings`, `analysis`: what was answered, on the right
+//! - `selected`, `readouts`, `warnings`, `analysis`: what was answered, on the right
 //! - `plots`, `playback`, `timeline`: graphs and time, below
 //! - `scene_errors`: what is wrong with the scene, beside the field where it was typed
 //! - `words`: keys of scene files and names of models as the window says them
@@ -16,6 +16,7 @@ pub mod readouts;
 pub mod robot;
 pub mod scene;
 pub mod scene_errors;
+pub mod selected;
 pub mod solver;
 pub mod timeline;
 pub mod warnings;

@@ -9,7 +9,7 @@ use egui::{Align, Button, Color32, Layout, ScrollArea, TextStyle, Ui, vec2};
 
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene_errors::{self, Fix};
-use crate::state::{AppState, Item, WorkerStatus};
+use crate::state::{AppState, Item, OpenPanels, WorkerStatus};
 use crate::units::{format, translate, unit};
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
@@ -73,6 +73,23 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         if entries.len() > MAX_ROWS {
             ui.weak(format!("and {} more", entries.len() - MAX_ROWS));
+        }
+    });
+}
+
+/// How many there are, as a row that leads to the worst.
+pub fn summary(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let entries = entries(state);
+    let Some(worst) = entries.first() else { return };
+    let (colour, sign) = look(ui, worst.severity);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        icon::sign(ui, sign, colour);
+        let text = if entries.len() == 1 { "1 warning".to_owned() } else { format!("{} warnings", entries.len()) };
+        let row = ui.add(Button::selectable(false, text));
+        if row.on_hover_text(format!("The first: {}. Click: zooms on it", worst.title)).clicked() {
+            show(worst, commands);
+            commands.push(Command::View(ViewCommand::ShowPanels(OpenPanels { results: true, ..state.ui.panels })));
         }
     });
 }
@@ -243,11 +260,7 @@ fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -
 /// One line: severity, what, value of limit, place, cut where the panel ends. A click on it shows the
 /// place; the text and the fix are behind the sign at its end, and the text is told on hover.
 fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
-    let (colour, sign) = match entry.severity {
-        Severity::Stop => (ui.visuals().error_fg_color, Icon::Stop),
-        Severity::Caution => (ui.visuals().warn_fg_color, Icon::Caution),
-        Severity::Note => (ui.visuals().weak_text_color.unwrap_or(Color32::GRAY), Icon::Note),
-    };
+    let (colour, sign) = look(ui, entry.severity);
     // Remembered by what it says: the next warning in its place is another one. Where there is no
     // answer at all, the words are open from the start.
     let id = ui.scope_id().with((entry.severity as u8, &entry.kind));
@@ -282,6 +295,14 @@ fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
                 ui.horizontal_wrapped(|ui| actions(ui, number, entry, commands));
             }
         });
+    }
+}
+
+fn look(ui: &Ui, severity: Severity) -> (Color32, Icon) {
+    match severity {
+        Severity::Stop => (ui.visuals().error_fg_color, Icon::Stop),
+        Severity::Caution => (ui.visuals().warn_fg_color, Icon::Caution),
+        Severity::Note => (ui.visuals().weak_text_color.unwrap_or(Color32::GRAY), Icon::Note),
     }
 }
 

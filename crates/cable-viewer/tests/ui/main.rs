@@ -2,13 +2,16 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod controls;
 mod editing;
 mod first_minute;
+mod graphs;
 mod hands;
 mod help;
 mod job;
 mod keys;
 mod layout;
+mod outline;
 mod pictures;
 mod playing;
 mod reach;
