@@ -6,8 +6,9 @@ use cable_core::{Model, Settings, Solution};
 use egui::{Grid, Ui};
 
 use crate::command::Command;
+use crate::panels::quality;
 use crate::state::{AppState, WorkerStatus};
-use crate::units::format::{self, significant};
+use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::property::{Provenance, Quantity, row};
 use crate::worker;
@@ -89,6 +90,12 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.weak("Time runs without inertia: supports and loads move, friction remembers, nothing swings");
     }
     mesh(ui, state, commands);
+    let Some(answer) = answer else {
+        ui.weak("Nothing solved yet");
+        return;
+    };
+    ui.separator();
+    quality::ui(ui, state, answer, commands);
     cost(ui, state, answer);
 }
 
@@ -153,11 +160,7 @@ fn largest_mesh(answer: Option<&Solution>) -> Option<usize> {
     nodes.checked_sub(1).filter(|&n| n > 0)
 }
 
-fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
-    let Some(answer) = answer else {
-        ui.weak("Nothing solved yet");
-        return;
-    };
+fn cost(ui: &mut Ui, state: &AppState, answer: &Solution) {
     let cost = answer.cost;
     let status = match &state.solver.status {
         WorkerStatus::Idle => "ready",
@@ -173,20 +176,11 @@ fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
             cost.iterations.to_string(),
             "Newton iterations, or explicit sub-steps, of the last solve or step",
         ),
-        (
-            "Residual",
-            {
-                let Unit { symbol, si, .. } = Unit::N.display();
-                format!("{} {symbol}", significant(cost.residual_n / si, 2))
-            },
-            "Largest force left unbalanced at a node: the smaller, the closer to equilibrium",
-        ),
         ("Inner time step", step, "The step the model takes inside a frame"),
         ("Steps halved", cost.halved_steps.to_string(), "Steps that failed and were taken in halves"),
         ("Segments", segments, "Segments of the finest cable as solved"),
         ("Solver", status.to_owned(), "The thread that solves while the window stays usable"),
     ];
-    ui.separator();
     let diagnostics = egui::CollapsingHeader::new("Diagnostics").id_salt("cost");
     diagnostics.show_unindented(ui, |ui| {
         Grid::new("cost").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {

@@ -52,7 +52,7 @@ fn environment() {
 
 #[test]
 fn solver() {
-    picture("solver", state, panels::solver::ui, [320.0, 320.0]);
+    picture("solver", state, panels::solver::ui, [320.0, 350.0]);
 }
 
 #[test]
@@ -199,7 +199,7 @@ fn origin() {
         state.analysis.tension_marker = Some(cable_viewer::state::TensionMarker { cable: 0, arc_length_m: 12.0, from });
         state
     };
-    picture("origin", probed, panels::analysis::tension_budget::ui, [320.0, 260.0]);
+    picture("origin", probed, panels::analysis::tension_budget::ui, [320.0, 330.0]);
 }
 
 /// More samples than columns: a band from the least to the greatest, and the mean.

@@ -14,6 +14,7 @@ mod layout;
 mod outline;
 mod pictures;
 mod playing;
+mod quality;
 mod reach;
 mod recovery;
 mod rows;

@@ -130,7 +130,8 @@ fn along(node: &Node) -> String {
     unit::Unit::COORDINATE.text(node.arc_length_m)
 }
 
-fn place(ui: &mut Ui, label: &str, node: &Node, commands: &mut Vec<Command>) {
+/// A button that shows where a node is.
+pub fn place(ui: &mut Ui, label: &str, node: &Node, commands: &mut Vec<Command>) {
     let at_m = [node.x_m, node.y_m];
     let button = icon::plain_button(ui, Icon::Locate, true);
     field::name(&button, label);
