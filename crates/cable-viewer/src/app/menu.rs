@@ -2,12 +2,13 @@
 
 use cable_core::scene::catalog;
 use cable_core::verify::Verification;
-use egui::{Align, Button, Color32, KeyboardShortcut, Label, Layout, MenuBar, RichText, Sense, Ui, Vec2};
+use egui::{Align, Button, KeyboardShortcut, Label, Layout, MenuBar, RichText, Sense, Ui, Vec2};
 
 use crate::app::keys;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::readouts::DIMMED;
 use crate::render::colour::{ColourMap, Quantity};
+use crate::render::theme;
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Freshness, WorkerStatus};
 use crate::units::system::System;
@@ -314,16 +315,12 @@ fn scenes(ui: &mut Ui, commands: &mut Vec<Command>) {
 
 /// Diameter of the light that shows the verdict, points.
 const LIGHT_SIZE: f32 = 9.0;
-/// Colour of the light where every law was asked and none is broken: green, told from red by its
-/// brightness too.
-const SOUND: Color32 = Color32::from_rgb(64, 170, 110);
-
 /// Whether the answer obeys the laws of mechanics, as they were checked independently of the model
 /// that gave it.
 fn light(ui: &mut Ui, verification: &Verification) {
     let visuals = ui.visuals();
     let (lamp, colour, text) = match (verification.is_sound(), verification.not_checked.is_empty()) {
-        (true, true) => (SOUND, visuals.text_color(), "verified"),
+        (true, true) => (theme::palette(visuals).sound, visuals.text_color(), "verified"),
         (true, false) => (visuals.weak_text_color(), visuals.weak_text_color(), "partly verified"),
         (false, _) => (visuals.error_fg_color, visuals.error_fg_color, "VERIFICATION FAILED"),
     };

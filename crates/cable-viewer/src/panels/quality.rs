@@ -53,7 +53,7 @@ fn displacement(ui: &mut Ui, answer: &Solution, commands: &mut Vec<Command>) {
     let most = nodes.max_by(|a, b| far(a.1).total_cmp(&far(b.1))).filter(|(_, n)| far(n) > 0.0);
     let help = "How far the node that moved most is from where it was when the run began";
     match most {
-        None => readout::row(ui, "Greatest displacement", "0 m", help, |_| {}),
+        None => readout::row(ui, "Greatest displacement", &format::length(0.0), help, |_| {}),
         Some((cable, node)) => {
             let help = format!("{help}: it is on {}", cable.name);
             readout::row(ui, "Greatest displacement", &format::length(far(node)), &help, |ui| {

@@ -5,7 +5,7 @@ use cable_core::problem::problems;
 use cable_core::{Model, Settings, Solution};
 use egui::{Grid, Ui};
 
-use crate::command::Command;
+use crate::command::{Command, PlaybackCommand};
 use crate::panels::quality;
 use crate::state::{AppState, WorkerStatus};
 use crate::units::format;
@@ -119,6 +119,7 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(Command::SetSettings(Settings { hand_speed_m_per_s, ..state.solver.settings }));
     }
     default_hand_stiffness(ui, state, commands);
+    pull_past_length(ui, state, commands);
     let mut fixed = segments.is_some();
     let help = "Off: the cable's own number, else by the tolerance";
     if ui.checkbox(&mut fixed, "Same number of segments for every cable").on_hover_text(help).changed() {
@@ -152,6 +153,15 @@ fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comm
         commands.push(set(Some(
             value.clamp(*input_filter::HAND_STIFFNESSES.start(), *input_filter::HAND_STIFFNESSES.end()),
         )));
+    }
+}
+
+fn pull_past_length(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut pulls = state.solver.pulls_past_length;
+    let help = "On: a support that is dragged farther than the cable reaches, while time runs, is pulled by the hand's \
+                spring; the force rises with the way until the cable breaks. Off: it is refused";
+    if ui.checkbox(&mut pulls, "Pull past the length").on_hover_text(help).changed() {
+        commands.push(Command::Playback(PlaybackCommand::PullPastLength(pulls)));
     }
 }
 

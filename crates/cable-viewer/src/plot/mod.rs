@@ -21,15 +21,15 @@ use crate::units::unit::{DIGITS, Unit};
 use crate::widgets::field;
 
 /// The service limit.
-const SERVICE: Color32 = Color32::from_rgb(230, 159, 0);
+pub const SERVICE: Color32 = Color32::from_rgb(196, 122, 0);
 /// The breaking limit.
-const BREAKING: Color32 = Color32::from_rgb(213, 60, 40);
+pub const BREAKING: Color32 = Color32::from_rgb(213, 60, 40);
 
 /// The group of graphs over time.
 pub const TIME: &str = "time";
 
 /// The time shown, where it is not the present.
-const TIME_MARK: Color32 = Color32::from_rgb(213, 94, 0);
+pub const TIME_MARK: Color32 = Color32::from_rgb(213, 94, 0);
 /// A cursor.
 const CURSOR: Color32 = Color32::GRAY;
 /// Zoom per point of wheel, as on the canvas.

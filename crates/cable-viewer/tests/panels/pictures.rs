@@ -52,7 +52,7 @@ fn environment() {
 
 #[test]
 fn solver() {
-    picture("solver", state, panels::solver::ui, [320.0, 350.0]);
+    picture("solver", state, panels::solver::ui, [320.0, 376.0]);
 }
 
 #[test]

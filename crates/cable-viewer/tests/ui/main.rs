@@ -2,6 +2,7 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod contrast;
 mod controls;
 mod editing;
 mod first_minute;
@@ -14,6 +15,7 @@ mod layout;
 mod outline;
 mod pictures;
 mod playing;
+mod pulling;
 mod quality;
 mod reach;
 mod recovery;

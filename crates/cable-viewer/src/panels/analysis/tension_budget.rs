@@ -190,7 +190,8 @@ fn bar(ui: &mut Ui, found: &TensionBudget, listed: &[Contribution], title: &dyn 
     let x = |n: f64| rect.left() + (n / added) as f32 * rect.width();
     let painter = ui.painter();
     painter.rect_filled(rect, 2.0, ui.visuals().faint_bg_color);
-    let gap = Stroke::new(1.0, ui.visuals().panel_fill);
+    // Pale pieces stand off the panel by their outline.
+    let gap = Stroke::new(1.0, ui.visuals().weak_text_color());
     let piece = |from: f64, to: f64, row: f32, term: &Contribution| {
         let top = rect.top() + row * (ROW + 2.0);
         let piece = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), top..=top + ROW);
@@ -220,7 +221,8 @@ fn figures(
     Grid::new("origin").num_columns(4).min_col_width(0.0).spacing([7.0, 3.0]).show(ui, |ui| {
         for t in listed {
             let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-            ui.painter().rect_filled(rect, 1.0, colour(t));
+            let line = Stroke::new(1.0, ui.visuals().weak_text_color());
+            ui.painter().rect(rect, 1.0, colour(t), line, egui::StrokeKind::Inside);
             ui.label(title(t));
             let sign = if t.tension_n < 0.0 { "" } else { "+" };
             ui.label(format!("{sign}{}", format::force(t.tension_n)));
