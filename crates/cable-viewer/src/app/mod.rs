@@ -4,11 +4,12 @@
 //! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
 //! - `first_steps`, `start_here`: the hints of the first minute, and what to begin with
 //! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
-//! - `screenshot`: the window as a picture file
+//! - `screenshot`, `gallery`: the window as a picture file, and in eight states
 
 mod dialogs;
 mod feedback_form;
 mod first_steps;
+pub mod gallery;
 mod keys;
 mod layout;
 mod menu;

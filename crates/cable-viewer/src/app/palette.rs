@@ -86,6 +86,8 @@ fn entries(panels: OpenPanels) -> Vec<(String, Command)> {
         ("Quit", Command::File(FileCommand::Quit)),
         ("Undo reset", Command::Playback(PlaybackCommand::UndoReset)),
         ("Cancel solving", Command::Playback(PlaybackCommand::CancelSolve)),
+        ("Pull past the length while time runs", Command::Playback(PlaybackCommand::PullPastLength(true))),
+        ("Refuse pulls past the length", Command::Playback(PlaybackCommand::PullPastLength(false))),
         ("Show or fold the edit panel", show(OpenPanels { edit: !panels.edit, ..panels })),
         ("Show or fold the results panel", show(OpenPanels { results: !panels.results, ..panels })),
         ("Show or fold graphs and timeline", show(OpenPanels { graphs: !panels.graphs, ..panels })),

@@ -6,6 +6,7 @@ mod contrast;
 mod controls;
 mod editing;
 mod first_minute;
+mod gallery;
 mod graphs;
 mod hands;
 mod help;

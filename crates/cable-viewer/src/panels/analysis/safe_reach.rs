@@ -84,7 +84,7 @@ fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Ve
     ui.horizontal(|ui| {
         ui.label("Moves");
         let combo = ComboBox::from_id_salt("moved").selected_text(safe_reach::name(&state.document.scene, moved));
-        let shown = combo.width(ui.available_width() - 8.0).truncate().show_ui(ui, |ui| {
+        let shown = combo.width(ui.available_width() - 14.0).truncate().show_ui(ui, |ui| {
             for other in safe_reach::movable(&state.document.scene) {
                 if ui.selectable_label(other == moved, safe_reach::name(&state.document.scene, other)).clicked() {
                     commands.push(set(Choice { moved: Some(other), ..choice }));

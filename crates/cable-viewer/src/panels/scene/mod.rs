@@ -51,7 +51,7 @@ fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     labelled(ui, "Open", "Open scene", |ui| {
         let combo = ComboBox::from_id_salt("scene")
             .selected_text("Choose a scene…")
-            .width(ui.available_width() - 8.0)
+            .width(ui.available_width() - 14.0)
             .truncate();
         let shown = combo.show_ui(ui, |ui| {
             for (id, scene) in catalog::all() {

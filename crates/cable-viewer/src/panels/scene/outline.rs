@@ -45,7 +45,7 @@ fn list(ui: &mut Ui, width: f32, id: &str, title: &str, contents: impl FnOnce(&m
 /// A thing with a word about it at the right end.
 fn row(ui: &mut Ui, state: &AppState, item: Item, name: &str, about: &str, commands: &mut Vec<Command>) {
     let selected = state.selection.selected == Some(item);
-    let colour = ui.visuals().weak_text_color();
+    let colour = if selected { ui.visuals().text_color() } else { ui.visuals().weak_text_color() };
     let opacity = if state.is_current() { 1.0 } else { DIMMED };
     let about = egui::RichText::new(about).color(colour.gamma_multiply(opacity));
     let button = Button::selectable(selected, (name, Atom::grow(), about)).truncate();
