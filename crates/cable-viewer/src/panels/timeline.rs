@@ -7,7 +7,7 @@ use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
 use crate::units::format;
 use crate::units::sentence::sentence;
-use crate::widgets::field;
+use crate::widgets::{field, highlight};
 
 /// Room for the buttons beside it, points.
 const BESIDE: f32 = 250.0;
@@ -43,6 +43,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             let shown = state.live.recording.shown_s.is_some();
             let help = "Returns to the latest frame";
             let present = ui.add_enabled(shown, egui::Button::new("Latest")).on_hover_text(help);
+            highlight::offer(&present, "Latest");
             if present.on_disabled_hover_text(PRESENT).clicked() {
                 push(PlaybackCommand::Show(None));
             }

@@ -239,6 +239,14 @@ pub fn with_pulley(state: &mut AppState) {
     state.document.fault = state.document.scene.validate().err();
 }
 
+/// What lists the things of the scene, and what edits the one that is selected.
+pub fn outline_and_form(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
+    cable_viewer::panels::scene::outline::ui(ui, state, commands);
+    if cable_viewer::panels::selected::is_shown(state) {
+        cable_viewer::panels::selected::ui(ui, state, commands);
+    }
+}
+
 /// A window with one panel. Commands are applied as the window does.
 pub fn bench(state: AppState, panel: PanelUi, size: [f32; 2]) -> Harness<'static, Bench> {
     Harness::builder().with_size(size).with_theme(egui::Theme::Light).with_render_cursor(false).build_ui_state(

@@ -16,7 +16,7 @@ use crate::state::dialog::Dialog;
 use crate::state::{AppState, Reference};
 use crate::units::sentence::sentence;
 use crate::units::{format, labels};
-use crate::widgets::{field, readout};
+use crate::widgets::{field, highlight, readout};
 
 /// Most lines of difference told; more are counted.
 const MAX_LINES: usize = 12;
@@ -31,7 +31,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             "Keeps this result on screen beside later ones"
         };
         let can = state.live.snapshot.solution.is_some() && !full;
-        if ui.add_enabled(can, egui::Button::new("Pin this result")).on_hover_text(help).clicked() {
+        let pin = ui.add_enabled(can, egui::Button::new("Pin this result")).on_hover_text(help);
+        highlight::offer(&pin, "Pin this result");
+        if pin.clicked() {
             commands.push(Command::View(ViewCommand::Hold));
         }
         let help = "Reads a recorded run from its folder and pins it";
