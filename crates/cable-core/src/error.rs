@@ -21,7 +21,7 @@ pub use self::unsupported::{Unsupported, UnsupportedReach};
 pub struct SceneError {
     /// Where in the scene, for example `cables[0].length_m`.
     pub path: String,
-    /// What is wrong.
+    /// The fault.
     pub fault: SceneFault,
     /// Where in the text, when it came from a text.
     pub at: Option<TextPosition>,
@@ -36,7 +36,7 @@ pub struct TextPosition {
     pub column: usize,
 }
 
-/// What is wrong with a scene.
+/// The fault with a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SceneFault {
     /// Not TOML, or a wrong type.
@@ -70,14 +70,14 @@ pub enum SceneFault {
     },
     /// More elements than a scene may have.
     TooMany {
-        /// How many there are.
+        /// Their number.
         count: usize,
-        /// How many there may be.
+        /// The most that there may be.
         most: usize,
     },
     /// Fewer points than an outline needs.
     TooFewPoints {
-        /// How many there are.
+        /// Their number.
         count: usize,
         /// How many it needs.
         least: usize,
@@ -153,9 +153,9 @@ pub enum SceneFault {
         obstacle: String,
         /// How deep inside it, m.
         depth_m: f64,
-        /// Where, m.
+        /// Place, m.
         x_m: f64,
-        /// Where, m.
+        /// Place, m.
         y_m: f64,
     },
     /// A support inside something solid.
@@ -217,7 +217,7 @@ pub enum TensionLoss {
 pub struct Place {
     /// Arc length from the cable's start, m.
     pub arc_length_m: f64,
-    /// Where that is, m.
+    /// Its place, m.
     pub at_m: Vec2,
     /// The nearest support or obstacle by kind and name, and its distance, m; none where there is
     /// nothing.
@@ -271,9 +271,9 @@ pub enum SolveError {
         model: Model,
         /// In what way.
         loss: TensionLoss,
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
-        /// Where that is, m.
+        /// Its place, m.
         at_m: Vec2,
     },
     /// Nothing can hold the loads.
@@ -299,7 +299,7 @@ pub enum SolveError {
     NonFinite {
         /// Which quantity.
         quantity: &'static str,
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
         /// Time, s.
         time_s: f64,
@@ -310,11 +310,11 @@ pub enum SolveError {
         model: Model,
         /// Name of the obstacle.
         obstacle: String,
-        /// How deep, m.
+        /// Depth, m.
         depth_m: f64,
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
-        /// Where that is, m.
+        /// Its place, m.
         at_m: Vec2,
     },
     /// The answer breaks a law: see [`crate::verify`].

@@ -210,7 +210,7 @@ impl Simulation {
         self.verification = self.verify(&self.answers);
     }
 
-    /// What the laws say of answers for the cables, with the robot as it is.
+    /// Returns what the laws say of answers for the cables, with the robot as it is.
     fn verify(&self, answers: &[CableSolution]) -> Verification {
         let robot = self.vehicle.as_ref().map(Vehicle::report);
         self.verifier.check_cables(&self.scene, answers, robot.as_ref(), self.time_s(), Depth::Always)
@@ -332,7 +332,7 @@ impl Simulation {
         }
     }
 
-    /// What the laws say of the present answers.
+    /// Returns what the laws say of the present answers.
     fn check_sound(&self) -> Result<(), SolveError> {
         // Masses and springs are a quick look and a second opinion, asked for by name: their coarse
         // meshes are told, not refused. A cable that broke at rest is where it was when it broke.
@@ -563,7 +563,7 @@ impl Simulation {
         MaxTension::of(&self.answers)
     }
 
-    /// What is to be said of this instant.
+    /// Returns what is to be said of this instant.
     pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
         self.warnings.iter().chain(self.warning_monitor.warnings())
     }
@@ -620,7 +620,8 @@ impl Simulation {
         }
     }
 
-    /// Where each cable is. Where one broke, its state has two nodes of the same arc length.
+    /// Returns where each cable is. Where one broke, its state has two nodes of the same arc
+    /// length.
     #[must_use]
     pub fn states(&self) -> Vec<State> {
         self.cables.iter().map(BreakableCable::state).collect()

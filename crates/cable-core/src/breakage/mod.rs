@@ -75,9 +75,9 @@ const MAX_SUPPORT_SPEED: f64 = 300.0;
 pub(crate) struct Break {
     /// When, s.
     pub time_s: f64,
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length_m: f64,
-    /// Where in the plane, m.
+    /// Place in the plane, m.
     pub at: Vec2,
     /// The support it tore off, if it did.
     pub detached_from: Option<String>,
@@ -208,7 +208,7 @@ impl BreakableCable {
         &self.problem
     }
 
-    /// Where and when it broke, oldest first.
+    /// Returns where and when it broke, oldest first.
     pub fn breaks(&self) -> &[Break] {
         &self.breaks
     }
@@ -412,8 +412,8 @@ impl BreakableCable {
         }
     }
 
-    /// What the cable does to the outline of the robot, all pieces together; None where no model
-    /// knows of it.
+    /// Returns what the cable does to the outline of the robot, all pieces together; None where no
+    /// model knows of it.
     pub(crate) fn robot_contact(&self) -> Option<RobotContact> {
         self.pieces
             .iter()
@@ -426,7 +426,7 @@ impl BreakableCable {
         self.pieces.iter().map(|p| p.mechanics.inner_step_s()).fold(f64::INFINITY, smaller)
     }
 
-    /// What it does to a support now, N.
+    /// Returns what it does to a support now, N.
     pub(crate) fn pull_on(&self, support: usize) -> Vec2 {
         let r = self.reaction(support);
         Vec2::new(r.reaction_x_n, r.reaction_y_n)
@@ -681,7 +681,7 @@ impl Piece {
     }
 }
 
-/// What is to be said of a motion that is too fast.
+/// Returns what is to be said of a motion that is too fast.
 fn too_fast(support: &SupportPoint) -> Option<Unsupported> {
     let (speed_m_per_s, time_s) = support.motion.as_ref()?.fastest();
     (speed_m_per_s > MAX_SUPPORT_SPEED).then(|| Unsupported::MotionTooFast {

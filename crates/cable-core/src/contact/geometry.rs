@@ -71,7 +71,7 @@ pub struct Edge {
 /// A corner of a body or a circle: a point with an offset.
 #[derive(Clone, Copy, Debug)]
 pub struct Corner {
-    /// Where, m.
+    /// Place, m.
     pub at: Vec2,
     /// Feature number.
     pub feature: usize,
@@ -92,7 +92,7 @@ pub struct Part {
 }
 
 impl Corner {
-    /// Whether the boundary turns away from the outside here (an open end counts).
+    /// Returns whether the boundary turns away from the outside here (an open end counts).
     #[must_use]
     pub(crate) fn is_convex(&self) -> bool {
         match (self.before, self.after) {
@@ -108,8 +108,8 @@ impl Corner {
         perp(self.before.unwrap_or_default() + self.after.unwrap_or_default())
     }
 
-    /// How many of the edges that meet here have this corner as their nearest point to `p`, and how
-    /// many meet.
+    /// Returns how many of the edges that meet here have this corner as their nearest point to `p`,
+    /// and how many meet.
     #[must_use]
     pub fn clamped(&self, p: Vec2) -> (usize, usize) {
         let d = p - self.at;
@@ -184,7 +184,7 @@ impl Body {
         std::iter::once(k).chain(last).filter_map(|k| self.corner(k))
     }
 
-    /// Whether an edge ends at the corner or circle `feature`.
+    /// Returns whether an edge ends at the corner or circle `feature`.
     #[must_use]
     pub(crate) fn is_beside(&self, edge: usize, feature: usize) -> bool {
         let n = self.edges.len();
@@ -192,20 +192,20 @@ impl Body {
         local == edge || local == edge + 1 || (self.closed && local == 0 && edge + 1 == n)
     }
 
-    /// Whether it is an outline that moves.
+    /// Returns whether it is an outline that moves.
     #[must_use]
     pub fn moves(&self) -> bool {
         self.bvh.is_none()
     }
 
-    /// Whether it is ground: solid below an open line, so that nothing can go round it.
+    /// Returns whether it is ground: solid below an open line, so that nothing can go round it.
     #[must_use]
     pub(crate) fn is_ground(&self) -> bool {
         self.solid && !self.closed && self.center.is_none()
     }
 
-    /// Whether contact at a corner can be felt by a straight segment: not where a solid recedes
-    /// from it.
+    /// Returns whether contact at a corner can be felt by a straight segment: not where a solid
+    /// recedes from it.
     #[must_use]
     pub(crate) fn juts_out(&self, corner: &Corner) -> bool {
         !self.solid || corner.is_convex()
@@ -368,7 +368,7 @@ impl Geometry {
         }
     }
 
-    /// Whether there is no feature.
+    /// Returns whether there is no feature.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()

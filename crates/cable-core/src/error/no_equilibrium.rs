@@ -31,9 +31,9 @@ pub enum NoEquilibrium {
     ThroughObstacle {
         /// The obstacle's name.
         obstacle: String,
-        /// Where that is, m.
+        /// Its place, m.
         at_m: Vec2,
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
     },
     /// The cable runs out through a pulley.

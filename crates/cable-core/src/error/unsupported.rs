@@ -20,7 +20,7 @@ pub enum Unsupported {
     SelfContactWithPulleys,
     /// The cable touches itself where the search for an equilibrium begins.
     SelfContactAtStart {
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
     },
     /// A support lets go at some time.
@@ -36,14 +36,14 @@ pub enum Unsupported {
     ExternalModel,
     /// The cable reaches an obstacle.
     Obstacle {
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
     },
     /// An obstacle is met where the model can begin no contact.
     ContactWithoutSeat {
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
-        /// Where that is, m.
+        /// Its place, m.
         at_m: Vec2,
     },
     /// The cable lifts off the wheel of a pulley.
@@ -57,7 +57,7 @@ pub enum Unsupported {
     SupportWithoutPlace,
     /// The search for the contacts does not end.
     EndlessContacts {
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
     },
     /// The cable would jump over a corner.
@@ -67,12 +67,12 @@ pub enum Unsupported {
     },
     /// A support is inside an obstacle.
     SupportInside {
-        /// Where it is, m.
+        /// Its place, m.
         at_m: Vec2,
     },
     /// A point load rests on an obstacle.
     LoadOnObstacle {
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
     },
     /// A part of the cable without tension is drawn along.
@@ -82,11 +82,11 @@ pub enum Unsupported {
     },
     /// What the model found does not pass its own verification.
     Unverified {
-        /// What is wrong.
+        /// The fault.
         finding: &'static str,
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
-        /// Where that is, m.
+        /// Its place, m.
         at_m: Vec2,
     },
     /// A state without nodes.

@@ -32,8 +32,8 @@ pub struct InitialEquilibrium {
     pub spans: Box<SpansModel>,
 }
 
-/// Where the cable comes to lie with the least sliding, supports `dragged` (m) and the robot led to
-/// where it is; None where `spans` does not know.
+/// Returns where the cable comes to lie with the least sliding, supports `dragged` (m) and the
+/// robot led to where it is; None where `spans` does not know.
 ///
 /// # Errors
 /// That it slides from where it is laid.
@@ -73,8 +73,8 @@ fn of_flexible(warning: &mut Warning) {
     }
 }
 
-/// Whether a flexible cable that slid from where it was laid slides on from where it is said to
-/// rest: that was no rest then.
+/// Returns whether a flexible cable that slid from where it was laid slides on from where it is
+/// said to rest: that was no rest then.
 #[must_use]
 pub(crate) fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &CableSolution) -> bool {
     let route = answer.nodes.iter().map(Node::at).collect();
@@ -103,7 +103,7 @@ pub fn work(problem: &Problem, from: &State, to: &CableSolution, time_s: f64) ->
     weight + loads + hung
 }
 
-/// What there is to say of a rest that was found where a cable slid to.
+/// Returns what there is to say of a rest that was found where a cable slid to.
 #[must_use]
 pub(crate) fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
     let why = match slides {
@@ -134,14 +134,14 @@ fn as_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
     Arc::new(flexible)
 }
 
-/// Whether the cable is in touch with the robot, or in its place.
+/// Returns whether the cable is in touch with the robot, or in its place.
 #[must_use]
 pub(crate) fn meets_outline(problem: &Problem, robot_pose: Option<RigidPose>, answer: &CableSolution) -> bool {
     let (Some(outline), Some(at)) = (&problem.outline, robot_pose) else { return false };
     !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius + ROBOT_CLEARANCE_M)
 }
 
-/// Whether it lies in an obstacle, deeper than what the models disagree by.
+/// Returns whether it lies in an obstacle, deeper than what the models disagree by.
 #[must_use]
 pub(crate) fn is_buried(problem: &Problem, answer: &CableSolution) -> bool {
     let gap = |n: &Node| problem.world.signed_gap(n.at(), BURIAL_SEARCH_M).map(|g| g.gap_m);

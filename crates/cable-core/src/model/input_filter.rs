@@ -55,7 +55,7 @@ pub const HAND_STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-3..=1e9;
 /// Below this distance (m) from the target the support is put on it.
 const ARRIVED_M: f64 = 1e-9;
 
-/// Whether a support is a robot's: it is where the robot is, and does not follow it.
+/// Returns whether a support is a robot's: it is where the robot is, and does not follow it.
 #[must_use]
 pub(crate) fn is_led(problem: &Problem, support: usize) -> bool {
     problem.supports.get(support).is_some_and(|s| s.kind == SupportKind::Robot)
@@ -140,8 +140,9 @@ impl Hand {
         HandReport { x_m: end.x, y_m: end.y, stiffness_n_per_m: self.stiffness, force_x_n: force.x, force_y_n: force.y }
     }
 
-    /// What is to be said where the hand is behind its target, or the support, at `at` (m), behind
-    /// the hand by more than a hundredth of the cable; `force` on the cable in N, `fastest` in m/s.
+    /// Returns what is to be said where the hand is behind its target, or the support, at `at` (m),
+    /// behind the hand by more than a hundredth of the cable; `force` on the cable in N, `fastest`
+    /// in m/s.
     #[must_use]
     pub fn warning(
         &self,
@@ -190,7 +191,7 @@ impl SmoothedTarget {
         Self { stages, velocity, behind_m: 0.0 }
     }
 
-    /// Where it is, m.
+    /// Returns where it is, m.
     #[must_use]
     pub fn position(&self) -> Vec2 {
         self.stages[3]
@@ -202,8 +203,8 @@ impl SmoothedTarget {
         self.velocity
     }
 
-    /// How far from its target the last step left it because it may be no faster, m; 0 where it was
-    /// fast enough.
+    /// Returns how far from its target the last step left it because it may be no faster, m; 0
+    /// where it was fast enough.
     #[must_use]
     pub(crate) fn behind_m(&self) -> f64 {
         self.behind_m

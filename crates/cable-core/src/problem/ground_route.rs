@@ -101,7 +101,7 @@ fn buried(route: &[Vec2], body: &Body) -> Vec<BuriedStretch> {
     out
 }
 
-/// Where the straight line from `a` to `b` crosses the surface, in order along it.
+/// Returns where the straight line from `a` to `b` crosses the surface, in order along it.
 fn crossings(body: &Body, a: Vec2, b: Vec2) -> Vec<SurfaceCrossing> {
     let d = b - a;
     let mut out: Vec<SurfaceCrossing> = body

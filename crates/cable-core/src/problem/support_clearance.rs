@@ -79,8 +79,9 @@ pub(super) fn clear_supports(problem: &mut Problem) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// How far a point is inside the surface of the obstacle that it is deepest in (m, negative outside
-/// but nearer than the cable's radius), and that obstacle; none where the centre line has room.
+/// Returns how far a point is inside the surface of the obstacle that it is deepest in (m, negative
+/// outside but nearer than the cable's radius), and that obstacle; none where the centre line has
+/// room.
 fn depth(problem: &Problem, at: Vec2) -> Option<(f64, String)> {
     let gap = problem.world.signed_gap(at, f64::INFINITY).filter(|g| g.gap_m < 0.0)?;
     Some((-gap.gap_m - problem.radius, problem.world.obstacle_name(gap.obstacle).to_owned()))

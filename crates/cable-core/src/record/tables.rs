@@ -52,7 +52,7 @@ pub enum ReadError {
         table: &'static str,
         /// Line, from 1.
         line: u64,
-        /// What is wrong.
+        /// The fault.
         what: String,
     },
     /// More rows than a run may have.
@@ -89,11 +89,11 @@ pub struct NodeRow {
 pub struct Event {
     /// Time, s.
     pub time_s: f64,
-    /// What kind.
+    /// The kind.
     pub kind: WarningKind,
     /// The cable's name.
     pub cable: String,
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length_m: f64,
     /// The quantity's value, in its own unit.
     pub value: f64,
@@ -443,7 +443,7 @@ fn reader<R: Read>(from: R) -> csv::Reader<WholeRecords<R>> {
     csv::ReaderBuilder::new().from_reader(WholeRecords::new(from))
 }
 
-/// Whether a table has any rows; one that cannot be read has some.
+/// Returns whether a table has any rows; one that cannot be read has some.
 pub(crate) fn has_rows(from: impl Read) -> bool {
     reader(from).records().next().is_some()
 }
@@ -480,8 +480,8 @@ fn rows<R: Read>(
     Ok(())
 }
 
-/// Whether the columns begin with those expected; false where nothing was written yet, not even a
-/// header.
+/// Returns whether the columns begin with those expected; false where nothing was written yet, not
+/// even a header.
 fn expect_columns<R: Read>(
     table: &'static str,
     from: &mut csv::Reader<R>,

@@ -188,25 +188,25 @@ impl Vehicle {
         Some(vec2(self.pose.hitch_m(self.preset)))
     }
 
-    /// How it stands.
+    /// Returns how it stands.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// How it is.
+    /// Returns how it is.
     #[must_use]
     pub fn report(&self) -> RobotReport {
         self.report
     }
 
-    /// Where its hitch is, m.
+    /// Returns where its hitch is, m.
     #[must_use]
     pub fn hitch(&self) -> Vec2 {
         self.hitch_at(self.pose)
     }
 
-    /// Where its hitch is when it stands so, m.
+    /// Returns where its hitch is when it stands so, m.
     #[must_use]
     pub(crate) fn hitch_at(&self, pose: Pose) -> Vec2 {
         vec2(pose.hitch_m(self.preset))
@@ -242,8 +242,8 @@ impl Vehicle {
         self.balance(drive, pulls).speed
     }
 
-    /// Where it is at the end of a step in which it comes to this speed (m/s); None where it cannot
-    /// stand there.
+    /// Returns where it is at the end of a step in which it comes to this speed (m/s); None where
+    /// it cannot stand there.
     #[must_use]
     pub(crate) fn come_to(&self, drive: Drive, speed: f64) -> Option<Pose> {
         let way = 0.5 * drive.h * (self.speed + speed);
@@ -268,7 +268,7 @@ impl Vehicle {
         Some(Pose { pitch: self.pose.pitch + tipping * h, ..pose })
     }
 
-    /// What its balance makes of the forces of the cable at the end of a step.
+    /// Returns what its balance makes of the forces of the cable at the end of a step.
     #[must_use]
     pub fn balance(&self, drive: Drive, pulls: Pulls) -> SpeedBalance {
         let (sin, cos) = self.pose.pitch.sin_cos();
@@ -379,8 +379,8 @@ impl Vehicle {
         SpeedBalance { speed, tracks, rolling, asked, slips, going, ..SpeedBalance::default() }
     }
 
-    /// What tracks and rolling resistance can do in a step, in the `sense` in which it is asked to
-    /// go.
+    /// Returns what tracks and rolling resistance can do in a step, in the `sense` in which it is
+    /// asked to go.
     fn grip(&self, drive: Drive, normal: f64, sense: f64) -> TrackGrip {
         let (v, set, wanted) = (self.speed * sense, self.set * sense, drive.wanted * sense);
         // The governor goes on from the speed that it has given; dragged by its cable the vehicle
@@ -489,7 +489,7 @@ pub struct SpeedBalance {
     normal: f64,
     /// Speed that the governor asked for, m/s.
     asked: f64,
-    /// Whether the tracks slip.
+    /// True if the tracks slip.
     slips: bool,
     going: Going,
 }
@@ -501,7 +501,7 @@ pub struct SpeedBalance {
 struct TrackGrip {
     /// Speed that the governor asks for at the end, m/s.
     asked: f64,
-    /// Whether it is to go; else it comes to a stand.
+    /// True if it is to go; else it comes to a stand.
     drives: bool,
     /// Most that the tracks can transmit, N.
     hold: f64,
@@ -550,8 +550,8 @@ impl TrackGrip {
         self.tracks(q, limit) + self.rolls(q, limit)
     }
 
-    /// What the tracks give of a `total` (N) at a speed where forces jump: rolling resistance is
-    /// against the drive.
+    /// Returns what the tracks give of a `total` (N) at a speed where forces jump: rolling
+    /// resistance is against the drive.
     fn share(&self, q: f64, total: f64) -> f64 {
         let own = if q == 0.0 && !self.drives { total } else { total - self.rolls(q, Limit::Above) };
         bounded(own, self.tracks(q, Limit::Above), self.tracks(q, Limit::Below))

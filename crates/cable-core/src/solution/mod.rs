@@ -204,7 +204,7 @@ impl TensionPeaks {
 pub struct TensionPeak {
     /// Tension, N.
     pub tension_n: f64,
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length_m: f64,
     /// When, s.
     pub time_s: f64,
@@ -216,9 +216,9 @@ pub struct TensionPeak {
 pub struct Assumptions {
     /// Bending stiffness EI, N·m²; 0 = perfectly flexible.
     pub bending_stiffness_n_m2: f64,
-    /// Whether the cable is an obstacle to itself.
+    /// True if the cable is an obstacle to itself.
     pub self_contact: bool,
-    /// Whether masses accelerate: forces on a piece of cable then do not add up to nothing.
+    /// True if masses accelerate: forces on a piece of cable then do not add up to nothing.
     pub inertia: bool,
 }
 
@@ -247,11 +247,11 @@ impl CableSolution {
 pub struct Bend {
     /// Radius of the centre line, m.
     pub radius_m: f64,
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub x_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub y_m: f64,
 }
 
@@ -272,11 +272,11 @@ pub struct JudgedBend {
 pub struct Pressure {
     /// Tension over radius, N/m.
     pub pressure_n_per_m: f64,
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub x_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub y_m: f64,
 }
 
@@ -334,15 +334,15 @@ impl Node {
 pub struct SupportReaction {
     /// The support's name.
     pub name: String,
-    /// Where it is, m.
+    /// Its place, m.
     pub x_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub y_m: f64,
     /// Force of the cable on the support, N.
     pub reaction_x_n: f64,
     /// Force of the cable on the support, N.
     pub reaction_y_n: f64,
-    /// Where on the cable it sits now, m.
+    /// Place on the cable it sits now, m.
     pub arc_length_m: f64,
     /// Pulley: tension on the side of smaller arc length, N.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -470,7 +470,7 @@ impl ContactReport {
         self.samples = samples;
     }
 
-    /// Where on the cable it begins and ends, m: never empty of its middle.
+    /// Returns where on the cable it begins and ends, m: never empty of its middle.
     #[must_use]
     pub fn extent_m(&self) -> [f64; 2] {
         let middle = self.arc_length_m;

@@ -152,7 +152,7 @@ pub struct Verification {
 }
 
 impl Verification {
-    /// Whether no law is broken.
+    /// Returns whether no law is broken.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         self.findings.is_empty()

@@ -13,9 +13,9 @@ pub struct Warning {
     pub kind: WarningKind,
     /// The cable's name.
     pub cable: String,
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length_m: f64,
-    /// Where in the plane, m; None = at the cable's point of that arc length.
+    /// Place in the plane, m; None = at the cable's point of that arc length.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_m: Option<[f64; 2]>,
     /// Since when, s; None = it is about the last step alone.
@@ -222,7 +222,7 @@ pub enum WarningCause {
     },
     /// A finer run may differ on whether the cable breaks.
     BreakageUncertain {
-        /// Whether it broke.
+        /// True if it broke.
         broke: bool,
         /// Greatest mean tension, N.
         held_n: f64,
@@ -243,7 +243,7 @@ pub enum WarningCause {
         material_m: f64,
         /// Length of what it lies on, m.
         ground_m: f64,
-        /// Whether it lies on something; false = seen from above, or without weight.
+        /// True if it lies on something; false = seen from above, or without weight.
         on_ground: bool,
     },
     /// A long part has less tension than a limit.

@@ -190,8 +190,8 @@ pub(super) fn corner_radius(bending_stiffness: f64, tension: f64, turn: f64) -> 
     0.5 * (bending_stiffness / pull).sqrt() / sine
 }
 
-/// How far the nodes beside node `k` turn that are within a quarter of a round of a radius (m),
-/// rad.
+/// Returns how far the nodes beside node `k` turn that are within a quarter of a round of a radius
+/// (m), rad.
 fn round(piece: &[Node], turns: &[f64], k: usize, radius: f64) -> f64 {
     let far = std::f64::consts::FRAC_PI_2 * radius;
     let near = |n: &Node| piece.get(k).is_some_and(|at| (n.arc_length_m - at.arc_length_m).abs() <= far);
@@ -200,7 +200,7 @@ fn round(piece: &[Node], turns: &[f64], k: usize, radius: f64) -> f64 {
     turns.get(first..first + count).unwrap_or_default().iter().sum::<f64>().abs()
 }
 
-/// What leads the cable at a node of its answer.
+/// Returns what leads the cable at a node of its answer.
 pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Guide {
     let Some(n) = answer.nodes.get(node) else { return Guide::Free };
     let at = |k: usize| answer.nodes.get(k).map(|n| Vec2::new(n.x_m, n.y_m));
@@ -237,8 +237,8 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Gu
         .map_or(Guide::Free, |b| if b.center.is_some() { Guide::Round(b.offset) } else { Guide::Corner(b.offset) })
 }
 
-/// Whether the cable lies on the outline of the robot at a node or beside it: that moves, and is
-/// not among the obstacles.
+/// Returns whether the cable lies on the outline of the robot at a node or beside it: that moves,
+/// and is not among the obstacles.
 fn on_outline(problem: &Problem, answer: &CableSolution, node: usize) -> bool {
     let Some(outline) = &problem.outline else { return false };
     let arc = |k: usize| answer.nodes.get(k).or(answer.nodes.last()).map_or(f64::NAN, |n| n.arc_length_m);

@@ -201,7 +201,7 @@ fn along(answer: &CableSolution, s: f64) -> (Vec2, Vec2) {
     (x(j) + (x(k) - x(j)) * f, v(j) + (v(k) - v(j)) * f)
 }
 
-/// What was done between two instants at most, J.
+/// Returns what was done between two instants at most, J.
 fn work(observed: &Observed<'_>, before: &Snapshot, now: &Snapshot) -> f64 {
     let Observed { problem, answer, .. } = *observed;
     let (from, to) = (before.time_s, now.time_s);

@@ -62,7 +62,7 @@ fn jerk(cable: &Cable, answer: &CableSolution, peaks: &TensionPeaks, out: &mut V
     out.push(Warning::new(cause, &cable.name, top.arc_length_m, [top.tension_n, limit]).at(at.into()));
 }
 
-/// Where a point of the cable is, m.
+/// Returns where a point of the cable is, m.
 fn at(nodes: &[Node], s: f64) -> Vec2 {
     let k = nodes.partition_point(|n| n.arc_length_m < s);
     match (k.checked_sub(1).and_then(|k| nodes.get(k)), nodes.get(k)) {
@@ -82,7 +82,7 @@ pub(super) fn slack(problem: &Problem, answer: &CableSolution, out: &mut Vec<War
     }
 }
 
-/// What lies without tension on less ground than it is long.
+/// Returns what lies without tension on less ground than it is long.
 fn folds(problem: &Problem, answer: &CableSolution) -> Option<Warning> {
     let limit_n = SLACK_TENSION * problem.force_scale();
     // Seen from above, and where nothing weighs, it can lie anywhere.

@@ -148,7 +148,8 @@ impl Sentence for NoEquilibrium {
     }
 }
 
-/// How much more friction holds a cable: three digits, the last one rounded up, so that it does.
+/// Returns how much more friction holds a cable: three digits, the last one rounded up, so that it
+/// does.
 fn missing_friction(friction_ratio: f64) -> String {
     let more = 100.0 * (friction_ratio - 1.0);
     let digits = (2.0 - more.log10().floor()).clamp(0.0, 9.0);

@@ -229,7 +229,7 @@ fn after(time_s: Option<f64>) -> String {
     time_s.map_or_else(String::new, |t| format!(" after {t:.4} s"))
 }
 
-/// What other histories would have left, to follow what is said of the one that is shown.
+/// Returns what other histories would have left, to follow what is said of the one that is shown.
 fn histories(f: Figures, known: &Histories) -> String {
     match known {
         Histories::NotSought => ", no other was sought".to_owned(),

@@ -217,7 +217,7 @@ impl CatenaryModel {
         }
     }
 
-    /// How far any support moves between two times, m.
+    /// Returns how far any support moves between two times, m.
     fn support_travel(&self, from_s: f64, to_s: f64) -> f64 {
         let mut most = 0.0f64;
         for s in &self.problem.supports {
@@ -236,7 +236,7 @@ impl CatenaryModel {
     }
 }
 
-/// What there is to say of a weightless cable that is slack.
+/// Returns what there is to say of a weightless cable that is slack.
 pub(super) fn slack_without_weight(problem: &Problem, nodes: &[Node]) -> Option<Warning> {
     let slack = nodes.iter().find(|n| n.tension_n == 0.0)?;
     Some(Warning::new(WarningCause::Weightless, &problem.cable.name, slack.arc_length_m, [0.0; 2]))

@@ -202,7 +202,7 @@ impl Slide<'_> {
         (side(k).map(|s| s.end), side(k + 1).map(|s| s.start))
     }
 
-    /// How far the cable turns at a pulley, rad.
+    /// Returns how far the cable turns at a pulley, rad.
     pub fn turn(&self, k: usize, before: Vec2, after: Vec2) -> f64 {
         if self.layout.anchors[k].radius > 0.0 {
             self.arcs[k].turn

@@ -67,8 +67,8 @@ impl MassSpringModel {
         worst.filter(|(_, uncertain)| *uncertain > self.settings.tolerance)
     }
 
-    /// How uncertain tension is, by corners or by what the floor holds, if that is worse than the
-    /// accuracy asked for.
+    /// Returns how uncertain tension is, by corners or by what the floor holds, if that is worse
+    /// than the accuracy asked for.
     pub(in crate::model::mass_spring) fn uncertain(&self) -> Option<f64> {
         let corner = self.least_certain().map_or(0.0, |(_, uncertain)| uncertain);
         let worst = larger(corner, self.held_by_floor());

@@ -21,7 +21,7 @@ impl Range {
         [self.low, self.high]
     }
 
-    /// Whether the value is a number in the range. NaN and infinities are in none.
+    /// Returns whether the value is a number in the range. NaN and infinities are in none.
     pub(super) fn holds(self, value: f64) -> bool {
         value >= self.low && value <= self.high
     }

@@ -113,8 +113,8 @@ impl<'a> EdgeTree<'a> {
         None
     }
 
-    /// Whether two edges meet, i < j; neighbours share a point and meet where they turn back on
-    /// themselves.
+    /// Returns whether two edges meet, i < j; neighbours share a point and meet where they turn
+    /// back on themselves.
     fn edges_meet(&self, i: usize, j: usize) -> bool {
         let ((a, b), (c, d)) = (self.edge(i), self.edge(j));
         if j == i + 1 {
