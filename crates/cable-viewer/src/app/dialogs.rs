@@ -96,7 +96,7 @@ fn ask(
         done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     });
     let purpose = if does == "Save" { Purpose::Save } else { Purpose::Open };
-    path_picker::list(ui, path, None, purpose);
+    path_picker::list(ui, path, &[], purpose);
     ui.weak(note);
     ui.add_space(10.0);
     ui.horizontal(|ui| {
@@ -115,6 +115,9 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], commands: &mu
     ui.horizontal(|ui| {
         let label = ui.label("File");
         ui.add(egui::TextEdit::singleline(path).desired_width(320.0)).labelled_by(label.id);
+    });
+    egui::CollapsingHeader::new("Pick a file").show_unindented(ui, |ui| {
+        path_picker::list(ui, path, &["csv", "tsv", "txt", "dat", "svg"], Purpose::Open);
     });
     let label = ui.label("or paste it here");
     egui::ScrollArea::vertical().max_height(160.0).show(ui, |ui| {
@@ -218,7 +221,7 @@ fn ask_path(ui: &mut Ui, title: &str, path: &mut String, purpose: Purpose, comma
         done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         path_picker::system(ui, path, purpose);
     });
-    done |= path_picker::list(ui, path, Some("toml"), purpose) && purpose == Purpose::Open;
+    done |= path_picker::list(ui, path, &["toml"], purpose) && purpose == Purpose::Open;
     ui.add_space(10.0);
     ui.horizontal(|ui| {
         done |= ui.button(if purpose == Purpose::Save { "Save" } else { "Open" }).clicked();

@@ -64,7 +64,7 @@ fn text(state: &AppState, step: FirstStep) -> String {
         FirstStep::Drag => {
             // One that is held at a place: what hangs on the robot moves with it.
             let held = state.document.scene.cables.first().and_then(|c| c.supports.iter().rfind(|s| s.at_m.is_some()));
-            format!("Drag the {}", held.map_or("end of the cable", |s| &s.name))
+            held.map_or_else(|| "Drag an end of the cable".to_owned(), |s| format!("Drag “{}”", s.name))
         }
         FirstStep::Play => "Press Space to play".to_owned(),
         FirstStep::Zoom => "Scroll to zoom".to_owned(),

@@ -30,11 +30,11 @@ type Read = (Result<Listing, String>, Instant);
 
 /// Lists the folder of the typed path; a click enters a folder or puts a file into the path.
 /// Whether a file was double-clicked.
-pub fn list(ui: &mut Ui, path: &mut String, ending: Option<&str>, purpose: Purpose) -> bool {
+pub fn list(ui: &mut Ui, path: &mut String, endings: &[&str], purpose: Purpose) -> bool {
     let folder = folder::of(path);
-    let id = Id::unique("path picker").with((&folder, ending));
+    let id = Id::unique("path picker").with((&folder, endings));
     let known = ui.data(|d| d.get_temp::<Read>(id)).filter(|(_, read)| read.elapsed() < FRESH);
-    let (listing, read) = known.unwrap_or_else(|| (folder::list(&folder, ending), Instant::now()));
+    let (listing, read) = known.unwrap_or_else(|| (folder::list(&folder, endings), Instant::now()));
     ui.data_mut(|d| d.insert_temp(id, (listing.clone(), read)));
     ui.add_space(4.0);
     ui.add(egui::Label::new(egui::RichText::new(folder.display().to_string()).weak()).truncate());

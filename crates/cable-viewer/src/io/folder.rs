@@ -13,7 +13,7 @@ pub struct Listing {
     pub folder: PathBuf,
     /// Its folders by name, hidden ones left out.
     pub folders: Vec<String>,
-    /// Its files with the ending asked for, by name.
+    /// Its files with an ending asked for, by name.
     pub files: Vec<String>,
 }
 
@@ -25,11 +25,11 @@ pub fn of(typed: &str) -> PathBuf {
     path.ancestors().find(|p| p.is_dir()).map_or_else(present, Path::to_owned)
 }
 
-/// Lists a folder; `ending` is that of the files shown, such as `toml`, and none shows no files.
+/// Lists a folder; `endings` are those of the files shown, such as `toml`.
 ///
 /// # Errors
 /// In words: the folder cannot be read.
-pub fn list(folder: &Path, ending: Option<&str>) -> Result<Listing, String> {
+pub fn list(folder: &Path, endings: &[&str]) -> Result<Listing, String> {
     let mut listing = Listing { folder: folder.to_owned(), ..Listing::default() };
     let entries = std::fs::read_dir(folder).map_err(|e| e.to_string())?;
     for entry in entries.take(MAX_ENTRIES).flatten() {
@@ -39,7 +39,7 @@ pub fn list(folder: &Path, ending: Option<&str>) -> Result<Listing, String> {
         }
         if path.is_dir() {
             listing.folders.push(name);
-        } else if ending.is_some() && path.extension().and_then(|e| e.to_str()) == ending {
+        } else if path.extension().and_then(|e| e.to_str()).is_some_and(|e| endings.contains(&e)) {
             listing.files.push(name);
         }
     }
@@ -60,13 +60,13 @@ mod tests {
             std::fs::write(root.join(name), "").unwrap();
         }
         std::fs::create_dir(root.join("runs")).unwrap();
-        let found = list(root, Some("toml")).unwrap();
+        let found = list(root, &["toml"]).unwrap();
         assert_eq!(
             (found.folders, found.files),
             (vec!["runs".to_owned()], vec!["A.toml".to_owned(), "b.toml".to_owned()])
         );
-        assert!(list(root, None).unwrap().files.is_empty());
-        assert!(list(&root.join("none"), None).is_err());
+        assert!(list(root, &[]).unwrap().files.is_empty());
+        assert!(list(&root.join("none"), &[]).is_err());
         // A path that does not exist yet belongs to the nearest folder that does.
         assert_eq!(of(&root.join("new/deep.toml").display().to_string()), root);
         assert_eq!(of(&root.display().to_string()), root);

@@ -13,7 +13,7 @@ use egui_kittest::kittest::Queryable;
 
 use crate::{apply, drag, open, open_span, support};
 
-const HINTS: [&str; 3] = ["Drag the right", "Press Space to play", "Scroll to zoom"];
+const HINTS: [&str; 3] = ["Drag “right”", "Press Space to play", "Scroll to zoom"];
 
 fn hints(harness: &Harness<'_, ViewerApp>) -> Vec<&'static str> {
     HINTS.into_iter().filter(|hint| harness.query_by_label(hint).is_some()).collect()
@@ -158,4 +158,21 @@ fn a_file_is_picked_from_a_list_without_a_portal() {
     harness.get_by_role_and_label(egui::accesskit::Role::Button, "Save").click();
     harness.run_steps(3);
     assert!(saved.is_file());
+}
+
+#[test]
+fn a_map_is_picked_from_a_list_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("ground.csv");
+    std::fs::write(&file, "x,y\n0,0\n5,0.5\n20,0\n").unwrap();
+    let mut harness = open(catalog::hanging_span());
+    let (path, text, unit_m) = (folder.path().display().to_string(), String::new(), "1".to_owned());
+    apply(&mut harness, Command::File(FileCommand::SetDialog(Some(Dialog::ImportMap { path, text, unit_m }))));
+    harness.run_steps(3);
+    for label in ["Pick a file", "ground.csv", "Import"] {
+        harness.get_by_label(label).click();
+        // A header takes some frames to open.
+        harness.run_steps(20);
+    }
+    assert_eq!(harness.state().state.document.scene.obstacles.len(), 1);
 }
