@@ -372,22 +372,45 @@ impl Simulation {
     fn warn_not_unique(&mut self) {
         for (k, (cable, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
             let problem = cable.problem();
-            let said = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == problem.cable.name;
-            if !problem.rubs(answer) || self.warnings.iter().any(said) {
+            if !problem.rubs(answer) {
                 continue;
             }
-            let seek =
-                || initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), &[], None).ok().flatten();
-            let known = if self.settings.histories { seek() } else { None };
-            let mut known: Vec<Warning> = known.map(|lay| lay.warnings).unwrap_or_default();
-            known.retain(said);
-            if known.is_empty() {
-                let found = if self.settings.histories { self.other_histories(k) } else { None };
-                let histories = found.unwrap_or(Histories::NotSought);
-                let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
-                known.push(Warning::new(cause, &problem.cable.name, 0.0, [0.0; 2]));
+            let name = &problem.cable.name;
+            let of_cable = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == *name;
+            let seek = || {
+                let laid = initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), &[], None).ok()??;
+                laid.warnings.into_iter().find(of_cable)
+            };
+            let known = self.warnings.iter().position(|w| of_cable(w) && w.cause.histories().is_some());
+            if known.is_none() && self.warnings.iter().any(of_cable) {
+                continue;
             }
-            self.warnings.append(&mut known);
+            // A model that has chosen says which it shows; what others there are is asked here.
+            let at = known.unwrap_or_else(|| {
+                let cause = WarningCause::ManyEquilibria {
+                    shown: ShownEquilibrium::FromRoute,
+                    histories: Histories::NotSought,
+                };
+                self.warnings.push(Warning::new(cause, name, 0.0, [0.0; 2]));
+                self.warnings.len() - 1
+            });
+            let unknown = self.warnings[at].cause.histories() == Some(&Histories::NotSought);
+            let sought = if unknown && self.settings.histories { seek() } else { None };
+            let others = || self.other_histories(k).filter(|_| self.settings.histories);
+            let found = match (known, sought) {
+                (None, Some(sought)) => {
+                    self.warnings[at] = sought;
+                    None
+                }
+                (_, Some(sought)) => sought.cause.histories().cloned(),
+                (_, None) if unknown => others(),
+                (_, None) => None,
+            };
+            let cause = &mut self.warnings[at].cause;
+            let histories = found.or_else(|| cause.histories().cloned());
+            if let (Some(histories), WarningCause::ManyEquilibria { histories: told, .. }) = (histories, cause) {
+                *told = histories.beside(answer);
+            }
         }
     }
 

@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::{CableSolution, Node};
+use crate::math::{larger, smaller};
 use crate::model_id::Model;
 use crate::units::Quantity;
 
@@ -288,11 +290,6 @@ pub enum WarningCause {
         /// The most by which friction on it can hold, N.
         held_n: f64,
     },
-    /// A pulley with friction.
-    PulleyFriction {
-        /// The pulley's name.
-        pulley: String,
-    },
     /// With friction there are many equilibria.
     ManyEquilibria {
         /// The one that is shown.
@@ -466,6 +463,34 @@ pub enum Histories {
     },
 }
 
+impl Histories {
+    /// The same of an answer that may be another equilibrium than the one they were sought from:
+    /// it is the one as laid, and the ranges hold it.
+    #[must_use]
+    pub(crate) fn beside(mut self, answer: &CableSolution) -> Self {
+        let tension = |node: Option<&Node>| node.map_or(0.0, |n| n.tension_n);
+        let ends = [tension(answer.nodes.first()), tension(answer.nodes.last())];
+        let most = answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
+        let widen = |range: &mut [f64; 2], n: f64| *range = [smaller(range[0], n), larger(range[1], n)];
+        match &mut self {
+            Self::NotSought => {}
+            Self::NotFound { greatest_n } => *greatest_n = most,
+            Self::Mobilised { greatest_n, start_n, end_n, .. } => {
+                *greatest_n = most;
+                widen(start_n, ends[0]);
+                widen(end_n, ends[1]);
+            }
+            Self::EndsMoved { greatest_n, start_n, end_n, range_n, .. } => {
+                *greatest_n = most;
+                widen(start_n, ends[0]);
+                widen(end_n, ends[1]);
+                widen(range_n, most);
+            }
+        }
+        self
+    }
+}
+
 /// An end that was moved and put back.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EndMove {
@@ -501,6 +526,15 @@ pub enum SlideReason {
 }
 
 impl WarningCause {
+    /// What other histories would have left, of a warning that there are many equilibria.
+    #[must_use]
+    pub fn histories(&self) -> Option<&Histories> {
+        match self {
+            Self::ManyEquilibria { histories, .. } => Some(histories),
+            _ => None,
+        }
+    }
+
     /// The kind to which it belongs.
     #[must_use]
     pub fn kind(&self) -> WarningKind {
@@ -517,11 +551,9 @@ impl WarningCause {
             Self::TightTurn { .. } => WarningKind::Curl,
             Self::RoundObstacle { .. } => WarningKind::Wrapped,
             Self::Caught { .. } => WarningKind::Snag,
-            Self::Weightless
-            | Self::Unstable
-            | Self::Loose { .. }
-            | Self::PulleyFriction { .. }
-            | Self::ManyEquilibria { .. } => WarningKind::NotUnique,
+            Self::Weightless | Self::Unstable | Self::Loose { .. } | Self::ManyEquilibria { .. } => {
+                WarningKind::NotUnique
+            }
             Self::Blocked { .. } | Self::Lags { .. } | Self::HandLags { .. } => WarningKind::SupportHeld,
             Self::RouteBuried { .. } | Self::SupportOnSurface { .. } => WarningKind::InitialPenetration,
             Self::RobotIgnored { .. } => WarningKind::ThroughRobot,
@@ -569,5 +601,20 @@ impl WarningCause {
             _ => {}
         }
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A similar scene twice as large, in which time runs three times as slowly, has the same
+    /// warning.
+    #[test]
+    fn warnings_of_a_similar_scene_are_brought_back() {
+        let cause = WarningCause::Lags { support: "a".to_owned(), behind_m: 0.5 };
+        let large = Warning::new(cause, "main", 3.0, [4.0, 6.0]).scaled(2.0, 3.0);
+        assert_eq!((large.arc_length_m, large.value, large.limit), (6.0, 4.0 * 2.0 / 3.0, 4.0));
+        assert_eq!(large.cause, WarningCause::Lags { support: "a".to_owned(), behind_m: 1.0 });
     }
 }

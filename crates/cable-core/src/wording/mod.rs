@@ -12,8 +12,6 @@
 
 mod scene_error;
 mod solve_error;
-#[cfg(test)]
-mod tests;
 mod verification;
 mod warning;
 

@@ -114,9 +114,6 @@ impl Sentence for Warning {
                 f.length(*ground_m, 3),
                 f.force(*held_n, 2)
             ),
-            Cause::PulleyFriction { pulley } => format!(
-                "Pulley `{pulley}` rubs, so a resting place is not unique: this is the one of least sliding from the way the cable was laid or moved"
-            ),
             Cause::ManyEquilibria { shown, histories: known } => {
                 let shown = match shown {
                     ShownEquilibrium::EvenlyLaid => ": this is the one laid evenly along its way with the least sliding",

@@ -21,7 +21,7 @@ use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::ErrorEstimates;
-use crate::solution::{Assumptions, CableSolution, Cost, Warning, WarningCause};
+use crate::solution::{Assumptions, CableSolution, Cost, Histories, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
 /// Elements to start with where nothing says how many: 1e-6 for a usual span, and 50 µs.
@@ -430,8 +430,9 @@ impl Statics {
         let mut warn = |cause, value: f64, limit: f64| {
             out.push(Warning::new(cause, &problem.cable.name, 0.0, [value, limit]));
         };
-        if let Some(rubbing) = problem.supports.iter().find(|s| s.friction > 0.0) {
-            warn(WarningCause::PulleyFriction { pulley: rubbing.name.clone() }, rubbing.friction, 0.0);
+        if problem.supports.iter().any(|s| s.friction > 0.0) {
+            let (shown, histories) = (ShownEquilibrium::EvenlyLaid, Histories::NotSought);
+            warn(WarningCause::ManyEquilibria { shown, histories }, 0.0, 0.0);
         }
         if hinted && problem.loads.is_empty() {
             warn(WarningCause::Weightless, 0.0, 0.0);
