@@ -100,11 +100,13 @@ fn modules(source: &Path) -> BTreeMap<String, String> {
     for path in files_below(source).iter().filter(|f| f.extension().is_some_and(|e| e == "rs")) {
         let relative = path.strip_prefix(source).expect("below the source").with_extension("");
         let name = relative.to_str().expect("a name").replace('/', "::");
-        if ["lib", "main"].contains(&name.as_str()) {
+        let is_test = ["tests", "tests::mod"].iter().any(|end| name.ends_with(end)) || name.contains("::tests::");
+        if is_test || ["lib", "main"].contains(&name.as_str()) {
             continue;
         }
         let text = std::fs::read_to_string(path).expect("a source");
-        let text = text.split("#[cfg(test)]\n").next().unwrap_or_default();
+        // What may see an item is no import.
+        let text = text.split("#[cfg(test)]\n").next().unwrap_or_default().replace("pub(in crate::", "pub(in ");
         let code = |line: &str| line.split("//").next().unwrap_or_default().to_owned() + "\n";
         found.insert(name.trim_end_matches("::mod").to_owned(), text.lines().map(code).collect());
     }
@@ -211,20 +213,17 @@ fn modules_of_viewer_and_program_import_one_way() {
     }
 }
 
-/// The core's top floor has no loops. Inside it there still are: their number may not grow.
+/// Neither the core's top floor nor the wings of a model have loops. A folder and its files still do: their number may
+/// not grow.
 #[test]
 fn the_core_imports_one_way() {
     let files = files_of("cable-core");
-    let top = wings_of(&files, "");
-    assert!(in_loops(&top).is_empty(), "these import each other in a loop: {:?}", in_loops(&top));
-    for (below, most) in [("model::fem", 10), ("model::spans", 10), ("model::mass_spring", 0)] {
+    for below in ["", "model::fem", "model::spans", "model::mass_spring"] {
         let wings = wings_of(&files, below);
-        assert!(wings.len() > 5, "{below} has wings");
-        assert!(in_loops(&wings).len() <= most, "{below}: {:?}", in_loops(&wings));
-        println!("{below}: {} of {} wings in loops: {:?}", in_loops(&wings).len(), wings.len(), in_loops(&wings));
+        assert!(wings.len() > 5, "`{below}` has wings");
+        assert!(in_loops(&wings).is_empty(), "`{below}`: these import each other in a loop: {:?}", in_loops(&wings));
     }
-    println!("{} of {} files in loops", in_loops(&files).len(), files.len());
-    assert!(in_loops(&files).len() <= 102, "{:?}", in_loops(&files));
+    assert!(in_loops(&files).len() <= 52, "{:?}", in_loops(&files));
 }
 
 /// A module is reached by following imports from itself.

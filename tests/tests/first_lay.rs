@@ -3,7 +3,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::scene::catalog;
-use cable_core::solution::WarningKind;
+use cable_core::solution::{Histories, WarningKind};
 use cable_core::{Model, Scene, Settings, Simulation, Solution};
 
 /// The answer at rest, with so many elements.
@@ -131,5 +131,29 @@ fn finer_meshes_come_nearer() {
         let off = [25, 50, 100, 200].map(|n| apart(&exact, &rest(&scene, Model::Fem, Some(n))));
         println!("{id}: {off:?}");
         assert!(off[3] < 0.1 * off[0] && off[3] < finest, "{id}: {off:?}");
+    }
+}
+
+/// `catenary` and `fem` in the air said that the rest is one of many, without a figure.
+#[test]
+fn many_rests_are_told_with_figures_by_every_model() {
+    let mut scene = catalog::pulley_waypoints();
+    for support in &mut scene.cables[0].supports {
+        support.radius_m = support.radius_m.map(|_| 0.0);
+    }
+    for model in [Model::Catenary, Model::Spans, Model::Fem, Model::MassSpring] {
+        let found = rest(&scene, model, None);
+        let histories = found.warnings.iter().find_map(|w| w.cause.histories());
+        let Some(Histories::Mobilised { greatest_n, start_n, end_n, .. }) = histories else {
+            panic!("{model}: {:?}", found.warnings)
+        };
+        let nodes = &found.cables[0].nodes;
+        assert!((greatest_n - found.max_tension().tension_n).abs() < 1e-9, "{model}: {histories:?}");
+        for (range, node) in [(start_n, &nodes[0]), (end_n, &nodes[nodes.len() - 1])] {
+            assert!(
+                range[0] < range[1] && range[0] <= node.tension_n && node.tension_n <= range[1],
+                "{model}: {range:?}"
+            );
+        }
     }
 }

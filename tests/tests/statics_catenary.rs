@@ -151,10 +151,10 @@ fn degenerate_family() {
     }
 }
 
-fn chain(input: &Value, lengths: (f64, f64), loads: &[PointForce]) -> (Vec2, Vec2, Vec2) {
+fn chain(input: &Value, lengths: [f64; 2], loads: &[PointForce]) -> (Vec2, Vec2, Vec2) {
     let chain = Chain {
         from: 0.0,
-        to: lengths.0 + lengths.1,
+        to: lengths[0] + lengths[1],
         weight: Vec2::new(0.0, -number(input, "w")),
         axial_stiffness: stiffness(input),
         thermal_stretch: 1.0,
@@ -169,15 +169,15 @@ fn chain(input: &Value, lengths: (f64, f64), loads: &[PointForce]) -> (Vec2, Vec
 fn point_load_family() {
     for (case, input, out) in family("point_load") {
         let lengths = if input["L1"].is_number() {
-            (number(&input, "L1"), number(&input, "L2"))
+            [number(&input, "L1"), number(&input, "L2")]
         } else {
-            (number(&out, "L1"), number(&out, "L2"))
+            [number(&out, "L1"), number(&out, "L2")]
         };
-        let load = |p: f64| [PointForce { arc_length: lengths.0, force: Vec2::new(0.0, -p) }];
+        let load = |p: f64| [PointForce { arc_length: lengths[0], force: Vec2::new(0.0, -p) }];
         let p = number(&input, "P");
         let (start, end, node) = chain(&input, lengths, &load(p));
         let (dead, _, dead_node) = chain(&input, lengths, &load(0.0));
-        let (force, length) = (TOLERANCE * start.norm().max(end.norm()), TOLERANCE * (lengths.0 + lengths.1));
+        let (force, length) = (TOLERANCE * start.norm().max(end.norm()), TOLERANCE * (lengths[0] + lengths[1]));
         near(&case, "H", start.x, number(&out, "H"), force);
         near(&case, "VA", start.y, number(&out, "VA"), force);
         near(&case, "H_dead", dead.x, number(&out, "H_dead"), force);
@@ -202,7 +202,7 @@ fn point_load_family() {
             &case,
             "vertical balance",
             end.y - start.y,
-            number(&input, "w") * (lengths.0 + lengths.1) + p,
+            number(&input, "w") * (lengths[0] + lengths[1]) + p,
             1e-13 * start.norm(),
         );
         near(&case, "horizontal balance", end.x, start.x, 1e-13 * start.norm());

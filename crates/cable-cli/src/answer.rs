@@ -1,6 +1,5 @@
 //! The JSON object of an answer: SI units in the key names, never a number that is not finite.
 
-use cable_core::ErrorEstimates;
 use cable_core::solution::{
     Bend, CableSolution, ContactReport, ContactSample, ContactState, Node, Pressure, Solution, SupportReaction,
     TensionPeaks, Warning,
@@ -8,6 +7,7 @@ use cable_core::solution::{
 use cable_core::summary::{CableSummary, Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::timeline::RunPeaks;
 use cable_core::verify::Verification;
+use cable_core::{ErrorEstimates, UnitSystem};
 use serde::Serialize;
 
 /// What `solve --json` prints, and `run --json` for each time.
@@ -42,7 +42,7 @@ pub struct Answer<'a> {
     pub supports: Vec<Support<'a>>,
     pub nodes: Vec<NodeEntry<'a>>,
     pub contacts: Vec<Contact<'a>>,
-    pub warnings: &'a [Warning],
+    pub warnings: Vec<WarningEntry<'a>>,
     /// What the laws say of the answer.
     pub verification: Option<&'a Verification>,
     /// What other models and meshes answer, with `--compare`.
@@ -87,6 +87,23 @@ impl RunPeaksEntry {
             held_tension_range_n: run.ranges.map(|r| r.held_n),
             depends_on_small_differences: run.ranges.map(|r| r.depend_on_small_differences()),
         }
+    }
+}
+
+/// A warning as data, the unit of its value and limit, and the sentence.
+#[derive(Debug, Serialize)]
+pub struct WarningEntry<'a> {
+    #[serde(flatten)]
+    pub warning: &'a Warning,
+    /// Empty for a plain number.
+    pub unit: &'static str,
+    pub message: String,
+}
+
+impl<'a> WarningEntry<'a> {
+    fn of(warning: &'a Warning) -> Self {
+        let unit = warning.cause.quantity().symbol(UnitSystem::Si);
+        Self { warning, unit, message: warning.to_string() }
     }
 }
 
@@ -212,7 +229,7 @@ pub fn answer<'a>(
         supports: Vec::new(),
         nodes: Vec::with_capacity(s.cables.iter().map(|c| c.nodes.len()).sum()),
         contacts: Vec::new(),
-        warnings: &s.warnings,
+        warnings: s.warnings.iter().map(WarningEntry::of).collect(),
         verification: s.verification.as_ref(),
         compared: &figures.compared,
     };

@@ -178,7 +178,7 @@ impl Begun {
             self.count += 1;
             if self.lines.len() < MOST_PRINTED {
                 let time_s = w.since_s.unwrap_or(now_s);
-                self.lines.push(format!("  {time_s:9.4} s  {:17}  {}", w.kind.name(), w.message));
+                self.lines.push(format!("  {time_s:9.4} s  {:17}  {}", w.kind.name(), w));
             }
         }
         self.standing = standing;

@@ -135,7 +135,7 @@ pub fn check(path: &Path) -> Done {
         count(scene.loads.len(), "load", "loads"),
     ))?;
     for note in notes {
-        out.line(&format!("Note: {}", note.message))?;
+        out.line(&format!("Note: {note}"))?;
     }
     out.flush()
 }

@@ -3,7 +3,9 @@
 use std::cmp::Ordering;
 use std::fmt::Write as _;
 
+use cable_core::UnitSystem;
 use cable_core::solution::{ContactState, Solution};
+use cable_core::wording::Sentence;
 
 use crate::answer::{ComparedEntry, Figures};
 use crate::summary;
@@ -65,7 +67,7 @@ pub fn table(s: &Solution, figures: &Figures) -> String {
     }
     let _ = writeln!(t, "Residual          {:.2e} N after {} iterations", s.cost.residual_n, s.cost.iterations);
     if let Some(v) = &s.verification {
-        let _ = writeln!(t, "Laws              {}", v.summary());
+        let _ = writeln!(t, "Laws              {}", v.sentence(UnitSystem::Si));
         if v.folded_m > 0.0 {
             let _ = writeln!(t, "In folds          {:.4} m of cable beyond the way it lies on", v.folded_m);
         }
@@ -77,7 +79,7 @@ pub fn table(s: &Solution, figures: &Figures) -> String {
     }
     compared(&mut t, &figures.compared);
     for w in &s.warnings {
-        let _ = writeln!(t, "\nWarning: {}", w.message);
+        let _ = writeln!(t, "\nWarning: {w}");
     }
     t
 }

@@ -5,6 +5,8 @@ use thiserror::Error;
 
 use crate::error::{SceneError, SolveError};
 use crate::files::FileError;
+use crate::units::UnitSystem;
+use crate::wording::Sentence;
 
 /// Anything the three-line user can meet.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -18,4 +20,14 @@ pub enum Error {
     /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
+}
+
+impl Sentence for Error {
+    fn sentence(&self, units: UnitSystem) -> String {
+        match self {
+            Self::Scene(e) => e.sentence(units),
+            Self::Solve(e) => e.sentence(units),
+            Self::File(e) => e.to_string(),
+        }
+    }
 }

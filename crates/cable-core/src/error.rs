@@ -1,6 +1,8 @@
-//! The errors of a scene and of a solve, by operation, with the numbers in them.
+//! The errors of a scene and of a solve, by operation, with the numbers in them;
+//! [`crate::wording`] makes the sentences.
 
 mod no_equilibrium;
+mod span;
 mod unsupported;
 
 use thiserror::Error;
@@ -8,17 +10,18 @@ use thiserror::Error;
 use crate::math::Vec2;
 use crate::model_id::Model;
 use crate::solution::verification::Finding;
+use crate::units::Quantity;
 
 pub use self::no_equilibrium::{FailureCause, NoEquilibrium};
+pub use self::span::SpanError;
 pub use self::unsupported::{Unsupported, UnsupportedReach};
 
 /// Why a scene is refused.
-#[derive(Clone, Debug, PartialEq, Error)]
-#[error("{}{}{fault}", .at.map(|a| format!("line {}, column {}: ", a.line, a.column)).unwrap_or_default(), if .path.is_empty() { String::new() } else { format!("{path}: ") })]
+#[derive(Clone, Debug, PartialEq)]
 pub struct SceneError {
     /// Where in the scene, for example `cables[0].length_m`.
     pub path: String,
-    /// What is wrong.
+    /// The fault.
     pub fault: SceneFault,
     /// Where in the text, when it came from a text.
     pub at: Option<TextPosition>,
@@ -33,37 +36,109 @@ pub struct TextPosition {
     pub column: usize,
 }
 
-/// What is wrong with a scene.
-#[derive(Clone, Debug, PartialEq, Error)]
+/// The fault with a scene.
+#[derive(Clone, Debug, PartialEq)]
 pub enum SceneFault {
     /// Not TOML, or a wrong type.
-    #[error("{message}")]
     Syntax {
         /// The parser's own words.
         message: String,
     },
     /// A number out of range or not finite.
-    #[error("{value} is outside the allowed range {allowed}")]
     Range {
-        /// The value as given.
+        /// The value as given, in SI units.
         value: f64,
-        /// The allowed range with its unit.
-        allowed: &'static str,
+        /// The least and the greatest value that is allowed.
+        allowed: [f64; 2],
+        /// The quantity.
+        quantity: Quantity,
+    },
+    /// A version of the scene format that is not known.
+    Version {
+        /// The version as given.
+        value: f64,
     },
     /// A key nobody knows.
-    #[error("unknown key{}", .nearest.as_ref().map(|n| format!(", did you mean `{n}`?")).unwrap_or_default())]
     UnknownKey {
         /// The nearest known key.
         nearest: Option<String>,
     },
     /// A key that must be there, or must not.
-    #[error("{what}")]
     Shape {
-        /// What must be there or must not, and why.
+        /// What must be there or must not, and why; it holds no figure with a unit.
         what: String,
     },
+    /// More elements than a scene may have.
+    TooMany {
+        /// Their number.
+        count: usize,
+        /// The most that there may be.
+        most: usize,
+    },
+    /// Fewer points than an outline needs.
+    TooFewPoints {
+        /// Their number.
+        count: usize,
+        /// How many it needs.
+        least: usize,
+    },
+    /// A series with another number of values than of times.
+    UnequalCounts {
+        /// Number of values.
+        values: usize,
+        /// Number of times.
+        times: usize,
+    },
+    /// A time that is not after the one before.
+    TimesNotIncreasing {
+        /// The time, s.
+        time_s: f64,
+        /// The one before, s.
+        before_s: f64,
+    },
+    /// A change of temperature that changes the length too much.
+    ThermalFactor {
+        /// The factor of the length.
+        factor: f64,
+        /// The least and the greatest that is allowed.
+        allowed: [f64; 2],
+    },
+    /// A service tension above the breaking tension.
+    ServiceAboveBreaking {
+        /// Service tension, N.
+        service_n: f64,
+        /// Breaking tension, N.
+        breaking_n: f64,
+    },
+    /// A load beyond the end of its cable.
+    BeyondEnd {
+        /// The load's arc length, m.
+        arc_length_m: f64,
+        /// The cable's length, m.
+        length_m: f64,
+    },
+    /// Supports that are not in order along the cable.
+    OutOfOrder {
+        /// The support's arc length, m.
+        arc_length_m: f64,
+        /// The arc lengths between which it must lie, m.
+        between_m: [f64; 2],
+    },
+    /// A motion that does not start where its support is.
+    MotionStartsElsewhere {
+        /// Where the motion starts, m.
+        motion_m: [f64; 2],
+        /// Where the support is, m.
+        support_m: [f64; 2],
+    },
+    /// An outline whose edges cross or touch.
+    EdgesCross {
+        /// Index of the first point of the other edge.
+        other: usize,
+        /// Ends of the edge from here and of the other one, m.
+        edges_m: Box<[[[f64; 2]; 2]; 2]>,
+    },
     /// A name that nothing has.
-    #[error("there is no {what} named `{name}`{}", .nearest.as_ref().map(|n| format!(", did you mean `{n}`?")).unwrap_or_default())]
     UnknownName {
         /// What was looked for (cable, preset …).
         what: &'static str,
@@ -73,23 +148,17 @@ pub enum SceneFault {
         nearest: Option<String>,
     },
     /// A route that leads through something solid.
-    #[error(
-        "from here the route leads {depth_m:.3} m deep through `{obstacle}` at ({x_m:.3} m, {y_m:.3} m): lead it past, on the side where the cable shall lie"
-    )]
     RouteInside {
         /// The obstacle.
         obstacle: String,
         /// How deep inside it, m.
         depth_m: f64,
-        /// Where, m.
+        /// Place, m.
         x_m: f64,
-        /// Where, m.
+        /// Place, m.
         y_m: f64,
     },
     /// A support inside something solid.
-    #[error(
-        "support `{name}` is {depth_m:.4} m inside `{obstacle}`{}", .clear_m.map(|[x, y]| format!(": the nearest place clear of it is [{x:.4}, {y:.4}]")).unwrap_or_default()
-    )]
     SupportInside {
         /// The support.
         name: Box<str>,
@@ -100,10 +169,12 @@ pub enum SceneFault {
         /// The nearest place where the cable's centre line touches nothing, m.
         clear_m: Option<[f64; 2]>,
     },
+    /// A support between obstacles that leave no room for the cable.
+    NoRoom {
+        /// The support.
+        support: Box<str>,
+    },
     /// A wheel that the cable cannot reach from the support beside it.
-    #[error(
-        "`{from}` and `{to}` are {apart_m:.4} m apart, and no cable leads from one to the other: {reason}. Move one, make the wheel smaller, or leave one out"
-    )]
     NoWay {
         /// The support before.
         from: Box<str>,
@@ -111,13 +182,10 @@ pub enum SceneFault {
         to: Box<str>,
         /// Distance of their centres, m.
         apart_m: f64,
-        /// Why not.
-        reason: Box<str>,
+        /// Of the two the one inside the wheel of the other; None = both are in one place.
+        inside: Option<Box<str>>,
     },
     /// The cable is too short for the way between its supports.
-    #[error(
-        "the way between the supports is {way_m:.4} m, the cable is {length_m:.4} m long, and stretching to it takes {needed_n:.4e} N where it breaks at {breaking_n:.4e} N: make length_m at least {way_m:.4} m"
-    )]
     TooShort {
         /// Length of the cable, m.
         length_m: f64,
@@ -149,63 +217,17 @@ pub enum TensionLoss {
 pub struct Place {
     /// Arc length from the cable's start, m.
     pub arc_length_m: f64,
-    /// Where that is, m.
+    /// Its place, m.
     pub at_m: Vec2,
     /// The nearest support or obstacle by kind and name, and its distance, m; none where there is
     /// nothing.
     pub near: Option<(String, f64)>,
 }
 
-impl std::fmt::Display for Place {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.arc_length_m.is_finite() {
-            true => write!(f, "{} along the cable", metres(self.arc_length_m))?,
-            false => write!(f, "somewhere along the cable")?,
-        }
-        if self.at_m.iter().all(|c| c.is_finite()) {
-            write!(f, ", at ({}, {})", metres(self.at_m.x), metres(self.at_m.y))?;
-        }
-        match &self.near {
-            Some((name, distance)) if distance.is_finite() && *distance > 0.0 => {
-                write!(f, ", {} from {name}", metres(*distance))
-            }
-            Some((name, _)) => write!(f, ", at {name}"),
-            None => Ok(()),
-        }
-    }
-}
-
-/// A length in metres with three decimals, or three digits where it is small.
-fn metres(length_m: f64) -> String {
-    let size = length_m.abs();
-    if size > 0.0 && size < 0.01 || size >= 1e6 { format!("{length_m:.2e} m") } else { format!("{length_m:.3} m") }
-}
-
-/// A force that no cable bears, N: left over it says that a search ran away, not how much is
-/// missing.
-const MAX_CREDIBLE_FORCE_N: f64 = 1e9;
-
-/// A force that is left over, where a solver knows one: a figure that is not finite, or beyond all
-/// measure, says nothing to anybody.
-fn left_over(residual_n: f64) -> String {
-    if residual_n.abs() < MAX_CREDIBLE_FORCE_N {
-        format!("{residual_n:.3e} N stay unbalanced")
-    } else {
-        "no balance of forces was reached".to_owned()
-    }
-}
-
-/// A time in seconds, where it is one.
-fn seconds(time_s: f64) -> String {
-    if time_s.is_finite() { format!("{time_s} s") } else { "no finite time".to_owned() }
-}
-
-/// Why a model has no answer. Every text says where, in metres and names, and what can be done;
-/// none holds a number that is not finite.
-#[derive(Clone, Debug, PartialEq, Error)]
+/// Why a model has no answer.
+#[derive(Clone, Debug, PartialEq)]
 pub enum SolveError {
     /// The iteration did not converge.
-    #[error("{model} found no resting place: {} {place}. Lay the cable by another way there (route_m), or ask another model", left_over(*.residual_n))]
     NotConverged {
         /// The model.
         model: Model,
@@ -217,7 +239,6 @@ pub enum SolveError {
         place: Box<Place>,
     },
     /// The budget of work was spent before there was an answer.
-    #[error("{model} has found no resting place with {segments} segments by all the work it does for one: {} {place}. Draw the cable a route_m nearer to where it will lie, or give it fewer segments", left_over(*.residual_n))]
     TooMuchWork {
         /// The model.
         model: Model,
@@ -231,7 +252,6 @@ pub enum SolveError {
         place: Box<Place>,
     },
     /// The only equilibrium found carries compression, which a cable cannot.
-    #[error("{model} found only a state in which the cable pushes{} {place}, and a cable cannot push: it needs more tension there, or another model", if .tension_n.is_finite() && *.tension_n < 0.0 { format!(" with {:.3e} N", -.tension_n) } else { String::new() })]
     Compressed {
         /// The model.
         model: Model,
@@ -241,33 +261,27 @@ pub enum SolveError {
         place: Box<Place>,
     },
     /// The state found is not a stable equilibrium.
-    #[error(
-        "{model} found only a shape that does not stay (it would snap to another): lay the cable on the side where it shall rest (route_m)"
-    )]
     Indefinite {
         /// The model.
         model: Model,
     },
     /// The cable has no tension somewhere, and the model needs some everywhere.
-    #[error("{model} follows a taut cable only: {loss} {arc_length_m:.3} m along it, at ({:.3} m, {:.3} m)", .at_m.x, .at_m.y)]
     TensionLost {
         /// The model.
         model: Model,
         /// In what way.
         loss: TensionLoss,
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
-        /// Where that is, m.
+        /// Its place, m.
         at_m: Vec2,
     },
     /// Nothing can hold the loads.
-    #[error("there is no resting place: {why}")]
     NoRestingPlace {
         /// What pulls it away.
         why: NoEquilibrium,
     },
     /// Two models were asked, and neither has an answer or a reason that is one for every model.
-    #[error("{told}; and {other}")]
     Neither {
         /// What says more of the scene.
         told: Box<Self>,
@@ -275,7 +289,6 @@ pub enum SolveError {
         other: Box<Self>,
     },
     /// The model cannot answer this kind of scene.
-    #[error("{model} cannot answer this scene: {feature}")]
     Unsupported {
         /// The model.
         model: Model,
@@ -283,33 +296,28 @@ pub enum SolveError {
         feature: Unsupported,
     },
     /// A number blew up.
-    #[error("{quantity} is no finite number {} along the cable at {}: a time step, a load or a stiffness is far out of proportion to the others", metres(*.arc_length_m), seconds(*.time_s))]
     NonFinite {
         /// Which quantity.
         quantity: &'static str,
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
         /// Time, s.
         time_s: f64,
     },
     /// The place to go on from lies inside an obstacle.
-    #[error(
-        "{model} cannot go on from where the cable runs through `{obstacle}`: {depth_m:.4} m inside at {arc_length_m:.3} m along it, at ({:.3} m, {:.3} m)", .at_m.x, .at_m.y
-    )]
     Buried {
         /// The model.
         model: Model,
         /// Name of the obstacle.
         obstacle: String,
-        /// How deep, m.
+        /// Depth, m.
         depth_m: f64,
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
-        /// Where that is, m.
+        /// Its place, m.
         at_m: Vec2,
     },
     /// The answer breaks a law: see [`crate::verify`].
-    #[error("the answer of {model} is not sound: {finding}")]
     Unsound {
         /// The model.
         model: Model,
@@ -317,7 +325,6 @@ pub enum SolveError {
         finding: Box<Finding>,
     },
     /// A setting that no model can work by.
-    #[error("the setting {name} = {value} cannot be worked by: it must lie in {allowed}")]
     Setting {
         /// Which.
         name: &'static str,
@@ -327,7 +334,6 @@ pub enum SolveError {
         allowed: &'static str,
     },
     /// A time step that cannot be taken.
-    #[error("a time step of {dt_s} s cannot be taken: it must lie in {allowed}")]
     TimeStep {
         /// The step asked for, s.
         dt_s: f64,
@@ -335,9 +341,6 @@ pub enum SolveError {
         allowed: &'static str,
     },
     /// The step was halved down to its floor and still failed.
-    #[error(
-        "{model} stopped at {time_s:.6} s: the step was halved to {dt_s:.3e} s and still failed: {} {place} ({cause})", left_over(*.residual_n)
-    )]
     StepFailed {
         /// The model.
         model: Model,

@@ -50,7 +50,7 @@ pub enum FileError {
     Scene {
         /// The file.
         path: String,
-        /// What is wrong.
+        /// The fault.
         fault: Box<SceneError>,
     },
     /// What it holds is not a table of a run.
@@ -58,7 +58,7 @@ pub enum FileError {
     Table {
         /// The folder.
         path: String,
-        /// What is wrong, and in which table.
+        /// The fault, and in which table.
         fault: String,
     },
     /// No run may be written there.
@@ -124,7 +124,7 @@ pub enum RunFolderFault {
 }
 
 impl FileError {
-    /// Whether something could not be written, not read.
+    /// Returns whether something could not be written, not read.
     #[must_use]
     pub fn is_of_writing(&self) -> bool {
         matches!(self, Self::Write { .. } | Self::RunFolder { .. })
@@ -372,8 +372,8 @@ impl RunFolder {
         Ok(Self { folder, place, manifest, node_choice, writer: None, _locks: locks })
     }
 
-    /// Where its files are for now: the folder asked for, or one in it while that holds an earlier
-    /// run.
+    /// Returns where its files are for now: the folder asked for, or one in it while that holds an
+    /// earlier run.
     #[must_use]
     pub fn place(&self) -> &Path {
         &self.place
@@ -483,7 +483,7 @@ fn make_folder(folder: &Path) -> Result<(), FileError> {
     }
 }
 
-/// What the manifest of a folder says; None where the folder is empty.
+/// Returns what the manifest of a folder says; None where the folder is empty.
 fn look(folder: &Path) -> Result<Option<Manifest>, FileError> {
     let listed = fs::read_dir(folder).and_then(|entries| {
         entries.map(|e| e.map(|e| e.file_name().to_string_lossy().into_owned())).collect::<io::Result<Vec<_>>>()
@@ -523,12 +523,12 @@ fn is_part_of_manifest(path: &Path) -> bool {
         && read_limited(path, MAX_MANIFEST_BYTES).is_ok_and(|bytes| bytes.starts_with(head) || head.starts_with(&bytes))
 }
 
-/// Whether it is a file: no link, folder, pipe or device.
+/// Returns whether it is a file: no link, folder, pipe or device.
 fn is_plain_file(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|about| about.is_file())
 }
 
-/// Whether there is anything of a name.
+/// Returns whether there is anything of a name.
 fn exists(path: &Path) -> bool {
     !matches!(fs::symlink_metadata(path), Err(e) if e.kind() == io::ErrorKind::NotFound)
 }
@@ -606,7 +606,7 @@ fn begins_as_table(path: &Path) -> io::Result<bool> {
     Ok(head.is_empty() || head == b"time_s,")
 }
 
-/// Whether the run in a folder came to an instant that would be lost.
+/// Returns whether the run in a folder came to an instant that would be lost.
 fn has_instant(folder: &Path) -> bool {
     let [history, ..] = TABLE_NAMES;
     fs::File::open(folder.join(history)).is_ok_and(has_rows)
@@ -729,14 +729,14 @@ pub struct SavedRun {
 }
 
 impl SavedRun {
-    /// Whether it came to its end; None where it does not say.
+    /// Returns whether it came to its end; None where it does not say.
     #[must_use]
     pub fn is_complete(&self) -> Option<bool> {
         self.manifest.as_ref().map(|m| m.status == RunStatus::Complete)
     }
 
-    /// What its reader should know, a sentence each: that it is partial, and what was left out of
-    /// its tables.
+    /// Returns what its reader should know, a sentence each: that it is partial, and what was left
+    /// out of its tables.
     #[must_use]
     pub fn remarks(&self) -> Vec<String> {
         let mut out = Vec::new();
@@ -783,7 +783,7 @@ pub fn load_run(folder: impl AsRef<Path>, limit_bytes: u64) -> Result<SavedRun, 
     Ok(SavedRun { scene, manifest, tables })
 }
 
-/// Whether a folder looks like that of a run: what [`load_run`] can be asked to read.
+/// Returns whether a folder looks like that of a run: what [`load_run`] can be asked to read.
 #[must_use]
 pub fn is_run(folder: impl AsRef<Path>) -> bool {
     let folder = folder.as_ref();

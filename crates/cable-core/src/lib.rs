@@ -21,7 +21,7 @@
 //! | time | s |
 //!
 //! Dependencies between the modules point one way, without a loop:
-//! `math, model_id → solution → error → scene → contact, catenary,
+//! `math, model_id, units → solution → error → wording → scene → contact, catenary,
 //! energy → problem → state → model → breakage, warnings, verify
 //! → simulation → timeline, analysis, summary, conformance`, and `record → files → any_error`
 //! beside them.
@@ -48,8 +48,10 @@ pub mod solution;
 pub mod state;
 pub mod summary;
 pub mod timeline;
+pub mod units;
 pub mod verify;
 mod warnings;
+pub mod wording;
 
 pub use any_error::Error;
 pub use cable_linalg as linalg;
@@ -61,3 +63,4 @@ pub use scene::{Cable, Load, Obstacle, Robot, Scene, Support};
 pub use simulation::Simulation;
 pub use solution::{ErrorEstimates, Solution, Warning};
 pub use state::State;
+pub use units::UnitSystem;

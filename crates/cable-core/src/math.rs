@@ -7,8 +7,14 @@ pub type Mat2 = nalgebra::Matrix2<f64>;
 /// A point as a scene file writes it: `[x, y]`.
 pub type Point = [f64; 2];
 
-/// Nodes and weights of 5-point Gauss–Legendre quadrature on [0, 1].
-pub(crate) const GAUSS: [(f64, f64); 5] = [
+/// Half the distance of the two nodes of 2-point Gauss–Legendre quadrature on an interval of length
+/// 1.
+pub(crate) const GAUSS_2_HALF_DISTANCE: f64 = 0.288_675_134_594_812_9;
+/// Nodes and weights of 3-point Gauss–Legendre quadrature on [0, 1].
+pub(crate) const GAUSS_3: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+/// The same of 5-point quadrature.
+pub(crate) const GAUSS_5: [(f64, f64); 5] = [
     (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
     (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
     (0.5, 0.284_444_444_444_444_44),
@@ -166,7 +172,7 @@ impl RigidPose {
         Vec2::new(cos * d.x + sin * d.y, cos * d.y - sin * d.x)
     }
 
-    /// Where a point of the body goes when it moves from here to `to`, m.
+    /// Returns where a point of the body goes when it moves from here to `to`, m.
     #[must_use]
     pub fn carried(&self, to: &Self, p: Vec2) -> Vec2 {
         to.place(self.to_local(p))

@@ -17,7 +17,10 @@ use crate::problem::{Problem, problems};
 use crate::robot::Vehicle;
 use crate::scene::Scene;
 use crate::solution::ErrorEstimates;
-use crate::solution::{CableSolution, Cost, Energy, MaxTension, Node, Solution, Warning, WarningKind};
+use crate::solution::{
+    CableSolution, Cost, Energy, Histories, MaxTension, Node, ShownEquilibrium, Solution, Warning, WarningCause,
+    WarningKind,
+};
 use crate::state::State;
 use crate::verify::{Depth, Verification, Verifier};
 use crate::warnings::{Bends, Observed, WarningMonitor};
@@ -207,7 +210,7 @@ impl Simulation {
         self.verification = self.verify(&self.answers);
     }
 
-    /// What the laws say of answers for the cables, with the robot as it is.
+    /// Returns what the laws say of answers for the cables, with the robot as it is.
     fn verify(&self, answers: &[CableSolution]) -> Verification {
         let robot = self.vehicle.as_ref().map(Vehicle::report);
         self.verifier.check_cables(&self.scene, answers, robot.as_ref(), self.time_s(), Depth::Always)
@@ -221,10 +224,8 @@ impl Simulation {
             let problem = cable.problem();
             let Some(outline) = problem.outline.as_ref().filter(|_| cable.robot_contact().is_none()) else { continue };
             if !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius) {
-                let message =
-                    format!("`{}` lies through the robot: {} knows nothing of it", answer.name, cable.model());
-                let kind = WarningKind::ThroughRobot;
-                self.warnings.push(Warning::new(kind, &answer.name, problem.length, [0.0, 0.0], message));
+                let cause = WarningCause::RobotIgnored { model: cable.model() };
+                self.warnings.push(Warning::new(cause, &answer.name, problem.length, [0.0; 2]));
             }
         }
     }
@@ -331,7 +332,7 @@ impl Simulation {
         }
     }
 
-    /// What the laws say of the present answers.
+    /// Returns what the laws say of the present answers.
     fn check_sound(&self) -> Result<(), SolveError> {
         // Masses and springs are a quick look and a second opinion, asked for by name: their coarse
         // meshes are told, not refused. A cable that broke at rest is where it was when it broke.
@@ -371,32 +372,51 @@ impl Simulation {
     fn warn_not_unique(&mut self) {
         for (k, (cable, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
             let problem = cable.problem();
-            let said = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == problem.cable.name;
-            if !problem.rubs(answer) || self.warnings.iter().any(said) {
+            if !problem.rubs(answer) {
                 continue;
             }
-            let seek =
-                || initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), &[], None).ok().flatten();
-            let known = if self.settings.histories { seek() } else { None };
-            let mut known: Vec<Warning> = known.map(|lay| lay.warnings).unwrap_or_default();
-            known.retain(said);
-            if known.is_empty() {
-                let range = if self.settings.histories { self.describe_histories(k) } else { None };
-                let range = range.unwrap_or_else(|| ", no other was sought".to_owned());
-                let message = format!(
-                    "With friction the resting place depends on how the cable was laid: this is the one found from its way{range}"
-                );
-                let name = &problem.cable.name;
-                known.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
+            let name = &problem.cable.name;
+            let of_cable = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == *name;
+            let seek = || {
+                let laid = initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), &[], None).ok()??;
+                laid.warnings.into_iter().find(of_cable)
+            };
+            let known = self.warnings.iter().position(|w| of_cable(w) && w.cause.histories().is_some());
+            if known.is_none() && self.warnings.iter().any(of_cable) {
+                continue;
             }
-            self.warnings.append(&mut known);
+            // A model that has chosen says which it shows; what others there are is asked here.
+            let at = known.unwrap_or_else(|| {
+                let cause = WarningCause::ManyEquilibria {
+                    shown: ShownEquilibrium::FromRoute,
+                    histories: Histories::NotSought,
+                };
+                self.warnings.push(Warning::new(cause, name, 0.0, [0.0; 2]));
+                self.warnings.len() - 1
+            });
+            let unknown = self.warnings[at].cause.histories() == Some(&Histories::NotSought);
+            let sought = if unknown && self.settings.histories { seek() } else { None };
+            let others = || self.other_histories(k).filter(|_| self.settings.histories);
+            let found = match (known, sought) {
+                (None, Some(sought)) => {
+                    self.warnings[at] = sought;
+                    None
+                }
+                (_, Some(sought)) => sought.cause.histories().cloned(),
+                (_, None) if unknown => others(),
+                (_, None) => None,
+            };
+            let cause = &mut self.warnings[at].cause;
+            let histories = found.or_else(|| cause.histories().cloned());
+            if let (Some(histories), WarningCause::ManyEquilibria { histories: told, .. }) = (histories, cause) {
+                *told = histories.beside(answer);
+            }
         }
     }
 
-    /// What other histories would have left in a cable, in words: in plan view, where a floor that
-    /// rubs everywhere chose the rest and `spans` has no answer; None where none was sought or
-    /// found.
-    fn describe_histories(&self, k: usize) -> Option<String> {
+    /// Other histories of a cable in plan view, where a floor that rubs everywhere chose the rest
+    /// and `spans` has no answer; None where none was sought or found.
+    fn other_histories(&self, k: usize) -> Option<Histories> {
         let cable = self
             .cables
             .get(k)
@@ -566,7 +586,7 @@ impl Simulation {
         MaxTension::of(&self.answers)
     }
 
-    /// What is to be said of this instant.
+    /// Returns what is to be said of this instant.
     pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
         self.warnings.iter().chain(self.warning_monitor.warnings())
     }
@@ -623,7 +643,8 @@ impl Simulation {
         }
     }
 
-    /// Where each cable is. Where one broke, its state has two nodes of the same arc length.
+    /// Returns where each cable is. Where one broke, its state has two nodes of the same arc
+    /// length.
     #[must_use]
     pub fn states(&self) -> Vec<State> {
         self.cables.iter().map(BreakableCable::state).collect()

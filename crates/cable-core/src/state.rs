@@ -18,7 +18,7 @@ pub struct State {
     pub position_m: Vec<Vec2>,
     /// Velocity of each node, m/s.
     pub velocity_m_per_s: Vec<Vec2>,
-    /// Whether it is a state of motion even where every velocity is zero: a model goes on from it
+    /// True if it is a state of motion even where every velocity is zero: a model goes on from it
     /// without bringing it to rest first.
     pub in_motion: bool,
 }
@@ -39,7 +39,7 @@ impl State {
         state
     }
 
-    /// Whether it is a state of motion: said to be one, or with a velocity.
+    /// Returns whether it is a state of motion: said to be one, or with a velocity.
     #[must_use]
     pub fn moves(&self) -> bool {
         self.in_motion || self.velocity_m_per_s.iter().any(|v| v.norm() > 0.0)

@@ -28,7 +28,7 @@ fn moved(within_s: f64) -> Scene {
 }
 
 fn held(sim: &Simulation) -> Vec<String> {
-    sim.warnings().filter(|w| w.kind == WarningKind::SupportHeld).map(|w| w.message.clone()).collect()
+    sim.warnings().filter(|w| w.kind == WarningKind::SupportHeld).map(|w| w.to_string()).collect()
 }
 
 fn at(sim: &Simulation) -> Vec2 {

@@ -130,7 +130,7 @@ fn other_histories_are_said_of_every_rest_that_rubs() {
     for (scene, model) in scenes {
         let answer = settle(&scene, model).unwrap();
         let said = answer.warnings.iter().find(|w| w.kind == WarningKind::NotUnique).expect("said");
-        assert!(said.message.contains("towards the end: "), "{model}: {}", said.message);
+        assert!(said.to_string().contains("towards the end: "), "{model}: {said}");
     }
 }
 
@@ -164,7 +164,7 @@ fn what_other_histories_leave_in_the_tank_is_said_in_figures() {
         let mut simulation = Simulation::new(scene, Model::Spans).expect("a scene");
         let answer = simulation.settle().expect("a rest");
         let tension = answer.max_tension().tension_n;
-        (tension, answer.warnings.into_iter().find(|w| w.kind == WarningKind::NotUnique).map(|w| w.message))
+        (tension, answer.warnings.into_iter().find(|w| w.kind == WarningKind::NotUnique).map(|w| w.to_string()))
     };
     let (_, said) = most(FrictionMobilised::LeastSliding);
     let (drawn, _) = most(FrictionMobilised::TowardsEnd);

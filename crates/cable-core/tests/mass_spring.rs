@@ -408,7 +408,7 @@ fn drawn_over(radius_m: Option<f64>, turn_deg: f64, segments: usize) -> (f64, f6
             let exact = 100.0 * (0.3 * turn).exp();
             worst = worst.max((hand.reaction_x_n.hypot(hand.reaction_y_n) / exact - 1.0).abs());
             said = said.max(s.cables[0].error_estimate.unwrap_or(0.0));
-            let warned = s.warnings.iter().any(|w| w.kind == WarningKind::Accuracy && w.message.contains("`beam`"));
+            let warned = s.warnings.iter().any(|w| w.kind == WarningKind::Accuracy && w.to_string().contains("`beam`"));
             assert!(warned, "nothing is said at {} s", s.time_s);
         }
     }

@@ -11,9 +11,16 @@ use cable_core::{Model, Settings, Simulation};
 /// Length of its cable, m.
 const LENGTH_M: f64 = 13.05;
 
+/// The robot's brakes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Brakes {
+    On,
+    Off,
+}
+
 /// Driven out until it can no further; the pull on the hitch from 9 s on, N, at each step; its
-/// brakes on from then on, or not.
-fn pulls(dt_s: f64, segments: usize, brakes: bool) -> Vec<f64> {
+/// brakes on from then on, or off.
+fn pulls(dt_s: f64, segments: usize, brakes: Brakes) -> Vec<f64> {
     let mut scene = catalog::robot_drive();
     let robot = scene.robot.as_mut().unwrap();
     robot.path = vec![RobotTask::Drive { to_x_m: 18.0, speed_m_per_s: 0.6 }];
@@ -33,7 +40,7 @@ fn pulls(dt_s: f64, segments: usize, brakes: bool) -> Vec<f64> {
     while run.time_s() < 24.0 {
         run.step(dt_s).unwrap();
         if run.time_s() > 9.0 {
-            if brakes {
+            if brakes == Brakes::On {
                 run.command_robot(Some(0.0));
             }
             let hitch = run.solution().cables[0].supports[1].clone();
@@ -69,7 +76,7 @@ fn swing(pulls: &[f64], dt_s: f64) -> [f64; 4] {
 
 #[test]
 fn a_robot_on_a_taut_cable_swings_as_its_cable_does_at_any_step_and_mesh() {
-    let coarse = swing(&pulls(1.0 / 120.0, 80, false), 1.0 / 120.0);
+    let coarse = swing(&pulls(1.0 / 120.0, 80, Brakes::Off), 1.0 / 120.0);
     println!("{coarse:?}");
     let [mean, first, last, hertz] = coarse;
     // H. M. Irvine, "Cable Structures", MIT Press, 1981: ω² = (π/L)² T/m · (1 + 8 λ²/π⁴) for small
@@ -81,7 +88,7 @@ fn a_robot_on_a_taut_cable_swings_as_its_cable_does_at_any_step_and_mesh() {
     let exact = 0.5 / length * (mean / m * (1.0 + 8.0 * lambda2 / pi4)).sqrt();
     assert!((hertz / exact - 1.0).abs() < 0.06, "{hertz} Hz, a string's {exact} Hz");
     // With its brakes on it is a fixed end: what is lost then is the cable's.
-    let braked = swing(&pulls(1.0 / 120.0, 80, true), 1.0 / 120.0);
+    let braked = swing(&pulls(1.0 / 120.0, 80, Brakes::On), 1.0 / 120.0);
     println!("{braked:?}");
     assert!(last < first, "it dies down: {coarse:?}");
     assert!(
@@ -89,7 +96,7 @@ fn a_robot_on_a_taut_cable_swings_as_its_cable_does_at_any_step_and_mesh() {
         "it dies down as its cable lets it: {coarse:?} {braked:?}"
     );
     for (dt_s, segments) in [(1.0 / 240.0, 80), (1.0 / 120.0, 160)] {
-        let other = swing(&pulls(dt_s, segments, false), dt_s);
+        let other = swing(&pulls(dt_s, segments, Brakes::Off), dt_s);
         println!("{other:?}");
         assert!((other[0] / mean - 1.0).abs() < 0.002, "{coarse:?} {other:?}");
         assert!((other[2] / last - 1.0).abs() < 0.02 && other[2] < other[1], "{coarse:?} {other:?}");

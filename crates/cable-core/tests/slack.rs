@@ -127,7 +127,7 @@ fn faults(s: &Scene) -> Result<Vec<String>, String> {
             out.push(format!("`{}` is pushed by {:.2e} N", r.name, -pull));
         }
     }
-    let word = answer.warnings.iter().any(|w| w.message.contains("in folds"));
+    let word = answer.warnings.iter().any(|w| w.to_string().contains("in folds"));
     if way < 0.9 * c.length_m && !word {
         out.push(format!("{:.2} m of {:.2} m are gone without a word", c.length_m - way, c.length_m));
     }

@@ -764,7 +764,7 @@ fn what_a_sliding_node_leaves_out_of_a_stiff_bend_is_said_in_every_step() {
         answer
             .warnings
             .iter()
-            .any(|w| w.kind == cable_core::solution::WarningKind::Accuracy && w.message.contains("bend"))
+            .any(|w| w.kind == cable_core::solution::WarningKind::Accuracy && w.to_string().contains("bend"))
     };
     let (stiff, flexible) = (step(2.0), step(0.0));
     let estimate = stiff.cables[0].error_estimate;

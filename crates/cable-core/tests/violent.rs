@@ -112,7 +112,7 @@ fn run(number: u64, seconds: f64, found: &mut Found) {
         }
         found.halved += answer.cost.halved_steps;
         let grown = answer.warnings.iter().filter(|w| w.kind == WarningKind::EnergyGrows);
-        found.grown.extend(grown.map(|w| format!("{number} at step {step}: {}", w.message)));
+        found.grown.extend(grown.map(|w| format!("{number} at step {step}: {w}")));
         let cable = &answer.cables[0];
         match &cable.momentum {
             Some(account) => {

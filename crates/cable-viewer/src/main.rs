@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
-use cable_viewer::app::screenshot;
+use cable_viewer::app::{gallery, screenshot};
 use cable_viewer::command::Command;
 use cable_viewer::io::{autosave, scene_file};
 use cable_viewer::render::software::Software;
@@ -21,6 +21,9 @@ struct Arguments {
     /// Draw the window to this PNG file instead of opening it.
     #[arg(long, value_name = "FILE")]
     screenshot: Option<PathBuf>,
+    /// Draw the pictures of docs/gallery.md into this folder instead of opening the window.
+    #[arg(long, value_name = "FOLDER")]
+    gallery: Option<PathBuf>,
     /// Size of the window or picture, in points.
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "1280x800", value_parser = parse_size)]
     size: [u32; 2],
@@ -70,6 +73,9 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: Arguments) -> Result<(), String> {
+    if let Some(folder) = arguments.gallery {
+        return gallery::save(&folder);
+    }
     let (scene, path) = first_scene(arguments.scene)?;
     let theme = match arguments.theme {
         Theme::System => egui::ThemePreference::System,

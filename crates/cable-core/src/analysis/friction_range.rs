@@ -83,7 +83,7 @@ pub enum ActionKind {
         cable: usize,
         /// Index of the support.
         support: usize,
-        /// Where, m.
+        /// Place, m.
         to_m: Point,
     },
     /// The robot is told a speed, m/s; None: its path.

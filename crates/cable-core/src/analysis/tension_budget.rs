@@ -100,8 +100,8 @@ struct DistributedLoad {
     thermal_stretch: f64,
 }
 
-/// Where the tension of a cable (by index) at an arc length (m) comes from. None without an answer
-/// there.
+/// Returns where the tension of a cable (by index) at an arc length (m) comes from. None without an
+/// answer there.
 #[must_use]
 pub fn tension_budget(
     scene: &Scene,

@@ -61,7 +61,8 @@ impl BreakableCable {
         accounts?.into_iter().reduce(|a, b| a.with(&b))
     }
 
-    /// Where the cable is; the end of one piece and the start of the next have the same arc length.
+    /// Returns where the cable is; the end of one piece and the start of the next have the same arc
+    /// length.
     pub fn state(&self) -> State {
         let mut out = State { time_s: self.time_s(), ..State::default() };
         for piece in &self.pieces {
@@ -73,12 +74,12 @@ impl BreakableCable {
         out
     }
 
-    /// Where each support sits, m on the whole cable.
+    /// Returns where each support sits, m on the whole cable.
     pub(super) fn support_arc_lengths(&self) -> Vec<f64> {
         (0..self.problem.supports.len()).map(|k| self.reaction(k).arc_length_m).collect()
     }
 
-    /// What the cable does to a support of the scene: nothing, if it is off it.
+    /// Returns what the cable does to a support of the scene: nothing, if it is off it.
     pub(super) fn reaction(&self, k: usize) -> SupportReaction {
         let held = self.pieces.iter().find_map(|p| {
             let own = p.part.supports.iter().position(|s| *s == Some(k))?;

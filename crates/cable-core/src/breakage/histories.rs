@@ -7,7 +7,7 @@
 
 use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;
-use crate::solution::CableSolution;
+use crate::solution::{CableSolution, EndMove, Histories};
 
 use super::BreakableCable;
 
@@ -18,49 +18,31 @@ const END_TRAVEL_FRACTION: f64 = 0.01;
 /// Time in which an end moves, s: none that counts for what else moves.
 const MOVE_TIME_S: f64 = 1e-6;
 
-/// What a history left.
-struct HistoryResult {
-    words: String,
-    /// Tension at the start, at the end and the greatest, N.
-    tension: [f64; 3],
-}
-
 impl BreakableCable {
-    /// What other histories would have left in the cable, in words; `sound` judges each as if it
-    /// were the answer.
-    pub(crate) fn histories(&self, sound: impl Fn(&CableSolution) -> bool) -> Option<String> {
+    /// Other histories, and what they would have left in the cable; `sound` judges each as if it
+    /// were the answer. None where none was found.
+    pub(crate) fn histories(&self, sound: impl Fn(&CableSolution) -> bool) -> Option<Histories> {
         let laid = self.answer();
         let way = END_TRAVEL_FRACTION * self.problem().length;
-        let mut found = Vec::new();
+        let (mut moves, mut left) = (Vec::new(), Vec::new());
         let last = self.problem().supports.len().checked_sub(1)?;
         for k in [0, last] {
             let (support, reaction) = (self.problem().supports.get(k)?, laid.supports.get(k)?);
             let pull = Vec2::new(reaction.reaction_x_n, reaction.reaction_y_n);
             let at = Vec2::new(reaction.x_m, reaction.y_m);
             let Some(out) = pull.try_normalize(0.0).filter(|_| support.at.is_some()) else { continue };
-            for (sign, what) in [(-1.0, "drawn out"), (1.0, "let in")] {
-                let there = self.after(k, [at + out * (sign * way), at]).filter(|a| sound(a));
-                let words = format!("`{}` {what} by {way:.3} m and put back", support.name);
-                found.extend(there.map(|a| HistoryResult { words, tension: tensions(&a) }));
+            for (sign, drawn_out_m) in [(-1.0, way), (1.0, -way)] {
+                let Some(there) = self.after(k, [at + out * (sign * way), at]).filter(|a| sound(a)) else { continue };
+                let tensions = tensions(&there);
+                moves.push(EndMove { support: support.name.clone(), drawn_out_m, greatest_n: tensions[2] });
+                left.push(tensions);
             }
         }
         let laid = tensions(&laid);
-        let range = |k: usize| {
-            let (low, high) =
-                found.iter().fold((laid[k], laid[k]), |(a, b), l| (smaller(a, l.tension[k]), larger(b, l.tension[k])));
-            format!("{low:.2} to {high:.2} N")
-        };
-        let each: Vec<String> = found.iter().map(|l| format!("with {}: {:.2} N", l.words, l.tension[2])).collect();
-        (!found.is_empty()).then(|| {
-            format!(
-                ". The greatest tension is {:.2} N as laid; {}. Among these histories the tension is {} at the start and {} at the end, and the greatest {}",
-                laid[2],
-                each.join("; "),
-                range(0),
-                range(1),
-                range(2),
-            )
-        })
+        let range =
+            |k: usize| left.iter().fold([laid[k], laid[k]], |[a, b], t: &[f64; 3]| [smaller(a, t[k]), larger(b, t[k])]);
+        let (start_n, end_n, range_n) = (range(0), range(1), range(2));
+        (!moves.is_empty()).then_some(Histories::EndsMoved { greatest_n: laid[2], moves, start_n, end_n, range_n })
     }
 
     /// The answer after a support has been to some places (m), one after the other.

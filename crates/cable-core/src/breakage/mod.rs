@@ -75,9 +75,9 @@ const MAX_SUPPORT_SPEED: f64 = 300.0;
 pub(crate) struct Break {
     /// When, s.
     pub time_s: f64,
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length_m: f64,
-    /// Where in the plane, m.
+    /// Place in the plane, m.
     pub at: Vec2,
     /// The support it tore off, if it did.
     pub detached_from: Option<String>,
@@ -129,6 +129,15 @@ struct BreakPoint {
     state: State,
     /// Where on it.
     at: rupture::Rupture,
+}
+
+/// The hold that draws a support.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Grasp {
+    /// The support goes where it is sent.
+    Rigid,
+    /// A spring pulls it there.
+    Spring,
 }
 
 /// What became of a piece in a step.
@@ -199,7 +208,7 @@ impl BreakableCable {
         &self.problem
     }
 
-    /// Where and when it broke, oldest first.
+    /// Returns where and when it broke, oldest first.
     pub fn breaks(&self) -> &[Break] {
         &self.breaks
     }
@@ -361,25 +370,25 @@ impl BreakableCable {
 
     /// From now on a support follows what leads it.
     pub fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        self.draw_support(support, target_m, false);
+        self.draw_support(support, target_m, Grasp::Rigid);
     }
 
     /// From now on a hand holds a support by a spring.
     pub fn pull_support(&mut self, support: usize, hand_m: Vec2) {
-        self.draw_support(support, hand_m, true);
+        self.draw_support(support, hand_m, Grasp::Spring);
     }
 
-    fn draw_support(&mut self, support: usize, to: Vec2, by_spring: bool) {
+    fn draw_support(&mut self, support: usize, to: Vec2, grasp: Grasp) {
         if !to.iter().all(|c| c.is_finite()) {
             return;
         }
         if let (Some(d), Some(pulled)) = (self.dragged.get_mut(support), self.pulled.get_mut(support)) {
-            (*d, *pulled) = (Some(to), by_spring);
+            (*d, *pulled) = (Some(to), grasp == Grasp::Spring);
         }
         for piece in &mut self.pieces {
             let own = piece.part.supports.iter().position(|k| *k == Some(support));
             match own {
-                Some(own) if by_spring => piece.mechanics.pull_support(own, to),
+                Some(own) if grasp == Grasp::Spring => piece.mechanics.pull_support(own, to),
                 Some(own) => piece.mechanics.drag_support(own, to),
                 None => {}
             }
@@ -403,8 +412,8 @@ impl BreakableCable {
         }
     }
 
-    /// What the cable does to the outline of the robot, all pieces together; None where no model
-    /// knows of it.
+    /// Returns what the cable does to the outline of the robot, all pieces together; None where no
+    /// model knows of it.
     pub(crate) fn robot_contact(&self) -> Option<RobotContact> {
         self.pieces
             .iter()
@@ -417,7 +426,7 @@ impl BreakableCable {
         self.pieces.iter().map(|p| p.mechanics.inner_step_s()).fold(f64::INFINITY, smaller)
     }
 
-    /// What it does to a support now, N.
+    /// Returns what it does to a support now, N.
     pub(crate) fn pull_on(&self, support: usize) -> Vec2 {
         let r = self.reaction(support);
         Vec2::new(r.reaction_x_n, r.reaction_y_n)
@@ -672,7 +681,7 @@ impl Piece {
     }
 }
 
-/// What is to be said of a motion that is too fast.
+/// Returns what is to be said of a motion that is too fast.
 fn too_fast(support: &SupportPoint) -> Option<Unsupported> {
     let (speed_m_per_s, time_s) = support.motion.as_ref()?.fastest();
     (speed_m_per_s > MAX_SUPPORT_SPEED).then(|| Unsupported::MotionTooFast {
@@ -694,7 +703,8 @@ fn add(sum: &mut StepReport, more: StepReport) {
     }
     for warning in more.warnings {
         // Of the parts of a step each says the same again.
-        sum.warnings.retain(|w| w.kind != warning.kind || w.message != warning.message);
+        let again = warning.to_string();
+        sum.warnings.retain(|w| w.kind != warning.kind || w.to_string() != again);
         sum.warnings.push(warning);
     }
 }

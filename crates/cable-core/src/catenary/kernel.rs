@@ -198,7 +198,7 @@ pub(super) struct Minimum {
     pub iterations: usize,
     /// Closure left, same unit as the lengths.
     pub closure: f64,
-    /// Whether the closure is acceptable.
+    /// True if the closure is acceptable.
     pub converged: bool,
 }
 

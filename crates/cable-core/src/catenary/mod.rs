@@ -20,6 +20,7 @@
 mod chain;
 mod kernel;
 
+pub use crate::error::SpanError;
 pub use chain::{Chain, ChainForce, PointForce};
 
 use kernel::{ChainPiece, HorizontalForce};
@@ -46,41 +47,9 @@ pub struct Span {
     pub thermal_stretch: f64,
 }
 
-/// Why a span has no answer.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum SpanError {
-    /// A number that is not finite or not positive where it must be.
-    #[error("a span needs finite numbers, a positive length and a positive stiffness")]
-    NotANumber,
-    /// No load and no tension: any shape will do.
-    #[error("a cable of {length_m} m without weight is slack over {chord_m} m: it has no one shape")]
-    Slack {
-        /// Its length, m.
-        length_m: f64,
-        /// Distance of its ends, m.
-        chord_m: f64,
-    },
-    /// Inextensible and not longer than the way.
-    #[error("an inextensible cable of {length_m} m cannot span {chord_m} m")]
-    TooShort {
-        /// Its length, m.
-        length_m: f64,
-        /// Distance of its ends, m.
-        chord_m: f64,
-    },
-    /// Newton stopped early.
-    #[error("no convergence in {iterations} iterations: the span closes to {closure_m:.3e} m")]
-    NotConverged {
-        /// Iterations done.
-        iterations: usize,
-        /// Distance between the computed end and the given one, m.
-        closure_m: f64,
-    },
-}
-
 impl From<SpanError> for SolveError {
     fn from(e: SpanError) -> Self {
-        Self::NoRestingPlace { why: NoEquilibrium::Span { reason: e.to_string() } }
+        Self::NoRestingPlace { why: NoEquilibrium::Span(e) }
     }
 }
 

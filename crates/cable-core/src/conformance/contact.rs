@@ -21,7 +21,7 @@ pub(super) fn draped(friction: f64) -> Scene {
     scene
 }
 
-/// How deep the cable is in the pipe, relative to its length.
+/// Returns how deep the cable is in the pipe, relative to its length.
 pub(super) fn penetration(model: Model) -> Result<f64, Error> {
     let scene = draped(0.0);
     let (answer, cable) = (settle(&scene, model)?, &scene.cables[0]);
@@ -31,7 +31,7 @@ pub(super) fn penetration(model: Model) -> Result<f64, Error> {
     Ok(depth.fold(0.0, larger) / cable.length_m)
 }
 
-/// What the forces of supports and pipe leave of the weight.
+/// Returns what the forces of supports and pipe leave of the weight.
 pub(super) fn weight_not_held(model: Model) -> Result<f64, Error> {
     let scene = draped(0.0);
     let (answer, weight) = (settle(&scene, model)?, weight_n(&scene));

@@ -16,8 +16,8 @@ const TURN: f64 = 2.0;
 /// Dead force on the end that nobody moves, N.
 const LOAD_N: f64 = 100.0;
 
-/// How far a force of the pipe on the cable is outside of the friction cone, relative to the
-/// greatest one. Its normal is known: from the middle of the pipe to the cable.
+/// Returns how far a force of the pipe on the cable is outside of the friction cone, relative to
+/// the greatest one. Its normal is known: from the middle of the pipe to the cable.
 pub(super) fn outside_cone(model: Model) -> Result<f64, Error> {
     let answer = settle(&draped(FRICTION), model)?;
     let cable = &answer.cables[0];
@@ -33,7 +33,7 @@ pub(super) fn outside_cone(model: Model) -> Result<f64, Error> {
     Ok(worst / greatest)
 }
 
-/// Where a point of the cable is, m.
+/// Returns where a point of the cable is, m.
 fn place(nodes: &[Node], arc_length_m: f64) -> Vec2 {
     let after = nodes.partition_point(|n| n.arc_length_m < arc_length_m).clamp(1, nodes.len() - 1);
     let (a, b) = (&nodes[after - 1], &nodes[after]);

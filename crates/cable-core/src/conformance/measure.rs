@@ -46,7 +46,7 @@ pub(super) fn reactions_n(s: &Solution) -> [f64; 2] {
     [all.iter().map(|r| r.reaction_x_n).sum(), all.iter().map(|r| r.reaction_y_n).sum()]
 }
 
-/// Whether two things differ, as an error.
+/// Returns whether two things differ, as an error.
 pub(super) fn difference<T: PartialEq>(a: &T, b: &T) -> f64 {
     f64::from(u8::from(a != b))
 }

@@ -38,7 +38,7 @@ pub struct Check {
 }
 
 impl Check {
-    /// Whether it holds; a number that is not one does not.
+    /// Returns whether it holds; a number that is not one does not.
     #[must_use]
     pub fn holds(&self) -> bool {
         self.error <= self.tolerance
@@ -309,7 +309,7 @@ pub fn run(model: Model) -> Result<Vec<Check>, Error> {
     LAWS.iter().map(|law| check(law, model)).collect()
 }
 
-/// Whether a law holds, or else whether a model that cannot answer says so.
+/// Returns whether a law holds, or else whether a model that cannot answer says so.
 fn check(law: &ModelLaw, model: Model) -> Result<Check, Error> {
     let found = (law.error)(model);
     if law.ability.is_among(model.capabilities()) {

@@ -29,7 +29,7 @@ fn let_go(supports: std::ops::Range<usize>) -> Scene {
     scene
 }
 
-/// How far a node of a cable at rest goes in a quarter of a second, relative to the length.
+/// Returns how far a node of a cable at rest goes in a quarter of a second, relative to the length.
 pub(super) fn stirred(model: Model) -> Result<f64, Error> {
     let mut worst = 0.0;
     run(base(), model, 15, |answer| {
@@ -69,7 +69,8 @@ pub(super) fn free_fall(model: Model) -> Result<f64, Error> {
     Ok(((v1 - v0) / (t1 - t0) + Vec2::new(0.0, g)).norm() / g)
 }
 
-/// What of the change of momentum in a step no impulse explains, relative to what fell meanwhile.
+/// Returns what of the change of momentum in a step no impulse explains, relative to what fell
+/// meanwhile.
 pub(super) fn momentum_from_nowhere(model: Model) -> Result<f64, Error> {
     let scene = let_go(1..2);
     let fallen = weight_n(&scene) * FRAME_S;
@@ -87,8 +88,8 @@ pub(super) fn momentum_from_nowhere(model: Model) -> Result<f64, Error> {
     Ok(if counted { worst } else { f64::NAN })
 }
 
-/// What an undamped cable has more of than at the start, relative to its weight falling by its
-/// length.
+/// Returns what an undamped cable has more of than at the start, relative to its weight falling by
+/// its length.
 pub(super) fn energy_from_nowhere(model: Model) -> Result<f64, Error> {
     let scene = let_go(1..2);
     let scale = weight_n(&scene) * scene.cables[0].length_m;

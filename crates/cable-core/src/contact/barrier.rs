@@ -48,9 +48,9 @@ impl Barrier {
         }
     }
 
-    /// How much less the normal force at a gap (m) is where the gap is wider by `by` (m), N. The
-    /// curvature times that is more, as the barrier is convex, and many times as much where the gap
-    /// is less than `by`.
+    /// Returns how much less the normal force at a gap (m) is where the gap is wider by `by` (m),
+    /// N. The curvature times that is more, as the barrier is convex, and many times as much where
+    /// the gap is less than `by`.
     #[must_use]
     pub(crate) fn relief(&self, gap: f64, by: f64) -> f64 {
         let closed = self.at(gap).slope;

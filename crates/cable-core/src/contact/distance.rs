@@ -52,7 +52,7 @@ pub(crate) fn segment_segment(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> f64 {
     between_segments(a, b, p, q).norm()
 }
 
-/// Whether the open segments `a`–`b` and `p`–`q` cross in one point.
+/// Returns whether the open segments `a`–`b` and `p`–`q` cross in one point.
 #[must_use]
 pub fn cross_properly(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> bool {
     let side = |u: Vec2, v: Vec2, w: Vec2| cross(v - u, w - u);

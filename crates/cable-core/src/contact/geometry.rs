@@ -22,7 +22,7 @@ use super::Gap;
 use super::distance::nearest_fraction;
 use super::outline::Outline;
 use crate::math::{Point, RigidPose, Vec2, cross, perp, vec2};
-use crate::scene::{Obstacle, Shape};
+use crate::scene::{LineEnds, Obstacle, Shape};
 
 /// Edges that turn by less (rad) are one edge: a corner the cable cannot feel would only cost time.
 const MIN_EDGE_TURN: f64 = 1e-12;
@@ -71,7 +71,7 @@ pub struct Edge {
 /// A corner of a body or a circle: a point with an offset.
 #[derive(Clone, Copy, Debug)]
 pub struct Corner {
-    /// Where, m.
+    /// Place, m.
     pub at: Vec2,
     /// Feature number.
     pub feature: usize,
@@ -92,7 +92,7 @@ pub struct Part {
 }
 
 impl Corner {
-    /// Whether the boundary turns away from the outside here (an open end counts).
+    /// Returns whether the boundary turns away from the outside here (an open end counts).
     #[must_use]
     pub(crate) fn is_convex(&self) -> bool {
         match (self.before, self.after) {
@@ -108,8 +108,8 @@ impl Corner {
         perp(self.before.unwrap_or_default() + self.after.unwrap_or_default())
     }
 
-    /// How many of the edges that meet here have this corner as their nearest point to `p`, and how
-    /// many meet.
+    /// Returns how many of the edges that meet here have this corner as their nearest point to `p`,
+    /// and how many meet.
     #[must_use]
     pub fn clamped(&self, p: Vec2) -> (usize, usize) {
         let d = p - self.at;
@@ -184,7 +184,7 @@ impl Body {
         std::iter::once(k).chain(last).filter_map(|k| self.corner(k))
     }
 
-    /// Whether an edge ends at the corner or circle `feature`.
+    /// Returns whether an edge ends at the corner or circle `feature`.
     #[must_use]
     pub(crate) fn is_beside(&self, edge: usize, feature: usize) -> bool {
         let n = self.edges.len();
@@ -192,20 +192,20 @@ impl Body {
         local == edge || local == edge + 1 || (self.closed && local == 0 && edge + 1 == n)
     }
 
-    /// Whether it is an outline that moves.
+    /// Returns whether it is an outline that moves.
     #[must_use]
     pub fn moves(&self) -> bool {
         self.bvh.is_none()
     }
 
-    /// Whether it is ground: solid below an open line, so that nothing can go round it.
+    /// Returns whether it is ground: solid below an open line, so that nothing can go round it.
     #[must_use]
     pub(crate) fn is_ground(&self) -> bool {
         self.solid && !self.closed && self.center.is_none()
     }
 
-    /// Whether contact at a corner can be felt by a straight segment: not where a solid recedes
-    /// from it.
+    /// Returns whether contact at a corner can be felt by a straight segment: not where a solid
+    /// recedes from it.
     #[must_use]
     pub(crate) fn juts_out(&self, corner: &Corner) -> bool {
         !self.solid || corner.is_convex()
@@ -310,10 +310,10 @@ impl Geometry {
         let mut bodies: Vec<Body> = Vec::with_capacity(obstacles.len());
         for (obstacle, o) in obstacles.iter().enumerate() {
             let (points, closed, solid, center, grow) = match &o.shape {
-                Shape::Terrain { points_m } => (left_to_right(clean(points_m, false)), false, true, None, 0.0),
-                Shape::Polygon { points_m } => (clockwise(clean(points_m, true)), true, true, None, 0.0),
+                Shape::Terrain { points_m } => (left_to_right(clean(points_m, LineEnds::Open)), false, true, None, 0.0),
+                Shape::Polygon { points_m } => (clockwise(clean(points_m, LineEnds::Joined)), true, true, None, 0.0),
                 Shape::Polyline { points_m, thickness_m } => {
-                    (clean(points_m, false), false, false, None, thickness_m / 2.0)
+                    (clean(points_m, LineEnds::Open), false, false, None, thickness_m / 2.0)
                 }
                 Shape::Circle { center_m, radius_m } => (Vec::new(), false, true, Some(vec2(*center_m)), *radius_m),
             };
@@ -368,7 +368,7 @@ impl Geometry {
         }
     }
 
-    /// Whether there is no feature.
+    /// Returns whether there is no feature.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.bodies.is_empty()
@@ -425,7 +425,8 @@ impl Body {
 }
 
 /// Points as vectors without repeats, non-finite ones and corners that do not turn.
-fn clean(points: &[Point], closed: bool) -> Vec<Vec2> {
+fn clean(points: &[Point], ends: LineEnds) -> Vec<Vec2> {
+    let closed = ends == LineEnds::Joined;
     let mut out: Vec<Vec2> = Vec::with_capacity(points.len());
     for p in points.iter().map(|p| vec2(*p)).filter(|p| p.iter().all(|c| c.is_finite())) {
         if out.last() != Some(&p) {

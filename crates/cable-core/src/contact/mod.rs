@@ -81,7 +81,7 @@ impl World {
         self.geometry.place_outline(outline, placement);
     }
 
-    /// Whether there is nothing to touch.
+    /// Returns whether there is nothing to touch.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.geometry.is_empty()

@@ -50,8 +50,8 @@ impl Outline {
         (0..n).map(move |k| [self.corners[k], self.corners[(k + 1) % n]].map(|p| placement.place(p)))
     }
 
-    /// Whether a chain of points (m) stays farther away than `least` (m) from the outline at a
-    /// placement.
+    /// Returns whether a chain of points (m) stays farther away than `least` (m) from the outline
+    /// at a placement.
     #[must_use]
     pub(crate) fn is_clear(&self, placement: RigidPose, chain: impl Iterator<Item = Vec2>, least: f64) -> bool {
         let far = self.corners.iter().map(|c| c.norm()).fold(0.0, larger) + least;

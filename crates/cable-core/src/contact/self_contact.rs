@@ -94,13 +94,14 @@ struct Pairing {
 }
 
 impl SelfContact {
-    /// Whether the cable meets itself at all.
+    /// Returns whether the cable meets itself at all.
     #[must_use]
     pub(crate) fn is_on(&self) -> bool {
         self.diameter > 0.0
     }
 
-    /// Whether the node `p` may touch segment `e` of a cable with nodes at these arc lengths, m.
+    /// Returns whether the node `p` may touch segment `e` of a cable with nodes at these arc
+    /// lengths, m.
     fn apart(&self, arc: &[f64], p: usize, e: usize) -> bool {
         let between = if p <= e { arc[e] - arc[p] } else { arc[p] - arc[e + 1] };
         between >= MIN_ARC_DIAMETERS * self.diameter
@@ -148,7 +149,7 @@ impl SelfContact {
         out.sort_by_key(|pair| (pair.node, pair.segment));
     }
 
-    /// What inclusion and exclusion leave of joint `v` for node `p`.
+    /// Returns what inclusion and exclusion leave of joint `v` for node `p`.
     fn joint_weight(&self, x: &[Vec2], arc: &[f64], p: usize, v: usize) -> f64 {
         let clamped = |e: usize, end: f64| {
             (e + 1 < x.len() && self.apart(arc, p, e)).then(|| nearest_fraction(x[p], x[e], x[e + 1]) == end)

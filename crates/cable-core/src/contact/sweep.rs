@@ -167,7 +167,7 @@ fn way_off([a, b]: [Vec2; 2], p: Vec2, n: Vec2) -> f64 {
 }
 
 impl Geometry {
-    /// Whether every gap of a segment is above `least` (m); `round` as in
+    /// Returns whether every gap of a segment is above `least` (m); `round` as in
     /// [`Self::free_fraction_round`].
     #[must_use]
     pub(crate) fn is_clear(&self, [a, b]: [Vec2; 2], least: f64, round: [Option<usize>; 2]) -> bool {

@@ -9,7 +9,7 @@ use crate::math::{Vec2, cross};
 /// A point no cable passes through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
-    /// Where it is, m.
+    /// Its place, m.
     pub at: Vec2,
     /// Index of the body.
     pub body: usize,

@@ -5,127 +5,99 @@ use thiserror::Error;
 use crate::math::Vec2;
 
 /// What a model lacks.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Unsupported {
     /// The cable has bending stiffness.
-    #[error("the cable has bending stiffness")]
     BendingStiffness,
     /// A cable with bending stiffness runs over a pulley.
-    #[error("bending stiffness over pulleys")]
     BendingOverPulleys,
     /// The scene is seen from above.
-    #[error("in plan view the floor rubs everywhere")]
     PlanView,
     /// The cable is an obstacle to itself.
-    #[error("the cable can touch itself")]
     SelfContact,
     /// The cable is an obstacle to itself and runs over a pulley.
-    #[error("contact of the cable with itself in a scene with pulleys")]
     SelfContactWithPulleys,
     /// The cable touches itself where the search for an equilibrium begins.
-    #[error("a cable that touches itself where it is laid (near {arc_length_m:.2} m): draw it a route that does not")]
     SelfContactAtStart {
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
     },
     /// A support lets go at some time.
-    #[error("a support lets go")]
     Release,
     /// Masses accelerate.
-    #[error("motion with inertia")]
     Inertia,
     /// Friction is asked for that is fully mobilised towards one end.
-    #[error("friction mobilised {towards} (only spans answers that, of a flexible cable at rest)")]
     MobilisedFriction {
         /// The name of the choice in files.
         towards: &'static str,
     },
     /// The model is built by the program that uses the library.
-    #[error("it is built by the program that brings it along")]
     ExternalModel,
     /// The cable reaches an obstacle.
-    #[error("the cable reaches an obstacle {arc_length_m:.3} m along it")]
     Obstacle {
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
     },
     /// An obstacle is met where the model can begin no contact.
-    #[error("an obstacle is met {arc_length_m:.3} m along the cable at ({:.3} m, {:.3} m)", .at_m.x, .at_m.y)]
     ContactWithoutSeat {
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
-        /// Where that is, m.
+        /// Its place, m.
         at_m: Vec2,
     },
     /// The cable lifts off the wheel of a pulley.
-    #[error("the cable lifts off the wheel of `{support}`")]
     OffWheel {
         /// The pulley's name.
         support: String,
     },
     /// No fixed support holds the cable.
-    #[error("no support holds the cable: two loads or loose ends, and obstacles at most")]
     NothingHolds,
     /// A support holds no point of the cable.
-    #[error("a grip without a place")]
     SupportWithoutPlace,
     /// The search for the contacts does not end.
-    #[error("contacts come and go without end near {arc_length_m:.3} m")]
     EndlessContacts {
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
     },
     /// The cable would jump over a corner.
-    #[error("the cable springs past a corner at ({:.3} m, {:.3} m)", .at_m.x, .at_m.y)]
     CornerPassed {
         /// Where the corner is, m.
         at_m: Vec2,
     },
     /// A support is inside an obstacle.
-    #[error("a support is inside an obstacle at ({:.3} m, {:.3} m)", .at_m.x, .at_m.y)]
     SupportInside {
-        /// Where it is, m.
+        /// Its place, m.
         at_m: Vec2,
     },
     /// A point load rests on an obstacle.
-    #[error("the load at {arc_length_m:.3} m lies on an obstacle")]
     LoadOnObstacle {
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
     },
     /// A part of the cable without tension is drawn along.
-    #[error("the cable lies loose and is drawn along, from {arc_length_m:.3} m")]
     LooseCableDrawn {
         /// Where that part begins, m.
         arc_length_m: f64,
     },
     /// What the model found does not pass its own verification.
-    #[error("{finding} {arc_length_m:.3} m along it at ({:.3} m, {:.3} m)", .at_m.x, .at_m.y)]
     Unverified {
-        /// What is wrong.
+        /// The fault.
         finding: &'static str,
-        /// Where on the cable, m.
+        /// Place on the cable, m.
         arc_length_m: f64,
-        /// Where that is, m.
+        /// Its place, m.
         at_m: Vec2,
     },
     /// A state without nodes.
-    #[error("a state of no nodes")]
     EmptyState,
     /// A state of a cable of another length.
-    #[error("a state of a cable of another length")]
     StateOfOtherLength,
     /// A state of the whole cable, for one that is broken.
-    #[error("the state of a whole cable for one that broke (reset first)")]
     StateOfWholeCable,
     /// An edit that a broken cable cannot follow.
-    #[error("another length, other supports or loads for a cable that broke (reset first)")]
     EditOfBrokenCable,
     /// A support moves faster than masses are followed.
-    #[error(
-        "the motion of support `{support}`, which reaches {speed_m_per_s:.1} m/s at {time_s:.4} s: with inertia one is followed up to {limit_m_per_s} m/s"
-    )]
     MotionTooFast {
         /// The support's name.
         support: String,
@@ -137,7 +109,6 @@ pub enum Unsupported {
         limit_m_per_s: f64,
     },
     /// A question about the safe reach that has no answer.
-    #[error("{0}")]
     Reach(UnsupportedReach),
 }
 

@@ -15,7 +15,7 @@ pub enum Question {
     History(Inertia),
 }
 
-/// Whether nothing but pulleys holds the cable.
+/// Returns whether nothing but pulleys holds the cable.
 fn runs_free(problem: &Problem) -> bool {
     let held = |s: &SupportPoint| s.at.is_some() && s.kind != SupportKind::Pulley;
     problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) && !problem.supports.iter().any(held)
@@ -55,7 +55,7 @@ pub(crate) fn choose_for_all(problems: &[Arc<Problem>], question: Question) -> (
     chosen.max_by_key(|(model, _)| model.rank()).unwrap_or((Model::Catenary, String::new()))
 }
 
-/// What is built where a model was chosen: `spans` and `fem` take turns.
+/// Returns what is built where a model was chosen: `spans` and `fem` take turns.
 #[must_use]
 pub(crate) fn built_for(chosen: Model) -> Model {
     if chosen == Model::Spans { Model::Auto } else { chosen }

@@ -140,7 +140,7 @@ impl TensionGauge {
         }
     }
 
-    /// Where and when the mean first reached the limit since [`Self::watch`].
+    /// Returns where and when the mean first reached the limit since [`Self::watch`].
     #[must_use]
     pub fn reached(&self) -> Option<TensionPeak> {
         self.reached
@@ -151,7 +151,7 @@ impl TensionGauge {
         self.scale = [self.scale[0] / length, self.scale[1] / time];
     }
 
-    /// Whether anything is gauged, and the past is not known up to a time (s of the model).
+    /// Returns whether anything is gauged, and the past is not known up to a time (s of the model).
     #[must_use]
     pub fn asks(&self, time_s: f64) -> bool {
         self.on && !((self.time_s - time_s * self.scale[1]).abs() <= SAME_TIME_S)
@@ -213,7 +213,7 @@ impl TensionGauge {
         }
     }
 
-    /// Whether its points are the nodes of a mesh (arc lengths, m).
+    /// Returns whether its points are the nodes of a mesh (arc lengths, m).
     #[must_use]
     pub fn knows(&self, arcs: &[f64]) -> bool {
         let by = self.scale[0];

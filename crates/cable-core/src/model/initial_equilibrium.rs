@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use super::spans::SpansModel;
 use super::{Mechanics, Settings};
-use crate::error::SolveError;
+use crate::error::{NoEquilibrium, SolveError};
 use crate::math::RigidPose;
 use crate::math::Vec2;
 use crate::problem::{Problem, SupportPoint};
-use crate::solution::{CableSolution, Node, Warning, WarningKind};
+use crate::solution::{CableSolution, Node, ShownEquilibrium, SlideReason, Warning, WarningCause};
 use crate::state::State;
 
 /// A cable this near to the robot is answered by the model that knows of it, m. Less: a step passes
@@ -32,8 +32,8 @@ pub struct InitialEquilibrium {
     pub spans: Box<SpansModel>,
 }
 
-/// Where the cable comes to lie with the least sliding, supports `dragged` (m) and the robot led to
-/// where it is; None where `spans` does not know.
+/// Returns where the cable comes to lie with the least sliding, supports `dragged` (m) and the
+/// robot led to where it is; None where `spans` does not know.
 ///
 /// # Errors
 /// That it slides from where it is laid.
@@ -59,23 +59,22 @@ pub fn initial_equilibrium(
         if spans.lies_loose() {
             return Ok(None);
         }
-        warnings.iter_mut().filter(|w| w.kind == WarningKind::NotUnique).for_each(of_flexible);
+        warnings.iter_mut().for_each(of_flexible);
     }
     let answer = spans.solution();
     let clear = !meets_outline(problem, robot_pose, &answer) && !is_buried(problem, &answer);
     Ok(clear.then(|| InitialEquilibrium { answer, warnings, spans: Box::new(spans) }))
 }
 
-/// Says of which cable the histories are that are known.
+/// The histories that are known are those of a flexible cable.
 fn of_flexible(warning: &mut Warning) {
-    let figures = warning.message.split_once(". ").map_or("", |(_, figures)| figures);
-    warning.message = format!(
-        "With friction the resting place depends on how the cable was laid: this is the one found from its way. Of a flexible cable in its place: {figures}"
-    );
+    if let WarningCause::ManyEquilibria { shown, .. } = &mut warning.cause {
+        *shown = ShownEquilibrium::FromRouteAsFlexible;
+    }
 }
 
-/// Whether a flexible cable that slid from where it was laid slides on from where it is said to
-/// rest: that was no rest then.
+/// Returns whether a flexible cable that slid from where it was laid slides on from where it is
+/// said to rest: that was no rest then.
 #[must_use]
 pub(crate) fn slides_on(problem: &Arc<Problem>, settings: Settings, answer: &CableSolution) -> bool {
     let route = answer.nodes.iter().map(Node::at).collect();
@@ -104,11 +103,20 @@ pub fn work(problem: &Problem, from: &State, to: &CableSolution, time_s: f64) ->
     weight + loads + hung
 }
 
-/// What there is to say of a rest that was found where a cable slid to.
+/// Returns what there is to say of a rest that was found where a cable slid to.
 #[must_use]
 pub(crate) fn slid_first(problem: &Problem, slides: &SolveError) -> Warning {
-    let message = format!("This is not where the cable was laid: from there {slides}. How it moved there is not shown");
-    Warning::new(WarningKind::Stabilised, &problem.cable.name, 0.0, [0.0; 2], message)
+    let why = match slides {
+        SolveError::NoRestingPlace { why: NoEquilibrium::NoFriction } => SlideReason::NoFriction,
+        SolveError::NoRestingPlace { why: NoEquilibrium::TooLittleFriction { friction_ratio } } => {
+            SlideReason::TooLittleFriction { friction_ratio: *friction_ratio }
+        }
+        SolveError::NoRestingPlace { why: NoEquilibrium::UnheldForce { left_n, loads_n } } => {
+            SlideReason::UnheldForce { left_n: *left_n, loads_n: *loads_n }
+        }
+        _ => SlideReason::NothingHolds,
+    };
+    Warning::new(WarningCause::SlidFromRoute { why }, &problem.cable.name, 0.0, [0.0; 2])
 }
 
 /// The cable as `spans` can lay it: without the robot, which moves; a stiff one as a flexible one,
@@ -126,14 +134,14 @@ fn as_flexible(problem: &Arc<Problem>) -> Arc<Problem> {
     Arc::new(flexible)
 }
 
-/// Whether the cable is in touch with the robot, or in its place.
+/// Returns whether the cable is in touch with the robot, or in its place.
 #[must_use]
 pub(crate) fn meets_outline(problem: &Problem, robot_pose: Option<RigidPose>, answer: &CableSolution) -> bool {
     let (Some(outline), Some(at)) = (&problem.outline, robot_pose) else { return false };
     !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius + ROBOT_CLEARANCE_M)
 }
 
-/// Whether it lies in an obstacle, deeper than what the models disagree by.
+/// Returns whether it lies in an obstacle, deeper than what the models disagree by.
 #[must_use]
 pub(crate) fn is_buried(problem: &Problem, answer: &CableSolution) -> bool {
     let gap = |n: &Node| problem.world.signed_gap(n.at(), BURIAL_SEARCH_M).map(|g| g.gap_m);

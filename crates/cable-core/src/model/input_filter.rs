@@ -20,7 +20,7 @@
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{HandReport, Warning, WarningKind};
+use crate::solution::{HandReport, Warning, WarningCause};
 
 /// Time constant of each lag, s. Smaller: the cable feels the steps of the hand; larger: the
 /// support trails the hand by 3τ. Chosen so that the trailing (45 ms) is under three frames.
@@ -55,7 +55,7 @@ pub const HAND_STIFFNESSES: std::ops::RangeInclusive<f64> = 1e-3..=1e9;
 /// Below this distance (m) from the target the support is put on it.
 const ARRIVED_M: f64 = 1e-9;
 
-/// Whether a support is a robot's: it is where the robot is, and does not follow it.
+/// Returns whether a support is a robot's: it is where the robot is, and does not follow it.
 #[must_use]
 pub(crate) fn is_led(problem: &Problem, support: usize) -> bool {
     problem.supports.get(support).is_some_and(|s| s.kind == SupportKind::Robot)
@@ -71,11 +71,8 @@ pub(crate) fn held_warning(
     fastest: f64,
 ) -> Warning {
     let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
-    let behind = f.behind_m();
-    let message =
-        format!("support `{name}` lags {behind:.2} m behind where it is sent: it follows at {fastest} m/s at most");
-    let speeds = [f.velocity().norm(), fastest];
-    Warning::new(WarningKind::SupportHeld, &problem.cable.name, arc_length_m, speeds, message)
+    let cause = WarningCause::Lags { support: name.to_owned(), behind_m: f.behind_m() };
+    Warning::new(cause, &problem.cable.name, arc_length_m, [f.velocity().norm(), fastest])
 }
 
 /// Stiffness of a hand's spring unless asked otherwise, N/m: with the whole load on a cable
@@ -143,8 +140,9 @@ impl Hand {
         HandReport { x_m: end.x, y_m: end.y, stiffness_n_per_m: self.stiffness, force_x_n: force.x, force_y_n: force.y }
     }
 
-    /// What is to be said where the hand is behind its target, or the support, at `at` (m), behind
-    /// the hand by more than a hundredth of the cable; `force` on the cable in N, `fastest` in m/s.
+    /// Returns what is to be said where the hand is behind its target, or the support, at `at` (m),
+    /// behind the hand by more than a hundredth of the cable; `force` on the cable in N, `fastest`
+    /// in m/s.
     #[must_use]
     pub fn warning(
         &self,
@@ -157,22 +155,16 @@ impl Hand {
     ) -> Option<Warning> {
         let name = problem.supports.get(support).map_or("", |s| s.name.as_str());
         let (slow, behind) = (self.end.behind_m(), (self.end.position() - at).norm());
-        let (k, pulls) = (self.stiffness, force.norm());
         let held = behind > HAND_GIVE_FRACTION * problem.length;
-        let mut told = Vec::new();
-        if held {
-            told.push(format!(
-                "is {behind:.2} m behind the hand, which pulls it with {pulls:.0} N by a spring of {k:.0} N/m"
-            ));
-        }
-        if slow > 0.0 {
-            let hand = if held { "the hand" } else { "its hand" };
-            told.push(format!("{hand} lags {slow:.2} m behind where it is sent: it follows at {fastest} m/s at most"));
-        }
-        let message = format!("support `{name}`: {}", told.join("; "));
+        let cause = WarningCause::HandLags {
+            support: name.to_owned(),
+            behind_m: held.then_some(behind),
+            hand_behind_m: slow,
+            pull_n: force.norm(),
+            stiffness_n_per_m: self.stiffness,
+        };
         let speeds = [self.end.velocity().norm(), fastest];
-        let name = &problem.cable.name;
-        (!told.is_empty()).then(|| Warning::new(WarningKind::SupportHeld, name, arc_length_m, speeds, message))
+        (held || slow > 0.0).then(|| Warning::new(cause, &problem.cable.name, arc_length_m, speeds))
     }
 }
 
@@ -199,7 +191,7 @@ impl SmoothedTarget {
         Self { stages, velocity, behind_m: 0.0 }
     }
 
-    /// Where it is, m.
+    /// Returns where it is, m.
     #[must_use]
     pub fn position(&self) -> Vec2 {
         self.stages[3]
@@ -211,8 +203,8 @@ impl SmoothedTarget {
         self.velocity
     }
 
-    /// How far from its target the last step left it because it may be no faster, m; 0 where it was
-    /// fast enough.
+    /// Returns how far from its target the last step left it because it may be no faster, m; 0
+    /// where it was fast enough.
     #[must_use]
     pub(crate) fn behind_m(&self) -> f64 {
         self.behind_m

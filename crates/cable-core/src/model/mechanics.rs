@@ -94,7 +94,7 @@ pub trait Mechanics: Send {
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError>;
 
-    /// Where the cable is.
+    /// Returns where the cable is.
     fn state(&self) -> State;
 
     /// Time reached, s.
@@ -137,8 +137,8 @@ pub trait Mechanics: Send {
     /// ([`Self::set_state`]) finds it there at once. Models that know nothing of it leave it out.
     fn set_robot_pose(&mut self, _to: RigidPose) {}
 
-    /// What the cable does to the outline of the robot; None where the model leaves it out, or
-    /// there is none.
+    /// Returns what the cable does to the outline of the robot; None where the model leaves it out,
+    /// or there is none.
     fn robot_contact(&self) -> Option<RobotContact> {
         None
     }

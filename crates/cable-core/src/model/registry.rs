@@ -154,13 +154,13 @@ impl Model {
         }
     }
 
-    /// What it can do.
+    /// Returns what it can do.
     #[must_use]
     pub fn capabilities(self) -> Capabilities {
         self.info().capabilities
     }
 
-    /// How much it takes on: its place in the registry.
+    /// Returns how much it takes on: its place in the registry.
     #[must_use]
     pub fn rank(self) -> usize {
         SOLVERS.iter().position(|info| info.model == self).unwrap_or(0)

@@ -27,12 +27,12 @@ pub struct Settings {
     /// of [`input_filter::default_hand_stiffness`].
     #[serde(default)]
     pub hand_stiffness_n_per_m: Option<f64>,
-    /// Whether a rest that friction makes one of many is told with what other histories would have
+    /// True if a rest that friction makes one of many is told with what other histories would have
     /// left in it: `spans` lays the cable anew for each, which takes some times as long as the
     /// rest. No figure of the answer hangs on it.
     #[serde(default = "yes")]
     pub histories: bool,
-    /// Whether a cable breaks where its tension reaches its breaking tension; a whole one is only
+    /// True if a cable breaks where its tension reaches its breaking tension; a whole one is only
     /// warned of else.
     #[serde(default = "yes")]
     pub breaks: bool,

@@ -119,14 +119,8 @@ impl Similar {
         let mut cost = report.cost;
         cost.inner_step_s /= self.by.time;
         let warning = |w: Warning| Warning {
-            arc_length_m: w.arc_length_m / self.by.length,
-            at_m: w.at_m.map(|[x, y]| {
-                let at = self.at_back(Vec2::new(x, y));
-                [at.x, at.y]
-            }),
-            since_s: w.since_s.map(|s| s / self.by.time),
-            message: self.told(w.message),
-            ..w
+            at_m: w.at_m.map(|[x, y]| self.at_back(Vec2::new(x, y)).into()),
+            ..w.scaled(1.0 / self.by.length, 1.0 / self.by.time)
         };
         StepReport { cost, warnings: report.warnings.into_iter().map(warning).collect() }
     }

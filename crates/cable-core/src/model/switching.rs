@@ -134,7 +134,7 @@ impl SwitchingModel {
         Ok(fem)
     }
 
-    /// Whether the cable is in touch with the robot, or in its place.
+    /// Returns whether the cable is in touch with the robot, or in its place.
     fn meets_robot(&self, answer: &CableSolution) -> bool {
         meets_outline(&self.problem, self.robot_pose, answer)
     }
@@ -179,7 +179,7 @@ impl SwitchingModel {
     }
 }
 
-/// Whether two answers of a cable are the same to the eye.
+/// Returns whether two answers of a cable are the same to the eye.
 fn indistinguishable(problem: &Problem, a: &CableSolution, b: &CableSolution) -> bool {
     let greatest = a.nodes.iter().map(|n| n.tension_n).fold(0.0, |m, t| if t > m { t } else { m });
     let seen = MAX_MOVE.0.max(MAX_MOVE.1 * problem.length);

@@ -9,7 +9,7 @@ use super::Problem;
 use super::route_check::allowed_depth;
 use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross};
-use crate::solution::{Warning, WarningKind};
+use crate::solution::{Warning, WarningCause};
 
 /// Bodies of ground that a route is lifted over one after the other: each lift may lead into the
 /// next.
@@ -46,13 +46,9 @@ pub(super) fn lift_route(problem: &mut Problem) {
             continue;
         };
         problem.route = led_along(&problem.route, &stretches, body);
-        let (x, y) = (worst.deepest.x, worst.deepest.y);
-        let message = format!(
-            "The route leads {:.3} m deep below `{}` at ({x:.3} m, {y:.3} m): the cable is laid along the surface there",
-            worst.depth, body.name
-        );
-        let kind = WarningKind::InitialPenetration;
-        problem.notes.push(Warning::new(kind, &problem.cable.name, 0.0, [worst.depth, 0.0], message));
+        let cause = WarningCause::RouteBuried { obstacle: body.name.clone() };
+        let warning = Warning::new(cause, &problem.cable.name, 0.0, [worst.depth, 0.0]);
+        problem.notes.push(warning.at(worst.deepest.into()));
     }
 }
 
@@ -105,7 +101,7 @@ fn buried(route: &[Vec2], body: &Body) -> Vec<BuriedStretch> {
     out
 }
 
-/// Where the straight line from `a` to `b` crosses the surface, in order along it.
+/// Returns where the straight line from `a` to `b` crosses the surface, in order along it.
 fn crossings(body: &Body, a: Vec2, b: Vec2) -> Vec<SurfaceCrossing> {
     let d = b - a;
     let mut out: Vec<SurfaceCrossing> = body
@@ -188,7 +184,7 @@ mod tests {
 
     use crate::problem::problems;
     use crate::scene::{Obstacle, Scene, Shape, Support, catalog};
-    use crate::solution::WarningKind;
+    use crate::solution::WarningCause;
 
     fn over(ground: &[[f64; 2]], route_m: &[[f64; 2]]) -> Scene {
         let mut scene = catalog::hanging_span();
@@ -213,7 +209,7 @@ mod tests {
         ];
         for route in deep {
             let problem = problems(&over(&hills, route)).unwrap().remove(0);
-            assert!(problem.notes.iter().all(|n| n.kind == WarningKind::InitialPenetration));
+            assert!(problem.notes.iter().all(|n| matches!(n.cause, WarningCause::RouteBuried { .. })));
             assert_eq!(problem.notes.len(), 1, "{:?}", problem.notes);
             for w in problem.route.windows(2) {
                 for k in 0..=20 {

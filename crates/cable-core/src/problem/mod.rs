@@ -89,7 +89,7 @@ pub struct SupportPoint {
     pub name: String,
     /// What it does.
     pub kind: SupportKind,
-    /// Where on the cable, m; 0 and length at the ends; None = slides (pulley).
+    /// Place on the cable, m; 0 and length at the ends; None = slides (pulley).
     pub arc_length: Option<f64>,
     /// Position at t = 0, m (a pulley's centre); None for load and free.
     pub at: Option<Vec2>,
@@ -121,13 +121,13 @@ impl SupportPoint {
         self.place_at(time_s)
     }
 
-    /// Whether it holds the cable in a step that begins at a time, s.
+    /// Returns whether it holds the cable in a step that begins at a time, s.
     #[must_use]
     pub fn holds_from(&self, time_s: f64) -> bool {
         self.release.is_none_or(|r| time_s < r - TIME_TOLERANCE_S)
     }
 
-    /// Whether it lets go after `from` and before `to` (s), and when.
+    /// Returns whether it lets go after `from` and before `to` (s), and when.
     #[must_use]
     pub fn release_between(&self, from: f64, to: f64) -> Option<f64> {
         self.release.filter(|&r| r > from + TIME_TOLERANCE_S && r < to - TIME_TOLERANCE_S)
@@ -147,7 +147,7 @@ impl SupportPoint {
 /// A dead point load.
 #[derive(Clone, Debug)]
 pub struct PointLoad {
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length: f64,
     /// Force as a function of time, N.
     pub force: Series,
@@ -366,8 +366,8 @@ impl Problem {
         self.weight + self.wind.at(time_s)
     }
 
-    /// Whether friction takes part in where an answer of this cable rests, and the scene does not
-    /// say how much of it.
+    /// Returns whether friction takes part in where an answer of this cable rests, and the scene
+    /// does not say how much of it.
     #[must_use]
     pub fn rubs(&self, answer: &CableSolution) -> bool {
         let bodies = self.world.geometry().bodies();
@@ -380,9 +380,9 @@ impl Problem {
                 || answer.contacts.iter().any(|c| touches(&c.obstacle)))
     }
 
-    /// What hangs on a free support at a time, N: its load, the weight of its lump, point loads at
-    /// the same place. At rest the tension just inside a free end is the size of it, and the cable
-    /// pulls at it with the opposite of it.
+    /// Returns what hangs on a free support at a time, N: its load, the weight of its lump, point
+    /// loads at the same place. At rest the tension just inside a free end is the size of it, and
+    /// the cable pulls at it with the opposite of it.
     #[must_use]
     pub fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
         let Some(s) = self.supports.get(support) else { return Vec2::zeros() };

@@ -12,9 +12,9 @@ use crate::solution::{CableSolution, Node};
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 impl ErrorEstimates {
-    /// What rounding leaves of an answer that has no error of a mesh: a length is off by units in
-    /// the last place, and forces by the stiffness of the stiffest stretch between two supports or
-    /// contacts times that,
+    /// Returns what rounding leaves of an answer that has no error of a mesh: a length is off by
+    /// units in the last place, and forces by the stiffness of the stiffest stretch between two
+    /// supports or contacts times that,
     /// ```text
     /// δF = C⁻¹ δL,     C = ∫ (t tᵀ/EA + (I − t tᵀ)/T) ds
     /// ```

@@ -20,8 +20,8 @@ const MAX_POST_CUT_FRACTION: f64 = 0.5;
 const SAMPLE_SPACING: f64 = 0.05;
 const MAX_SAMPLES: f64 = 20_000.0;
 
-/// How deep a route may cut into something before that is not its coarseness, m: at small scenes a
-/// part of the cable.
+/// Returns how deep a route may cut into something before that is not its coarseness, m: at small
+/// scenes a part of the cable.
 pub(super) fn allowed_depth(problem: &Problem) -> f64 {
     let cut = MAX_CUT_FRACTION * problem.length;
     (if cut < MAX_CUT { cut } else { MAX_CUT }) + 2.0 * problem.radius

@@ -11,7 +11,7 @@ use crate::error::{SceneError, SceneFault};
 use crate::math::Vec2;
 use crate::scene::SupportKind;
 use crate::scene::read::path::Path;
-use crate::solution::{Warning, WarningKind};
+use crate::solution::{Warning, WarningCause};
 
 /// How far inside a surface a point that was meant to be on it may be, of the radius: rounding of
 /// coordinates and slopes.
@@ -55,23 +55,15 @@ pub(super) fn clear_supports(problem: &mut Problem) -> Result<(), SceneError> {
             return Err(SceneError { path: path(), fault, at: None });
         }
         let Some(out) = out else {
-            let what =
-                format!("support `{}` sits where obstacles leave no room for the cable's diameter", support.name);
-            return Err(SceneError { path: path(), fault: SceneFault::Shape { what }, at: None });
+            let fault = SceneFault::NoRoom { support: support.name.as_str().into() };
+            return Err(SceneError { path: path(), fault, at: None });
         };
         let by = out - at;
         // Rounding is put right without a word.
         let told = by.norm() > most;
-        let message = format!(
-            "Support `{}` is on the surface of `{obstacle}`: the cable's centre line is held {:.4} m off it, at ({:.4} m, {:.4} m)",
-            support.name,
-            by.norm(),
-            out.x,
-            out.y
-        );
+        let cause = WarningCause::SupportOnSurface { support: support.name.clone(), obstacle: obstacle.to_owned() };
         let s = support.arc_length.unwrap_or(0.0);
-        let value = [by.norm(), problem.radius];
-        let note = Warning::new(WarningKind::InitialPenetration, &problem.cable.name, s, value, message);
+        let note = Warning::new(cause, &problem.cable.name, s, [by.norm(), problem.radius]).at(out.into());
         problem.notes.extend(told.then_some(note));
         if let Some(support) = problem.supports.get_mut(k) {
             support.at = Some(out);
@@ -87,8 +79,9 @@ pub(super) fn clear_supports(problem: &mut Problem) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// How far a point is inside the surface of the obstacle that it is deepest in (m, negative outside
-/// but nearer than the cable's radius), and that obstacle; none where the centre line has room.
+/// Returns how far a point is inside the surface of the obstacle that it is deepest in (m, negative
+/// outside but nearer than the cable's radius), and that obstacle; none where the centre line has
+/// room.
 fn depth(problem: &Problem, at: Vec2) -> Option<(f64, String)> {
     let gap = problem.world.signed_gap(at, f64::INFINITY).filter(|g| g.gap_m < 0.0)?;
     Some((-gap.gap_m - problem.radius, problem.world.obstacle_name(gap.obstacle).to_owned()))

@@ -59,7 +59,7 @@ pub struct UnknownColumn {
 }
 
 impl NodeColumns {
-    /// How many there are.
+    /// Their number.
     pub const COUNT: usize = 13;
 
     /// Their names, in the order of the table.
@@ -101,7 +101,7 @@ impl NodeColumns {
         self.pick(Self::NAMES)
     }
 
-    /// What belongs to those chosen.
+    /// Returns what belongs to those chosen.
     pub(super) fn pick<T>(self, all: [T; Self::COUNT]) -> impl Iterator<Item = T> {
         all.into_iter().zip(self.0).filter_map(|(value, chosen)| chosen.then_some(value))
     }
@@ -139,8 +139,8 @@ impl Default for NodeChoice {
 const TIME_TOLERANCE_FRACTION: f64 = 1e-6;
 
 impl NodeChoice {
-    /// Whether nodes are written at a time, s: then the interval that this time is in. `last` is
-    /// the one of the nodes before.
+    /// Returns whether nodes are written at a time, s: then the interval that this time is in.
+    /// `last` is the one of the nodes before.
     pub(super) fn due(&self, time_s: f64, last: Option<f64>) -> Option<f64> {
         match self.interval {
             NodeInterval::EveryOutput => Some(time_s),

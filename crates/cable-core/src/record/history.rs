@@ -99,7 +99,7 @@ fn size_of_solution(s: &Solution) -> usize {
     size_of::<Solution>()
         + s.reason.len()
         + s.cables.iter().map(cable).sum::<usize>()
-        + s.warnings.iter().map(|w| size_of::<Warning>() + w.cable.len() + w.message.len()).sum::<usize>()
+        + s.warnings.iter().map(|w| size_of::<Warning>() + w.cable.len()).sum::<usize>()
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | `history.csv` | time | `time_s`, `max_tension_n`, `max_tension_arc_length_m`, for each support `NAME.reaction_x_n`, `NAME.reaction_y_n` (`CABLE.NAME.…` where there are several cables), `kinetic_energy_j`, `gravity_energy_j`, `stretch_energy_j`, `bending_energy_j`, `peak_tension_n` (the greatest of any inner step since the row before), `held_tension_n` (the greatest mean over `breaking_time_s` since then), and with a robot `robot_x_m`, `robot_y_m`, `robot_pitch_deg`, `robot_speed_m_per_s`, `robot_thrust_n` |
 //! | `nodes.csv` | node and time | `time_s`, `cable`, then the fields of [`crate::solution::Node`], or those chosen ([`NodeChoice`]) |
-//! | `events.csv` | event | `time_s`, `kind`, `cable`, `arc_length_m`, `value`, `limit`, `message` |
+//! | `events.csv` | event | `time_s`, `kind`, `cable`, `arc_length_m`, `value`, `limit`, `message`, `cause` (JSON) |
 //!
 //! Numbers are written with the fewest digits that read back to the same bits (in a file some times
 //! have zeros after them, so that no row lies on two pages of it). [`RunWriter`] writes the tables

@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::choice::{NodeChoice, NodeColumns, NodeInterval, node_of, node_values};
 use super::whole::WholeRecords;
 use crate::scene::Scene;
-use crate::solution::{Solution, Warning, WarningKind};
+use crate::solution::{Solution, Warning, WarningCause, WarningKind};
 
 /// Why a table was not written: the path or device is named by the caller, who knows it.
 #[derive(Debug, Error)]
@@ -52,7 +52,7 @@ pub enum ReadError {
         table: &'static str,
         /// Line, from 1.
         line: u64,
-        /// What is wrong.
+        /// The fault.
         what: String,
     },
     /// More rows than a run may have.
@@ -89,18 +89,18 @@ pub struct NodeRow {
 pub struct Event {
     /// Time, s.
     pub time_s: f64,
-    /// What kind.
+    /// The kind.
     pub kind: WarningKind,
     /// The cable's name.
     pub cable: String,
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length_m: f64,
     /// The quantity's value, in its own unit.
     pub value: f64,
     /// Its limit, same unit.
     pub limit: f64,
-    /// What, where and why.
-    pub message: String,
+    /// The cause; of tables without causes, or with one that is not known, the sentence.
+    pub cause: WarningCause,
 }
 
 /// `history.csv` in memory.
@@ -375,7 +375,9 @@ fn event_row(rows: &mut Rows, time_s: f64, w: &Warning) -> Result<(), WriteError
     for value in [w.arc_length_m, w.value, w.limit] {
         rows.number(value)?;
     }
-    rows.text(&w.message)?;
+    rows.text(&w.to_string())?;
+    // Figures of the cause are numbers, and keys are strings: this cannot fail.
+    rows.text(&serde_json::to_string(&w.cause).unwrap_or_default())?;
     rows.end()
 }
 
@@ -399,7 +401,9 @@ fn extras(s: &Solution) -> impl Iterator<Item = (&'static str, f64)> {
     always.chain(ROBOT_COLUMNS.into_iter().zip(robot.into_iter().flatten()))
 }
 
-const EVENT_COLUMNS: [&str; 7] = ["time_s", "kind", "cable", "arc_length_m", "value", "limit", "message"];
+const EVENT_COLUMNS: [&str; 8] = ["time_s", "kind", "cable", "arc_length_m", "value", "limit", "message", "cause"];
+/// Columns of tables that were written before causes were.
+const OLD_EVENT_COLUMNS: usize = 7;
 
 fn io_error(table: &'static str, e: csv::Error) -> WriteError {
     let source = match e.into_kind() {
@@ -428,7 +432,7 @@ fn check_finite(s: &Solution) -> Result<(), WriteError> {
     }
     for w in &s.warnings {
         if ![w.arc_length_m, w.value, w.limit].iter().all(|v| v.is_finite()) {
-            return Err(bad(EVENTS, format!("a number of the warning `{}`", w.message)));
+            return Err(bad(EVENTS, format!("a number of the warning `{w}`")));
         }
     }
     if s.time_s.is_finite() { Ok(()) } else { Err(bad(HISTORY, "time_s".to_owned())) }
@@ -439,7 +443,7 @@ fn reader<R: Read>(from: R) -> csv::Reader<WholeRecords<R>> {
     csv::ReaderBuilder::new().from_reader(WholeRecords::new(from))
 }
 
-/// Whether a table has any rows; one that cannot be read has some.
+/// Returns whether a table has any rows; one that cannot be read has some.
 pub(crate) fn has_rows(from: impl Read) -> bool {
     reader(from).records().next().is_some()
 }
@@ -476,8 +480,8 @@ fn rows<R: Read>(
     Ok(())
 }
 
-/// Whether the columns begin with those expected; false where nothing was written yet, not even a
-/// header.
+/// Returns whether the columns begin with those expected; false where nothing was written yet, not
+/// even a header.
 fn expect_columns<R: Read>(
     table: &'static str,
     from: &mut csv::Reader<R>,
@@ -534,22 +538,26 @@ pub fn read_nodes(from: impl Read) -> Result<Vec<NodeRow>, ReadError> {
 pub fn read_events(from: impl Read) -> Result<Vec<Event>, ReadError> {
     let mut from = reader(from);
     let mut out = Vec::new();
-    if !expect_columns(EVENTS, &mut from, &EVENT_COLUMNS)? {
+    if !expect_columns(EVENTS, &mut from, &EVENT_COLUMNS[..OLD_EVENT_COLUMNS])? {
         return Ok(out);
     }
     rows(EVENTS, &mut from, |r| {
         let line = r.position().map_or(1, csv::Position::line);
+        let kind = r
+            .get(1)
+            .and_then(WarningKind::from_name)
+            .ok_or_else(|| row_error(EVENTS, line, format!("unknown kind `{}`", r.get(1).unwrap_or_default())))?;
+        let cause =
+            r.get(7).and_then(|text| serde_json::from_str(text).ok()).filter(|c: &WarningCause| c.kind() == kind);
+        let message = r.get(6).unwrap_or_default().to_owned();
         out.push(Event {
             time_s: parse(EVENTS, r, 0, "time_s")?,
-            kind: r
-                .get(1)
-                .and_then(WarningKind::from_name)
-                .ok_or_else(|| row_error(EVENTS, line, format!("unknown kind `{}`", r.get(1).unwrap_or_default())))?,
+            kind,
             cable: r.get(2).unwrap_or_default().to_owned(),
             arc_length_m: parse(EVENTS, r, 3, "arc_length_m")?,
             value: parse(EVENTS, r, 4, "value")?,
             limit: parse(EVENTS, r, 5, "limit")?,
-            message: r.get(6).unwrap_or_default().to_owned(),
+            cause: cause.unwrap_or(WarningCause::Recorded { kind, message }),
         });
         Ok(())
     })?;

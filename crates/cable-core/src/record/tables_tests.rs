@@ -23,14 +23,14 @@ fn solution(time_s: f64, values: [f64; NodeColumns::COUNT], name: &str) -> Solut
     };
     let support = SupportReaction { name: name.to_owned(), reaction_x_n: x_m, reaction_y_n: y_m, ..Default::default() };
     let warning = Warning {
-        kind: WarningKind::BendRadius,
+        kind: WarningKind::InitialPenetration,
         cable: name.to_owned(),
         arc_length_m,
         at_m: None,
         since_s: None,
         value: x_m,
         limit: y_m,
-        message: format!("bent, \"{name}\"\nsays who"),
+        cause: WarningCause::RouteBuried { obstacle: format!("a \"{name}\",\nsays who") },
     };
     Solution {
         time_s,
@@ -80,7 +80,7 @@ proptest! {
         prop_assert_eq!(history.extras.len(), 6);
         prop_assert_eq!(history.extras[3].values[0].to_bits(), values[7].to_bits());
         let events = read_events(e.as_slice()).unwrap();
-        prop_assert_eq!(&events[0].message, &s.warnings[0].message);
+        prop_assert_eq!(&events[0].cause, &s.warnings[0].cause);
         prop_assert_eq!(events[0].limit.to_bits(), values[2].to_bits());
     }
 
@@ -116,7 +116,8 @@ fn a_lasting_warning_is_one_event() {
 fn two_breaks_of_a_cable_are_two_events_with_their_own_times() {
     let at = |time_s: f64, breaks: &[f64]| {
         let mut s = solution(time_s, [1.0; NodeColumns::COUNT], "a");
-        let broke = |t: &f64| Warning { kind: WarningKind::Broken, since_s: Some(*t), ..s.warnings[0].clone() };
+        let cause = |t: &f64| WarningCause::Broke { time_s: *t, over_s: 0.0, detached_from: None };
+        let broke = |t: &f64| Warning { since_s: Some(*t), ..Warning::new(cause(t), "a", 1.0, [1.0, 1.0]) };
         s.warnings = breaks.iter().map(broke).collect();
         s
     };

@@ -9,7 +9,7 @@ const MAX_RECORD_BYTES: usize = 1 << 20;
 /// Bytes read at once.
 const CHUNK_BYTES: usize = 1 << 16;
 
-/// Where the records of a CSV text end, each after its line end.
+/// Returns where the records of a CSV text end, each after its line end.
 pub(crate) fn record_ends(text: &[u8]) -> impl Iterator<Item = usize> {
     let mut quoted = false;
     text.iter().enumerate().filter_map(move |(k, byte)| {

@@ -188,25 +188,25 @@ impl Vehicle {
         Some(vec2(self.pose.hitch_m(self.preset)))
     }
 
-    /// How it stands.
+    /// Returns how it stands.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.pose
     }
 
-    /// How it is.
+    /// Returns how it is.
     #[must_use]
     pub fn report(&self) -> RobotReport {
         self.report
     }
 
-    /// Where its hitch is, m.
+    /// Returns where its hitch is, m.
     #[must_use]
     pub fn hitch(&self) -> Vec2 {
         self.hitch_at(self.pose)
     }
 
-    /// Where its hitch is when it stands so, m.
+    /// Returns where its hitch is when it stands so, m.
     #[must_use]
     pub(crate) fn hitch_at(&self, pose: Pose) -> Vec2 {
         vec2(pose.hitch_m(self.preset))
@@ -242,8 +242,8 @@ impl Vehicle {
         self.balance(drive, pulls).speed
     }
 
-    /// Where it is at the end of a step in which it comes to this speed (m/s); None where it cannot
-    /// stand there.
+    /// Returns where it is at the end of a step in which it comes to this speed (m/s); None where
+    /// it cannot stand there.
     #[must_use]
     pub(crate) fn come_to(&self, drive: Drive, speed: f64) -> Option<Pose> {
         let way = 0.5 * drive.h * (self.speed + speed);
@@ -268,7 +268,7 @@ impl Vehicle {
         Some(Pose { pitch: self.pose.pitch + tipping * h, ..pose })
     }
 
-    /// What its balance makes of the forces of the cable at the end of a step.
+    /// Returns what its balance makes of the forces of the cable at the end of a step.
     #[must_use]
     pub fn balance(&self, drive: Drive, pulls: Pulls) -> SpeedBalance {
         let (sin, cos) = self.pose.pitch.sin_cos();
@@ -347,9 +347,9 @@ impl Vehicle {
         let middle = 0.5 * (edges[0] + edges[1]);
         let mut found = None;
         for (edge, before) in edges.into_iter().zip([edges[0] - 1.0, middle]) {
-            if needed(edge) > grip.total(edge, false) {
+            if needed(edge) > grip.total(edge, Limit::Below) {
                 found = Some((before, None));
-            } else if needed(edge) >= grip.total(edge, true) {
+            } else if needed(edge) >= grip.total(edge, Limit::Above) {
                 found = Some((edge, Some(edge)));
             }
             if found.is_some() {
@@ -362,14 +362,14 @@ impl Vehicle {
             let tracks = grip.share(q, total);
             (q, tracks, total - tracks, q == 0.0 && grip.drives && grip.drive >= grip.hold)
         } else {
-            let rolls = grip.rolls(near, true);
+            let rolls = grip.rolls(near, Limit::Above);
             let reached =
                 |force: f64, falls: f64| (mass * v / drive.h + pull + rolls + force) / (mass / drive.h + falls);
-            let tracks = grip.tracks(near, true);
+            let tracks = grip.tracks(near, Limit::Above);
             let slid = reached(if tracks < 0.0 { -grip.hold } else { grip.hold }, 0.0);
             let driven = reached(grip.drive, grip.falls);
-            if grip.is_driven(near, true) && driven <= slid {
-                (driven, grip.tracks(driven, true), rolls, false)
+            if grip.is_driven(near, Limit::Above) && driven <= slid {
+                (driven, grip.tracks(driven, Limit::Above), rolls, false)
             } else {
                 (slid, if tracks < 0.0 { -grip.hold } else { grip.hold }, rolls, true)
             }
@@ -379,8 +379,8 @@ impl Vehicle {
         SpeedBalance { speed, tracks, rolling, asked, slips, going, ..SpeedBalance::default() }
     }
 
-    /// What tracks and rolling resistance can do in a step, in the `sense` in which it is asked to
-    /// go.
+    /// Returns what tracks and rolling resistance can do in a step, in the `sense` in which it is
+    /// asked to go.
     fn grip(&self, drive: Drive, normal: f64, sense: f64) -> TrackGrip {
         let (v, set, wanted) = (self.speed * sense, self.set * sense, drive.wanted * sense);
         // The governor goes on from the speed that it has given; dragged by its cable the vehicle
@@ -489,7 +489,7 @@ pub struct SpeedBalance {
     normal: f64,
     /// Speed that the governor asked for, m/s.
     asked: f64,
-    /// Whether the tracks slip.
+    /// True if the tracks slip.
     slips: bool,
     going: Going,
 }
@@ -501,7 +501,7 @@ pub struct SpeedBalance {
 struct TrackGrip {
     /// Speed that the governor asks for at the end, m/s.
     asked: f64,
-    /// Whether it is to go; else it comes to a stand.
+    /// True if it is to go; else it comes to a stand.
     drives: bool,
     /// Most that the tracks can transmit, N.
     hold: f64,
@@ -513,21 +513,28 @@ struct TrackGrip {
     falls: f64,
 }
 
+/// The side from which a speed is come to where forces jump.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Limit {
+    Below,
+    Above,
+}
+
 impl TrackGrip {
-    /// Whether a speed, or what is just below or `above` it, is beyond an edge.
-    fn is_beyond(q: f64, edge: f64, above: bool) -> bool {
-        q > edge || (q == edge && above)
+    /// Returns whether a speed is beyond an edge, in the limit from below or above.
+    fn is_beyond(q: f64, edge: f64, limit: Limit) -> bool {
+        q > edge || (q == edge && limit == Limit::Above)
     }
 
-    fn is_driven(&self, q: f64, above: bool) -> bool {
-        self.drives && Self::is_beyond(q, 0.0, above) && !Self::is_beyond(q, self.asked, above)
+    fn is_driven(&self, q: f64, limit: Limit) -> bool {
+        self.drives && Self::is_beyond(q, 0.0, limit) && !Self::is_beyond(q, self.asked, limit)
     }
 
     /// Force of the tracks, N.
-    fn tracks(&self, q: f64, above: bool) -> f64 {
-        if Self::is_beyond(q, self.asked, above) {
+    fn tracks(&self, q: f64, limit: Limit) -> f64 {
+        if Self::is_beyond(q, self.asked, limit) {
             -self.hold
-        } else if self.is_driven(q, above) {
+        } else if self.is_driven(q, limit) {
             smaller(larger(self.drive - self.falls * q, 0.0), self.hold)
         } else {
             self.hold
@@ -535,19 +542,19 @@ impl TrackGrip {
     }
 
     /// Rolling resistance, N.
-    fn rolls(&self, q: f64, above: bool) -> f64 {
-        if Self::is_beyond(q, 0.0, above) { -self.rolling } else { self.rolling }
+    fn rolls(&self, q: f64, limit: Limit) -> f64 {
+        if Self::is_beyond(q, 0.0, limit) { -self.rolling } else { self.rolling }
     }
 
-    fn total(&self, q: f64, above: bool) -> f64 {
-        self.tracks(q, above) + self.rolls(q, above)
+    fn total(&self, q: f64, limit: Limit) -> f64 {
+        self.tracks(q, limit) + self.rolls(q, limit)
     }
 
-    /// What the tracks give of a `total` (N) at a speed where forces jump: rolling resistance is
-    /// against the drive.
+    /// Returns what the tracks give of a `total` (N) at a speed where forces jump: rolling
+    /// resistance is against the drive.
     fn share(&self, q: f64, total: f64) -> f64 {
-        let own = if q == 0.0 && !self.drives { total } else { total - self.rolls(q, true) };
-        bounded(own, self.tracks(q, true), self.tracks(q, false))
+        let own = if q == 0.0 && !self.drives { total } else { total - self.rolls(q, Limit::Above) };
+        bounded(own, self.tracks(q, Limit::Above), self.tracks(q, Limit::Below))
     }
 
     /// Why it comes from one speed to another, m/s.

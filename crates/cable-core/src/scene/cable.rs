@@ -65,7 +65,7 @@ pub struct Cable {
     /// Elements; left out, the model chooses.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub segments: Option<usize>,
-    /// Whether the cable is an obstacle to itself.
+    /// True if the cable is an obstacle to itself.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub self_contact: bool,
     /// The way it is first laid, m; empty = straight from support to support, lifted over what is
@@ -105,7 +105,7 @@ impl FrictionMobilised {
     /// Every choice.
     pub const ALL: [Self; 3] = [Self::LeastSliding, Self::TowardsStart, Self::TowardsEnd];
 
-    /// Whether it is what a scene that says nothing asks for.
+    /// Returns whether it is what a scene that says nothing asks for.
     #[must_use]
     pub(crate) fn is_default(&self) -> bool {
         *self == Self::LeastSliding

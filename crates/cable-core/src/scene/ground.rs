@@ -129,8 +129,8 @@ impl Ground {
         heights.reduce(f64::max)
     }
 
-    /// How a rigid track with its middle at `x` that reaches `half` to both sides (both m, measured
-    /// level) rests.
+    /// Returns how a rigid track with its middle at `x` that reaches `half` to both sides (both m,
+    /// measured level) rests.
     ///
     /// A rod on bumps touches two of them, one on each side of its centre of mass, and nothing is
     /// above it: it lies on the edge of the upper convex hull of the ground below it that spans its

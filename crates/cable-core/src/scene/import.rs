@@ -91,13 +91,20 @@ fn short(text: &str) -> String {
     text.chars().take(40).collect()
 }
 
+/// What stands before the decimals of a number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum DecimalMark {
+    Comma,
+    Point,
+}
+
 /// Two numbers of a row.
 fn pair(row: &str) -> Option<Point> {
-    let by = |separator: char, decimal_comma: bool| -> Option<Point> {
+    let by = |separator: char, mark: DecimalMark| -> Option<Point> {
         let mut fields = row.split(separator).map(str::trim).filter(|f| !f.is_empty());
         let mut next = || {
             let field = fields.next()?;
-            let text = if decimal_comma { field.replacen(',', ".", 1) } else { field.to_owned() };
+            let text = if mark == DecimalMark::Comma { field.replacen(',', ".", 1) } else { field.to_owned() };
             text.parse::<f64>().ok().filter(|v| v.is_finite())
         };
         let p = [next()?, next()?];
@@ -106,13 +113,13 @@ fn pair(row: &str) -> Option<Point> {
     };
     for separator in ['\t', ';'] {
         if row.contains(separator) {
-            return by(separator, true);
+            return by(separator, DecimalMark::Comma);
         }
     }
     if row.contains(' ') && !row.contains(", ") {
-        return by(' ', true);
+        return by(' ', DecimalMark::Comma);
     }
-    by(',', false)
+    by(',', DecimalMark::Point)
 }
 
 /// Scales, merges points that are one, and turns ground that runs to the left.

@@ -31,6 +31,7 @@ pub use environment::{Environment, STANDARD_GRAVITY, View};
 pub use library::{catalog, preset};
 pub use load::Load;
 pub use motion::Motion;
+pub(crate) use obstacle::LineEnds;
 pub use obstacle::{Obstacle, Shape};
 pub use read::{file, schema, validate};
 pub use robot::{Heading, Robot, RobotTask};

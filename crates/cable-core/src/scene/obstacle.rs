@@ -5,6 +5,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::math::Point;
 
+/// The ends of a line of points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LineEnds {
+    /// The last point is an end.
+    Open,
+    /// An edge leads from the last point to the first.
+    Joined,
+}
+
 /// One obstacle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(try_from = "ObstacleKeys")]

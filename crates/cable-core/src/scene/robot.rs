@@ -95,14 +95,15 @@ impl TryFrom<TaskKeys> for RobotTask {
 }
 
 impl Robot {
-    /// Where the cable hangs on it on level ground, m; None for an unknown preset. See
+    /// Returns where the cable hangs on it on level ground, m; None for an unknown preset. See
     /// [`Scene::robot_pose`] for the ground of a scene.
     #[must_use]
     pub fn hitch_m(&self) -> Option<Point> {
         Some(Pose { at_m: self.at_m, pitch: 0.0, heading: self.heading }.hitch_m(robot_preset(&self.preset)?))
     }
 
-    /// How it stands with its tracks' middle at `x_m`: None where the ground ends below its tracks.
+    /// Returns how it stands with its tracks' middle at `x_m`: None where the ground ends below its
+    /// tracks.
     #[must_use]
     pub(crate) fn pose_on(&self, ground: &Ground, preset: &RobotPreset, x_m: f64) -> Option<Pose> {
         let stand = ground.stand(x_m, preset.track_half_length_m())?;
@@ -132,7 +133,7 @@ impl Pose {
         [self.at_m[0] + x * cos - p[1] * sin, self.at_m[1] + x * sin + p[1] * cos]
     }
 
-    /// Where the cable hangs on it, m.
+    /// Returns where the cable hangs on it, m.
     #[must_use]
     pub fn hitch_m(&self, preset: &RobotPreset) -> Point {
         self.place([-preset.hitch_back_m.value, preset.hitch_up_m.value])
@@ -180,8 +181,8 @@ impl RobotPreset {
 }
 
 impl Scene {
-    /// How the robot stands at the start: on the ground in a side view, as it was put where there
-    /// is none and in a plan view.
+    /// Returns how the robot stands at the start: on the ground in a side view, as it was put where
+    /// there is none and in a plan view.
     #[must_use]
     pub fn robot_pose(&self) -> Option<Pose> {
         let robot = self.robot.as_ref()?;
@@ -193,7 +194,7 @@ impl Scene {
         }
     }
 
-    /// Where a cable hangs on the robot at the start, m.
+    /// Returns where a cable hangs on the robot at the start, m.
     #[must_use]
     pub fn hitch_m(&self) -> Option<Point> {
         Some(self.robot_pose()?.hitch_m(robot_preset(&self.robot.as_ref()?.preset)?))

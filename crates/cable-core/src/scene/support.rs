@@ -47,7 +47,7 @@ pub struct Support {
     /// Where it is, m (fixed, clamped; a pulley's centre).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_m: Option<Point>,
-    /// Where on the cable it sits, m (fixed, clamped or load between the ends).
+    /// Place on the cable it sits, m (fixed, clamped or load between the ends).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arc_length_m: Option<f64>,
     /// Clamp: direction of growing arc length, ° from +x.

@@ -201,7 +201,7 @@ impl Simulation {
         TrialOutcome::Ends(Box::new(vehicle))
     }
 
-    /// How many times the cables have broken.
+    /// Returns how many times the cables have broken.
     fn breaks(&self) -> usize {
         self.cables.iter().map(|c| c.breaks().len()).sum()
     }
@@ -223,7 +223,7 @@ impl Simulation {
         }
     }
 
-    /// What the cables do to the robot now.
+    /// Returns what the cables do to the robot now.
     fn pulls(&self, hitches: &[(usize, usize)]) -> Pulls {
         let pull = |&(cable, support): &(usize, usize)| {
             self.cables.get(cable).map_or_else(Vec2::zeros, |c| c.pull_on(support))
@@ -278,7 +278,7 @@ impl Simulation {
         done.map(|()| Some(left_m))
     }
 
-    /// How far the outline that came least far is from where it was led, m.
+    /// Returns how far the outline that came least far is from where it was led, m.
     fn left_m(&self) -> f64 {
         self.cables.iter().filter_map(BreakableCable::robot_contact).map(|o| o.left_m).fold(0.0, larger)
     }

@@ -26,7 +26,7 @@ pub struct ErrorEstimates {
 }
 
 impl ErrorEstimates {
-    /// What an answer's figures differ by from a better one's.
+    /// Returns what an answer's figures differ by from a better one's.
     #[must_use]
     pub fn between(answer: &CableSolution, better: &CableSolution) -> Self {
         let supports = answer.supports.iter().zip(&better.supports);
@@ -99,7 +99,7 @@ impl ErrorEstimates {
         self.position_m = self.position_m.map(|p| p * factor);
     }
 
-    /// Whether every figure that is known is a number.
+    /// Returns whether every figure that is known is a number.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         let all = [self.max_tension_n, self.support_force_n, self.contact_force_n, self.position_m];
@@ -123,9 +123,9 @@ const MAX_TURN: f64 = 1.0;
 /// on few nodes are read as straighter than they are; more: what leaves a round is bent.
 const MAX_CURVATURE_RATIO: f64 = 3.0;
 
-/// Where the cable is at an arc length, m: between two nodes on the curve that has their mean
-/// curvature and leaves both symmetrically, which is a circle's to the fourth order in the distance
-/// of the nodes; a straight line between them is of the second.
+/// Returns where the cable is at an arc length, m: between two nodes on the curve that has their
+/// mean curvature and leaves both symmetrically, which is a circle's to the fourth order in the
+/// distance of the nodes; a straight line between them is of the second.
 #[must_use]
 pub fn place(nodes: &[Node], arc_length_m: f64) -> Option<Vec2> {
     let k = nodes.partition_point(|n| n.arc_length_m < arc_length_m);

@@ -6,10 +6,12 @@
 //! | `error_estimates.rs` | [`ErrorEstimates`]: how wrong each figure is |
 //! | `robot_report.rs` | [`robot_report::RobotReport`]: the vehicle at the same instant |
 //! | `verification.rs` | [`verification::Verification`]: the verdict of the laws of mechanics |
+//! | `warning.rs` | [`Warning`]: what a user should know, as data |
 
 pub mod error_estimates;
 pub mod robot_report;
 pub mod verification;
+mod warning;
 
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +21,8 @@ use crate::model_id::Model;
 pub use self::error_estimates::ErrorEstimates;
 use self::robot_report::RobotReport;
 use self::verification::Verification;
+pub use self::warning::{EndMove, Histories, MeanTension, ShownEquilibrium, SlideReason};
+pub use self::warning::{Warning, WarningCause, WarningKind};
 
 /// The answer of a model at an instant, all cables of the scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -200,7 +204,7 @@ impl TensionPeaks {
 pub struct TensionPeak {
     /// Tension, N.
     pub tension_n: f64,
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length_m: f64,
     /// When, s.
     pub time_s: f64,
@@ -212,9 +216,9 @@ pub struct TensionPeak {
 pub struct Assumptions {
     /// Bending stiffness EI, N·m²; 0 = perfectly flexible.
     pub bending_stiffness_n_m2: f64,
-    /// Whether the cable is an obstacle to itself.
+    /// True if the cable is an obstacle to itself.
     pub self_contact: bool,
-    /// Whether masses accelerate: forces on a piece of cable then do not add up to nothing.
+    /// True if masses accelerate: forces on a piece of cable then do not add up to nothing.
     pub inertia: bool,
 }
 
@@ -243,11 +247,11 @@ impl CableSolution {
 pub struct Bend {
     /// Radius of the centre line, m.
     pub radius_m: f64,
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub x_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub y_m: f64,
 }
 
@@ -268,11 +272,11 @@ pub struct JudgedBend {
 pub struct Pressure {
     /// Tension over radius, N/m.
     pub pressure_n_per_m: f64,
-    /// Where on the cable, m.
+    /// Place on the cable, m.
     pub arc_length_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub x_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub y_m: f64,
 }
 
@@ -330,15 +334,15 @@ impl Node {
 pub struct SupportReaction {
     /// The support's name.
     pub name: String,
-    /// Where it is, m.
+    /// Its place, m.
     pub x_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub y_m: f64,
     /// Force of the cable on the support, N.
     pub reaction_x_n: f64,
     /// Force of the cable on the support, N.
     pub reaction_y_n: f64,
-    /// Where on the cable it sits now, m.
+    /// Place on the cable it sits now, m.
     pub arc_length_m: f64,
     /// Pulley: tension on the side of smaller arc length, N.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -466,7 +470,7 @@ impl ContactReport {
         self.samples = samples;
     }
 
-    /// Where on the cable it begins and ends, m: never empty of its middle.
+    /// Returns where on the cable it begins and ends, m: never empty of its middle.
     #[must_use]
     pub fn extent_m(&self) -> [f64; 2] {
         let middle = self.arc_length_m;
@@ -485,138 +489,6 @@ pub struct Cost {
     pub residual_n: f64,
     /// Inner time step, s; 0 for statics.
     pub inner_step_s: f64,
-}
-
-/// Something the user should know, with its place.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Warning {
-    /// What kind.
-    pub kind: WarningKind,
-    /// The cable's name.
-    pub cable: String,
-    /// Where on the cable, m.
-    pub arc_length_m: f64,
-    /// Where in the plane, m; None = at the cable's point of that arc length.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub at_m: Option<[f64; 2]>,
-    /// Since when, s; None = it is about the last step alone.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub since_s: Option<f64>,
-    /// The quantity's value, in its own unit (N, 1/m, m …).
-    pub value: f64,
-    /// Its limit, same unit.
-    pub limit: f64,
-    /// What, where, why and what it does to the result, with figures and units.
-    pub message: String,
-}
-
-impl Warning {
-    /// A warning about the last step, or about an answer at rest.
-    #[must_use]
-    pub fn new(kind: WarningKind, cable: &str, arc_length_m: f64, [value, limit]: [f64; 2], message: String) -> Self {
-        Self { kind, cable: cable.to_owned(), arc_length_m, at_m: None, since_s: None, value, limit, message }
-    }
-}
-
-/// The kinds of warning.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum WarningKind {
-    /// Tension above the service tension.
-    ServiceTension,
-    /// Tension above the breaking tension.
-    BreakingTension,
-    /// It broke here; value and limit are the breaking tension.
-    Broken,
-    /// Whether it breaks is open: the run is not fine enough to say, or no mesh is.
-    MayBreak,
-    /// Led round something narrower than the smallest bend radius allowed.
-    BendRadius,
-    /// Bent too sharply where nothing leads it.
-    Kink,
-    /// Pressed too hard sideways by what it is led round.
-    SidewallPressure,
-    /// A long part without tension.
-    Slack,
-    /// It crosses itself, or another part of itself lies across it.
-    Loop,
-    /// It curls up: a free part turns most of the way round.
-    Curl,
-    /// It goes round an obstacle once or more.
-    Wrapped,
-    /// An obstacle holds it fast while it is pulled harder and harder.
-    Snag,
-    /// With friction a resting place is not unique.
-    NotUnique,
-    /// A support was stopped by an obstacle, or its speed was capped.
-    SupportHeld,
-    /// The scene puts a support or the route into an obstacle: it was put outside.
-    InitialPenetration,
-    /// It lies through the robot, of which the model knows nothing.
-    ThroughRobot,
-    /// Damping or velocity was raised to keep the motion stable.
-    Stabilised,
-    /// It has more energy than what moves it can have given; value and limit in J.
-    EnergyGrows,
-    /// The mesh is too coarse for the asked accuracy.
-    Accuracy,
-}
-
-impl WarningKind {
-    /// Every kind.
-    pub const ALL: [Self; 19] = [
-        Self::ServiceTension,
-        Self::BreakingTension,
-        Self::Broken,
-        Self::MayBreak,
-        Self::BendRadius,
-        Self::Kink,
-        Self::SidewallPressure,
-        Self::Slack,
-        Self::Loop,
-        Self::Curl,
-        Self::Wrapped,
-        Self::Snag,
-        Self::NotUnique,
-        Self::SupportHeld,
-        Self::InitialPenetration,
-        Self::ThroughRobot,
-        Self::Stabilised,
-        Self::EnergyGrows,
-        Self::Accuracy,
-    ];
-
-    /// The name used in files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::ServiceTension => "service-tension",
-            Self::BreakingTension => "breaking-tension",
-            Self::Broken => "broken",
-            Self::MayBreak => "may-break",
-            Self::BendRadius => "bend-radius",
-            Self::Kink => "kink",
-            Self::SidewallPressure => "sidewall-pressure",
-            Self::Slack => "slack",
-            Self::Loop => "loop",
-            Self::Curl => "curl",
-            Self::Wrapped => "wrapped",
-            Self::Snag => "snag",
-            Self::NotUnique => "not-unique",
-            Self::SupportHeld => "support-held",
-            Self::InitialPenetration => "initial-penetration",
-            Self::ThroughRobot => "through-robot",
-            Self::Stabilised => "stabilised",
-            Self::EnergyGrows => "energy-grows",
-            Self::Accuracy => "accuracy",
-        }
-    }
-
-    /// The kind of a name.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|k| k.name() == name)
-    }
 }
 
 /// The largest tension and where.

@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::units::Quantity;
+
 /// A law that an answer must obey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -83,15 +85,17 @@ impl Law {
         }
     }
 
-    /// Unit of what is measured.
+    /// The quantity that is measured.
     #[must_use]
-    pub fn unit(self) -> &'static str {
+    pub fn quantity(self) -> Quantity {
         match self {
-            Self::Finite => "",
-            Self::Material | Self::Support | Self::Length | Self::Penetration | Self::SelfContact => "m",
-            Self::Moment => "N m",
-            Self::Momentum => "N s",
-            Self::Balance | Self::Tension | Self::Compression | Self::Stability | Self::Push | Self::Friction => "N",
+            Self::Finite => Quantity::Number,
+            Self::Material | Self::Support | Self::Length | Self::Penetration | Self::SelfContact => Quantity::Length,
+            Self::Moment => Quantity::Moment,
+            Self::Momentum => Quantity::Impulse,
+            Self::Balance | Self::Tension | Self::Compression | Self::Stability | Self::Push | Self::Friction => {
+                Quantity::Force
+            }
         }
     }
 }
@@ -109,27 +113,10 @@ pub struct Finding {
     pub at_m: [f64; 2],
     /// What touches or holds there; empty where nothing does.
     pub with: String,
-    /// By how much, in [`Law::unit`].
+    /// By how much, in the SI unit of [`Law::quantity`].
     pub value: f64,
     /// How much is let pass.
     pub limit: f64,
-}
-
-impl std::fmt::Display for Finding {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}", self.law.broken())?;
-        if !self.law.unit().is_empty() {
-            write!(f, " by {:.3e} {} ({:.1e} allowed)", self.value, self.law.unit(), self.limit)?;
-        }
-        if !self.with.is_empty() {
-            write!(f, " at `{}`", self.with)?;
-        }
-        let [x, y] = self.at_m;
-        if x.is_finite() && y.is_finite() && self.arc_length_m.is_finite() {
-            write!(f, ", {:.3} m along `{}` at ({x:.3} m, {y:.3} m)", self.arc_length_m, self.cable)?;
-        }
-        Ok(())
-    }
 }
 
 /// The forces on all cables.
@@ -165,7 +152,7 @@ pub struct Verification {
 }
 
 impl Verification {
-    /// Whether no law is broken.
+    /// Returns whether no law is broken.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         self.findings.is_empty()
@@ -175,21 +162,6 @@ impl Verification {
     #[must_use]
     pub fn worst(&self) -> Option<&Finding> {
         self.findings.first()
-    }
-
-    /// The verdict in a line: sound or not, the balance, and what was not asked.
-    #[must_use]
-    pub fn summary(&self) -> String {
-        let share = if self.balance.scale_n > 0.0 { self.balance.residual_n / self.balance.scale_n } else { 0.0 };
-        let mut line = match self.worst() {
-            None => format!("sound, forces balance within {share:.0e} of {:.4} N", self.balance.scale_n),
-            Some(worst) => format!("NOT SOUND: {worst}"),
-        };
-        for what in &self.not_checked {
-            line.push_str("; not checked: ");
-            line.push_str(what);
-        }
-        line
     }
 
     pub(crate) fn ask(&mut self, law: Law) {

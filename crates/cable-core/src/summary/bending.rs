@@ -39,8 +39,8 @@ pub struct NeglectedBending {
     pub unknown: Option<String>,
 }
 
-/// What it changes that cables were taken as perfectly flexible, of those whose preset says which
-/// stiffness is likely: the scene is laid and answered once more with that.
+/// Returns what it changes that cables were taken as perfectly flexible, of those whose preset says
+/// which stiffness is likely: the scene is laid and answered once more with that.
 #[must_use]
 pub fn neglected_bending(scene: &Scene, answer: &Solution, settings: Settings) -> Vec<NeglectedBending> {
     let mut stiff = scene.clone();
@@ -113,12 +113,12 @@ fn with_likely(scene: &Scene, counts: impl Fn(&str) -> bool) -> Option<(Scene, S
     (stiff != *scene).then_some((stiff, said))
 }
 
-/// Whether a flexible line is not where a cable could be.
+/// Returns whether a flexible line is not where a cable could be.
 fn matters(kind: WarningKind) -> bool {
     matches!(kind, WarningKind::BendRadius | WarningKind::Kink | WarningKind::Curl | WarningKind::Loop)
 }
 
-/// Where everything rests, with the bending stiffness that is asked for: the scene that was
+/// Returns where everything rests, with the bending stiffness that is asked for: the scene that was
 /// answered, and its answer, whose reason says what was taken. Where it matters and there is no
 /// answer with it, the answer is that without it, and says so.
 ///

@@ -102,9 +102,9 @@ pub struct EndForce {
 pub struct CablePlace {
     /// Arc length, m.
     pub arc_length_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub x_m: f64,
-    /// Where it is, m.
+    /// Its place, m.
     pub y_m: f64,
 }
 

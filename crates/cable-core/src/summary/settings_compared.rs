@@ -1,8 +1,8 @@
-//! Other settings answer a scene once more: other models, on coarser and finer meshes, each compared
-//! with the answer that was given.
+//! Other settings answer a scene once more: other models, on coarser and finer meshes, each
+//! compared with the answer that was given.
 //!
-//! It shows what the next cheaper choice would have cost in error. This module has no clock: who asks
-//! takes the time of each call of [`answer_with`].
+//! It shows what the next cheaper choice would have cost in error. This module has no clock: who
+//! asks takes the time of each call of [`answer_with`].
 
 use serde::{Deserialize, Serialize};
 

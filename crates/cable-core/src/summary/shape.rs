@@ -60,7 +60,7 @@ pub(super) fn heights(answer: &CableSolution) -> (CablePlace, CablePlace) {
     })
 }
 
-/// Whether a contact is with something else than the cable itself.
+/// Returns whether a contact is with something else than the cable itself.
 pub(super) fn lies_on_something(cable: &Cable, c: &&ContactReport) -> bool {
     c.obstacle != cable.name
 }
@@ -82,7 +82,8 @@ pub(super) fn lying_m(cable: &Cable, answer: &CableSolution) -> f64 {
     sum
 }
 
-/// Where contacts begin and end, but for the ends of the cable that lie; one place where two meet.
+/// Returns where contacts begin and end, but for the ends of the cable that lie; one place where
+/// two meet.
 pub(super) fn touchdowns(cable: &Cable, answer: &CableSolution) -> Vec<Touchdown> {
     let same = PLACE_TOLERANCE * cable.length_m;
     let mut contacts: Vec<&ContactReport> = answer.contacts.iter().filter(|c| lies_on_something(cable, c)).collect();

@@ -7,7 +7,7 @@ use crate::math::larger;
 use crate::model::Inertia;
 use crate::scene::Cable;
 use crate::simulation::Simulation;
-use crate::solution::{CableSolution, Warning, WarningKind};
+use crate::solution::{CableSolution, Warning, WarningCause};
 
 /// Looks at each step of a run, and remembers.
 #[derive(Debug)]
@@ -95,11 +95,6 @@ fn may_break(cable: &Cable, answer: &CableSolution, run: &RunPeaks) -> Option<Wa
     let (TensionRanges { held_n: [from, to], .. }, breaking_n) = (run.ranges?, cable.breaking_tension_n);
     let (broke, held, over_s) = (!answer.breaks.is_empty(), run.peaks.held, run.peaks.over_s);
     let open = if broke { from < breaking_n } else { to >= breaking_n };
-    let does = if broke { "broke here, and may hold" } else { "held here, and may break" };
-    let message = format!(
-        "`{}` {does}: its greatest mean tension over {over_s} s is {:.0} N, {from:.0} to {to:.0} N as coarser runs differ from it, and it breaks at {breaking_n} N: pull less, or more slowly",
-        cable.name, held.tension_n
-    );
-    let warning = Warning::new(WarningKind::MayBreak, &cable.name, held.arc_length_m, [to, breaking_n], message);
-    open.then_some(warning)
+    let cause = WarningCause::BreakageUncertain { broke, held_n: held.tension_n, lowest_n: from, over_s };
+    open.then(|| Warning::new(cause, &cable.name, held.arc_length_m, [to, breaking_n]))
 }

@@ -151,7 +151,7 @@ impl CheckedCable<'_> {
         self.body
     }
 
-    /// Where the scene's loads are on the cable, m.
+    /// Returns where the scene's loads are on the cable, m.
     pub(crate) fn scene_loads(&self) -> Vec<f64> {
         self.scene.loads.iter().filter(|l| l.cable == self.cable.name).map(|l| l.arc_length_m).collect()
     }
@@ -217,7 +217,7 @@ impl CheckedCable<'_> {
         foreign.flat_map(|c| &c.samples).map(|s| AppliedForce { arc_length: s.arc_length_m, force: vec2(s.force_n) })
     }
 
-    /// Whether the nodes run along the material: without that nothing else can be asked.
+    /// Returns whether the nodes run along the material: without that nothing else can be asked.
     fn material(&self, found: &mut Verification) -> bool {
         found.ask(Law::Material);
         let before = found.findings.len();
@@ -244,7 +244,7 @@ impl CheckedCable<'_> {
         0.5 * self.cable.diameter_m + larger(REACH_M, REACH_DIAMETERS * self.cable.diameter_m)
     }
 
-    /// What is near the line from each node to the next.
+    /// Returns what is near the line from each node to the next.
     fn near(&self) -> Neighbours {
         let reach = self.reach();
         Neighbours::new(self.surroundings, self.answer.nodes.iter().map(Node::at), reach)
@@ -294,7 +294,7 @@ impl CheckedCable<'_> {
         }
     }
 
-    /// Where supports hold the cable by its axis, m.
+    /// Returns where supports hold the cable by its axis, m.
     fn held_at(&self) -> Vec<Vec2> {
         self.holds.iter().filter(|h| h.role == Role::Held).map(|h| h.at).collect()
     }
@@ -406,8 +406,8 @@ impl CheckedCable<'_> {
         self.sums(found, sums, [contacts, wheels]);
     }
 
-    /// What obstacles and the floor would do to a piece beyond what their friction allows, N; None
-    /// where nothing touches it.
+    /// Returns what obstacles and the floor would do to a piece beyond what their friction allows,
+    /// N; None where nothing touches it.
     fn excess(&self, near: &Neighbours, piece: &CheckedPiece, rays: &mut Vec<Vec2>) -> Option<f64> {
         let within = |n: &NearestFeature| {
             let pushes = piece.contact.dot(&n.normal);
@@ -455,13 +455,13 @@ impl CheckedCable<'_> {
         self.holds.iter().filter(|h| matches!(h.role, Role::Held | Role::Pulley)).map(SupportHold::force).sum()
     }
 
-    /// Whether a floor rubs on the whole cable.
+    /// Returns whether a floor rubs on the whole cable.
     fn floor_rubs(&self) -> bool {
         self.scene.view == View::Plan && self.cable.friction > 0.0
     }
 
-    /// What may act on each metre of the cable without touching it at a place, N/m: weight and
-    /// wind, and in plan view the floor's friction.
+    /// Returns what may act on each metre of the cable without touching it at a place, N/m: weight
+    /// and wind, and in plan view the floor's friction.
     fn spread_load(&self) -> f64 {
         if !self.floor_rubs() {
             return self.body.norm();
@@ -470,7 +470,7 @@ impl CheckedCable<'_> {
         self.body.norm() + self.cable.friction * weight
     }
 
-    /// What is beyond the floor's friction, too, N.
+    /// Returns what is beyond the floor's friction, too, N.
     fn floor_excess(&self, piece: &CheckedPiece, excess: f64) -> f64 {
         if !self.floor_rubs() {
             return excess;
@@ -671,15 +671,21 @@ impl CheckedCable<'_> {
         }
     }
 
-    /// How far a way may be from what it should be by rounding, and beside what touches, m.
-    fn length_slack(&self, material: f64, touches: bool) -> f64 {
-        let aside = if touches { CONTACT_SHIFT_DIAMETERS * self.cable.diameter_m } else { 0.0 };
-        LENGTH * material + MATERIAL_TOLERANCE * self.cable.length_m + aside
+    /// Rounding (m) of the way of so much material, m.
+    fn length_rounding(&self, material: f64) -> f64 {
+        LENGTH * material + MATERIAL_TOLERANCE * self.cable.length_m
     }
 
-    /// How far the way of a bar of a flexible cable, whose internal force is `end` (N) of size `q`
-    /// (N) at its end, is from what it should be, and how far it may, m; None where the force has
-    /// no direction.
+    /// The most (m) by which a way may be from what it should be by rounding, and beside what
+    /// touches.
+    fn length_slack(&self, material: f64, touches: bool) -> f64 {
+        let aside = if touches { CONTACT_SHIFT_DIAMETERS * self.cable.diameter_m } else { 0.0 };
+        self.length_rounding(material) + aside
+    }
+
+    /// Returns how far the way of a bar of a flexible cable, whose internal force is `end` (N) of
+    /// size `q` (N) at its end, is from what it should be, and how far it may, m; None where the
+    /// force has no direction.
     #[inline]
     fn strained(&self, bar: &CheckedBar<'_>, end: Vec2, q: f64, touches: bool) -> Option<(Vec2, f64)> {
         let (compliance, start, p) = (1.0 / self.cable.axial_stiffness_n, bar.from.force(), bar.forces[0]);
@@ -717,13 +723,13 @@ impl CheckedCable<'_> {
         self.body.norm() * (to - from)
     }
 
-    /// Whether something touches a piece or a neighbour.
+    /// Returns whether something touches a piece or a neighbour.
     pub fn touches(&self, near: &Neighbours, k: usize) -> bool {
         let led = || self.wheels.iter().any(|w| [k, k + 1].iter().any(|&k| self.is_led(k, w.0, w.1)));
         !near.around(k, k + 1).is_empty() || led()
     }
 
-    /// Whether a node is on a wheel.
+    /// Returns whether a node is on a wheel.
     pub(crate) fn is_led(&self, node: usize, center: Vec2, radius: f64) -> bool {
         let reach = self.reach() - 0.5 * self.cable.diameter_m;
         (self.answer.nodes[node].at() - center).norm() <= radius + reach
@@ -760,8 +766,8 @@ impl CheckedCable<'_> {
         let pull = 0.5 * (a.tension_n + b.tension_n);
         let change = (b.tension_n - a.tension_n).abs() + self.body.norm() * material;
         let stretched = material * (1.0 + pull / self.cable.axial_stiffness_n);
-        let limit = self.length_slack(material, false)
-            + (TURN * bend * bend + change / self.cable.axial_stiffness_n) * material;
+        let limit =
+            self.length_rounding(material) + (TURN * bend * bend + change / self.cable.axial_stiffness_n) * material;
         Lengths { value: (bar.way.norm() - stretched).abs(), limit, folded: 0.0 }
     }
 
@@ -788,7 +794,7 @@ impl CheckedCable<'_> {
     }
 }
 
-/// How far a force is outside the convex cone of some rays (unit vectors), N.
+/// Returns how far a force is outside the convex cone of some rays (unit vectors), N.
 fn outside_cone(force: Vec2, rays: &[Vec2]) -> f64 {
     let size = force.norm();
     if size == 0.0 {

@@ -62,9 +62,9 @@ pub(super) struct CompressedBar {
     pub length: f64,
     /// Force along it, N; negative: it pushes.
     pub pull: f64,
-    /// Whether something touches it: it does not turn then.
+    /// True if something touches it: it does not turn then.
     pub held: bool,
-    /// Whether the node before it is a support that lets it turn.
+    /// True if the node before it is a support that lets it turn.
     pub pinned: bool,
     /// Whether the node before it and the one after it are clamped.
     pub clamped: [bool; 2],

@@ -66,7 +66,7 @@ impl SupportHold<'_> {
         -Vec2::new(self.reaction.reaction_x_n, self.reaction.reaction_y_n)
     }
 
-    /// What a dead load pulls with, N.
+    /// Returns what a dead load pulls with, N.
     pub(crate) fn dead_load(&self, scene: &Scene, time_s: f64) -> Vec2 {
         let gravity = match scene.view {
             View::Elevation => Vec2::new(0.0, -scene.environment.gravity_m_per_s2),

@@ -8,7 +8,7 @@ use crate::contact::outline::Outline;
 use crate::math::RigidPose;
 use crate::math::{Vec2, cross, vec2};
 use crate::robot::RobotReport;
-use crate::scene::{Obstacle, Scene, Shape};
+use crate::scene::{LineEnds, Obstacle, Scene, Shape};
 
 /// An edge of an obstacle, or a round (both ends in its centre).
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +51,7 @@ impl Edges {
         Self { sorted, widest, low, high }
     }
 
-    /// Whether none is in a box from `low` to `high`, m, as all lie beside it.
+    /// Returns whether none is in a box from `low` to `high`, m, as all lie beside it.
     fn apart(&self, low: Vec2, high: Vec2) -> bool {
         low.x > self.high.x || high.x < self.low.x || low.y > self.high.y || high.y < self.low.y
     }
@@ -94,12 +94,13 @@ impl Neighbours {
         Self { begins, all }
     }
 
-    /// What is near a bar.
+    /// Returns what is near a bar.
     pub fn of(&self, bar: usize) -> &[NearestFeature] {
         self.between(bar, bar + 1)
     }
 
-    /// What is near the bars between two nodes, and near the bar before and the bar after them.
+    /// Returns what is near the bars between two nodes, and near the bar before and the bar after
+    /// them.
     pub fn around(&self, from_node: usize, to_node: usize) -> &[NearestFeature] {
         self.between(from_node.saturating_sub(1), to_node + 1)
     }
@@ -184,7 +185,7 @@ pub(super) struct Surroundings<'a> {
 }
 
 impl Surroundings<'_> {
-    /// Whether nothing is in a box from `low` to `high`, m, as all lies beside it.
+    /// Returns whether nothing is in a box from `low` to `high`, m, as all lies beside it.
     fn apart(&self, low: Vec2, high: Vec2) -> bool {
         self.fixed.apart(low, high) && self.moving.apart(low, high)
     }
@@ -289,24 +290,24 @@ fn bounds(points: impl Iterator<Item = Vec2>) -> (Vec2, Vec2) {
 }
 
 fn body(o: &Obstacle, index: usize, edges: &mut Vec<SolidEdge>) -> SolidBody {
-    let mut line = |points: &[[f64; 2]], closed: bool, thickness: f64| {
+    let mut line = |points: &[[f64; 2]], ends: LineEnds, thickness: f64| {
         let n = points.len();
-        for k in 0..if closed { n } else { n.saturating_sub(1) } {
+        for k in 0..if ends == LineEnds::Joined { n } else { n.saturating_sub(1) } {
             let (from, to) = (vec2(points[k]), vec2(points[(k + 1) % n]));
             edges.push(SolidEdge::new(from, to, thickness, index));
         }
     };
     let kind = match &o.shape {
         Shape::Terrain { points_m } => {
-            line(points_m, false, 0.0);
+            line(points_m, LineEnds::Open, 0.0);
             Kind::Below
         }
         Shape::Polygon { points_m } => {
-            line(points_m, true, 0.0);
+            line(points_m, LineEnds::Joined, 0.0);
             Kind::Inside
         }
         Shape::Polyline { points_m, thickness_m } => {
-            line(points_m, false, 0.5 * thickness_m);
+            line(points_m, LineEnds::Open, 0.5 * thickness_m);
             Kind::Line
         }
         Shape::Circle { center_m, radius_m } => {
@@ -331,7 +332,7 @@ fn closest(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> [(Vec2, Vec2); 4] {
     [(a, nearest(a, c, d)), (b, nearest(b, c, d)), (nearest(c, a, b), c), (nearest(d, a, b), d)]
 }
 
-/// Whether two lines cross in their insides.
+/// Returns whether two lines cross in their insides.
 fn crosses(a: Vec2, b: Vec2, c: Vec2, d: Vec2) -> bool {
     let side = |p: Vec2, q: Vec2, r: Vec2| cross(q - p, r - p);
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0

@@ -24,7 +24,7 @@ use super::tangle::turns;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{Bend, CableSolution, ContactReport, JudgedBend, Node, Pressure, Warning, WarningKind};
+use crate::solution::{Bend, CableSolution, ContactReport, JudgedBend, Node, Pressure, Warning, WarningCause};
 
 /// Gap (m) within which an obstacle leads the cable. Smaller: a contact that a model holds a
 /// barrier's width off is missed; larger: what passes close by leads it. The models keep up to 1
@@ -190,8 +190,8 @@ pub(super) fn corner_radius(bending_stiffness: f64, tension: f64, turn: f64) -> 
     0.5 * (bending_stiffness / pull).sqrt() / sine
 }
 
-/// How far the nodes beside node `k` turn that are within a quarter of a round of a radius (m),
-/// rad.
+/// Returns how far the nodes beside node `k` turn that are within a quarter of a round of a radius
+/// (m), rad.
 fn round(piece: &[Node], turns: &[f64], k: usize, radius: f64) -> f64 {
     let far = std::f64::consts::FRAC_PI_2 * radius;
     let near = |n: &Node| piece.get(k).is_some_and(|at| (n.arc_length_m - at.arc_length_m).abs() <= far);
@@ -200,7 +200,7 @@ fn round(piece: &[Node], turns: &[f64], k: usize, radius: f64) -> f64 {
     turns.get(first..first + count).unwrap_or_default().iter().sum::<f64>().abs()
 }
 
-/// What leads the cable at a node of its answer.
+/// Returns what leads the cable at a node of its answer.
 pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Guide {
     let Some(n) = answer.nodes.get(node) else { return Guide::Free };
     let at = |k: usize| answer.nodes.get(k).map(|n| Vec2::new(n.x_m, n.y_m));
@@ -237,8 +237,8 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Gu
         .map_or(Guide::Free, |b| if b.center.is_some() { Guide::Round(b.offset) } else { Guide::Corner(b.offset) })
 }
 
-/// Whether the cable lies on the outline of the robot at a node or beside it: that moves, and is
-/// not among the obstacles.
+/// Returns whether the cable lies on the outline of the robot at a node or beside it: that moves,
+/// and is not among the obstacles.
 fn on_outline(problem: &Problem, answer: &CableSolution, node: usize) -> bool {
     let Some(outline) = &problem.outline else { return false };
     let arc = |k: usize| answer.nodes.get(k).or(answer.nodes.last()).map_or(f64::NAN, |n| n.arc_length_m);
@@ -252,30 +252,21 @@ pub(super) fn warn(problem: &Problem, bends: &Bends, out: &mut Vec<Warning>) {
     let cable = &problem.cable;
     let stated = cable.min_bend_radius_m;
     let kink = if stated > 0.0 { stated } else { KINK_DIAMETERS * cable.diameter_m };
-    let mut say = |kind, b: Bend, limit: f64, what: &str| {
-        let message = format!(
-            "`{}` is bent to a radius of {:.4} m at {:.3} m ({:.3} m, {:.3} m), below {limit} m: {what}",
-            cable.name, b.radius_m, b.arc_length_m, b.x_m, b.y_m
-        );
-        let warning = Warning::new(kind, &cable.name, b.arc_length_m, [b.radius_m, limit], message);
-        out.push(Warning { at_m: Some([b.x_m, b.y_m]), ..warning });
+    let mut warn = |cause, b: Bend, limit: f64| {
+        let warning = Warning::new(cause, &cable.name, b.arc_length_m, [b.radius_m, limit]);
+        out.push(warning.at([b.x_m, b.y_m]));
     };
     if let Some(b) = bends.judged.filter(|b| b.radius_m < stated) {
-        say(WarningKind::BendRadius, b, stated, "its strands are overstretched there; lead it round something wider");
+        warn(WarningCause::NarrowGuide, b, stated);
     }
     if let Some(b) = bends.free.filter(|b| b.radius_m < kink) {
-        say(WarningKind::Kink, b, kink, "it kinks there and stays bent; give it more way to turn, or a guide");
+        warn(WarningCause::FreeKink, b, kink);
     }
     let limit = cable.sidewall_limit_n_per_m;
     if let (Some(p), Some(limit)) = (bends.pressure, limit)
         && p.pressure_n_per_m > limit
     {
-        let message = format!(
-            "`{}` is pressed with {:.0} N/m against what leads it at {:.3} m ({:.3} m, {:.3} m), above the {limit} N/m it stands: its insulation is crushed; pull less, or lead it round something wider",
-            cable.name, p.pressure_n_per_m, p.arc_length_m, p.x_m, p.y_m
-        );
-        let values = [p.pressure_n_per_m, limit];
-        let warning = Warning::new(WarningKind::SidewallPressure, &cable.name, p.arc_length_m, values, message);
-        out.push(Warning { at_m: Some([p.x_m, p.y_m]), ..warning });
+        let warning = Warning::new(WarningCause::Pressure, &cable.name, p.arc_length_m, [p.pressure_n_per_m, limit]);
+        out.push(warning.at([p.x_m, p.y_m]));
     }
 }

@@ -20,7 +20,7 @@ use std::collections::VecDeque;
 use super::Observed;
 use crate::math::{Vec2, larger};
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Energy, Warning, WarningKind};
+use crate::solution::{CableSolution, Energy, Warning, WarningCause};
 
 /// Energy growth that is warned of, as a part of the energy exchanged meanwhile. Smaller: errors of
 /// the nodes of a solution cause warnings; larger: an unstable motion is shown for longer before
@@ -133,17 +133,12 @@ impl EnergyGrowth {
         let speed = |k: usize| nodes.get(k).map_or(0.0, |n| n.vx_m_per_s.hypot(n.vy_m_per_s));
         let fastest = (0..nodes.len()).max_by(|a, b| speed(*a).total_cmp(&speed(*b))).unwrap_or(0);
         let at = nodes.get(fastest).copied().unwrap_or_default();
-        let message = format!(
-            "`{name}` has {grown:.3e} J more energy than at {:.4} s that came from nowhere: what moves it can have given {:.3e} J at most since then, and rounding is below {limit:.3e} J. It is fastest at {:.3} m ({:.3} m, {:.3} m) with {:.1} m/s. The motion from then on is not to be believed; use fem, shorter steps, or damping",
-            self.least.time_s,
-            self.work_j - self.least.work_j,
-            at.arc_length_m,
-            at.x_m,
-            at.y_m,
-            speed(fastest)
-        );
-        let warning = Warning::new(WarningKind::EnergyGrows, name, at.arc_length_m, [grown, limit], message);
-        Warning { at_m: Some([at.x_m, at.y_m]), ..warning }
+        let cause = WarningCause::EnergyFromNowhere {
+            from_s: self.least.time_s,
+            work_j: self.work_j - self.least.work_j,
+            speed_m_per_s: speed(fastest),
+        };
+        Warning::new(cause, name, at.arc_length_m, [grown, limit]).at([at.x_m, at.y_m])
     }
 }
 
@@ -206,7 +201,7 @@ fn along(answer: &CableSolution, s: f64) -> (Vec2, Vec2) {
     (x(j) + (x(k) - x(j)) * f, v(j) + (v(k) - v(j)) * f)
 }
 
-/// What was done between two instants at most, J.
+/// Returns what was done between two instants at most, J.
 fn work(observed: &Observed<'_>, before: &Snapshot, now: &Snapshot) -> f64 {
     let Observed { problem, answer, .. } = *observed;
     let (from, to) = (before.time_s, now.time_s);

@@ -147,7 +147,7 @@ impl WarningMonitor {
     }
 }
 
-/// What one answer shows by itself.
+/// Returns what one answer shows by itself.
 fn instantaneous(observed: &Observed<'_>) -> Vec<Warning> {
     let Observed { problem, answer, bends, breaks, .. } = *observed;
     let mut out = Vec::new();

@@ -1,7 +1,7 @@
 //! A snag is an obstacle that holds the cable fast while it is pulled harder and harder.
 
 use super::Observed;
-use crate::solution::{ContactReport, ContactState, Warning, WarningKind};
+use crate::solution::{ContactReport, ContactState, Warning, WarningCause};
 
 /// Growth of the ratio of tensions across a contact that is a snag. Smaller: every contact that
 /// takes up load is one; larger: it is named when the cable is already near its limit. Half as much
@@ -79,10 +79,6 @@ fn tension_ratio(c: &ContactReport) -> (f64, f64) {
 
 fn warning(observed: &Observed<'_>, c: &ContactReport, ratio: f64, first: f64) -> Warning {
     let name = &observed.problem.cable.name;
-    let message = format!(
-        "`{name}` is caught by `{}` at {:.3} m ({:.3} m, {:.3} m): it does not slip there while the tension across it has grown from {first:.2} to {ratio:.2} times; the pull goes into the obstacle, not along the cable; stop, drive back, and lead it past",
-        c.obstacle, c.arc_length_m, c.x_m, c.y_m
-    );
-    let warning = Warning::new(WarningKind::Snag, name, c.arc_length_m, [ratio, RATIO_GROWTH * first], message);
-    Warning { at_m: Some([c.x_m, c.y_m]), ..warning }
+    let cause = WarningCause::Caught { obstacle: c.obstacle.clone(), first_ratio: first };
+    Warning::new(cause, name, c.arc_length_m, [ratio, RATIO_GROWTH * first]).at([c.x_m, c.y_m])
 }

@@ -5,7 +5,7 @@
 
 use crate::math::{Vec2, angle};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Node, Warning, WarningKind};
+use crate::solution::{CableSolution, Node, Warning, WarningCause};
 
 use super::bend::{Guide, lead};
 use crate::contact::self_crossings::{SelfCrossing, crossings};
@@ -69,14 +69,8 @@ fn loops(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
         }
         named.push([s, t]);
         let p = points[c.first] + (points[c.first + 1] - points[c.first]) * c.fractions[0];
-        let message = format!(
-            "`{name}` crosses itself at ({:.3} m, {:.3} m): {s:.3} m and {t:.3} m along it ({count} in all); the loop of {:.3} m between can tighten into a kink or a knot when it is pulled; lay it without the loop, or draw it in from the slack end",
-            p.x,
-            p.y,
-            t - s
-        );
-        let warning = Warning::new(WarningKind::Loop, name, s, [t - s, least], message);
-        out.push(Warning { at_m: Some([p.x, p.y]), ..warning });
+        let cause = WarningCause::Crossing { other_arc_length_m: t, count };
+        out.push(Warning::new(cause, name, s, [t - s, least]).at(p.into()));
     }
 }
 
@@ -127,12 +121,8 @@ fn curl(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
         && let Some(middle) = answer.nodes.get((i + j) / 2)
     {
         let (name, turn) = (&problem.cable.name, CURL_TURN.to_degrees());
-        let message = format!(
-            "`{name}` curls up at {:.3} m ({:.3} m, {:.3} m): it turns {turn:.0}° within {length:.3} m; pulled, the curl closes into a kink; take the turn out of it before pulling",
-            middle.arc_length_m, middle.x_m, middle.y_m
-        );
-        let warning = Warning::new(WarningKind::Curl, name, middle.arc_length_m, [turn, turn], message);
-        out.push(Warning { at_m: Some([middle.x_m, middle.y_m]), ..warning });
+        let warning = Warning::new(WarningCause::TightTurn { within_m: length }, name, middle.arc_length_m, [turn; 2]);
+        out.push(warning.at([middle.x_m, middle.y_m]));
     }
 }
 
@@ -169,12 +159,8 @@ fn wraps(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
         let hardest = of_it().max_by(|a, b| a.normal_n.total_cmp(&b.normal_n));
         if let Some(c) = hardest.filter(|_| turns >= WRAP_TURNS) {
             let name = &problem.cable.name;
-            let message = format!(
-                "`{name}` goes round `{}` {turns:.2} times at {:.3} m ({:.3} m, {:.3} m): friction multiplies the pull with every turn and pulling an end does not free it; drive back round it",
-                body.name, c.arc_length_m, c.x_m, c.y_m
-            );
-            let warning = Warning::new(WarningKind::Wrapped, name, c.arc_length_m, [turns, WRAP_TURNS], message);
-            out.push(Warning { at_m: Some([c.x_m, c.y_m]), ..warning });
+            let cause = WarningCause::RoundObstacle { obstacle: body.name.clone() };
+            out.push(Warning::new(cause, name, c.arc_length_m, [turns, WRAP_TURNS]).at([c.x_m, c.y_m]));
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::breakage::Break;
 use crate::math::Vec2;
 use crate::problem::Problem;
 use crate::scene::Cable;
-use crate::solution::{CableSolution, Node, TensionPeaks, Warning, WarningKind};
+use crate::solution::{CableSolution, MeanTension, Node, TensionPeaks, Warning, WarningCause};
 
 /// Below this part of the whole load a point has no tension to speak of. Larger: the low point of a
 /// slack span counts; smaller: friction on the ground leaves enough that nothing is ever slack.
@@ -47,35 +47,22 @@ pub(super) fn greatest(answer: &CableSolution) -> f64 {
 fn jerk(cable: &Cable, answer: &CableSolution, peaks: &TensionPeaks, out: &mut Vec<Warning>) {
     let (service_n, breaking_n, over_s) = (cable.service_tension_n, cable.breaking_tension_n, peaks.over_s);
     let TensionPeaks { greatest, held, .. } = *peaks;
-    let (kind, top, limit, what) = if held.tension_n > breaking_n {
-        let what = format!(
-            "in the mean over {over_s} s, above its breaking tension of {breaking_n} N: it would break here; the figures assume that it does not"
-        );
-        (WarningKind::BreakingTension, held, breaking_n, what)
+    let (cause, top, limit) = if held.tension_n > breaking_n {
+        let mean = MeanTension { over_s, time_s: held.time_s };
+        (WarningCause::AboveBreaking { mean: Some(mean) }, held, breaking_n)
     } else if greatest.tension_n > breaking_n {
-        let what = format!(
-            "for an instant, above its service tension of {service_n} N and its breaking tension of {breaking_n} N. It holds, as its mean over {over_s} s is {:.1} N at most; but how high such an instant is hangs on loss and mesh",
-            held.tension_n
-        );
-        (WarningKind::ServiceTension, greatest, service_n, what)
+        let (time_s, held_n) = (greatest.time_s, held.tension_n);
+        (WarningCause::BrieflyAboveBreaking { time_s, breaking_n, held_n, over_s }, greatest, service_n)
     } else if greatest.tension_n > service_n {
-        let what = format!(
-            "above its service tension of {service_n} N: it wears out early; lengthen the cable or lighten the load"
-        );
-        (WarningKind::ServiceTension, greatest, service_n, what)
+        (WarningCause::AboveService { time_s: Some(greatest.time_s) }, greatest, service_n)
     } else {
         return;
     };
     let at = at(&answer.nodes, top.arc_length_m);
-    let message = format!(
-        "`{}` is pulled with {:.1} N at {:.3} m ({:.3} m, {:.3} m) at {:.4} s, {what}",
-        cable.name, top.tension_n, top.arc_length_m, at.x, at.y, top.time_s
-    );
-    let warning = Warning::new(kind, &cable.name, top.arc_length_m, [top.tension_n, limit], message);
-    out.push(Warning { at_m: Some([at.x, at.y]), ..warning });
+    out.push(Warning::new(cause, &cable.name, top.arc_length_m, [top.tension_n, limit]).at(at.into()));
 }
 
-/// Where a point of the cable is, m.
+/// Returns where a point of the cable is, m.
 fn at(nodes: &[Node], s: f64) -> Vec2 {
     let k = nodes.partition_point(|n| n.arc_length_m < s);
     match (k.checked_sub(1).and_then(|k| nodes.get(k)), nodes.get(k)) {
@@ -95,7 +82,7 @@ pub(super) fn slack(problem: &Problem, answer: &CableSolution, out: &mut Vec<War
     }
 }
 
-/// What lies without tension on less ground than it is long.
+/// Returns what lies without tension on less ground than it is long.
 fn folds(problem: &Problem, answer: &CableSolution) -> Option<Warning> {
     let limit_n = SLACK_TENSION * problem.force_scale();
     // Seen from above, and where nothing weighs, it can lie anywhere.
@@ -117,14 +104,9 @@ fn folds(problem: &Problem, answer: &CableSolution) -> Option<Warning> {
         }
     }
     let (over, least, at) = (material - ground, FOLDED_LENGTH * problem.length, middle?);
-    let name = &problem.cable.name;
-    let what = if anywhere { "way" } else { "ground" };
-    let message = format!(
-        "{material:.2} m of `{name}` lie without tension in folds on {ground:.2} m of {what}, most of it at {:.3} m ({:.3} m, {:.3} m): in a plane layers and loops cannot be seen, so how they lie is left open; shorten the cable or give it more ground",
-        at.arc_length_m, at.x_m, at.y_m
-    );
-    let warning = Warning::new(WarningKind::Slack, name, at.arc_length_m, [over, least], message);
-    (over > least).then_some(Warning { at_m: Some([at.x_m, at.y_m]), ..warning })
+    let cause = WarningCause::Folds { material_m: material, ground_m: ground, on_ground: !anywhere };
+    let warning = Warning::new(cause, &problem.cable.name, at.arc_length_m, [over, least]);
+    (over > least).then_some(warning.at([at.x_m, at.y_m]))
 }
 
 /// Appends the longest part without tension.
@@ -147,60 +129,33 @@ fn loose(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     if let Some((length, run)) = longest.filter(|(l, _)| *l >= least && solved)
         && let Some(middle) = run.get(run.len() / 2)
     {
-        let message = format!(
-            "{length:.2} m of `{}` round {:.3} m ({:.3} m, {:.3} m) have less than {limit_n:.3} N of tension: this part may be run over, snag or loop; shorten the cable or pull it in",
-            problem.cable.name, middle.arc_length_m, middle.x_m, middle.y_m
-        );
-        let name = &problem.cable.name;
-        let warning = Warning::new(WarningKind::Slack, name, middle.arc_length_m, [length, least], message);
-        out.push(Warning { at_m: Some([middle.x_m, middle.y_m]), ..warning });
+        let cause = WarningCause::LowTension { below_n: limit_n };
+        let warning = Warning::new(cause, &problem.cable.name, middle.arc_length_m, [length, least]);
+        out.push(warning.at([middle.x_m, middle.y_m]));
     }
 }
 
 /// Appends where it has broken.
 pub(super) fn broken(cable: &Cable, breaks: &[Break], out: &mut Vec<Warning>) {
     for b in breaks {
-        let (s, t, x, y, limit) = (b.arc_length_m, b.time_s, b.at.x, b.at.y, cable.breaking_tension_n);
-        let (how, rest) = match &b.detached_from {
-            Some(support) => (format!("tore off `{support}`"), "the rest goes on without it"),
-            None => ("broke".to_owned(), "the pieces go on apart"),
-        };
-        let held = match b.over_s {
-            over_s if over_s > 0.0 => format!("the mean of its tension over {over_s} s"),
-            _ => "its tension".to_owned(),
-        };
-        let message = format!(
-            "`{}` {how} at {s:.3} m ({x:.3} m, {y:.3} m) at {t:.4} s, where {held} reached its breaking tension of {limit} N: {rest}; pull less, or take a stronger cable",
-            cable.name
-        );
-        let warning = Warning::new(WarningKind::Broken, &cable.name, s, [limit, limit], message);
-        out.push(Warning { at_m: Some([x, y]), since_s: Some(t), ..warning });
+        let limit = cable.breaking_tension_n;
+        let (time_s, over_s, detached_from) = (b.time_s, b.over_s, b.detached_from.clone());
+        let cause = WarningCause::Broke { time_s, over_s, detached_from };
+        let warning = Warning::new(cause, &cable.name, b.arc_length_m, [limit, limit]).at(b.at.into());
+        out.push(Warning { since_s: Some(time_s), ..warning });
     }
 }
 
 fn tension(cable: &Cable, top: &Node, out: &mut Vec<Warning>) {
-    let (kind, limit, what) = if top.tension_n > cable.breaking_tension_n {
-        (
-            WarningKind::BreakingTension,
-            cable.breaking_tension_n,
-            "it would break here; the figures assume that it does not",
-        )
+    let (cause, limit) = if top.tension_n > cable.breaking_tension_n {
+        (WarningCause::AboveBreaking { mean: None }, cable.breaking_tension_n)
     } else if top.tension_n > cable.service_tension_n {
-        (
-            WarningKind::ServiceTension,
-            cable.service_tension_n,
-            "it wears out early; lengthen the cable or lighten the load",
-        )
+        (WarningCause::AboveService { time_s: None }, cable.service_tension_n)
     } else {
         return;
     };
-    let name = if kind == WarningKind::BreakingTension { "breaking" } else { "service" };
-    let message = format!(
-        "`{}` is pulled with {:.1} N at {:.3} m ({:.3} m, {:.3} m), above its {name} tension of {limit} N: {what}",
-        cable.name, top.tension_n, top.arc_length_m, top.x_m, top.y_m
-    );
-    let warning = Warning::new(kind, &cable.name, top.arc_length_m, [top.tension_n, limit], message);
-    out.push(Warning { at_m: Some([top.x_m, top.y_m]), ..warning });
+    let warning = Warning::new(cause, &cable.name, top.arc_length_m, [top.tension_n, limit]);
+    out.push(warning.at([top.x_m, top.y_m]));
 }
 
 /// The node with the greatest value (none that is not a number).

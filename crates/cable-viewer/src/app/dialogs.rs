@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Context, Id, Modal, Ui};
 
+use crate::app::path_picker::{self, Purpose};
 use crate::command::{Command, FileCommand};
 use crate::state::AppState;
 use crate::state::dialog::{Dialog, Replacement};
@@ -13,12 +14,13 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
     let panels = state.ui.panels;
     let Some(dialog) = &mut state.ui.dialog else { return };
     let name = state.document.scene.name.clone();
+    let recent = state.ui.recent.clone();
     let response = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
         ui.set_max_width(460.0);
         match dialog {
             Dialog::Message { title, text } => message(ui, title, text, commands),
-            Dialog::Open { path } => ask_path(ui, "Open a scene", path, false, commands),
-            Dialog::SaveAs { path } => ask_path(ui, "Save the scene as", path, true, commands),
+            Dialog::Open { path } => ask_path(ui, "Open a scene", path, Purpose::Open, commands),
+            Dialog::SaveAs { path } => ask_path(ui, "Save the scene as", path, Purpose::Save, commands),
             Dialog::Export { path, sheet } => {
                 let note = "CSV has every sample in view in SI units; SVG and PNG are drawings of it";
                 if let Some(path) = ask(ui, ("Export what is in view", "Save"), ("Ends in .csv, .svg or .png", note), path, commands) {
@@ -40,6 +42,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                 }
             }
             Dialog::Feedback { answers, path } => crate::app::feedback_form::ui(ui, answers, path, commands),
+            Dialog::StartHere => crate::app::start_here::ui(ui, &recent, commands),
             Dialog::About => about(ui, commands),
             Dialog::Palette { text } => crate::app::palette::ui(ui, text, panels, commands),
             Dialog::ImportMap { path, text, unit_m } => import_map(ui, [path, text, unit_m], commands),
@@ -92,6 +95,8 @@ fn ask(
         typed_at_once(ui, &field);
         done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
     });
+    let purpose = if does == "Save" { Purpose::Save } else { Purpose::Open };
+    path_picker::list(ui, path, &[], purpose);
     ui.weak(note);
     ui.add_space(10.0);
     ui.horizontal(|ui| {
@@ -110,6 +115,9 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], commands: &mu
     ui.horizontal(|ui| {
         let label = ui.label("File");
         ui.add(egui::TextEdit::singleline(path).desired_width(320.0)).labelled_by(label.id);
+    });
+    egui::CollapsingHeader::new("Pick a file").show_unindented(ui, |ui| {
+        path_picker::list(ui, path, &["csv", "tsv", "txt", "dat", "svg"], Purpose::Open);
     });
     let label = ui.label("or paste it here");
     egui::ScrollArea::vertical().max_height(160.0).show(ui, |ui| {
@@ -201,8 +209,8 @@ const ABOUT: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// A path to type, and the system's own dialog for those who have one.
-fn ask_path(ui: &mut Ui, title: &str, path: &mut String, saving: bool, commands: &mut Vec<Command>) {
+/// A path to type or to pick.
+fn ask_path(ui: &mut Ui, title: &str, path: &mut String, purpose: Purpose, commands: &mut Vec<Command>) {
     ui.heading(title);
     ui.add_space(6.0);
     let mut done = false;
@@ -211,24 +219,22 @@ fn ask_path(ui: &mut Ui, title: &str, path: &mut String, saving: bool, commands:
         let field = ui.add(egui::TextEdit::singleline(path).desired_width(320.0)).labelled_by(label.id);
         typed_at_once(ui, &field);
         done |= field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-        if ui.button("Browse…").on_hover_text("The system's file dialog; needs a desktop portal").clicked() {
-            let dialog = rfd::FileDialog::new().add_filter("scene", &["toml"]);
-            let picked = if saving { dialog.set_file_name("scene.toml").save_file() } else { dialog.pick_file() };
-            if let Some(picked) = picked {
-                *path = picked.display().to_string();
-            }
-        }
+        path_picker::system(ui, path, purpose);
     });
+    done |= path_picker::list(ui, path, &["toml"], purpose) && purpose == Purpose::Open;
     ui.add_space(10.0);
     ui.horizontal(|ui| {
-        done |= ui.button(if saving { "Save" } else { "Open" }).clicked();
+        done |= ui.button(if purpose == Purpose::Save { "Save" } else { "Open" }).clicked();
         if ui.button("Cancel").clicked() {
             commands.push(close());
         }
     });
     if done && !path.trim().is_empty() {
         let path = PathBuf::from(path.trim());
-        commands.push(Command::File(if saving { FileCommand::SaveAs(path) } else { FileCommand::Open(path) }));
+        commands.push(Command::File(match purpose {
+            Purpose::Open => FileCommand::Open(path),
+            Purpose::Save => FileCommand::SaveAs(path),
+        }));
     }
 }
 
@@ -271,7 +277,7 @@ fn recover(ui: &mut Ui, scene: &cable_core::Scene, commands: &mut Vec<Command>) 
 }
 
 /// What pointer and keys do; docs/controls.md has the same table.
-const CONTROLS: [(&str, &str); 27] = [
+const CONTROLS: [(&str, &str); 28] = [
     ("Drag a support, waypoint or corner", "Moves it; the cable follows"),
     ("Drag an obstacle", "Moves all of it; click it to see its corners"),
     ("Double-click the cable", "Adds a waypoint"),
@@ -282,6 +288,7 @@ const CONTROLS: [(&str, &str); 27] = [
     ("Wheel", "Zooms at the pointer, in graphs too"),
     ("+, −, Shift+arrows", "Zooms about the middle; moves the view"),
     ("Click the cable", "Breaks down the tension there"),
+    ("Drag in a graph over time", "Moves the playhead; in a zoomed graph the view"),
     ("Click in a graph", "Sets a cursor; a second one tells the difference"),
     ("Tab, Enter, Esc", "Next control; presses it; back to the canvas"),
     ("Left, right in a graph", "Moves its cursor; with Shift what is in view"),

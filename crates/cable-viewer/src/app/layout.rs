@@ -2,10 +2,11 @@
 
 use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui};
 
-use crate::app::{menu, tutorial_bar};
+use crate::app::{first_steps, menu, tutorial_bar};
 use crate::canvas::layers::legend;
 use crate::command::Command;
 use crate::state::AppState;
+use crate::widgets::highlight;
 use crate::{canvas, panels};
 
 type PanelUi = fn(&mut Ui, &AppState, &mut Vec<Command>);
@@ -13,15 +14,18 @@ type Section = (&'static str, PanelUi);
 
 /// What is edited.
 const EDIT: &[Section] = &[
+    ("Outline", panels::scene::outline::ui),
+    (SELECTED, panels::selected::ui),
     ("Scene", panels::scene::ui),
     ("Robot", panels::robot::ui),
     ("Cable", panels::cable::ui),
     ("Environment", panels::environment::ui),
     ("Solver", panels::solver::ui),
 ];
-/// What is read off. Where a place on the cable is marked its tension stands above the readouts,
+/// What is read off, first of what is selected. Where a place on the cable is marked its tension stands above the readouts,
 /// else at the end.
 const READ: &[Section] = &[
+    (SELECTED, panels::selected::ui),
     ("Warnings", panels::warnings::ui),
     (MARKED, panels::analysis::tension_budget::ui),
     ("Readouts", panels::readouts::ui),
@@ -31,6 +35,7 @@ const READ: &[Section] = &[
     ("Friction range", panels::analysis::friction_range::ui),
 ];
 
+const SELECTED: &str = "Selected";
 const MARKED: &str = "Tension at the marked place";
 const UNMARKED: &str = "Tension at a place";
 
@@ -56,6 +61,7 @@ fn part((fraction, [least, most]): (f32, [f32; 2]), of: f32) -> f32 {
 /// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its
 /// own size.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
+    highlight::seek(ui.ctx(), tutorial_bar::points_at(state));
     Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
     if state.ui.tutorial.is_some() {
         Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
@@ -93,7 +99,9 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     } else if past || (graphs && state.live.before_reset.is_some()) {
         Panel::bottom("timeline").show(ui, |ui| panels::timeline::ui(ui, state, commands));
     }
-    CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
+    let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
+    first_steps::ui(ui, canvas.response.rect, state, commands);
+    highlight::frame(ui.ctx());
 }
 
 /// A side panel of a width that its contents do not change.
@@ -123,7 +131,8 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
         let id = Id::unique("narrow tab");
         let mut tab: Tab = ui.data(|d| d.get_temp(id)).unwrap_or_default();
         ui.horizontal(|ui| {
-            ui.selectable_value(&mut tab, Tab::Edit, "Edit").on_hover_text("Scene, robot, cable, environment, solver");
+            ui.selectable_value(&mut tab, Tab::Edit, "Edit")
+                .on_hover_text("Outline, scene, robot, cable, environment, solver");
             ui.selectable_value(&mut tab, Tab::Read, "Results")
                 .on_hover_text("Warnings, readouts, safe reach, tension at a place, compare");
             if graphs {
@@ -154,6 +163,8 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
         for (title, panel) in sections {
             let hidden = match *title {
                 "Robot" => state.document.scene.robot.is_none(),
+                // On the right where there is such a panel, else below the outline.
+                SELECTED => !panels::selected::is_shown(state) || (id == "read") != state.ui.legend_beside,
                 MARKED => state.analysis.tension_marker.is_none(),
                 UNMARKED => state.analysis.tension_marker.is_some(),
                 _ => false,
@@ -161,11 +172,12 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
             if hidden {
                 continue;
             }
-            CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| {
+            let section = CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| {
                 // One section that is too wide does not widen the others.
                 ui.set_max_width(width);
                 panel(ui, state, commands);
             });
+            highlight::offer(&section.header_response, &format!("{title} section"));
         }
     });
 }

@@ -2,22 +2,26 @@
 
 use cable_core::scene::catalog;
 use cable_core::verify::Verification;
-use egui::{Align, Button, Color32, KeyboardShortcut, Label, Layout, MenuBar, RichText, Sense, Ui, Vec2};
+use egui::{Align, Button, KeyboardShortcut, Label, Layout, MenuBar, RichText, Sense, Ui, Vec2};
 
 use crate::app::keys;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::readouts::DIMMED;
 use crate::render::colour::{ColourMap, Quantity};
+use crate::render::theme;
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Freshness, WorkerStatus};
+use crate::units::format;
+use crate::units::sentence::sentence;
 use crate::units::system::System;
-use crate::units::{format, translate};
+use crate::widgets::highlight;
 
 /// The menu bar.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file(ui, state, commands));
-        ui.menu_button("Edit", |ui| edit(ui, state, commands));
+        let edit = ui.menu_button("Edit", |ui| edit(ui, state, commands));
+        highlight::offer(&edit.response, "Edit menu");
         ui.menu_button("View", |ui| view(ui, state, commands));
         ui.menu_button("Scenes", |ui| scenes(ui, commands));
         ui.menu_button("Learn", |ui| crate::app::tutorial_bar::menu(ui, commands));
@@ -229,7 +233,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     ui.separator();
     let mut panels = state.ui.panels;
-    ui.checkbox(&mut panels.edit, "Edit panel ([)").on_hover_text("Scene, robot, cable, environment, solver");
+    ui.checkbox(&mut panels.edit, "Edit panel ([)").on_hover_text("Outline, scene, robot, cable, environment, solver");
     ui.checkbox(&mut panels.results, "Results panel (])").on_hover_text("Warnings, readouts, safe reach, compare");
     ui.checkbox(&mut panels.graphs, "Graphs and timeline (G)").on_hover_text("The drawer below the canvas");
     if panels != state.ui.panels {
@@ -312,21 +316,17 @@ fn scenes(ui: &mut Ui, commands: &mut Vec<Command>) {
 
 /// Diameter of the light that shows the verdict, points.
 const LIGHT_SIZE: f32 = 9.0;
-/// Colour of the light where every law was asked and none is broken: green, told from red by its
-/// brightness too.
-const SOUND: Color32 = Color32::from_rgb(64, 170, 110);
-
 /// Whether the answer obeys the laws of mechanics, as they were checked independently of the model
 /// that gave it.
 fn light(ui: &mut Ui, verification: &Verification) {
     let visuals = ui.visuals();
     let (lamp, colour, text) = match (verification.is_sound(), verification.not_checked.is_empty()) {
-        (true, true) => (SOUND, visuals.text_color(), "verified"),
+        (true, true) => (theme::palette(visuals).sound, visuals.text_color(), "verified"),
         (true, false) => (visuals.weak_text_color(), visuals.weak_text_color(), "partly verified"),
         (false, _) => (visuals.error_fg_color, visuals.error_fg_color, "VERIFICATION FAILED"),
     };
     let laws: Vec<&str> = verification.checked.iter().map(|l| l.name()).collect();
-    let help = format!("{}. Checked: {}", translate::display(&verification.summary()), laws.join(", "));
+    let help = format!("{}. Checked: {}", sentence(verification), laws.join(", "));
     // The font has no signs for this: the light is painted, and the words say the same without its
     // colour.
     let (place, _) = ui.allocate_exact_size(Vec2::splat(LIGHT_SIZE), Sense::hover());

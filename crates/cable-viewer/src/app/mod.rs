@@ -1,17 +1,22 @@
 //! The window takes in the worker's answers, lays out panels and canvas and applies what they push.
 //!
 //! - `layout`, `menu`, `keys`, `palette`: where panels are, and every command by menu, key or name
-//! - `dialogs`, `feedback_form`: what the user is asked
+//! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
+//! - `first_steps`, `start_here`: the hints of the first minute, and what to begin with
 //! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
-//! - `screenshot`: the window as a picture file
+//! - `screenshot`, `gallery`: the window as a picture file, and in eight states
 
 mod dialogs;
 mod feedback_form;
+mod first_steps;
+pub mod gallery;
 mod keys;
 mod layout;
 mod menu;
 mod palette;
+mod path_picker;
 pub mod screenshot;
+mod start_here;
 mod tutorial_bar;
 pub mod tutorials;
 
@@ -24,7 +29,7 @@ use cable_core::Scene;
 use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::{self, Command};
 use crate::io::autosave::Autosave;
-use crate::io::recent_files;
+use crate::io::{first_steps as first_steps_file, recent_files};
 use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach};
 use crate::render::theme;
 use crate::state::analysis::hold;
@@ -57,6 +62,8 @@ pub struct ViewerApp {
     asked: VecDeque<(u64, Instant)>,
     /// Where recent files are listed, and what stands there.
     recent_list: Option<(PathBuf, Vec<PathBuf>)>,
+    /// Where it is noted that the first steps are done, until that is.
+    first_steps_mark: Option<PathBuf>,
     /// Since when an answer has been sought.
     solving_since: Option<Instant>,
     /// The map of where the robot can go, while it is computed.
@@ -94,6 +101,7 @@ impl ViewerApp {
             asked: VecDeque::new(),
             solving_since: None,
             recent_list: None,
+            first_steps_mark: None,
             reach: None,
             models: None,
             bending: None,
@@ -116,6 +124,12 @@ impl ViewerApp {
             self.state.ui.add_recent(path);
         }
         self.recent_list = Some((list, Vec::new()));
+        let mark = path.with_file_name("first-steps.txt");
+        if first_steps_file::are_done(&mark) {
+            self.state.ui.first_steps.hide();
+        } else {
+            self.first_steps_mark = Some(mark);
+        }
         let autosave = Autosave::new(path);
         self.state.ui.dialog = match autosave.found() {
             None => None,
@@ -366,6 +380,11 @@ impl eframe::App for ViewerApp {
         {
             written.clone_from(&self.state.ui.recent);
             recent_files::save(list, written);
+        }
+        if self.state.ui.first_steps.open().is_empty()
+            && let Some(mark) = self.first_steps_mark.take()
+        {
+            first_steps_file::remember(&mark);
         }
         let title = format!("{} – Cable simulator", menu::title(&self.state));
         if title != self.title {

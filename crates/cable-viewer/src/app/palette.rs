@@ -4,6 +4,7 @@ use cable_core::Model;
 use cable_core::scene::catalog;
 use egui::{Key, ScrollArea, TextEdit, Ui};
 
+use crate::app::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::render::colour::{ColourScale, Quantity};
 use crate::state::OpenPanels;
@@ -11,7 +12,8 @@ use crate::state::dialog::Dialog;
 use crate::units::system::System;
 
 /// Other words that people look for, and a part of the name that they mean.
-const SYNONYMS: [(&str, &str); 22] = [
+const SYNONYMS: [(&str, &str); 23] = [
+    ("start here", "learn guide tutorial welcome introduction"),
     ("pin this result", "hold keep compare reference remember"),
     ("pin a recorded run", "hold compare"),
     ("compare all models", "hold every solver"),
@@ -77,12 +79,15 @@ fn entries(panels: OpenPanels) -> Vec<(String, Command)> {
         ("Add a cable", Command::Scene(SceneCommand::AddCable)),
         ("Resume from the time shown", Command::Playback(PlaybackCommand::GoOn)),
         ("Restart the solver", Command::File(FileCommand::RestartWorker)),
+        ("Start here…", file(Dialog::StartHere)),
         ("Help: pointer and keys", file(Dialog::Help)),
         ("Give feedback…", Command::File(crate::app::menu::feedback())),
         ("About: what was checked", file(Dialog::About)),
         ("Quit", Command::File(FileCommand::Quit)),
         ("Undo reset", Command::Playback(PlaybackCommand::UndoReset)),
         ("Cancel solving", Command::Playback(PlaybackCommand::CancelSolve)),
+        ("Pull past the length while time runs", Command::Playback(PlaybackCommand::PullPastLength(true))),
+        ("Refuse pulls past the length", Command::Playback(PlaybackCommand::PullPastLength(false))),
         ("Show or fold the edit panel", show(OpenPanels { edit: !panels.edit, ..panels })),
         ("Show or fold the results panel", show(OpenPanels { results: !panels.results, ..panels })),
         ("Show or fold graphs and timeline", show(OpenPanels { graphs: !panels.graphs, ..panels })),
@@ -92,6 +97,9 @@ fn entries(panels: OpenPanels) -> Vec<(String, Command)> {
     let models = [Model::Auto].into_iter().chain(Model::SOLVERS);
     all.extend(models.map(|m| (format!("Solve with {m}"), Command::SetModel(m))));
     all.extend(Quantity::ALL.map(|q| (format!("Colour by {}", q.name().to_lowercase()), colour(q))));
+    all.extend(
+        TUTORIALS.iter().enumerate().map(|(k, t)| (format!("Guide: {}", t.title), Command::File(tutorials::open(k)))),
+    );
     all.extend(catalog::all().into_iter().map(|(id, scene)| {
         (format!("Open scene: {}", scene.name), Command::File(FileCommand::OpenCatalogue(id.to_owned())))
     }));

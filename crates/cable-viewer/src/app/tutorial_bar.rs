@@ -3,12 +3,25 @@
 use egui::Ui;
 
 use crate::app::tutorials::{self, TUTORIALS};
-use crate::command::{Command, ViewCommand};
+use crate::command::{Command, FileCommand, ViewCommand};
 use crate::state::AppState;
+use crate::state::dialog::Dialog;
 use crate::state::tutorial_place::TutorialPlace;
+
+/// Name of what the present step speaks of.
+#[must_use]
+pub fn points_at(state: &AppState) -> Option<&'static str> {
+    state.ui.tutorial.and_then(tutorials::step).map(|step| step.points_at)
+}
 
 /// The menu of guides.
 pub fn menu(ui: &mut Ui, commands: &mut Vec<Command>) {
+    let help = "What to begin with: guides, scenes, files";
+    if ui.button("Start here…").on_hover_text(help).clicked() {
+        commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::StartHere))));
+        ui.close();
+    }
+    ui.separator();
     for (guide, g) in TUTORIALS.iter().enumerate() {
         let help = "A scene and a few things to do in it; asks first if this one is not saved";
         if ui.button(format!("{}. {}", guide + 1, g.title)).on_hover_text(help).clicked() {

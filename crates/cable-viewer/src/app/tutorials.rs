@@ -22,6 +22,8 @@ pub struct Step {
     pub text: &'static str,
     /// Whether it was done; None: it is only to be read.
     pub done: Option<fn(&AppState) -> bool>,
+    /// Name of the control or of the thing on the canvas that it speaks of.
+    pub points_at: &'static str,
 }
 
 /// What is to be done at a place.
@@ -36,12 +38,12 @@ pub fn open(tutorial: usize) -> FileCommand {
     FileCommand::OpenTutorial { tutorial, scene: TUTORIALS.get(tutorial).map_or("", |t| t.scene) }
 }
 
-const fn act(text: &'static str, done: fn(&AppState) -> bool) -> Step {
-    Step { text, done: Some(done) }
+const fn act(points_at: &'static str, text: &'static str, done: fn(&AppState) -> bool) -> Step {
+    Step { text, done: Some(done), points_at }
 }
 
-const fn read(text: &'static str) -> Step {
-    Step { text, done: None }
+const fn read(points_at: &'static str, text: &'static str) -> Step {
+    Step { text, done: None, points_at }
 }
 
 fn changed(state: &AppState) -> bool {
@@ -66,11 +68,16 @@ pub const TUTORIALS: [Tutorial; 6] = [
         title: "Drag an end",
         scene: "hanging-span",
         steps: &[
-            act("Drag the right support: the cable follows and its colours show the tension", changed),
+            act(
+                "Support right of cable",
+                "Drag the right support: the cable follows and its colours show the tension",
+                changed,
+            ),
             read(
+                "Readouts section",
                 "Read the largest tension, its place and the sag on the right, under Readouts; the scale of colours is on the canvas",
             ),
-            act("Undo it with Ctrl+Z, or Undo in the Edit menu", |s| !changed(s)),
+            act("Edit menu", "Undo it with Ctrl+Z, or Undo in the Edit menu", |s| !changed(s)),
         ],
     },
     Tutorial {
@@ -78,54 +85,71 @@ pub const TUTORIALS: [Tutorial; 6] = [
         scene: "over-beam",
         steps: &[
             act(
+                "Linear density",
                 "Choose another preset or move a slider under Cable on the left: every property has a unit, a range and a source",
                 changed,
             ),
-            read("Hover over a name to see what it is and how sure its figure is; ≈ marks an estimate"),
+            read(
+                "Linear density",
+                "Hover over a name to see what it is and how sure its figure is; ≈ marks an estimate",
+            ),
             act(
+                "Length",
                 "Type a length below 9 m: the window says what is wrong before anything fails, and offers the fix",
                 |s| s.document.fault.is_some() || s.document.scene.cables.first().is_some_and(|c| c.length_m < 9.0),
             ),
-            act("Press the fix, or undo", |s| s.document.fault.is_none()),
+            act("The scene cannot be solved", "Press the fix, or undo", |s| s.document.fault.is_none()),
         ],
     },
     Tutorial {
         title: "Lay it over waypoints",
         scene: "hanging-span",
         steps: &[
-            act("Double-click the cable: a waypoint, which it slides through", |s| supports(s) > saved_supports(s)),
-            act("Drag the waypoint upwards, and give it a wheel under Supports on the left if you like", |s| {
-                let of = s.document.scene.cables.first().map(|c| &c.supports);
-                of.is_some_and(|list| {
-                    list.iter().any(|p| p.kind == SupportKind::Pulley && p.at_m.is_some_and(|at| at[1] > 4.5))
-                })
+            act("Middle of cable", "Double-click the cable: a waypoint, which it slides through", |s| {
+                supports(s) > saved_supports(s)
             }),
-            act("Press Delete while it is picked to take it out again", |s| supports(s) == saved_supports(s)),
+            act(
+                "Support waypoint of cable",
+                "Drag the waypoint upwards, and give it a wheel in the outline on the left if you like",
+                |s| {
+                    let of = s.document.scene.cables.first().map(|c| &c.supports);
+                    of.is_some_and(|list| {
+                        list.iter().any(|p| p.kind == SupportKind::Pulley && p.at_m.is_some_and(|at| at[1] > 4.5))
+                    })
+                },
+            ),
+            act("Support waypoint of cable", "Press Delete while it is picked to take it out again", |s| {
+                supports(s) == saved_supports(s)
+            }),
         ],
     },
     Tutorial {
         title: "Let time run",
         scene: "floor-drag",
         steps: &[
-            act("Press Space: time runs and the graphs fill", |s| time_s(s) > 0.3),
-            act("Press Space again to stop", |s| s.live.playback.paused),
-            act("Drag the timeline below the canvas, or press the left arrow, to look at an earlier time", |s| {
-                s.live.recording.shown_s.is_some()
-            }),
-            act("Resume from there, or press Latest to come back", |s| s.live.recording.shown_s.is_none()),
+            act("Play", "Press Space: time runs and the graphs fill", |s| time_s(s) > 0.3),
+            act("Pause", "Press Space again to stop", |s| s.live.playback.paused),
+            act(
+                "Timeline",
+                "Drag the timeline below the canvas, or press the left arrow, to look at an earlier time",
+                |s| s.live.recording.shown_s.is_some(),
+            ),
+            act("Latest", "Resume from there, or press Latest to come back", |s| s.live.recording.shown_s.is_none()),
         ],
     },
     Tutorial {
         title: "Drive the robot",
         scene: "robot-drive",
         steps: &[
-            act("Hold D: the robot drives to the right and draws its cable along", |s| {
+            act("Robot on the canvas", "Hold D: the robot drives to the right and draws its cable along", |s| {
                 s.live.latest.solution.as_ref().and_then(|a| a.robot).is_some_and(|r| r.x_m > 10.4)
             }),
             read(
+                "Robot section",
                 "Under Robot stands why it is as fast as it is: slope, ground, the pull of the cable. Drive on and it stalls or slips",
             ),
             act(
+                "Find safe reach",
                 "Press Find safe reach on the right: where it can go and come back below the service tension is drawn along the ground",
                 |s| matches!(s.analysis.safe_reach.progress, crate::jobs::safe_reach::Progress::Done(..)),
             ),
@@ -135,11 +159,14 @@ pub const TUTORIALS: [Tutorial; 6] = [
         title: "Compare and keep",
         scene: "hanging-span",
         steps: &[
-            act("Press Pin this result under Compare on the right", |s| !s.analysis.references.is_empty()),
-            act("Change the length: both are drawn, and what differs is told under Compare", |s| {
+            act("Pin this result", "Press Pin this result under Compare on the right", |s| {
+                !s.analysis.references.is_empty()
+            }),
+            act("Length", "Change the length: both are drawn, and what differs is told under Compare", |s| {
                 !s.analysis.references.is_empty() && changed(s)
             }),
             read(
+                "Export Along the cable",
                 "Export… beside a graph writes what is in view as CSV, SVG or PNG; Save run… in the File menu keeps everything",
             ),
         ],

@@ -11,7 +11,9 @@ use crate::geometry::handles;
 use crate::geometry::robot::path_flags;
 use crate::geometry::supports::support_position;
 use crate::state::{AppState, Freshness, Item};
-use crate::units::{format, translate, unit};
+use crate::units::sentence::sentence;
+use crate::units::{format, unit};
+use crate::widgets::highlight;
 
 /// Most contacts of a cable that are named: what lies on rubble has one a stone.
 const MAX_CONTACTS: usize = 40;
@@ -25,6 +27,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
         }
         let response = ui.interact(spot.intersect(canvas), ui.scope_id().with(id), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::GraphicsSymbol, true, &text));
+        highlight::offer(&response, &text);
     };
     let scene = &state.document.scene;
     for (cable, c) in scene.cables.iter().enumerate() {
@@ -32,6 +35,11 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
             if let Some(at) = support_position(state, cable, support) {
                 name(at, ("support", cable, support), format!("Support {} of {}", s.name, c.name));
             }
+        }
+    }
+    for (k, c) in state.live.snapshot.solution.iter().flat_map(|s| s.cables.iter().enumerate()) {
+        if let Some(n) = c.nodes.get(c.nodes.len() / 2) {
+            name([n.x_m, n.y_m], ("middle", k, 0), format!("Middle of {}", c.name));
         }
     }
     for (k, o) in scene.obstacles.iter().enumerate() {
@@ -124,31 +132,10 @@ pub fn summary(state: &AppState) -> String {
         ));
     }
     if let Some(error) = &state.live.snapshot.error {
-        out.push(format!("no answer: {}", translate::display(error)));
+        out.push(format!("no answer: {}", sentence(error)));
     }
     if let Some(item) = state.selection.selected {
-        out.push(format!("picked: {}", title(state, item)));
+        out.push(format!("picked: {}", state.describe(item)));
     }
     out.join(". ")
-}
-
-/// A thing in words.
-#[must_use]
-pub fn title(state: &AppState, item: Item) -> String {
-    let scene = &state.document.scene;
-    let cable = |k: usize| scene.cables.get(k).map_or("?", |c| &c.name);
-    let obstacle = |k: usize| scene.obstacles.get(k).map_or("?", |o| &o.name);
-    match item {
-        Item::Cable(k) => format!("cable {}", cable(k)),
-        Item::Support { cable: k, support } => {
-            let s = scene.cables.get(k).and_then(|c| c.supports.get(support));
-            format!("support {} of {}", s.map_or("?", |s| &s.name), cable(k))
-        }
-        Item::Obstacle(k) => format!("obstacle {}", obstacle(k)),
-        Item::Corner { obstacle: k, corner } => format!("corner {} of {}", corner + 1, obstacle(k)),
-        Item::Load(k) => format!("load {}", k + 1),
-        Item::Head(k) => format!("force of load {}", k + 1),
-        Item::Robot => "the robot".to_owned(),
-        Item::Leg(k) => format!("leg {} of the robot's path", k + 1),
-    }
 }

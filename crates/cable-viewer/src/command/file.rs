@@ -297,6 +297,6 @@ fn feedback_context(state: &AppState) -> feedback::Context<'_> {
     feedback::Context {
         scene: &state.document.scene.name,
         answer: state.live.snapshot.solution.as_deref(),
-        error: state.live.snapshot.error.as_deref(),
+        error: state.live.snapshot.error.as_ref().map(ToString::to_string),
     }
 }

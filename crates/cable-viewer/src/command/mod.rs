@@ -25,7 +25,7 @@ pub use crate::command::view::ViewCommand;
 
 use cable_core::{Model, Settings};
 
-use crate::state::AppState;
+use crate::state::{AppState, FirstStep, Item};
 
 /// Something to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,8 +44,24 @@ pub enum Command {
     File(FileCommand),
 }
 
+/// The first step that a command is.
+fn first_step(command: &Command) -> Option<FirstStep> {
+    match command {
+        Command::Scene(SceneCommand::Move { item: Item::Support { .. }, .. }) => Some(FirstStep::Drag),
+        Command::Scene(SceneCommand::MoveAll(moved)) if !moved.is_empty() => Some(FirstStep::Drag),
+        Command::Playback(PlaybackCommand::TogglePause | PlaybackCommand::SetPaused(false) | PlaybackCommand::Step) => {
+            Some(FirstStep::Play)
+        }
+        Command::View(ViewCommand::Zoom { .. }) => Some(FirstStep::Zoom),
+        _ => None,
+    }
+}
+
 /// Does one command.
 pub fn apply(state: &mut AppState, command: Command, effects: &mut Effects) {
+    if let Some(step) = first_step(&command) {
+        state.ui.first_steps.done(step);
+    }
     match command {
         Command::Scene(c) => scene::apply(state, c, effects),
         Command::Playback(c) => playback::apply(state, c, effects),

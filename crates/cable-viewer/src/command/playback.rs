@@ -44,6 +44,8 @@ pub enum PlaybackCommand {
     DriveRobot(Option<f64>),
     /// Speed it is driven with by hand, m/s.
     SetRobotSpeed(f64),
+    /// A support pulled farther than the cable reaches while time runs pulls, or is refused.
+    PullPastLength(bool),
 }
 
 /// Does one of them.
@@ -107,6 +109,7 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
                 effects.request.merge(Request { robot: Some(order), ..Request::default() });
             }
         }
+        PlaybackCommand::PullPastLength(pulls) => state.solver.pulls_past_length = pulls,
         PlaybackCommand::SetRobotSpeed(speed) => {
             if speed.is_finite() && speed > 0.0 {
                 state.live.robot_speed = Some(speed);

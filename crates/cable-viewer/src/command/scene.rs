@@ -175,7 +175,39 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
     }
     drop_lost_selection(state);
     state.live.reset_is_last = false;
+    if let Some((cable, support, to_m)) = dragged
+        && pulls_past_length(state, &before, cable, support)
+    {
+        pull_past_length(state, before, cable, support, to_m, effects);
+        return;
+    }
     after_edit(state, dragged, effects);
+}
+
+/// Whether the pointer pulls a support, while masses move, to where the cable does not reach, and
+/// the user wants that to pull instead of being refused.
+fn pulls_past_length(state: &AppState, before: &Scene, cable: usize, support: usize) -> bool {
+    let held = Item::Support { cable, support };
+    let by_spring = state.selection.grab.is_some_and(|g| g.item == held) && !is_quasi_static(state.solver.model);
+    let wanted = state.solver.pulls_past_length && by_spring && !state.live.playback.paused;
+    wanted && state.document.scene.validate().is_err() && before.validate().is_ok()
+}
+
+/// The hand goes on to a point (m) and pulls by its spring; in the scene the support stays where the
+/// cable last reached it.
+fn pull_past_length(
+    state: &mut AppState,
+    before: Scene,
+    cable: usize,
+    support: usize,
+    to_m: Point,
+    effects: &mut Effects,
+) {
+    state.document.scene = before;
+    state.document.validate();
+    state.live.show_time(None);
+    state.selection.spring_support = Some((cable, support));
+    draw_support(state, cable, support, to_m, effects);
 }
 
 /// Sends the edited scene: as a drag while time runs, else to be solved.
@@ -209,7 +241,13 @@ pub(super) fn let_go(state: &mut AppState, effects: &mut Effects) {
     let at = answer.filter(|r| r.hand.is_some()).map(|r| [r.x_m, r.y_m]);
     let held = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support));
     if let (Some(at), Some(held)) = (at, held) {
-        held.at_m = Some(at);
+        let before = held.at_m.replace(at);
+        // A piece that tore off may have been led farther than the whole cable reaches.
+        if state.document.scene.validate().is_err()
+            && let Some(held) = state.document.scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support))
+        {
+            held.at_m = before;
+        }
         draw_support(state, cable, support, at, effects);
     }
 }

@@ -1,6 +1,7 @@
 //! View commands change what is shown, not what is solved.
 
 use std::sync::Arc;
+use std::time::Instant;
 
 use cable_core::math::Point;
 
@@ -57,7 +58,8 @@ pub enum ViewCommand {
     SetLayers(Layers),
     /// Light or dark.
     SetTheme(egui::ThemePreference),
-    /// Looks for where the robot or an end can be taken, or ends that and forgets it.
+    /// Looks for where the robot or an end can be taken, or ends that and keeps what was found, or
+    /// forgets it.
     Reach(bool),
     /// What of it is asked and shown.
     SetReach(safe_reach::Choice),
@@ -66,6 +68,8 @@ pub enum ViewCommand {
     Spread(bool, [f64; 2]),
     /// Ask what neglecting bending stiffness changes.
     AskBending,
+    /// Does not show the hints of the first minute again.
+    HideFirstSteps,
     /// Leads to a step of a guided scene, or not any more.
     Guide(Option<TutorialPlace>),
     /// SI or US units; files stay SI.
@@ -139,7 +143,10 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         ViewCommand::SetColour(colour) => state.view.colour = colour,
         ViewCommand::SetLayers(layers) => state.view.layers = layers,
         ViewCommand::SetTheme(theme) => state.view.theme = theme,
-        ViewCommand::Reach(false) => (state.analysis.safe_reach.progress, effects.reach) = (Progress::None, Some(None)),
+        ViewCommand::Reach(false) => {
+            state.analysis.safe_reach.stop_or_clear();
+            effects.reach = Some(None);
+        }
         ViewCommand::Reach(true) => {
             let Some(moved) = reach_target(state) else {
                 state.analysis.safe_reach.progress =
@@ -147,9 +154,13 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 return;
             };
             state.analysis.safe_reach.progress = Progress::Running(0.0, None);
+            (state.analysis.safe_reach.began, state.analysis.safe_reach.stopped) = (Some(Instant::now()), None);
             let corners_m = match moved {
                 ReachSubject::Robot => crate::geometry::bounds::ground(state).map(|x| [x, 0.0]),
-                ReachSubject::Support { .. } => state.view.visible_m,
+                ReachSubject::Support { cable, support } => {
+                    let at = crate::geometry::supports::support_position(state, cable, support);
+                    crate::geometry::bounds::above_ground(state, at, state.view.visible_m)
+                }
             };
             let (scene, settings, across) =
                 (state.document.scene.clone(), state.solver.settings, state.analysis.safe_reach.choice.across);
@@ -172,6 +183,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 ..neglected_bending::NeglectedBendingState::default()
             }
         }
+        ViewCommand::HideFirstSteps => state.ui.first_steps.hide(),
         ViewCommand::Guide(place) => state.ui.tutorial = place,
         ViewCommand::SetUnits(units) => state.view.units = units,
         ViewCommand::Hold => {

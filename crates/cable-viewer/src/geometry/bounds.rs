@@ -85,6 +85,23 @@ fn add_ground(state: &AppState, bounds: &mut Bounds) {
     }
 }
 
+/// The part of a rectangle that lies between the ends of the ground, where there is ground, and holds
+/// a point: beyond the wall of a tank there is nothing to stand on. Corners and point in m.
+#[must_use]
+pub fn above_ground(state: &AppState, point: Option<Point>, [mut low, mut high]: [Point; 2]) -> [Point; 2] {
+    let mut bounds = Bounds::EMPTY;
+    for obstacle in &state.document.scene.obstacles {
+        if let Shape::Terrain { points_m } = &obstacle.shape {
+            points_m.iter().for_each(|&p| bounds.add(p));
+        }
+    }
+    if bounds.low[0] < bounds.high[0] {
+        point.into_iter().for_each(|p| bounds.add(p));
+        (low[0], high[0]) = (low[0].max(bounds.low[0]), high[0].min(bounds.high[0]));
+    }
+    [low, high]
+}
+
 /// Left and right end of the ground, where there is some, within what a robot could be led to by
 /// its cable, m.
 #[must_use]

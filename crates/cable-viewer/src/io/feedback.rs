@@ -29,14 +29,14 @@ pub struct Answers {
 }
 
 /// What was on screen while they were given.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Context<'a> {
     /// Name of the scene.
     pub scene: &'a str,
     /// The answer.
     pub answer: Option<&'a Solution>,
     /// Why there is none.
-    pub error: Option<&'a str>,
+    pub error: Option<String>,
 }
 
 impl Answers {
@@ -63,7 +63,7 @@ impl Answers {
         cells.push(quoted(&self.words));
         cells.push(quoted(context.scene));
         cells.push(answer.map_or_else(String::new, |a| a.model.to_string()));
-        cells.push(quoted(context.error.unwrap_or_default()));
+        cells.push(quoted(context.error.as_deref().unwrap_or_default()));
         cells.push(quoted(&kinds.join(" ")));
         cells.join(",")
     }

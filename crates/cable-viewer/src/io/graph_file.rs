@@ -29,7 +29,7 @@ pub struct Sheet {
 }
 
 /// What the limits are called, and their colours.
-const LIMITS: [(&str, [u8; 3]); 2] = [("service limit", [230, 159, 0]), ("breaking limit", [213, 60, 40])];
+const LIMITS: [(&str, [u8; 3]); 2] = [("service limit", [196, 122, 0]), ("breaking limit", [213, 60, 40])];
 
 /// The limits that are in view, in the unit shown.
 fn limits(sheet: &Sheet) -> impl Iterator<Item = (f64, &'static str, [u8; 3])> {
@@ -229,7 +229,7 @@ mod tests {
         let line = |name: &str, f: fn(f64) -> f64| Series {
             name: name.to_owned(),
             points: (0..100).map(|k| f64::from(k) / 10.0).map(|x| [x, f(x)]).collect(),
-            reference: None,
+            ..Series::default()
         };
         Sheet {
             title: "Over <time>".to_owned(),

@@ -2,7 +2,8 @@
 //! show.
 //!
 //! - `scene_file`: scenes
-//! - `recent_files`: what was opened last
+//! - `recent_files`, `first_steps`: what was opened last, and that the hints were followed
+//! - `folder`: what is in a folder, for dialogs that ask for a path
 //! - `saved_run`: the folder of a run, read again
 //! - `graph_file`: what is in view of a graph, as CSV, SVG or PNG
 //! - `autosave`: unsaved changes, kept for a window that dies
@@ -10,6 +11,8 @@
 
 pub mod autosave;
 pub mod feedback;
+pub mod first_steps;
+pub mod folder;
 pub mod graph_file;
 pub mod recent_files;
 pub mod saved_run;

@@ -202,7 +202,7 @@ fn warnings(history: &HistoryTable, events: &[Event], k: usize) -> Vec<Warning> 
     began
         .map(|e| Warning {
             since_s: Some(e.time_s),
-            ..Warning::new(e.kind, &e.cable, e.arc_length_m, [e.value, e.limit], e.message.clone())
+            ..Warning::new(e.cause.clone(), &e.cable, e.arc_length_m, [e.value, e.limit])
         })
         .collect()
 }

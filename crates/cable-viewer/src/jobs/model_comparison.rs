@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
 
-use cable_core::{Model, Scene, Settings, Simulation, Solution};
+use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 
 use crate::jobs::background;
 
@@ -15,7 +15,7 @@ pub struct Answer {
     /// The model.
     pub model: Model,
     /// Its answer and the wall time it took (s), or why there is none.
-    pub result: Result<(Arc<Solution>, f64), String>,
+    pub result: Result<(Arc<Solution>, f64), Error>,
 }
 
 /// What came of all of them, and the scene they were asked about.
@@ -50,9 +50,9 @@ pub fn start(scene: Scene, settings: Settings, shown: impl Fn() + Send + 'static
     background::Job::start("every model", work, shown)
 }
 
-fn at_rest(scene: &Scene, model: Model, settings: Settings) -> Result<(Arc<Solution>, f64), String> {
+fn at_rest(scene: &Scene, model: Model, settings: Settings) -> Result<(Arc<Solution>, f64), Error> {
     let began = Instant::now();
-    let mut simulation = Simulation::with_settings(scene.clone(), model, settings).map_err(|e| e.to_string())?;
-    let solution = simulation.settle().map_err(|e| e.to_string())?;
+    let mut simulation = Simulation::with_settings(scene.clone(), model, settings)?;
+    let solution = simulation.settle()?;
     Ok((Arc::new(solution), began.elapsed().as_secs_f64()))
 }

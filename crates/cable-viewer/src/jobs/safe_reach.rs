@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use std::time::Instant;
 
 use cable_core::analysis::safe_reach::area::{self, Area};
 use cable_core::analysis::safe_reach::line::{self, ReachMap};
@@ -64,6 +65,21 @@ pub struct SafeReachState {
     pub choice: Choice,
     /// How far it is.
     pub progress: Progress,
+    /// When the search began.
+    pub began: Option<Instant>,
+    /// The share of a search that was stopped, 0 to 1: the map is what was found until then.
+    pub stopped: Option<f64>,
+}
+
+/// The share from which the time left is estimated. Less: the first places, which are laid from
+/// nothing, say little of the others.
+const FIRST_ESTIMATE: f64 = 0.04;
+
+/// How much longer a search takes that took some time for a share, s; None where that says too
+/// little.
+#[must_use]
+pub fn remaining_s(share: f64, elapsed_s: f64) -> Option<f64> {
+    (FIRST_ESTIMATE..=1.0).contains(&share).then(|| elapsed_s * (1.0 - share) / share)
 }
 
 /// What the map asks for.
@@ -111,6 +127,22 @@ pub type Progress = background::Progress<Outcome>;
 pub type Job = background::Job<Outcome>;
 
 impl SafeReachState {
+    /// Ends the search and keeps what it found, or forgets a map that is there.
+    pub fn stop_or_clear(&mut self) {
+        let before = std::mem::take(&mut self.progress);
+        (self.began, self.stopped) = (None, None);
+        if let Progress::Running(share, Some(found)) = before {
+            (self.progress, self.stopped) = (Progress::Done(found), Some(share));
+        }
+    }
+
+    /// How much longer the search takes, s, as far as that can be told.
+    #[must_use]
+    pub fn remaining_s(&self) -> Option<f64> {
+        let Progress::Running(share, _) = self.progress else { return None };
+        remaining_s(share, self.began?.elapsed().as_secs_f64())
+    }
+
     /// The map, as far as it is known.
     #[must_use]
     pub fn found(&self) -> Option<&Outcome> {
@@ -195,5 +227,18 @@ pub fn name(scene: &Scene, moved: ReachSubject) -> String {
             let s = of.and_then(|c| c.supports.get(support)).map_or("?", |s| &s.name);
             format!("Support {s} of {}", of.map_or("?", |c| &c.name))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_follows_from_the_share() {
+        assert_eq!(remaining_s(0.25, 10.0), Some(30.0));
+        assert_eq!(remaining_s(1.0, 10.0), Some(0.0));
+        assert_eq!(remaining_s(0.01, 10.0), None);
+        assert_eq!(remaining_s(f64::NAN, 10.0), None);
     }
 }

@@ -8,7 +8,7 @@ use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::property::{Provenance, Quantity, labelled, row};
+use crate::widgets::property::{Provenance, Quantity, row};
 use crate::widgets::time_table::{self, Knots, Table};
 
 /// What the environment panel edits: how it is shown, its key, how it is read and written.
@@ -123,17 +123,16 @@ fn wind(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    labelled(ui, "View", "Side view", |ui| {
+    ui.horizontal(|ui| {
         let mut view = state.document.scene.view;
         let side = ui.selectable_value(&mut view, View::Elevation, "Side view");
-        let side = side.on_hover_text("Seen from the side: gravity points down");
+        side.on_hover_text("Seen from the side: gravity points down");
         let plan = ui.selectable_value(&mut view, View::Plan, "Plan view");
         plan.on_hover_text("Seen from above: gravity points into the page and the floor rubs everywhere");
         if view != state.document.scene.view {
             let scene = cable_core::Scene { view, ..state.document.scene.clone() };
             commands.push(Command::Scene(SceneCommand::SetScene(Box::new(scene))));
         }
-        side
     });
     if let Some(found) = scene_errors::at(state, "view") {
         field::fault(ui, &scene_errors::sentence(&found.fault));

@@ -2,7 +2,8 @@
 //! else.
 //!
 //! - `scene`, `cable`, `environment`, `robot`, `solver`: what is edited, on the left
-//! - `readouts`, `warnings`, `analysis`: what was answered, on the right
+//! - `selected`, `readouts`, `warnings`, `analysis`: what was answered, on the right
+//! - `quality`: how far the answer can be relied on, in the solver panel
 //! - `plots`, `playback`, `timeline`: graphs and time, below
 //! - `scene_errors`: what is wrong with the scene, beside the field where it was typed
 //! - `words`: keys of scene files and names of models as the window says them
@@ -12,10 +13,12 @@ pub mod cable;
 pub mod environment;
 pub mod playback;
 pub mod plots;
+pub mod quality;
 pub mod readouts;
 pub mod robot;
 pub mod scene;
 pub mod scene_errors;
+pub mod selected;
 pub mod solver;
 pub mod timeline;
 pub mod warnings;

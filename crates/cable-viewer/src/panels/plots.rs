@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, Id, Ui};
 
-use crate::command::{Command, FileCommand};
+use crate::command::{Command, FileCommand, PlaybackCommand};
 use crate::panels::readouts::DIMMED;
 use crate::plot::{GraphResponse, GraphView, along, time};
 use crate::record::measure::Measure;
@@ -50,6 +50,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     for graph in touched {
         // A graph that follows would take the zoom back at once.
         view.follow &= !graph.zoomed;
+        if let (Some(time_s), Some([first, last])) = (graph.scrubbed_s, state.live.recording.span_s()) {
+            commands.push(Command::Playback(PlaybackCommand::Show(Some(time_s.clamp(first, last)))));
+        }
         if let Some(sheet) = graph.export {
             let path = format!("{}.csv", sheet.title.to_lowercase().replace(' ', "-"));
             commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Export { path, sheet }))));

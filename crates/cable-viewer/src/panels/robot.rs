@@ -18,6 +18,8 @@ use crate::widgets::{field, readout};
 
 /// Width of a number, points: “12.34 m/s” fits.
 const WIDTH: f32 = 72.0;
+/// Room for “1  Drive to”, “at” and the button of a leg with the gaps between, points.
+const LEG_WORDS: f32 = 106.0;
 /// Speed of a new leg, m/s, and its wait, s.
 const FIRST_LEG: (f64, f64) = (0.3, 2.0);
 
@@ -183,6 +185,8 @@ fn leg(
     commands: &mut Vec<Command>,
 ) {
     let number = k + 1;
+    // Beside both numbers stand words and the button that takes the leg out.
+    let width = (0.5 * (ui.available_width() - LEG_WORDS) - 8.0).clamp(44.0, WIDTH);
     let put = |task: Option<RobotTask>, commands: &mut Vec<Command>| {
         let mut changed = robot.clone();
         match (task, changed.path.get_mut(k)) {
@@ -198,14 +202,14 @@ fn leg(
         match *task {
             RobotTask::Drive { to_x_m, speed_m_per_s } => {
                 ui.label(format!("{number}  Drive to"));
-                let to = field::number(ui, &format!("Place of leg {number}"), Unit::COORDINATE, to_x_m, WIDTH);
+                let to = field::number(ui, &format!("Place of leg {number}"), Unit::COORDINATE, to_x_m, width);
                 if let Some(to_x_m) = to.value {
                     put(Some(RobotTask::Drive { to_x_m, speed_m_per_s }), commands);
                 }
                 faults.extend(to.fault);
                 to.response.on_hover_text("Where the middle of its tracks goes; its flag on the canvas can be dragged");
                 ui.label("at");
-                let at = field::number(ui, &format!("Speed of leg {number}"), Unit::M_PER_S, speed_m_per_s, WIDTH);
+                let at = field::number(ui, &format!("Speed of leg {number}"), Unit::M_PER_S, speed_m_per_s, width);
                 if let Some(speed_m_per_s) = at.value {
                     put(Some(RobotTask::Drive { to_x_m, speed_m_per_s }), commands);
                 }

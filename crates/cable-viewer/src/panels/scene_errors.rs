@@ -9,7 +9,7 @@ use crate::command::{Command, SceneCommand};
 use crate::panels::words;
 use crate::state::AppState;
 use crate::units::unit::Unit;
-use crate::units::{format, translate};
+use crate::units::{format, sentence};
 use crate::widgets::field;
 
 /// A change that puts a fault right.
@@ -41,7 +41,7 @@ pub fn sentence(fault: &SceneFault) -> String {
             format::force(*needed_n),
             format::force(*breaking_n)
         ),
-        other => translate::display(&other.to_string()).into_owned(),
+        other => sentence::sentence(other),
     }
 }
 
@@ -84,10 +84,8 @@ pub fn fix(state: &AppState) -> Option<Fix> {
             let wanted = ceil_hundredth(if thermal > 0.0 { way_m / thermal } else { *way_m } / si);
             Some(set_cable(index, cable, format!("Set to {wanted:.2} {symbol}"), |c| c.length_m = wanted * si))
         }
-        SceneFault::Shape { .. }
-            if key == "service_tension_n" && cable.service_tension_n > cable.breaking_tension_n =>
-        {
-            let wanted = cable.breaking_tension_n;
+        SceneFault::ServiceAboveBreaking { breaking_n: wanted, .. } => {
+            let wanted = *wanted;
             let label = format!("Set to {}", Unit::N.text(wanted));
             Some(set_cable(index, cable, label, |c| c.service_tension_n = wanted))
         }

@@ -5,9 +5,10 @@ use cable_core::problem::problems;
 use cable_core::{Model, Settings, Solution};
 use egui::{Grid, Ui};
 
-use crate::command::Command;
+use crate::command::{Command, PlaybackCommand};
+use crate::panels::quality;
 use crate::state::{AppState, WorkerStatus};
-use crate::units::format::{self, significant};
+use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::property::{Provenance, Quantity, row};
 use crate::worker;
@@ -89,6 +90,12 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.weak("Time runs without inertia: supports and loads move, friction remembers, nothing swings");
     }
     mesh(ui, state, commands);
+    let Some(answer) = answer else {
+        ui.weak("Nothing solved yet");
+        return;
+    };
+    ui.separator();
+    quality::ui(ui, state, answer, commands);
     cost(ui, state, answer);
 }
 
@@ -112,6 +119,7 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(Command::SetSettings(Settings { hand_speed_m_per_s, ..state.solver.settings }));
     }
     default_hand_stiffness(ui, state, commands);
+    pull_past_length(ui, state, commands);
     let mut fixed = segments.is_some();
     let help = "Off: the cable's own number, else by the tolerance";
     if ui.checkbox(&mut fixed, "Same number of segments for every cable").on_hover_text(help).changed() {
@@ -148,16 +156,21 @@ fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comm
     }
 }
 
+fn pull_past_length(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let mut pulls = state.solver.pulls_past_length;
+    let help = "On: a support that is dragged farther than the cable reaches, while time runs, is pulled by the hand's \
+                spring; the force rises with the way until the cable breaks. Off: it is refused";
+    if ui.checkbox(&mut pulls, "Pull past the length").on_hover_text(help).changed() {
+        commands.push(Command::Playback(PlaybackCommand::PullPastLength(pulls)));
+    }
+}
+
 fn largest_mesh(answer: Option<&Solution>) -> Option<usize> {
     let nodes = answer?.cables.iter().map(|c| c.nodes.len()).max()?;
     nodes.checked_sub(1).filter(|&n| n > 0)
 }
 
-fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
-    let Some(answer) = answer else {
-        ui.weak("Nothing solved yet");
-        return;
-    };
+fn cost(ui: &mut Ui, state: &AppState, answer: &Solution) {
     let cost = answer.cost;
     let status = match &state.solver.status {
         WorkerStatus::Idle => "ready",
@@ -173,20 +186,11 @@ fn cost(ui: &mut Ui, state: &AppState, answer: Option<&Solution>) {
             cost.iterations.to_string(),
             "Newton iterations, or explicit sub-steps, of the last solve or step",
         ),
-        (
-            "Residual",
-            {
-                let Unit { symbol, si, .. } = Unit::N.display();
-                format!("{} {symbol}", significant(cost.residual_n / si, 2))
-            },
-            "Largest force left unbalanced at a node: the smaller, the closer to equilibrium",
-        ),
         ("Inner time step", step, "The step the model takes inside a frame"),
         ("Steps halved", cost.halved_steps.to_string(), "Steps that failed and were taken in halves"),
         ("Segments", segments, "Segments of the finest cable as solved"),
         ("Solver", status.to_owned(), "The thread that solves while the window stays usable"),
     ];
-    ui.separator();
     let diagnostics = egui::CollapsingHeader::new("Diagnostics").id_salt("cost");
     diagnostics.show_unindented(ui, |ui| {
         Grid::new("cost").num_columns(2).spacing([12.0, 3.0]).show(ui, |ui| {

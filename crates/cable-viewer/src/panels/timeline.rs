@@ -5,8 +5,9 @@ use egui::{Color32, Rect, Sense, Slider, Stroke, Ui, pos2, vec2};
 
 use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
-use crate::units::{format, translate};
-use crate::widgets::field;
+use crate::units::format;
+use crate::units::sentence::sentence;
+use crate::widgets::{field, highlight};
 
 /// Room for the buttons beside it, points.
 const BESIDE: f32 = 250.0;
@@ -42,6 +43,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             let shown = state.live.recording.shown_s.is_some();
             let help = "Returns to the latest frame";
             let present = ui.add_enabled(shown, egui::Button::new("Latest")).on_hover_text(help);
+            highlight::offer(&present, "Latest");
             if present.on_disabled_hover_text(PRESENT).clicked() {
                 push(PlaybackCommand::Show(None));
             }
@@ -94,9 +96,9 @@ fn marks(ui: &mut Ui, state: &AppState, rail: Rect, [first, last]: [f64; 2]) {
         rail.left() + inset + share * (rail.width() - 2.0 * inset)
     };
     for event in state.live.recording.events() {
-        let colour = colour(ui, event.kind);
+        let colour = colour(ui, event.warning.kind);
         let top = pos2(x(event.time_s), rail.top());
-        let size = if event.kind == WarningKind::Broken { 4.0 } else { 3.0 };
+        let size = if event.warning.kind == WarningKind::Broken { 4.0 } else { 3.0 };
         ui.painter().line_segment([top, top + vec2(0.0, rail.height())], Stroke::new(1.5, colour));
         ui.painter().circle_filled(top, size, colour);
     }
@@ -104,8 +106,7 @@ fn marks(ui: &mut Ui, state: &AppState, rail: Rect, [first, last]: [f64; 2]) {
         return;
     };
     let near = state.live.recording.events().iter().filter(|e| (x(e.time_s) - pointer.x).abs() < MARK_REACH);
-    let text: Vec<String> =
-        near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, translate::display(&e.text))).collect();
+    let text: Vec<String> = near.take(4).map(|e| format!("{:.2} s: {}", e.time_s, sentence(&e.warning))).collect();
     if !text.is_empty() {
         let spot = Rect::from_center_size(pointer, vec2(1.0, 1.0));
         ui.interact(spot, ui.scope_id().with("event"), Sense::hover()).on_hover_text(text.join("\n"));

@@ -4,15 +4,16 @@
 use cable_core::scene::SupportKind;
 use cable_core::solution::{Warning, WarningKind};
 use cable_core::{Settings, Solution};
-use egui::{Align, Button, Color32, Label, Layout, RichText, ScrollArea, Sense, Ui, vec2};
+use egui::text::{LayoutJob, TextFormat};
+use egui::{Align, Button, Color32, Layout, ScrollArea, TextStyle, Ui, vec2};
 
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene_errors::{self, Fix};
-use crate::state::{AppState, Item, WorkerStatus};
-use crate::units::{format, translate, unit};
+use crate::state::{AppState, Item, NoAnswer, OpenPanels, WorkerStatus};
+use crate::units::sentence::sentence;
+use crate::units::{format, unit};
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
-use crate::worker::engine::CANCELLED;
 
 /// Most warnings drawn; the rest is counted. A cable that is too tight everywhere can have one a
 /// node.
@@ -39,7 +40,7 @@ struct Entry {
     /// What it is about, as long as it lasts; figures are in the title.
     kind: String,
     title: String,
-    /// The title in two parts, for a narrow panel: what, and figures with their place.
+    /// The title in two parts: what, and figures with their place.
     parts: Option<[String; 2]>,
     text: String,
     /// Where to look, m.
@@ -76,13 +77,30 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
+/// How many there are, as a row that leads to the worst.
+pub fn summary(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let entries = entries(state);
+    let Some(worst) = entries.first() else { return };
+    let (colour, sign) = look(ui, worst.severity);
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 4.0;
+        icon::sign(ui, sign, colour);
+        let text = if entries.len() == 1 { "1 warning".to_owned() } else { format!("{} warnings", entries.len()) };
+        let row = ui.add(Button::selectable(false, text));
+        if row.on_hover_text(format!("The first: {}. Click: zooms on it", worst.title)).clicked() {
+            show(worst, commands);
+            commands.push(Command::View(ViewCommand::ShowPanels(OpenPanels { results: true, ..state.ui.panels })));
+        }
+    });
+}
+
 fn entries(state: &AppState) -> Vec<Entry> {
     let mut list = Vec::new();
     list.extend(dead_worker(state));
     list.extend(scene_fault(state));
     if let (Some(error), None) = (&state.live.snapshot.error, &state.document.fault) {
-        let cancelled = error == CANCELLED;
-        let error = capital(&translate::display(error));
+        let cancelled = *error == NoAnswer::Cancelled;
+        let error = capital(&sentence(error));
         let text = format!("{error}. The picture and the figures are of the last scene that was solved.");
         let solve = Fix { label: "Solve".to_owned(), command: Command::Playback(PlaybackCommand::Solve) };
         let (title, fix) = if cancelled { ("Not solved", Some(solve)) } else { ("No answer", None) };
@@ -160,7 +178,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
             format!("{}at {along}{of}{since}", figures.map_or_else(String::new, |f| f + " ")),
         ]),
         title: whole,
-        text: translate::display(&warning.message).into_owned(),
+        text: sentence(warning),
         at_m: position(answer, warning),
         item: index.map(Item::Cable),
         fix: remedy(state, answer, warning, index),
@@ -239,17 +257,14 @@ fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -
     Some(Fix { label, command: Command::Scene(command) })
 }
 
-/// One line: severity, what, value of limit, place. A click on it shows the place; the text and the
-/// fix are behind the arrow.
+/// One line: severity, what, value of limit, place, cut where the panel ends. A click on it shows the
+/// place; the text and the fix are behind the sign at its end, and the text is told on hover.
 fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
-    let (colour, sign) = match entry.severity {
-        Severity::Stop => (ui.visuals().error_fg_color, Icon::Stop),
-        Severity::Caution => (ui.visuals().warn_fg_color, Icon::Caution),
-        Severity::Note => (ui.visuals().weak_text_color.unwrap_or(Color32::GRAY), Icon::Note),
-    };
-    // Remembered by what it says: the next warning in its place is another one.
+    let (colour, sign) = look(ui, entry.severity);
+    // Remembered by what it says: the next warning in its place is another one. Where there is no
+    // answer at all, the words are open from the start.
     let id = ui.scope_id().with((entry.severity as u8, &entry.kind));
-    let mut open = ui.data(|d| d.get_temp(id)).unwrap_or(entry.severity == Severity::Stop);
+    let mut open = ui.data(|d| d.get_temp(id)).unwrap_or(entry.parts.is_none());
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         icon::sign(ui, sign, colour);
@@ -261,22 +276,7 @@ fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
                 ui.data_mut(|d| d.insert_temp(id, open));
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let narrow = ui.available_width() < ONE_LINE;
-                let parts = entry.parts.as_ref().filter(|_| narrow);
-                let plain = |text: RichText| Button::new(text).frame(false).truncate();
-                let line = match parts {
-                    None => ui.add(plain(RichText::new(&entry.title).strong())),
-                    Some([what, rest]) => {
-                        ui.vertical(|ui| {
-                            ui.spacing_mut().item_spacing.y = 0.0;
-                            let wrapped =
-                                |text: RichText| Label::new(text).wrap().selectable(false).sense(Sense::click());
-                            let first = ui.add(Button::new(RichText::new(what).strong()).frame(false).wrap());
-                            first | ui.add(wrapped(RichText::new(rest).small()))
-                        })
-                        .inner
-                    }
-                };
+                let line = ui.add(Button::new(line(ui, entry)).frame(false).truncate());
                 field::name(&line, &entry.title);
                 let help = match entry.at_m {
                     Some(at_m) => format!("{}\n\nClick: zooms on {}", entry.text, format::position(at_m)),
@@ -298,8 +298,32 @@ fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
     }
 }
 
-/// Below this width a warning stands in two lines, points.
-const ONE_LINE: f32 = 330.0;
+fn look(ui: &Ui, severity: Severity) -> (Color32, Icon) {
+    match severity {
+        Severity::Stop => (ui.visuals().error_fg_color, Icon::Stop),
+        Severity::Caution => (ui.visuals().warn_fg_color, Icon::Caution),
+        Severity::Note => (ui.visuals().weak_text_color.unwrap_or(Color32::GRAY), Icon::Note),
+    }
+}
+
+/// What it is, and smaller its figures with their place.
+fn line(ui: &Ui, entry: &Entry) -> LayoutJob {
+    let mut job = LayoutJob::default();
+    let mut push = |text: &str, style: TextStyle, colour: Color32| {
+        let font = style.resolve(ui.style());
+        job.append(
+            text,
+            0.0,
+            TextFormat { font_id: font, color: colour, valign: Align::Center, ..TextFormat::default() },
+        );
+    };
+    let [what, rest] = entry.parts.as_ref().map_or([entry.title.as_str(), ""], |[what, rest]| [what, rest]);
+    push(what, TextStyle::Body, ui.visuals().strong_text_color());
+    if !rest.is_empty() {
+        push(&format!("  {rest}"), TextStyle::Small, ui.visuals().text_color());
+    }
+    job
+}
 
 /// Zooms on where it is and picks what it is about.
 fn show(entry: &Entry, commands: &mut Vec<Command>) {

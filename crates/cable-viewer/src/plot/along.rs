@@ -24,7 +24,7 @@ pub fn ui(
     let (quantity, follow) = (view.measure.quantity(), view.follow);
     let columns = ui.available_width().max(1.0) as usize;
     let all = || solved.nodes.iter().map(|n| [n.arc_length_m, quantity.of(n)]);
-    let line = |points| vec![Series { name: quantity.name().to_owned(), points, reference: None }];
+    let line = |points| vec![Series { name: quantity.name().to_owned(), points, ..Series::default() }];
     let graph = Graph {
         title: "Along the cable",
         group: GROUP,

@@ -82,7 +82,7 @@ mod tests {
     #[test]
     fn two_cursors_tell_their_difference() {
         let points = vec![[0.0, 100.0], [2.0, 300.0]];
-        let line = Series { name: "T".to_owned(), points, reference: None };
+        let line = Series { name: "T".to_owned(), points, ..Series::default() };
         let units = [("s", 1.0), ("N", 1.0)];
         let text = Cursors(vec![0.5, 1.5]).text(units, Some(&line)).unwrap();
         assert!(text.contains("A 0.5000 s: 150.0 N") && text.contains("B − A 1.000 s: 100.0 N"), "{text}");

@@ -21,12 +21,15 @@ use crate::units::unit::{DIGITS, Unit};
 use crate::widgets::field;
 
 /// The service limit.
-const SERVICE: Color32 = Color32::from_rgb(230, 159, 0);
+pub const SERVICE: Color32 = Color32::from_rgb(196, 122, 0);
 /// The breaking limit.
-const BREAKING: Color32 = Color32::from_rgb(213, 60, 40);
+pub const BREAKING: Color32 = Color32::from_rgb(213, 60, 40);
+
+/// The group of graphs over time.
+pub const TIME: &str = "time";
 
 /// The time shown, where it is not the present.
-const TIME_MARK: Color32 = Color32::from_rgb(213, 94, 0);
+pub const TIME_MARK: Color32 = Color32::from_rgb(213, 94, 0);
 /// A cursor.
 const CURSOR: Color32 = Color32::GRAY;
 /// Zoom per point of wheel, as on the canvas.
@@ -55,6 +58,10 @@ const EXPORT: f32 = 62.0;
 /// A held line that goes up and down by this many times its whole height is drawn solid and thin.
 /// More: frames with long runs take longer; fewer: a few swings lose their dashes.
 const OSCILLATION_RATIO: f64 = 40.0;
+
+/// Opacity of the band between least and greatest. More: it hides the lines behind; less: it cannot be
+/// told from the background.
+const BAND_OPACITY: f32 = 0.45;
 
 /// Length of a line in the legend, points.
 const SWATCH: f32 = 16.0;
@@ -110,6 +117,8 @@ pub struct Graph<'a> {
 pub struct GraphResponse {
     /// It was zoomed: it is not to follow the data any more.
     pub zoomed: bool,
+    /// The time to show, s: the playhead was dragged.
+    pub scrubbed_s: Option<f64>,
     /// It is to be exported: what is in view, with the lines as they were drawn.
     pub export: Option<Box<Sheet>>,
 }
@@ -117,8 +126,9 @@ pub struct GraphResponse {
 /// Lowest and highest value in view, SI.
 fn vertical_range(lines: &[Series], ribbon: &[[f64; 3]], limits: [f64; 2]) -> [f64; 2] {
     let values = || {
+        let bands = lines.iter().flat_map(|l| &l.band).flat_map(|b| [b[1], b[2]]);
         let lines = lines.iter().flat_map(|l| &l.points).map(|p| p[1]);
-        lines.chain(ribbon.iter().flat_map(|r| [r[1], r[2]])).filter(|v| v.is_finite())
+        lines.chain(bands).chain(ribbon.iter().flat_map(|r| [r[1], r[2]])).filter(|v| v.is_finite())
     };
     let low = values().fold(0.0, f64::min);
     let greatest = values().fold(0.0, f64::max);
@@ -138,6 +148,10 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         for line in lines {
             if let Some(value) = value_at(&line.points, x * x_si) {
                 text += &format!("\n{}: {} {symbol}", line.name, significant(value / si, DIGITS));
+            }
+            if let Some([low, high]) = line.range_at(x * x_si) {
+                let [low, high] = [low, high].map(|v| significant(v / si, DIGITS));
+                text += &format!(" (mean; {low} to {high})");
             }
         }
         text
@@ -173,14 +187,22 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
             let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = at;
             Some(read(position.x))
         });
+    let moved_mark = moved_mark(ui, graph);
     let response = plot.show(ui, |plot| {
         if follow {
             let [left, right] = graph.range.map(|x| x / x_si);
             plot.set_plot_bounds(PlotBounds::from_min_max([left, low / si], [right, high / si]));
+        } else if let Some(mark) = moved_mark {
+            let [left, right] = [plot.plot_bounds().min()[0], plot.plot_bounds().max()[0]];
+            if !(left..=right).contains(&(mark / x_si)) {
+                let half = 0.5 * (right - left);
+                plot.set_plot_bounds_x(mark / x_si - half..=mark / x_si + half);
+            }
         }
         draw_ribbon(plot, &graph.ribbon, [x_si, si]);
         for (k, line) in lines.iter().enumerate() {
             let (colour, style, width) = line_look(line, k);
+            draw_band(plot, line, colour, [x_si, si]);
             let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0] / x_si, p[1] / si]).collect();
             plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(width).style(style));
         }
@@ -221,7 +243,19 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         lines: lines.to_vec(),
         limits: graph.limits,
     };
-    GraphResponse { zoomed: asked.zoomed, export: export.then(|| Box::new(sheet())) }
+    // A graph that follows is not moved by hand: a drag in it moves the playhead.
+    let dragged = follow && graph.group == TIME && figure.dragged_by(egui::PointerButton::Primary);
+    let at = figure.interact_pointer_pos().filter(|_| dragged);
+    let scrubbed_s = at.map(|at| response.transform.value_from_position(at).x * x_si);
+    GraphResponse { zoomed: asked.zoomed, scrubbed_s, export: export.then(|| Box::new(sheet())) }
+}
+
+/// The time to mark, if it is another than in the frame before: a graph that was zoomed goes to it.
+fn moved_mark(ui: &Ui, graph: &Graph<'_>) -> Option<f64> {
+    let id = Id::unique(("mark", graph.title));
+    let before = ui.data(|d| d.get_temp::<Option<f64>>(id)).flatten();
+    ui.data_mut(|d| d.insert_temp(id, graph.mark));
+    graph.mark.filter(|mark| before != Some(*mark))
 }
 
 /// Says the last values of the lines, and what the cursors read.
@@ -260,6 +294,17 @@ fn draw_ribbon(plot: &mut PlotUi<'_>, ribbon: &[[f64; 3]], [x_si, si]: [f64; 2])
     let [xs, low, high] = [0, 1, 2].map(|k| known.iter().map(|r| r[k]).collect::<Vec<f64>>());
     let colour = LINES[0].gamma_multiply(0.28);
     plot.add(egui_plot::FilledArea::new(RIBBON, &xs, &low, &high).fill_color(colour).allow_hover(false));
+}
+
+/// From the least to the greatest of each column, behind the line of its means.
+fn draw_band(plot: &mut PlotUi<'_>, line: &Series, colour: Color32, [x_si, si]: [f64; 2]) {
+    if line.band.len() < 2 {
+        return;
+    }
+    let [xs, low, high] =
+        [(0, x_si), (1, si), (2, si)].map(|(k, unit)| line.band.iter().map(|b| b[k] / unit).collect::<Vec<f64>>());
+    let area = egui_plot::FilledArea::new(format!("{}, least to greatest", line.name), &xs, &low, &high);
+    plot.add(area.fill_color(colour.gamma_multiply(BAND_OPACITY)).allow_hover(false));
 }
 
 /// Colour, style and width with which it is drawn. Where it goes up and down in every column,
@@ -410,7 +455,7 @@ mod tests {
         Series {
             name: String::new(),
             points: values.iter().enumerate().map(|(i, &v)| [i as f64, v]).collect(),
-            reference: None,
+            ..Series::default()
         }
     }
 

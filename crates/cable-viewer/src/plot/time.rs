@@ -4,10 +4,10 @@
 use cable_core::{Cable, Scene};
 use egui::Ui;
 
-use crate::plot::{Graph, GraphResponse, GraphView, in_view, show};
+use crate::plot::{Graph, GraphResponse, GraphView, TIME, in_view, show};
 use crate::record::measure::{Measure, per_newton};
 use crate::record::samples::Sample;
-use crate::record::series::{Series, thin};
+use crate::record::series::{Series, envelope, thin};
 use crate::render::colour::Quantity;
 use crate::state::AppState;
 use crate::state::questions::friction_answer;
@@ -61,7 +61,7 @@ fn graph(ui: &mut Ui, state: &AppState, view: GraphView, title: &str, height: f3
     let columns = (ui.available_width() / COLUMN).max(1.0) as usize;
     let graph = Graph {
         title,
-        group: "time",
+        group: TIME,
         measure,
         across: ("Time", Unit::S),
         range,
@@ -106,14 +106,16 @@ fn lines(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], colu
             points = thin(points.into_iter(), columns);
         }
         points.iter_mut().for_each(|p| p[1] *= scale);
-        lines.push(Series { name: format!("Held {}", k + 1), points, reference: Some(k) });
+        lines.push(Series { name: format!("Held {}", k + 1), points, reference: Some(k), ..Series::default() });
     }
     lines
 }
 
 /// Those of what was recorded.
 fn own(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], columns: Option<usize>) -> Vec<Series> {
-    let samples = state.live.history.view(seen, columns);
+    let history = &state.live.history;
+    let (samples, means) = (history.view(seen, columns), history.means(seen, columns));
+    let ends = [samples.first(), samples.last()].map(|s| s.map_or(0.0, |s| s.time_s));
     let index = state.current_cable();
     let cable = scene.cables.get(index);
     let scale = match (measure, cable) {
@@ -121,9 +123,15 @@ fn own(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], column
         _ => 1.0,
     };
     let line = |name: String, of: &dyn Fn(&Sample) -> f64| {
-        let points = samples.iter().map(|s| [s.time_s, of(s) * scale]);
-        let points = columns.map_or_else(|| points.clone().collect(), |c| thin(points.clone(), c));
-        Series { name, points, reference: None }
+        let points = |samples: &[&Sample]| samples.iter().map(|s| [s.time_s, of(s) * scale]).collect::<Vec<_>>();
+        match columns.filter(|c| samples.len() > 2 * c) {
+            None => Series { name, points: points(&samples), ..Series::default() },
+            // Denser than columns: what happens in each, and its mean, instead of a line up and down.
+            Some(c) => {
+                let (points, band) = envelope(points(&samples).into_iter(), points(&means).into_iter(), ends, c);
+                Series { name, points, band, reference: None }
+            }
+        }
     };
     let (Measure::Cable(_), Some(cable)) = (measure, cable) else {
         return measure.lines().iter().map(|(name, of)| line((*name).to_owned(), of)).collect();

@@ -21,10 +21,8 @@ const MAX_EVENTS: usize = 5000;
 pub struct Event {
     /// When, s.
     pub time_s: f64,
-    /// What kind.
-    pub kind: WarningKind,
-    /// In words.
-    pub text: String,
+    /// The warning.
+    pub warning: Warning,
 }
 
 /// Answers, events, and the place in them.
@@ -60,11 +58,11 @@ impl Recording {
         for w in &solution.warnings {
             let known = match w.kind {
                 // What is broken stays so: each break is an event of its own.
-                WarningKind::Broken => self.events.iter().any(|e| e.kind == w.kind && e.text == w.message),
+                WarningKind::Broken => self.events.iter().any(|e| e.warning == *w),
                 _ => self.active.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable),
             };
             if !known && marks(w.kind) && self.events.len() < MAX_EVENTS {
-                self.events.push(Event { time_s: began(w, solution.time_s), kind: w.kind, text: w.message.clone() });
+                self.events.push(Event { time_s: began(w, solution.time_s), warning: w.clone() });
             }
         }
         self.active = solution.warnings.iter().map(|w| (w.kind, w.cable.clone())).collect();
@@ -160,13 +158,13 @@ fn began(w: &Warning, now_s: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use cable_core::Model;
-    use cable_core::solution::{CableSolution, Cost, Energy, Node};
+    use cable_core::solution::{CableSolution, Cost, Energy, Node, WarningCause};
 
     use super::*;
 
     fn at(time_s: f64, nodes: usize, warned: bool) -> Solution {
         let cable = CableSolution { nodes: vec![Node::default(); nodes], ..CableSolution::default() };
-        let warning = Warning::new(WarningKind::ServiceTension, "a", 1.0, [9.0, 8.0], "too much".to_owned());
+        let warning = Warning::new(WarningCause::AboveService { time_s: None }, "a", 1.0, [9.0, 8.0]);
         Solution {
             time_s,
             model: Model::Fem,
@@ -214,7 +212,10 @@ mod tests {
     #[test]
     fn each_break_is_an_event() {
         let broken = |texts: &[&str], time_s: f64| {
-            let one = |t: &&str| Warning::new(WarningKind::Broken, "a", 1.0, [9.0, 8.0], (*t).to_owned());
+            let one = |t: &&str| {
+                let cause = WarningCause::Recorded { kind: WarningKind::Broken, message: (*t).to_owned() };
+                Warning::new(cause, "a", 1.0, [9.0, 8.0])
+            };
             Solution { warnings: texts.iter().map(one).collect(), ..at(time_s, 1, false) }
         };
         let mut r = Recording::default();

@@ -53,6 +53,8 @@ pub struct History {
     /// For each whole block of [`BLOCKS`] samples two with the least and the greatest of every
     /// line.
     blocks: [Vec<Sample>; 2],
+    /// For each whole block the means of every line.
+    means: [Vec<Sample>; 2],
 }
 
 /// Samples in a block of each level. What a graph shows of a long history is read off the largest
@@ -73,8 +75,9 @@ impl History {
         while self.samples.back().is_some_and(|last| !(last.time_s < sample.time_s)) {
             self.bytes -= self.samples.pop_back().map_or(0, |s| s.bytes());
         }
-        for (level, size) in self.blocks.iter_mut().zip(BLOCKS) {
+        for ((level, means), size) in self.blocks.iter_mut().zip(&mut self.means).zip(BLOCKS) {
             level.truncate(2 * (self.samples.len() / size));
+            means.truncate(self.samples.len() / size);
         }
         self.bytes += sample.bytes();
         self.samples.push_back(sample);
@@ -86,11 +89,12 @@ impl History {
 
     /// Brings the blocks up to the samples.
     fn summarise(&mut self) {
-        for (level, size) in self.blocks.iter_mut().zip(BLOCKS) {
+        for ((level, means), size) in self.blocks.iter_mut().zip(&mut self.means).zip(BLOCKS) {
             while (level.len() / 2 + 1) * size <= self.samples.len() {
                 let from = level.len() / 2 * size;
                 let block: Vec<&Sample> = self.samples.range(from..from + size).collect();
                 level.extend(merged(&block));
+                means.extend(mean(&block));
             }
         }
     }
@@ -99,16 +103,34 @@ impl History {
     /// more than a graph of so many columns can show: oldest first, with the least and greatest of
     /// every line in every column.
     #[must_use]
-    pub fn view(&self, [from_s, to_s]: [f64; 2], columns: Option<usize>) -> Vec<&Sample> {
+    pub fn view(&self, range_s: [f64; 2], columns: Option<usize>) -> Vec<&Sample> {
+        self.parts(range_s, columns, &self.blocks, 2)
+    }
+
+    /// The same with the means of blocks instead of their extremes. What was thinned because memory
+    /// was full has the means of what was kept.
+    #[must_use]
+    pub fn means(&self, range_s: [f64; 2], columns: Option<usize>) -> Vec<&Sample> {
+        self.parts(range_s, columns, &self.means, 1)
+    }
+
+    /// Samples in view, or what stands for blocks of them: `each` samples a block.
+    fn parts<'a>(
+        &'a self,
+        [from_s, to_s]: [f64; 2],
+        columns: Option<usize>,
+        levels: &'a [Vec<Sample>; 2],
+        each: usize,
+    ) -> Vec<&'a Sample> {
         let samples = &self.samples;
         let start = samples.partition_point(|s| s.time_s < from_s).saturating_sub(1);
         let end = (samples.partition_point(|s| s.time_s <= to_s) + 1).min(samples.len()).max(start);
         let per_column = columns.map_or(0, |c| (end - start) / c.max(1));
-        let level = self.blocks.iter().zip(BLOCKS).rev().find(|(_, size)| *size <= per_column);
+        let level = levels.iter().zip(BLOCKS).rev().find(|(_, size)| *size <= per_column);
         let Some((blocks, size)) = level else { return samples.range(start..end).collect() };
         // Whole blocks, then what no block holds yet.
-        let (first, last) = (start / size, (end.div_ceil(size)).min(blocks.len() / 2));
-        let mut out: Vec<&Sample> = blocks.get(2 * first..2 * last).unwrap_or_default().iter().collect();
+        let (first, last) = (start / size, (end.div_ceil(size)).min(blocks.len() / each));
+        let mut out: Vec<&Sample> = blocks.get(each * first..each * last).unwrap_or_default().iter().collect();
         out.extend(samples.range((last * size).clamp(start, end)..end));
         out
     }
@@ -152,6 +174,7 @@ impl History {
         }
         self.samples.extend(recent);
         self.blocks = [Vec::new(), Vec::new()];
+        self.means = [Vec::new(), Vec::new()];
         self.bytes = self.samples.iter().map(Sample::bytes).sum();
     }
 }
@@ -211,6 +234,24 @@ fn merged(several: &[&Sample]) -> Vec<Sample> {
         }
     }
     out
+}
+
+/// The means of several samples, at the mean of their times; of forces that of their size, to the
+/// right. None of none.
+fn mean(several: &[&Sample]) -> Option<Sample> {
+    let mut mean = (*several.first()?).clone();
+    let count = several.len() as f64;
+    let of = |value: &dyn Fn(&Sample) -> f64| several.iter().map(|s| value(s)).sum::<f64>() / count;
+    mean.time_s = of(&|s| s.time_s);
+    mean.max_tension_n = of(&|s| s.max_tension_n);
+    for (k, energy_j) in mean.energy_j.iter_mut().enumerate() {
+        *energy_j = of(&|s| s.energy_j[k]);
+    }
+    mean.robot = mean.robot.map(|_| [0, 1].map(|k| of(&|s| s.robot.map_or(0.0, |r| r[k]))));
+    for (k, reaction_n) in mean.reactions_n.iter_mut().enumerate() {
+        *reaction_n = [of(&|s| s.reactions_n.get(k).map_or(0.0, |r| r[0].hypot(r[1]))), 0.0];
+    }
+    Some(mean)
 }
 
 #[cfg(test)]
@@ -292,11 +333,28 @@ mod tests {
     }
 
     #[test]
+    fn means_of_blocks_are_those_of_their_samples() {
+        let mut history = History::default();
+        (0..2600).for_each(|k| history.push(at(k)));
+        for (columns, size) in [(150, 16), (10, 256)] {
+            let means = history.means([0.0, 1e9], Some(columns));
+            let first: Vec<Sample> = (0..size).map(at).collect();
+            let expected = first.iter().map(|s| s.max_tension_n).sum::<f64>() / f64::from(size);
+            assert!((means[0].max_tension_n - expected).abs() < 1e-9, "{size}");
+            let expected = first.iter().map(|s| s.reactions_n[0][0].hypot(s.reactions_n[0][1])).sum::<f64>();
+            assert!((means[0].reactions_n[0][0] - expected / f64::from(size)).abs() < 1e-9, "{size}");
+            assert!(means.windows(2).all(|w| w[0].time_s < w[1].time_s), "{size}");
+        }
+        assert_eq!(history.means([0.0, 1e9], None).len(), 2600);
+    }
+
+    #[test]
     fn what_is_wound_back_over_is_forgotten() {
         let mut history = History::default();
         (0..10).for_each(|k| history.push(at(k)));
         let bytes = history.bytes();
         history.push(at(4));
+        assert_eq!(history.means, [Vec::new(), Vec::new()]);
         assert_eq!(history.samples.len(), 5);
         assert_eq!(history.bytes(), bytes / 2);
         history.clear();

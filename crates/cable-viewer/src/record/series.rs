@@ -12,8 +12,20 @@ pub struct Series {
     pub name: String,
     /// x and value.
     pub points: Vec<[f64; 2]>,
+    /// Where samples are denser than columns of the screen: x with the least and greatest of each
+    /// column, and the points are its means. Else empty.
+    pub band: Vec<[f64; 3]>,
     /// It is of this held run, and drawn in its colour and dashed.
     pub reference: Option<usize>,
+}
+
+impl Series {
+    /// Least and greatest value of the column at x; None where the line has no band.
+    #[must_use]
+    pub fn range_at(&self, x: f64) -> Option<[f64; 2]> {
+        let k = self.band.partition_point(|b| b[0] <= x).checked_sub(1)?;
+        self.band.get(k).map(|b| [b[1], b[2]])
+    }
 }
 
 /// Thins points to at most two a column, keeping each column's least and greatest value, so that no
@@ -37,6 +49,42 @@ pub fn thin(points: impl ExactSizeIterator<Item = [f64; 2]>, columns: usize) -> 
     }
     push(&mut out, column);
     out
+}
+
+/// The means of columns of equal width, and x with the least and greatest of each. `extremes` and
+/// `samples` are in order of x; columns that have none of either are left out.
+#[must_use]
+pub fn envelope(
+    extremes: impl Iterator<Item = [f64; 2]>,
+    samples: impl Iterator<Item = [f64; 2]>,
+    [left, right]: [f64; 2],
+    columns: usize,
+) -> (Vec<[f64; 2]>, Vec<[f64; 3]>) {
+    /// What a column holds.
+    #[derive(Clone, Copy)]
+    struct Column {
+        low: f64,
+        high: f64,
+        sum: [f64; 2],
+        count: f64,
+    }
+    let empty = Column { low: f64::INFINITY, high: f64::NEG_INFINITY, sum: [0.0; 2], count: 0.0 };
+    let mut all = vec![empty; columns.max(1) + 1];
+    let width = (right - left) / columns.max(1) as f64;
+    let last = all.len() - 1;
+    // Columns stay where they are while the part in view moves on: bands do not flicker.
+    let left = if width > 0.0 { (left / width).floor() * width } else { left };
+    let column = |x: f64| if width > 0.0 { (((x - left) / width).max(0.0) as usize).min(last) } else { 0 };
+    for [x, y] in extremes.filter(|p| p[1].is_finite()) {
+        let c = &mut all[column(x)];
+        (c.low, c.high) = (c.low.min(y), c.high.max(y));
+    }
+    for [x, y] in samples.filter(|p| p[1].is_finite()) {
+        let c = &mut all[column(x)];
+        (c.sum, c.count) = ([c.sum[0] + x, c.sum[1] + y], c.count + 1.0);
+    }
+    let known = all.into_iter().filter(|c| c.count > 0.0 && c.low <= c.high);
+    known.map(|c| (c.sum.map(|s| s / c.count), c)).map(|(mean, c)| (mean, [mean[0], c.low, c.high])).unzip()
 }
 
 fn push(out: &mut Vec<[f64; 2]>, column: Option<[[f64; 2]; 2]>) {
@@ -85,6 +133,23 @@ mod tests {
         assert!(thinned.windows(2).all(|w| w[0][0] < w[1][0]));
         assert_eq!(thin(wave[..500].iter().copied(), 600).len(), 500);
         assert!(thin([].into_iter(), 0).is_empty());
+    }
+
+    #[test]
+    fn an_envelope_holds_every_peak_and_the_means_of_its_columns() {
+        let wave: Vec<[f64; 2]> =
+            (0..18_000).map(f64::from).map(|x| [x, if x == 7_777.0 { 1e3 } else { (x * 0.7).sin() }]).collect();
+        let ends = [0.0, 18_000.0];
+        let (means, band) = envelope(wave.iter().copied(), wave.iter().copied(), ends, 300);
+        assert_eq!((means.len(), band.len()), (300, 300));
+        assert!(band.iter().any(|b| b[2] == 1e3) && band.windows(2).all(|w| w[0][0] < w[1][0]));
+        for (k, (mean, b)) in means.iter().zip(&band).enumerate() {
+            let column = &wave[60 * k..60 * k + 60];
+            let expected = column.iter().map(|p| p[1]).sum::<f64>() / 60.0;
+            assert!((mean[1] - expected).abs() < 1e-9 && b[1] <= mean[1] && mean[1] <= b[2], "column {k}");
+        }
+        let none = envelope([].into_iter(), [].into_iter(), [0.0; 2], 0);
+        assert!(none.0.is_empty() && none.1.is_empty());
     }
 
     #[test]

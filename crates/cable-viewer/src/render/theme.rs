@@ -45,6 +45,10 @@ pub struct Palette {
     pub support: Color32,
     /// Picked and hovered things.
     pub accent: Color32,
+    /// The light of an answer whose laws were all asked and hold: told from red by its brightness too.
+    pub sound: Color32,
+    /// A share of a limit as a bar with text on it: below the limit, above service, above break.
+    pub bars: [Color32; 3],
 }
 
 const DARK: Palette = Palette {
@@ -68,6 +72,8 @@ const DARK: Palette = Palette {
     reaction: Color32::from_rgb(92, 219, 194),
     support: Color32::from_rgb(240, 243, 247),
     accent: Color32::from_rgb(79, 163, 255),
+    sound: Color32::from_rgb(64, 170, 110),
+    bars: [Color32::from_rgb(38, 92, 138), Color32::from_rgb(130, 82, 0), Color32::from_rgb(160, 40, 40)],
 };
 
 const LIGHT: Palette = Palette {
@@ -84,13 +90,15 @@ const LIGHT: Palette = Palette {
     surface: Color32::from_rgb(92, 88, 80),
     robot: Color32::from_rgb(244, 205, 110),
     casing: Color32::from_rgb(52, 58, 66),
-    risk: Color32::from_rgb(214, 24, 36),
+    risk: Color32::from_rgb(206, 20, 32),
     normal: Color32::from_rgb(20, 103, 196),
-    friction: Color32::from_rgb(196, 92, 0),
+    friction: Color32::from_rgb(168, 76, 0),
     load: Color32::from_rgb(142, 36, 170),
     reaction: Color32::from_rgb(0, 124, 104),
     support: Color32::from_rgb(28, 33, 40),
-    accent: Color32::from_rgb(0, 105, 217),
+    accent: Color32::from_rgb(0, 100, 208),
+    sound: Color32::from_rgb(24, 128, 72),
+    bars: [Color32::from_rgb(140, 190, 230), Color32::from_rgb(226, 160, 60), Color32::from_rgb(238, 120, 112)],
 };
 
 /// The colours of the theme in use.
@@ -134,15 +142,14 @@ fn visuals(visuals: &mut Visuals, palette: &Palette) {
     visuals.hyperlink_color = palette.accent;
     visuals.warn_fg_color = palette.friction;
     visuals.error_fg_color = palette.risk;
+    visuals.weak_text_color = Some(palette.weak_text);
     let radius = CornerRadius::same(4);
     let widgets = &mut visuals.widgets;
     widgets.noninteractive.fg_stroke.color = palette.text;
     widgets.noninteractive.bg_stroke.color = palette.plate_line;
     widgets.inactive.fg_stroke.color = palette.text;
-    if !dark {
-        // Rails of sliders and boxes to tick: the default is hardly darker than the panel.
-        widgets.inactive.bg_fill = Color32::from_rgb(203, 208, 215);
-    }
+    // Rails of sliders and boxes to tick: the default is hardly told from the panel.
+    widgets.inactive.bg_fill = if dark { Color32::from_rgb(110, 113, 118) } else { Color32::from_rgb(132, 138, 146) };
     for w in [&mut widgets.noninteractive, &mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
         w.corner_radius = radius;
     }

@@ -61,4 +61,25 @@ impl AppState {
         };
         index.min(scene.cables.len().saturating_sub(1))
     }
+
+    /// A thing of the scene in words.
+    #[must_use]
+    pub fn describe(&self, item: Item) -> String {
+        let scene = &self.document.scene;
+        let cable = |k: usize| scene.cables.get(k).map_or("?", |c| &c.name);
+        let obstacle = |k: usize| scene.obstacles.get(k).map_or("?", |o| &o.name);
+        match item {
+            Item::Cable(k) => format!("cable {}", cable(k)),
+            Item::Support { cable: k, support } => {
+                let s = scene.cables.get(k).and_then(|c| c.supports.get(support));
+                format!("support {} of {}", s.map_or("?", |s| &s.name), cable(k))
+            }
+            Item::Obstacle(k) => format!("obstacle {}", obstacle(k)),
+            Item::Corner { obstacle: k, corner } => format!("corner {} of {}", corner + 1, obstacle(k)),
+            Item::Load(k) => format!("load {}", k + 1),
+            Item::Head(k) => format!("force of load {}", k + 1),
+            Item::Robot => "the robot".to_owned(),
+            Item::Leg(k) => format!("leg {} of the robot's path", k + 1),
+        }
+    }
 }

@@ -89,6 +89,8 @@ pub enum Dialog {
         /// Where to keep it, as typed so far.
         path: String,
     },
+    /// The guides, and what else to begin with.
+    StartHere,
     /// What was validated and what was not.
     About,
     /// A window that did not close has left unsaved changes.

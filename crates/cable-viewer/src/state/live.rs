@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use cable_core::timeline::RunPeaks;
-use cable_core::{Scene, Solution};
+use cable_core::wording::Sentence;
+use cable_core::{Error, Scene, Solution, UnitSystem};
 
 use crate::record::recording::Recording;
 use crate::record::samples::{History, Sample};
@@ -136,6 +137,39 @@ impl Playback {
     pub const MAX_SPEED: f64 = 4.0;
 }
 
+/// Why a scene has no answer.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoAnswer {
+    /// The model has none, or the scene cannot be solved.
+    Error(Error),
+    /// The user ended the search.
+    Cancelled,
+    /// The solver panicked.
+    Panicked {
+        /// What it said.
+        message: String,
+    },
+}
+
+impl Sentence for NoAnswer {
+    fn sentence(&self, units: UnitSystem) -> String {
+        match self {
+            Self::Error(e) => e.sentence(units),
+            Self::Cancelled => "solving was cancelled".to_owned(),
+            Self::Panicked { message } => format!(
+                "the solver stopped by a fault of its own ({message}): the picture is the last good one; \
+                 change the scene, choose another model, or reset"
+            ),
+        }
+    }
+}
+
+impl std::fmt::Display for NoAnswer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.sentence(UnitSystem::Si))
+    }
+}
+
 /// The latest answer of the worker.
 #[derive(Clone, Debug, Default)]
 pub struct Snapshot {
@@ -149,7 +183,7 @@ pub struct Snapshot {
     /// Wall time of the solve or of the steps it took, s.
     pub solve_wall_s: f64,
     /// Why the present scene has no answer.
-    pub error: Option<String>,
+    pub error: Option<NoAnswer>,
     /// `solution` is not of the present scene (it failed, or is still being solved).
     pub stale: bool,
     /// `solution` has few segments, to follow the hand; the answer comes once the hand rests.

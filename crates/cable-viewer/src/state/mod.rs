@@ -8,7 +8,8 @@
 //! - `live`: what the worker answered, and how time runs
 //! - `solver`: what the worker is asked for
 //! - `analysis`, `questions`: what is asked beyond the answer, and of which scene
-//! - `ui`, `dialog`, `tutorial_place`: the window itself, its dialog and the tutorial that is on
+//! - `ui`, `dialog`: the window itself and its dialog
+//! - `first_steps`, `tutorial_place`: the hints that are still open, and the tutorial that is on
 
 pub mod analysis;
 pub mod app_state;
@@ -16,6 +17,7 @@ pub mod camera;
 pub mod clipboard;
 pub mod dialog;
 pub mod document;
+pub mod first_steps;
 pub mod freshness;
 pub mod live;
 pub mod questions;
@@ -29,8 +31,9 @@ pub mod view;
 pub use crate::state::analysis::{Reference, TensionMarker};
 pub use crate::state::app_state::AppState;
 pub use crate::state::document::Document;
+pub use crate::state::first_steps::{FirstStep, FirstSteps};
 pub use crate::state::freshness::Freshness;
-pub use crate::state::live::{Playback, Snapshot};
+pub use crate::state::live::{NoAnswer, Playback, Snapshot};
 pub use crate::state::selection::{Grab, Item};
 pub use crate::state::solver::WorkerStatus;
 pub use crate::state::ui::OpenPanels;

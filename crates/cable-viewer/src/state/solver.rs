@@ -17,6 +17,8 @@ pub struct Solver {
     pub edit_latency_s: Option<f64>,
     /// How long an answer has been sought, s; None: nothing is asked for.
     pub solving_s: Option<f64>,
+    /// A support dragged farther than the cable reaches while time runs is pulled, not refused.
+    pub pulls_past_length: bool,
 }
 
 impl Default for Solver {
@@ -28,6 +30,7 @@ impl Default for Solver {
             edits_sent: 0,
             edit_latency_s: None,
             solving_s: None,
+            pulls_past_length: false,
         }
     }
 }

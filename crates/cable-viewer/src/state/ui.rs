@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use crate::state::dialog::Dialog;
+use crate::state::first_steps::FirstSteps;
 use crate::state::tutorial_place::TutorialPlace;
 
 /// Which parts of the window are open.
@@ -35,6 +36,8 @@ pub struct Ui {
     pub after_message: Option<Dialog>,
     /// Files opened and saved last, the latest first.
     pub recent: Vec<PathBuf>,
+    /// What a newcomer is still asked to do.
+    pub first_steps: FirstSteps,
     /// The tutorial that is on.
     pub tutorial: Option<TutorialPlace>,
     /// Why unsaved changes could not be kept for recovery.

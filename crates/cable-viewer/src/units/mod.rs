@@ -5,11 +5,11 @@
 //! - `format`: figures with four digits, for panels and graphs
 //! - `labels`: figures with three digits, for the canvas
 //! - `parse`: typed text as a number
-//! - `translate`: sentences of the solver in the units on screen
+//! - `sentence`: sentences of the solver in the units on screen
 
 pub mod format;
 pub mod labels;
 pub mod parse;
+pub mod sentence;
 pub mod system;
-pub mod translate;
 pub mod unit;

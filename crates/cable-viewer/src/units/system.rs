@@ -2,17 +2,10 @@
 
 use std::cell::Cell;
 
-use crate::units::unit::{LENGTHS, Unit};
+pub use cable_core::UnitSystem as System;
+use cable_core::units::{FOOT_M as FOOT, POUND_FORCE_N as POUND_FORCE, POUND_KG as POUND};
 
-/// The units on screen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum System {
-    /// Metres, newtons, kilograms.
-    #[default]
-    Si,
-    /// Feet, pounds-force, pounds.
-    Us,
-}
+use crate::units::unit::{LENGTHS, Unit};
 
 thread_local! {
     /// The window is drawn by one thread, which says at the start of each frame what the whole
@@ -32,12 +25,6 @@ pub fn current() -> System {
     CURRENT.with(Cell::get)
 }
 
-/// A foot, m (exact, as are the inch and the pound: international yard and pound agreement, 1959).
-const FOOT: f64 = 0.3048;
-/// A pound, kg.
-const POUND: f64 = 0.453_592_37;
-/// A pound-force, N: a pound times standard gravity.
-const POUND_FORCE: f64 = POUND * 9.80665;
 /// A pound-force per square inch, Pa.
 const PSI: f64 = POUND_FORCE / (0.0254 * 0.0254);
 

@@ -4,6 +4,7 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Align2, Id, Key, Margin, Response, TextEdit, Ui};
 
 use crate::units::unit::Unit;
+use crate::widgets::highlight;
 use crate::widgets::icon::{self, Icon};
 
 /// What a field holds while it differs from the value behind it.
@@ -29,6 +30,7 @@ pub struct Entry<T> {
 
 /// Gives a widget without text of its own the name that screen readers and tests find it by.
 pub fn name(response: &Response, label: &str) {
+    highlight::offer(response, label);
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
 }
 

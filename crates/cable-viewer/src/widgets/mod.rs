@@ -4,8 +4,10 @@
 //! - `property`: one quantity in a row with name, slider, value and reset
 //! - `time_table`: a vector that changes with time, as a table
 //! - `icon`: painted signs
+//! - `highlight`: a frame round the control that a guide speaks of
 
 pub mod field;
+pub mod highlight;
 pub mod icon;
 pub mod property;
 pub mod readout;

@@ -163,15 +163,16 @@ fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Provenance) {
 /// A text in the column of names, and the widget it names beside it; `name` is what tests and
 /// screen readers call it.
 pub fn labelled(ui: &mut Ui, text: &str, name: &str, contents: impl FnOnce(&mut Ui) -> Response) {
+    // In a narrow panel the name gives way: what is typed must be read.
+    let name_width = NAME_WIDTH.min(ui.available_width() - FIELD_WIDTH - 24.0).max(LEAST_SLIDER);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let height = ui.spacing().interact_size.y;
         let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let label =
-            ui.allocate_ui_with_layout(egui::vec2(crate::widgets::property::NAME_WIDTH, height), layout, |ui| {
-                ui.set_min_width(crate::widgets::property::NAME_WIDTH);
-                ui.add(egui::Label::new(text).truncate().selectable(false))
-            });
+        let label = ui.allocate_ui_with_layout(egui::vec2(name_width, height), layout, |ui| {
+            ui.set_min_width(name_width);
+            ui.add(egui::Label::new(text).truncate().selectable(false)).on_hover_text(text)
+        });
         let named = contents(ui).labelled_by(label.inner.id);
         field::name(&named, name);
     });

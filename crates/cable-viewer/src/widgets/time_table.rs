@@ -10,8 +10,12 @@ use crate::widgets::icon::{self, Icon};
 
 /// Height of a table, points: about six rows.
 const HEIGHT: f32 = 140.0;
-/// Width of a number, points.
-const WIDTH: f32 = 46.0;
+/// Least and greatest width of a number, points.
+const WIDTHS: [f32; 2] = [32.0, 46.0];
+/// Room for the buttons at the end of a row, points.
+const BUTTONS: f32 = 44.0;
+/// What a field has beside its text, points.
+const FIELD_MARGIN: f32 = 8.0;
 /// Between columns, points.
 const GAP: f32 = 3.0;
 
@@ -67,6 +71,8 @@ pub fn ui(ui: &mut Ui, table: &Table<'_>, knots: &Knots, faults: &mut Vec<String
     let mut changed = knots.clone();
     let (mut gone, mut doubled) = (None, None);
     let symbol = table.unit.display().symbol;
+    let room = (ui.available_width() - BUTTONS - 4.0 * GAP) / 3.0 - FIELD_MARGIN;
+    let width = room.clamp(WIDTHS[0], WIDTHS[1]);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
         let heads = [
@@ -76,8 +82,8 @@ pub fn ui(ui: &mut Ui, table: &Table<'_>, knots: &Knots, faults: &mut Vec<String
         ];
         for head in heads {
             ui.add_sized(
-                [WIDTH + 8.0, ui.spacing().interact_size.y],
-                egui::Label::new(egui::RichText::new(head).weak()),
+                [width + FIELD_MARGIN, ui.spacing().interact_size.y],
+                egui::Label::new(egui::RichText::new(head).weak()).truncate(),
             );
         }
     });
@@ -85,7 +91,7 @@ pub fn ui(ui: &mut Ui, table: &Table<'_>, knots: &Knots, faults: &mut Vec<String
     let area = ScrollArea::vertical().id_salt(("times", table.of)).max_height(HEIGHT).auto_shrink([false, true]);
     area.show_rows(ui, height, knots.times_s.len(), |ui, rows| {
         for k in rows {
-            ui.push_id(k, |ui| ui.horizontal(|ui| row(ui, table, k, &mut changed, faults)).inner)
+            ui.push_id(k, |ui| ui.horizontal(|ui| row(ui, table, k, width, &mut changed, faults)).inner)
                 .inner
                 .apply(k, [&mut doubled, &mut gone]);
         }
@@ -113,18 +119,25 @@ impl RowButtons {
     }
 }
 
-fn row(ui: &mut Ui, table: &Table<'_>, k: usize, changed: &mut Knots, faults: &mut Vec<String>) -> RowButtons {
+fn row(
+    ui: &mut Ui,
+    table: &Table<'_>,
+    k: usize,
+    width: f32,
+    changed: &mut Knots,
+    faults: &mut Vec<String>,
+) -> RowButtons {
     ui.spacing_mut().item_spacing.x = GAP;
     let of = |what: &str| format!("{what} {} of {}", k + 1, table.of);
     if let Some(time_s) = changed.times_s.get_mut(k) {
-        let entry = field::number(ui, &of("Time"), Unit::S.bare(), *time_s, WIDTH);
+        let entry = field::number(ui, &of("Time"), Unit::S.bare(), *time_s, width);
         *time_s = entry.value.unwrap_or(*time_s);
         faults.extend(entry.fault);
         entry.response.on_hover_text("Times increase from row to row");
     }
     if let Some(value) = changed.values.get_mut(k) {
         for (part, column) in value.iter_mut().zip(table.columns) {
-            let entry = field::number(ui, &of(column), table.unit.bare(), *part, WIDTH);
+            let entry = field::number(ui, &of(column), table.unit.bare(), *part, width);
             *part = entry.value.unwrap_or(*part);
             faults.extend(entry.fault);
             entry.response.on_hover_text("Before the first and after the last time it stays as it is there");
@@ -141,7 +154,12 @@ fn row(ui: &mut Ui, table: &Table<'_>, k: usize, changed: &mut Knots, faults: &m
 /// A box that says whether something changes with time; what it is to be once it was clicked.
 pub fn toggle(ui: &mut Ui, label: &str, on: bool, help: &str) -> Option<bool> {
     let mut wanted = on;
-    ui.checkbox(&mut wanted, label).on_hover_text(help).changed().then_some(wanted)
+    ui.scope(|ui| {
+        // A narrow panel cuts the label, and the hover text has it whole.
+        ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Truncate);
+        ui.checkbox(&mut wanted, label).on_hover_text(format!("{label}. {help}")).changed().then_some(wanted)
+    })
+    .inner
 }
 
 #[cfg(test)]

@@ -9,14 +9,11 @@ use cable_core::model::auto::Question;
 use cable_core::timeline::{RunMonitor, RunPeaks};
 use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 
-use crate::state::{Playback, Snapshot};
+use crate::state::{NoAnswer, Playback, Snapshot};
 use crate::worker::draft::{self, Mesh};
 use crate::worker::passing;
 use crate::worker::request::{Drag, Edit, Request, Resume};
 use crate::worker::timing::{DRAFT_AFTER_S, FRAME_S, MAX_ANSWERS, QUIET_S};
-
-/// Why there is no answer after the user gave up waiting for it.
-pub const CANCELLED: &str = "solving was cancelled";
 
 /// What `auto` is asked once time runs.
 const MOTION: Question = Question::History(Inertia::Dynamic);
@@ -79,8 +76,8 @@ enum Phase {
     },
     /// The answer to the scene before: the last edit has none, and time stands.
     Refused {
-        /// Why, in a sentence.
-        reason: String,
+        /// Why.
+        reason: NoAnswer,
     },
 }
 
@@ -325,10 +322,7 @@ impl Engine {
             self.phase = Phase::Answer { start_kept: false };
         }
         self.playback.paused = true;
-        self.snapshot.error = Some(format!(
-            "the solver stopped by a fault of its own ({message}): the picture is the last good one; \
-             change the scene, choose another model, or reset"
-        ));
+        self.snapshot.error = Some(NoAnswer::Panicked { message: message.to_owned() });
         self.snapshot.stale = true;
         self.report(true)
     }
@@ -339,7 +333,7 @@ impl Engine {
             self.history_restarts |= edit.fresh;
             self.edit = Some(edit);
         }
-        self.phase = Phase::Refused { reason: CANCELLED.to_owned() };
+        self.phase = Phase::Refused { reason: NoAnswer::Cancelled };
         self.playback.paused = true;
     }
 
@@ -403,7 +397,7 @@ impl Engine {
                 // The old one stays: undoing the edit goes on from it.
                 self.simulation = old;
                 self.playback.paused = true;
-                self.phase = Phase::Refused { reason: e.to_string() };
+                self.phase = Phase::Refused { reason: NoAnswer::Error(e.clone()) };
                 Err(e)
             }
         }
@@ -633,7 +627,7 @@ impl Engine {
                 }
             }
             (Err(e), _) => {
-                self.snapshot.error = Some(e.to_string());
+                self.snapshot.error = Some(NoAnswer::Error(e));
                 self.snapshot.stale = true;
                 self.show_last_answer();
             }

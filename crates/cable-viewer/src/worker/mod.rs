@@ -351,7 +351,7 @@ mod tests {
         let mut engine = Engine::default();
         let report = guarded(&mut engine, |_| std::panic::panic_any("index out of bounds"));
         assert!(report.snapshot.stale && report.paused_itself);
-        assert!(report.snapshot.error.is_some_and(|e| e.contains("index out of bounds")));
+        assert!(report.snapshot.error.is_some_and(|e| e.to_string().contains("index out of bounds")));
         // It goes on with the next request.
         let report = guarded(&mut engine, |e| e.handle(Request { reset: true, number: 3, ..Request::default() }));
         assert_eq!(report.snapshot.edit, 3);

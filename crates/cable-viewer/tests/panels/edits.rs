@@ -4,11 +4,11 @@ use cable_core::Model;
 use cable_core::scene::SupportKind;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use cable_viewer::panels;
-use cable_viewer::state::{AppState, Item, WorkerStatus};
+use cable_viewer::state::{AppState, Item, NoAnswer, WorkerStatus};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::fixture::{Bench, PanelUi, bench, state, warn, with_pulley};
+use crate::fixture::{Bench, PanelUi, bench, outline_and_form, state, warn, with_pulley};
 
 const TALL: [f32; 2] = [320.0, 900.0];
 
@@ -205,7 +205,7 @@ fn playback_runs_steps_resets_and_changes_speed() {
 
 #[test]
 fn supports_are_moved_changed_renamed_and_taken_out() {
-    let mut harness = open(panels::scene::ui);
+    let mut harness = open(outline_and_form);
     enter(&mut harness, "x of left", "0.125");
     enter(&mut harness, "y of left", "450 cm");
     assert_eq!(harness.state().state.document.scene.cables[0].supports[0].at_m, Some([0.125, 4.5]));
@@ -233,7 +233,7 @@ fn a_fault_of_a_support_stands_below_it() {
     let mut state = state();
     with_pulley(&mut state);
     state.selection.selected = Some(Item::Support { cable: 0, support: 1 });
-    let mut harness = open_with(state, panels::scene::ui);
+    let mut harness = open_with(state, outline_and_form);
     enter(&mut harness, "Pulley friction", "-2");
     harness.get_by_label_contains("friction: ");
     assert_eq!(harness.state().state.document.scene.cables[0].supports[1].friction, Some(-2.0));
@@ -241,7 +241,7 @@ fn a_fault_of_a_support_stands_below_it() {
 
 #[test]
 fn obstacles_are_moved_changed_added_and_taken_out() {
-    let mut harness = open(panels::scene::ui);
+    let mut harness = open(outline_and_form);
     enter(&mut harness, "x of post", "4.25");
     click(&mut harness, "Select post");
     enter(&mut harness, "Radius", "0.3");
@@ -262,7 +262,7 @@ fn obstacles_are_moved_changed_added_and_taken_out() {
 
 #[test]
 fn loads_are_moved_changed_added_and_taken_off() {
-    let mut harness = open(panels::scene::ui);
+    let mut harness = open(outline_and_form);
     enter(&mut harness, "Place of load 1", "3");
     enter(&mut harness, "Force upwards of load 1", "-0.2 kN");
     let load = &harness.state().state.document.scene.loads[0];
@@ -320,13 +320,13 @@ fn a_broken_scene_and_a_dead_solver_are_said_with_their_fix() {
     let mut state = state();
     state.document.scene.cables[0].length_m = 9.0;
     state.document.fault = state.document.scene.validate().err();
-    state.live.snapshot.error = Some("something".to_owned());
+    state.live.snapshot.error = Some(NoAnswer::Panicked { message: "something".to_owned() });
     state.solver.status = WorkerStatus::Dead("the solver thread has ended".to_owned());
     let mut harness = open_with(state, panels::warnings::ui);
     harness.get_by_label_contains("last scene that could be solved");
     click(&mut harness, "Set to 10.00 m");
     assert_eq!(harness.state().state.document.fault, None);
-    harness.get_by_label_contains("Something.");
+    harness.get_by_label_contains("The solver stopped by a fault of its own (something)");
     click(&mut harness, "Restart the solver");
     assert!(harness.state().commands.contains(&Command::File(FileCommand::RestartWorker)));
     assert!(harness.state().commands.contains(&Command::Scene(SceneCommand::EditDone)));
@@ -351,7 +351,7 @@ fn the_graphs_switch_quantity_and_say_their_last_values() {
 fn a_load_that_changes_with_time_is_a_table() {
     let mut state = state();
     state.selection.selected = Some(Item::Load(0));
-    let mut harness = open_with(state, panels::scene::ui);
+    let mut harness = open_with(state, outline_and_form);
     let load = |h: &Harness<'static, Bench>| h.state().state.document.scene.loads[0].clone();
     let before = load(&harness);
     click(&mut harness, "load 1 changes with time");
@@ -392,7 +392,7 @@ fn wind_that_changes_with_time_is_a_table() {
 fn a_support_moves_lets_go_and_pulls_by_times() {
     let mut state = state();
     state.selection.selected = Some(Item::Support { cable: 0, support: 1 });
-    let mut harness = open_with(state, panels::scene::ui);
+    let mut harness = open_with(state, outline_and_form);
     let right = |h: &Harness<'static, Bench>| h.state().state.document.scene.cables[0].supports[1].clone();
     let at_m = right(&harness).at_m.unwrap();
     click(&mut harness, "Follows a schedule");

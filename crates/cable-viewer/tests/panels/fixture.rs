@@ -5,7 +5,8 @@ use std::sync::Arc;
 use cable_core::robot::{Going, RobotReport};
 use cable_core::scene::{Obstacle, Shape, Support, catalog};
 use cable_core::solution::{
-    CableSolution, ContactReport, ContactState, Cost, Energy, Node, Solution, SupportReaction, Warning, WarningKind,
+    CableSolution, ContactReport, ContactState, Cost, Energy, Node, Solution, SupportReaction, Warning, WarningCause,
+    WarningKind,
 };
 use cable_core::{Load, Model, Scene};
 use cable_viewer::command::effects::Effects;
@@ -131,7 +132,8 @@ fn answer(scene: &Scene) -> Solution {
 /// Warnings of several kinds.
 pub fn warn(state: &mut AppState) {
     let warning = |kind, arc_length_m, value: f64, limit: f64, message: &str| {
-        Warning::new(kind, "cable", arc_length_m, [value, limit], message.to_owned())
+        let cause = WarningCause::Recorded { kind, message: message.to_owned() };
+        Warning::new(cause, "cable", arc_length_m, [value, limit])
     };
     let mut solution = (**state.live.snapshot.solution.as_ref().unwrap()).clone();
     solution.warnings = vec![
@@ -171,7 +173,10 @@ pub fn recorded() -> AppState {
         _ => None,
     };
     for k in 0..600_u32 {
-        let warning = |kind| Warning::new(kind, "cable", 0.0, [912.0, 800.0], "as it says".to_owned());
+        let warning = |kind| {
+            let cause = WarningCause::Recorded { kind, message: "as it says".to_owned() };
+            Warning::new(cause, "cable", 0.0, [912.0, 800.0])
+        };
         let warnings = event(k).map(warning).into_iter().collect();
         state.live.recording.push(Solution { time_s: f64::from(k) / 60.0, warnings, ..answer.clone() });
     }
@@ -232,6 +237,14 @@ pub fn with_pulley(state: &mut AppState) {
     pulley.friction = Some(0.1);
     state.document.scene.cables[0].supports.insert(1, pulley);
     state.document.fault = state.document.scene.validate().err();
+}
+
+/// What lists the things of the scene, and what edits the one that is selected.
+pub fn outline_and_form(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
+    cable_viewer::panels::scene::outline::ui(ui, state, commands);
+    if cable_viewer::panels::selected::is_shown(state) {
+        cable_viewer::panels::selected::ui(ui, state, commands);
+    }
 }
 
 /// A window with one panel. Commands are applied as the window does.

@@ -1,8 +1,11 @@
 //! A picture of each panel at the width it has in the window. They need a graphics adapter (software will do):
 //! without one they are skipped with a notice, where CI=true they fail.
 
+use cable_core::SolveError;
+use cable_core::error::Unsupported;
 use cable_viewer::jobs::{friction_range, model_comparison, safe_reach};
 use cable_viewer::panels;
+use cable_viewer::plot::GraphView;
 use cable_viewer::state::{AppState, Item};
 use egui_kittest::{SnapshotOptions, SnapshotResults};
 
@@ -51,28 +54,46 @@ fn environment() {
 
 #[test]
 fn solver() {
-    picture("solver", state, panels::solver::ui, [320.0, 320.0]);
+    picture("solver", state, panels::solver::ui, [320.0, 376.0]);
 }
 
 #[test]
-fn scene() {
+fn selected_support() {
     let selected = || {
         let mut state = state();
         with_pulley(&mut state);
         state.selection.selected = Some(Item::Support { cable: 0, support: 1 });
         state
     };
-    picture("scene", selected, panels::scene::ui, [320.0, 640.0]);
+    picture("selected_support", selected, panels::selected::ui, [320.0, 420.0]);
 }
 
+/// As narrow as it is in a window of 1280 points.
 #[test]
-fn scene_obstacle() {
+fn selected_obstacle() {
     let selected = || {
         let mut state = state();
         state.selection.selected = Some(Item::Obstacle(0));
         state
     };
-    picture("scene_obstacle", selected, panels::scene::ui, [320.0, 640.0]);
+    picture("selected_obstacle", selected, panels::selected::ui, [186.0, 420.0]);
+}
+
+#[test]
+fn scene() {
+    picture("scene", state, panels::scene::ui, [320.0, 140.0]);
+}
+
+#[test]
+fn outline() {
+    let listed = || {
+        let mut state = state();
+        with_pulley(&mut state);
+        warn(&mut state);
+        state.selection.selected = Some(Item::Support { cable: 0, support: 1 });
+        state
+    };
+    picture("outline", listed, panels::scene::outline::ui, [268.0, 440.0]);
 }
 
 #[test]
@@ -105,8 +126,9 @@ fn compare() {
 fn compare_models() {
     let asked = || {
         let mut state = compared();
-        let why = "catenary cannot answer this scene: the cable reaches an obstacle 4.894 m along it".to_owned();
-        let answers = vec![model_comparison::Answer { model: cable_core::Model::Catenary, result: Err(why) }];
+        let (model, feature) = (cable_core::Model::Catenary, Unsupported::Obstacle { arc_length_m: 4.894 });
+        let why = SolveError::Unsupported { model, feature }.into();
+        let answers = vec![model_comparison::Answer { model, result: Err(why) }];
         let scene = std::sync::Arc::new(state.document.scene.clone());
         state.analysis.models = model_comparison::Progress::Done(model_comparison::Outcome { scene, answers });
         state
@@ -169,7 +191,7 @@ fn warnings() {
         state
     };
     // Tall: they take two fifths of a window.
-    picture("warnings", warned, panels::warnings::ui, [320.0, 1200.0]);
+    picture("warnings", warned, panels::warnings::ui, [320.0, 520.0]);
 }
 
 #[test]
@@ -180,7 +202,32 @@ fn origin() {
         state.analysis.tension_marker = Some(cable_viewer::state::TensionMarker { cable: 0, arc_length_m: 12.0, from });
         state
     };
-    picture("origin", probed, panels::analysis::tension_budget::ui, [320.0, 260.0]);
+    picture("origin", probed, panels::analysis::tension_budget::ui, [320.0, 330.0]);
+}
+
+/// More samples than columns: a band from the least to the greatest, and the mean.
+#[test]
+fn plots_dense() {
+    let long = || {
+        let mut state = state();
+        let sample = state.live.history.samples[0].clone();
+        state.live.history.clear();
+        for k in 0..20_000 {
+            let time_s = f64::from(k) / 240.0;
+            let (swing, chatter) = ((0.2 * time_s).sin(), (37.0 * time_s).sin());
+            let peak = if k == 9_001 { 500.0 } else { 0.0 };
+            let mut next = sample.clone();
+            (next.time_s, next.max_tension_n) = (time_s, 500.0 + 120.0 * swing + 60.0 * chatter + peak);
+            state.live.history.push(next);
+        }
+        state
+    };
+    let all: PanelUi = |ui, state, commands| {
+        let view = GraphView { window_s: None, ..GraphView::default() };
+        ui.data_mut(|d| d.insert_temp(egui::Id::unique("plot view"), view));
+        panels::plots::ui(ui, state, commands);
+    };
+    picture("plots_dense", long, all, [960.0, 240.0]);
 }
 
 #[test]

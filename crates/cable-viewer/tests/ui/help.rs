@@ -18,7 +18,7 @@ fn state<'a>(harness: &'a Harness<'_, ViewerApp>) -> &'a AppState {
 }
 
 /// Controls of the window: what they are called, their kind, and where they are.
-fn controls(harness: &Harness<'_, ViewerApp>) -> Vec<(String, Role, Pos2)> {
+pub fn controls(harness: &Harness<'_, ViewerApp>) -> Vec<(String, Role, Pos2)> {
     let mut out = Vec::new();
     let mut left = vec![harness.root()];
     while let Some(node) = left.pop() {

@@ -2,14 +2,22 @@
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
+mod contrast;
+mod controls;
 mod editing;
+mod first_minute;
+mod gallery;
+mod graphs;
 mod hands;
 mod help;
 mod job;
 mod keys;
 mod layout;
+mod outline;
 mod pictures;
 mod playing;
+mod pulling;
+mod quality;
 mod reach;
 mod recovery;
 mod rows;
@@ -22,6 +30,7 @@ mod timing;
 mod truth;
 mod units;
 mod walk;
+mod warnings;
 mod wishes;
 
 use cable_core::scene::{Shape, catalog};

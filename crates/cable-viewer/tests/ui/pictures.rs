@@ -1,6 +1,7 @@
 //! Pictures of the canvas compared with those in `tests/snapshots`. After an intended change:
 //! `UPDATE_SNAPSHOTS=1 cargo test -p cable-viewer --test ui`.
 
+use cable_core::error::{SceneError, SceneFault};
 use cable_core::scene::catalog;
 use cable_core::solution::{CableSolution, ContactReport, ContactState, Cost, Node};
 use cable_core::{Model, Solution};
@@ -9,9 +10,15 @@ use cable_viewer::canvas;
 use cable_viewer::command::{Command, PlaybackCommand};
 use cable_viewer::render::offscreen::renderer;
 use cable_viewer::render::theme;
-use cable_viewer::state::{AppState, Item};
+use cable_viewer::state::{AppState, Item, NoAnswer};
 use egui::{Theme, Vec2};
 use egui_kittest::Harness;
+
+/// A reason why a scene has no answer.
+fn refusal(text: &str) -> NoAnswer {
+    let fault = SceneFault::Shape { what: text.to_owned() };
+    NoAnswer::Error(SceneError { path: String::new(), fault, at: None }.into())
+}
 
 /// Compares the canvas of a state with its picture. Skips with a notice where nothing can draw, except in CI.
 fn compare(name: &str, mut state: AppState, theme: Theme) {
@@ -95,7 +102,7 @@ fn over_service_tension_dark() {
 fn no_answer_dark() {
     let mut state = solved(catalog::hanging_span());
     state.live.snapshot.error =
-        Some("fem did not converge in 60 iterations: unbalanced force 3.2 N at node 7".to_owned());
+        Some(refusal("fem did not converge in 60 iterations: unbalanced force 3.2 N at node 7"));
     state.live.snapshot.stale = true;
     compare("no_answer_dark", state, Theme::Dark);
 }
@@ -147,7 +154,7 @@ fn contacts_dark() {
 #[test]
 fn obstacles_light() {
     let mut state = AppState::new(catalog::tank(), None);
-    state.live.snapshot.error = Some("nothing was solved for this picture".to_owned());
+    state.live.snapshot.error = Some(refusal("nothing was solved for this picture"));
     state.selection.selected = Some(Item::Obstacle(0));
     compare("obstacles_light", state, Theme::Light);
 }

@@ -51,7 +51,7 @@ fn safe_reach_of_a_robot_is_found_beside_the_window_and_can_be_ended() {
     harness.run_steps(3);
     assert_eq!(harness.state().state.live.snapshot.error, None);
     click(&mut harness, "Cancel safe reach");
-    assert!(matches!(reach(&harness).progress, Progress::None));
+    assert!(!matches!(reach(&harness).progress, Progress::Running(..)));
 
     // A short search to its end.
     let settings = cable_core::Settings::default();
@@ -194,4 +194,35 @@ fn what_is_taken_somewhere_is_the_robot_else_what_is_picked_else_an_end_and_can_
     let left = cable_viewer::state::Item::Support { cable: 0, support: 0 };
     apply(&mut harness, Command::View(ViewCommand::Select(Some(left))));
     assert_eq!(moved(&harness), Some(ReachSubject::Support { cable: 0, support: 0 }));
+}
+
+/// D10.11: cancelling threw away what was found, nobody knew how long it takes, and a place outside the tank was safe.
+#[test]
+fn a_cancelled_search_keeps_what_it_found_and_none_of_it_lies_outside_the_tank() {
+    let mut harness = tall(catalog::tank());
+    // All of the tank, and as much again on both sides.
+    apply(&mut harness, Command::View(ViewCommand::Zoom { about_m: [0.0, 4.0], factor: 0.4 }));
+    let [low, high] = harness.state().state.view.visible_m;
+    assert!(low[0] < -20.0 && high[0] > 20.0, "{low:?} {high:?}");
+    apply(&mut harness, Command::View(ViewCommand::SetReach(Choice { across: 12, ..Choice::default() })));
+    click(&mut harness, "Find safe reach");
+    patiently("a first part", || {
+        harness.step();
+        assert!(!matches!(reach(&harness).progress, Progress::Failed(_)), "{:?}", reach(&harness));
+        matches!(reach(&harness).progress, Progress::Running(share, Some(_)) if share > 0.05)
+    });
+    harness.step();
+    harness.get_by_label_contains(" left");
+    click(&mut harness, "Cancel safe reach");
+    let Some((Maps::Area(there, _), _)) = reach(&harness).found() else { panic!("{:?}", reach(&harness)) };
+    assert!(there.most_n.iter().any(|n| n.is_finite()), "what was found is kept");
+    let walls = harness.state().state.document.scene.obstacles.iter().find_map(|o| match &o.shape {
+        cable_core::scene::Shape::Terrain { points_m } => Some([points_m[0][0], points_m[points_m.len() - 1][0]]),
+        _ => None,
+    });
+    let [left, right] = walls.unwrap();
+    assert!((0..there.most_n.len()).all(|k| (left..=right).contains(&there.at(k)[0])), "{left} to {right}: {there:?}");
+    harness.get_by_label_contains("Incomplete: stopped at");
+    click(&mut harness, "Clear");
+    assert!(reach(&harness).found().is_none() && reach(&harness).stopped.is_none());
 }

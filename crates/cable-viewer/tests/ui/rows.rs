@@ -277,7 +277,7 @@ fn s15_it_breaks_at_its_breaking_tension_and_goes_on_as_two() {
         state(&harness).live.playback,
         after.warnings
     );
-    let event = state(&harness).live.recording.events().iter().find(|e| e.kind == WarningKind::Broken).cloned();
+    let event = state(&harness).live.recording.events().iter().find(|e| e.warning.kind == WarningKind::Broken).cloned();
     assert!(event.is_some_and(|e| e.time_s < 0.1), "marked on the timeline");
     // It falls, and time goes on.
     let low = |s: &Solution| s.cables[0].nodes.iter().map(|n| n.y_m).fold(f64::MAX, f64::min);

@@ -90,7 +90,7 @@ fn a_session_from_opening_a_file_to_exporting_a_run() {
     hold(&mut harness, Key::D, 30);
     harness.key_press(Key::Space);
     harness.run_steps(2);
-    assert!(state(&harness).live.recording.events().iter().any(|e| e.kind == WarningKind::Broken));
+    assert!(state(&harness).live.recording.events().iter().any(|e| e.warning.kind == WarningKind::Broken));
     assert!(harness.get_all_by_label_contains("Broken at ").count() >= 1);
 
     // Compare.

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, Point, apart, block, cable, fixed, post, put, way};
 use crate::chance::Chance;
-use cable_core::scene::{STANDARD_GRAVITY, Scene, Support, View};
+use cable_core::scene::{STANDARD_GRAVITY, Scene, Shape, Support, View};
 
 const D: f64 = 0.02;
 
@@ -28,8 +28,13 @@ pub fn slack(r: &mut Chance) -> Case {
     Case::rests(s)
 }
 
+/// A box about a centre, m.
+fn square(center: [f64; 2], size: f64) -> Shape {
+    block(center.map(|c| c - size), [2.0 * size; 2])
+}
+
 /// A cable laid past things at the given places.
-fn past(r: &mut Chance, round: bool) -> Case {
+fn past(r: &mut Chance, shape: fn([f64; 2], f64) -> Shape) -> Case {
     let at = ends(r);
     let mut route = vec![at[0]];
     let mut shapes = Vec::new();
@@ -41,7 +46,7 @@ fn past(r: &mut Chance, round: bool) -> Case {
         let side = if r.says(0.5) { 1.0 } else { -1.0 };
         let beside = y + side * (size + 2.0 * D);
         route.extend([[x - size, beside], [x + size, beside]]);
-        shapes.push(if round { post([x, y], size) } else { block([x - size, y - size], [2.0 * size, 2.0 * size]) });
+        shapes.push(shape([x, y], size));
     }
     route.push(at[1]);
     let slack = if r.says(0.5) { r.within(-1e-4, 1e-3) } else { r.scale(1e-3, 0.3) };
@@ -55,15 +60,15 @@ fn past(r: &mut Chance, round: bool) -> Case {
 }
 
 pub fn posts(r: &mut Chance) -> Case {
-    past(r, true)
+    past(r, post)
 }
 
 pub fn boxes(r: &mut Chance) -> Case {
-    past(r, false)
+    past(r, square)
 }
 
 pub fn free_end(r: &mut Chance) -> Case {
-    let mut case = past(r, true);
+    let mut case = past(r, post);
     let c = case.cable();
     let last = c.supports.len() - 1;
     c.supports[last] = Support::free("b");

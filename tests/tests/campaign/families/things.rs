@@ -28,10 +28,9 @@ fn round(center: Point, radius: f64, [from, to]: [f64; 2]) -> Vec<Point> {
         .collect()
 }
 
-fn passed(r: &mut Chance, above: bool) -> Case {
+fn passed(r: &mut Chance, side: f64) -> Case {
     let radius = r.scale(0.05, 1.0);
     let center = [r.within(3.0, 7.0), r.within(-1.0, 1.0)];
-    let side = if above { 1.0 } else { -1.0 };
     let a = [0.0, center[1] - side * r.within(0.0, 3.0)];
     let b = [10.0, center[1] - side * r.within(0.0, 3.0)];
     let tight = radius + 1.5 * R;
@@ -47,11 +46,11 @@ fn passed(r: &mut Chance, above: bool) -> Case {
 }
 
 pub fn over_post(r: &mut Chance) -> Case {
-    passed(r, true)
+    passed(r, 1.0)
 }
 
 pub fn under_post(r: &mut Chance) -> Case {
-    passed(r, false)
+    passed(r, -1.0)
 }
 
 pub fn round_post(r: &mut Chance) -> Case {
@@ -195,7 +194,7 @@ pub fn thin(r: &mut Chance) -> Case {
     Case::rests(s)
 }
 
-fn over_wheels(r: &mut Chance, rubs: bool) -> Case {
+fn over_wheels(r: &mut Chance, friction: fn(&mut Chance) -> f64) -> Case {
     let count = 1 + r.one_of(3);
     let far = r.scale(2.0, 50.0);
     let (a, b) = ([0.0, r.within(-1.0, 1.0)], [far, r.within(-1.0, 1.0)]);
@@ -204,7 +203,7 @@ fn over_wheels(r: &mut Chance, rubs: bool) -> Case {
     for k in 0..count {
         let at = [far * (k as f64 + 1.0) / (count as f64 + 1.0), r.within(0.5, 3.0)];
         let radius = if r.says(0.4) { 0.0 } else { far * r.within(0.005, 0.03) };
-        supports.insert(1 + k, wheel(&format!("w{k}"), at, radius, if rubs { r.within(0.01, 0.5) } else { 0.0 }));
+        supports.insert(1 + k, wheel(&format!("w{k}"), at, radius, friction(r)));
         line.push(at);
     }
     line.push(b);
@@ -213,11 +212,11 @@ fn over_wheels(r: &mut Chance, rubs: bool) -> Case {
 }
 
 pub fn wheels(r: &mut Chance) -> Case {
-    over_wheels(r, false)
+    over_wheels(r, |_| 0.0)
 }
 
 pub fn rubbing_wheels(r: &mut Chance) -> Case {
-    over_wheels(r, true)
+    over_wheels(r, |r| r.within(0.01, 0.5))
 }
 
 pub fn self_contact(r: &mut Chance) -> Case {

@@ -91,8 +91,8 @@ impl Area {
         [self.origin_m[0] + column * self.spacing_m, self.origin_m[1] + row * self.spacing_m]
     }
 
-    /// How much of the plane is below a tension (N), m², and the corners of the rectangle round it,
-    /// m; None where nothing is.
+    /// Returns how much of the plane is below a tension (N), m², and the corners of the rectangle
+    /// round it, m; None where nothing is.
     #[must_use]
     pub fn below(&self, tension_n: f64) -> Option<(f64, [Point; 2])> {
         let within = self.most_n.iter().enumerate().filter(|(_, t)| **t <= tension_n).map(|(k, _)| self.at(k));

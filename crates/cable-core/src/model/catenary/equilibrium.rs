@@ -268,9 +268,9 @@ fn step(r: &[f64], j: &[Row], descend: bool) -> Option<Vec<f64>> {
     None
 }
 
-/// Whether the balance is stable: σ pushed one way is drawn back (all pivots of J positive). With
-/// more slack than any tension asks for a fold pulls the harder the longer it is: a balance too,
-/// but one that runs away.
+/// Returns whether the balance is stable: σ pushed one way is drawn back (all pivots of J
+/// positive). With more slack than any tension asks for a fold pulls the harder the longer it is: a
+/// balance too, but one that runs away.
 fn stable(j: &[Row]) -> bool {
     let mut pivot = 1.0;
     (0..j.len()).all(|k| {

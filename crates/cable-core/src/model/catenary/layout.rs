@@ -62,7 +62,7 @@ pub(in crate::model) fn hint_of_weight(p: &Problem, loads: f64) -> (Vec2, f64) {
     (Vec2::new(0.0, -whole / p.length), HINT_TENSION_FACTOR * whole)
 }
 
-/// Where a support is now: by hand, by its motion, or not at all.
+/// Returns where a support is now: by hand, by its motion, or not at all.
 fn place(s: &SupportPoint, dragged: Option<Vec2>, time_s: f64) -> Option<Vec2> {
     let p = s.position_at(time_s).map(|(p, _)| p)?;
     Some(dragged.unwrap_or(p))
@@ -154,8 +154,8 @@ impl Layout {
         inside.fold(self.weight * (to - from), |sum, l| sum + l.force)
     }
 
-    /// Where each anchor sits on the cable when the material is spread evenly along the way: m of
-    /// arc length.
+    /// Returns where each anchor sits on the cable when the material is spread evenly along the
+    /// way: m of arc length.
     ///
     /// Along the route the ends of the scene give, else straight from anchor to anchor; a dangling
     /// end takes what a taut cable leaves over.
@@ -203,7 +203,7 @@ impl Layout {
             .collect()
     }
 
-    /// How far along the way each anchor lies, and the length of the whole way, m.
+    /// Returns how far along the way each anchor lies, and the length of the whole way, m.
     fn way(&self, p: &Problem) -> (Vec<f64>, f64) {
         let mut out = Vec::with_capacity(self.anchors.len());
         if p.route.len() > 1 {
@@ -270,7 +270,7 @@ pub(super) fn angle_of(v: Vec2) -> f64 {
 }
 
 impl Anchor {
-    /// Where the centre line touches the wheel when it runs at `angle`, m.
+    /// Returns where the centre line touches the wheel when it runs at `angle`, m.
     pub fn touch(&self, angle: f64) -> Vec2 {
         self.at + perp(direction(angle)) * (self.facing * self.radius)
     }

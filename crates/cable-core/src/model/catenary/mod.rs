@@ -23,7 +23,7 @@ use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{FailureCause, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Cost, Node, SupportReaction, Warning, WarningKind};
+use crate::solution::{CableSolution, Cost, Histories, Node, ShownEquilibrium, SupportReaction, Warning, WarningCause};
 use crate::state::State;
 
 /// Supports move by at most this part of the cable in one solve of a slow motion. Larger: slip that
@@ -48,6 +48,24 @@ pub struct CatenaryModel {
     adopted: Vec<Option<f64>>,
     nodes: Vec<Node>,
     reactions: Vec<SupportReaction>,
+}
+
+/// The material at pulleys from which a balance is sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Begin {
+    /// That of the present balance.
+    AsBefore,
+    /// Spread evenly.
+    EvenSpread,
+}
+
+/// An instant of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Instant {
+    /// The last of a step.
+    Shown,
+    /// One before it.
+    Hidden,
 }
 
 impl CatenaryModel {
@@ -88,8 +106,8 @@ impl CatenaryModel {
         Ok(model)
     }
 
-    /// Balance of a layout, from what the present one remembers (`fresh`: from the even spread).
-    fn balance(&self, layout: &Layout, fresh: bool) -> Result<Equilibrium, SolveError> {
+    /// Balance of a layout.
+    fn balance(&self, layout: &Layout, begin: Begin) -> Result<Equilibrium, SolveError> {
         let spread = layout.spread(&self.problem);
         let (mut sigma, mut arcs) = (spread, first_arcs(layout));
         let mut modes: Vec<Mode> = layout
@@ -104,7 +122,7 @@ impl CatenaryModel {
             if let Some(s) = self.adopted.get(a.support).copied().flatten() {
                 sigma[i] = s;
             }
-            let Some(old) = self.balance.as_ref().filter(|_| !fresh) else { continue };
+            let Some(old) = self.balance.as_ref().filter(|_| begin == Begin::AsBefore) else { continue };
             if let Some(j) = self.anchored.iter().position(|s| *s == a.support) {
                 (sigma[i], arcs[i], modes[i]) = (old.sigma[j], old.arcs[j], old.modes[j]);
             }
@@ -112,7 +130,7 @@ impl CatenaryModel {
         let held = sigma.clone();
         let start = Start { held: &held, sigma, modes: modes.clone(), arcs: arcs.clone() };
         let found = solve(&self.problem, layout, start);
-        if found.is_ok() || fresh {
+        if found.is_ok() || begin == Begin::EvenSpread {
             return found;
         }
         // The last slip directions may be a bad start: from all holding.
@@ -125,10 +143,16 @@ impl CatenaryModel {
     }
 
     /// Takes a balance as the state at a time; on an error nothing has changed. Nodes cost more
-    /// than the balance, so those of an instant nobody sees (`shown` false) are made only where
+    /// than the balance, so those of a hidden instant are made only where
     /// they may meet an obstacle.
-    fn accept(&mut self, layout: &Layout, e: Equilibrium, time_s: f64, shown: bool) -> Result<StepReport, SolveError> {
-        if shown || !self.problem.world.is_empty() {
+    fn accept(
+        &mut self,
+        layout: &Layout,
+        e: Equilibrium,
+        time_s: f64,
+        instant: Instant,
+    ) -> Result<StepReport, SolveError> {
+        if instant == Instant::Shown || !self.problem.world.is_empty() {
             let (nodes, reactions) = report(&self.problem, layout, &e);
             if let Some(node) =
                 nodes.iter().position(|n| !(n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite()))
@@ -180,10 +204,10 @@ impl CatenaryModel {
     }
 
     /// One slow step to a time, at once; on an error nothing has changed.
-    fn slow_step(&mut self, time_s: f64, shown: bool) -> Result<StepReport, SolveError> {
+    fn slow_step(&mut self, time_s: f64, instant: Instant) -> Result<StepReport, SolveError> {
         let layout = Layout::new(&self.problem, &self.dragged, time_s)?;
-        let e = self.balance(&layout, false)?;
-        self.accept(&layout, e, time_s, shown)
+        let e = self.balance(&layout, Begin::AsBefore)?;
+        self.accept(&layout, e, time_s, instant)
     }
 
     /// Nodes of the present balance, after steps that did not make them.
@@ -193,7 +217,7 @@ impl CatenaryModel {
         }
     }
 
-    /// How far any support moves between two times, m.
+    /// Returns how far any support moves between two times, m.
     fn support_travel(&self, from_s: f64, to_s: f64) -> f64 {
         let mut most = 0.0f64;
         for s in &self.problem.supports {
@@ -212,12 +236,10 @@ impl CatenaryModel {
     }
 }
 
-/// What there is to say of a weightless cable that is slack.
+/// Returns what there is to say of a weightless cable that is slack.
 pub(super) fn slack_without_weight(problem: &Problem, nodes: &[Node]) -> Option<Warning> {
     let slack = nodes.iter().find(|n| n.tension_n == 0.0)?;
-    let message = "The cable has no weight: where it is slack it has no tension and any shape is at rest; this one is that of a very light cable";
-    let (kind, at) = (WarningKind::NotUnique, slack.arc_length_m);
-    Some(Warning::new(kind, &problem.cable.name, at, [0.0; 2], message.to_owned()))
+    Some(Warning::new(WarningCause::Weightless, &problem.cable.name, slack.arc_length_m, [0.0; 2]))
 }
 
 /// The way the cable is laid, its material spread evenly along it.
@@ -249,15 +271,15 @@ impl Mechanics for CatenaryModel {
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         let layout = Layout::new(&self.problem, &self.dragged, self.time_s)?;
-        let e = match self.balance(&layout, false) {
+        let e = match self.balance(&layout, Begin::AsBefore) {
             Ok(e) => e,
-            Err(_) => self.balance(&layout, true)?,
+            Err(_) => self.balance(&layout, Begin::EvenSpread)?,
         };
-        let mut report = self.accept(&layout, e, self.time_s, true)?;
+        let mut report = self.accept(&layout, e, self.time_s, Instant::Shown)?;
         if self.has_friction() {
-            let message = "With friction the resting place depends on how the cable was laid: this is the one laid evenly along its way with the least sliding";
-            let name = &self.problem.cable.name;
-            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
+            let (shown, histories) = (ShownEquilibrium::EvenlyLaid, Histories::NotSought);
+            let cause = WarningCause::ManyEquilibria { shown, histories };
+            report.warnings.push(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]));
         }
         if layout.hint > 0.0 {
             report.warnings.extend(slack_without_weight(&self.problem, &self.nodes));
@@ -282,7 +304,7 @@ impl Mechanics for CatenaryModel {
         let (mut step, mut total, mut halvings) = (dt_s / pieces, StepReport::default(), 0);
         while self.time_s < end {
             let next = if self.time_s + 1.000_001 * step >= end { end } else { self.time_s + step };
-            match self.slow_step(next, next >= end) {
+            match self.slow_step(next, if next >= end { Instant::Shown } else { Instant::Hidden }) {
                 Ok(r) => {
                     total.cost.iterations += r.cost.iterations;
                     total.cost.residual_n = r.cost.residual_n;

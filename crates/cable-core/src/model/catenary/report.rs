@@ -45,7 +45,7 @@ pub(in crate::model) struct Nodes<'a> {
     problem: &'a Problem,
     flat: f64,
     least_tension: f64,
-    /// Whether the nodes are turned end for start afterwards: of two nodes that are one the first
+    /// True if the nodes are turned end for start afterwards: of two nodes that are one the first
     /// is that beyond the point then.
     pub turned: bool,
     pub out: Vec<Node>,

@@ -44,6 +44,13 @@ pub(super) struct Arc {
     pub material: f64,
 }
 
+/// An end of a cable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum CableEnd {
+    Start,
+    End,
+}
+
 impl Arc {
     /// Material from where the cable arrives to the mark, and from there to where it leaves, m.
     pub fn split(&self, facing: f64) -> (f64, f64) {
@@ -120,9 +127,9 @@ impl Slide<'_> {
             } else if !(to > from) {
                 return None;
             } else if i == 0 {
-                Some(self.dangling(from, to, true))
+                Some(self.dangling(from, to, CableEnd::Start))
             } else if i == n {
-                Some(self.dangling(from, to, false))
+                Some(self.dangling(from, to, CableEnd::End))
             } else {
                 let (a, b) = (self.touches(i - 1).1, self.touches(i).0);
                 Some(self.held(from, to, a, b, near)?)
@@ -166,7 +173,8 @@ impl Slide<'_> {
     }
 
     /// A dangling start or end: its force is known, F = ∓(loads beyond).
-    fn dangling(&self, from: f64, to: f64, start: bool) -> Stretch {
+    fn dangling(&self, from: f64, to: f64, end: CableEnd) -> Stretch {
+        let start = end == CableEnd::Start;
         let load = self.layout.load_between(from, to);
         let b = self.layout.weight;
         let p = if start { self.touches(0).0 } else { self.touches(self.arcs.len() - 1).1 };
@@ -194,7 +202,7 @@ impl Slide<'_> {
         (side(k).map(|s| s.end), side(k + 1).map(|s| s.start))
     }
 
-    /// How far the cable turns at a pulley, rad.
+    /// Returns how far the cable turns at a pulley, rad.
     pub fn turn(&self, k: usize, before: Vec2, after: Vec2) -> f64 {
         if self.layout.anchors[k].radius > 0.0 {
             self.arcs[k].turn

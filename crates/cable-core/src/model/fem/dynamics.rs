@@ -6,26 +6,26 @@ use std::sync::Arc;
 use crate::contact::barrier::Barrier;
 use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
-use crate::model::fem::equilibrium::initial_guess::{lay, push_out, way};
 use crate::model::fem::mesh::sliding_node::Seat;
+use crate::model::fem::newton::initial_guess::{lay, push_out, way};
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::mixed_free::FreeStep;
-use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose, StepInput, WorkBudget};
-use crate::model::fem::newton::step_setup::{load_scale, tolerance};
-use crate::model::fem::obstacle::moving_outline::MovingOutline;
+use crate::model::fem::state::history::{Checkpoint, Motion};
+use crate::model::fem::state::moving_outline::MovingOutline;
+use crate::model::fem::state::stepping::Sleep;
+use crate::model::fem::state::stepping::StepSizeController;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::friction_state::{ContactPair, ContactSet, SLIDE, slip_at_rest};
 use crate::model::fem::system::loss::Loss;
-use crate::model::fem::time::history::{Checkpoint, Motion};
-use crate::model::fem::time::sleeping::Sleep;
-use crate::model::fem::time::step_size::StepSizeController;
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose, StepInput, WorkBudget};
+use crate::model::fem::system::step_input::{load_scale, tolerance};
 use crate::model::fem::touches_nothing;
 use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::held_warning;
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::{Problem, Series};
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost, Warning, WarningKind};
+use crate::solution::{CableSolution, Cost, Warning, WarningCause};
 use crate::state::State;
 
 /// Longest inner time step, s. At 1/240 the tip of a falling chain of 10 m is within 5e-4 m of that
@@ -591,9 +591,8 @@ impl Dynamics {
         let held = self.answers.held_back.iter().filter_map(|&k| {
             let (node, s) = (node_of(k)?, self.problem.supports.get(k)?);
             let behind = (self.task.target.get(node)? - self.motion.x[node]).norm();
-            let message = format!("support `{}` cannot reach where it is sent: an obstacle blocks it", s.name);
-            let (name, arc_length) = (&self.problem.cable.name, self.mesh.arc_length[node]);
-            Some(Warning::new(WarningKind::SupportHeld, name, arc_length, [behind, 0.0], message))
+            let cause = WarningCause::Blocked { support: s.name.clone() };
+            Some(Warning::new(cause, &self.problem.cable.name, self.mesh.arc_length[node], [behind, 0.0]))
         });
         let drawn = self.motion.followers.iter().enumerate().filter_map(|(k, f)| {
             let (f, node) = (f.as_ref().filter(|f| f.behind_m() > 0.0)?, node_of(k)?);
@@ -637,11 +636,6 @@ impl Dynamics {
         if self.answers.keeps && self.answers.kept.is_none() {
             self.answers.kept = Some(Box::new(self.solution_now()));
         }
-    }
-
-    /// The same, with the mesh as it is.
-    pub(super) fn solution_now(&self) -> CableSolution {
-        crate::model::fem::results::solution(self, &self.motion.x, &self.motion.v)
     }
 
     /// Smallest gap of any free node or segment, m (infinite if nothing is near).

@@ -4,19 +4,18 @@
 //! | room | what it holds |
 //! |---|---|
 //! | `dynamics` | the cable in contact: its mesh, contacts, history and settings in one place |
-//! | `free` | equilibrium of a flexible cable that touches nothing but its supports |
-//! | `beam`, `elastica` | equilibrium of a stiff cable, free and in contact |
+//! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
 //! | `equilibrium` | equilibria in contact, and steps without inertia |
-//! | `time` | BDF2, step sizes, sleep, hands, momentum |
-//! | `newton` | one step: its input, its Newton iterations, and what bounds them |
-//! | `system` | the energies of a step: value, gradient and banded Hessian |
-//! | `mesh` | sliding nodes, paths round corners, edits between steps |
+//! | `time` | setup of a step, BDF2, step sizes, sleep, hands, momentum |
+//! | `state` | history, momentum account, sleep, step size, outline: the parts of `dynamics` |
+//! | `newton` | one step: its initial guess, its Newton iterations, and what bounds them |
+//! | `system` | input and energies of a step: value, gradient and banded Hessian |
+//! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
 //! | `obstacle`, `transfer` | the robot's outline; states and answers of other models |
 //! | `results`, `mesh_comparison` | what is read out of a state, and how wrong it is |
 //!
 //! [`FemModel`] decides which part answers, and hands the state over when the question changes.
 
-mod beam;
 mod dynamics;
 mod elastica;
 mod equilibrium;
@@ -25,7 +24,9 @@ mod mesh;
 mod mesh_comparison;
 pub(in crate::model) mod newton;
 mod obstacle;
+mod remesh;
 mod results;
+mod state;
 pub mod system;
 #[cfg(test)]
 mod tests;
@@ -38,14 +39,14 @@ use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::model::fem::mesh_comparison::{Refinement, TwoMeshes};
-use crate::model::fem::newton::step_input::WorkBudget;
+use crate::model::fem::system::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
 use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::ErrorEstimates;
-use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
+use crate::solution::{CableSolution, Cost, Node, Warning, WarningCause};
 use crate::state::State;
 use elastica::Elastica;
 
@@ -259,11 +260,8 @@ impl FemModel {
         if off <= limit {
             return None;
         }
-        let message = format!(
-            "{} bars show the bend of a stiff cable where it is led round something to {off:.1e} of the greatest tension only; {limit:.1e} was asked for: use more segments",
-            self.dynamics.meshing.even_bars
-        );
-        Some(Warning::new(WarningKind::Accuracy, &self.problem.cable.name, s, [off, limit], message))
+        let cause = WarningCause::CoarseBend { bars: self.dynamics.meshing.even_bars };
+        Some(Warning::new(cause, &self.problem.cable.name, s, [off, limit]))
     }
 
     /// Begins a first rest of a fine mesh at that of a coarse one (nested iteration): the way down
@@ -329,10 +327,8 @@ impl FemModel {
     /// What there is to say of a stiff cable's rest whose error is more than was asked for.
     fn bent_warning(&self) -> Option<Warning> {
         let (estimate, asked) = (self.bent.as_ref()?.error_estimate?, self.settings.tolerance);
-        (estimate > asked).then(|| {
-            let message = format!("The contacts of this stiff cable are known to a chain of bars only, which gives the forces to about {estimate:.1e} of the greatest tension; {asked:.1e} was asked for");
-            Warning::new(WarningKind::Accuracy, &self.problem.cable.name, 0.0, [estimate, asked], message)
-        })
+        let cause = WarningCause::BarContacts;
+        (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
     }
 
     fn take_bent(&mut self, mut found: Elastica) -> Option<Cost> {
@@ -373,13 +369,8 @@ impl FemModel {
     /// What there is to say of a mesh that is coarser than the tolerance asks for.
     fn coarse_warning(&self) -> Option<Warning> {
         let (estimate, asked) = (self.meshes.errors.relative(&self.dynamics.solution())?, self.settings.tolerance);
-        (estimate > asked).then(|| {
-            let message = format!(
-                "{} elements give the forces to about {estimate:.1e} of the greatest tension; {asked:.1e} was asked for: use more segments",
-                self.dynamics.meshing.even_bars
-            );
-            Warning::new(WarningKind::Accuracy, &self.problem.cable.name, 0.0, [estimate, asked], message)
-        })
+        let cause = WarningCause::CoarseForces { elements: self.dynamics.meshing.even_bars };
+        (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
     }
 
     /// Makes `part` the one that holds the present state.
@@ -561,7 +552,7 @@ impl Mechanics for FemModel {
     fn borrow(&mut self, own: Option<OwnedResources>) {
         let own = own.unwrap_or_else(|| OwnedResources {
             memory: None,
-            problem: obstacle::moving_outline::with_outline(self.problem.clone()),
+            problem: state::moving_outline::with_outline(self.problem.clone()),
         });
         self.dynamics.solver.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
         self.dynamics.problem = own.problem;

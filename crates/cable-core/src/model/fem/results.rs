@@ -5,8 +5,7 @@ use crate::energy::bending::turn;
 use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::arc_nodes::ONE_MARK_BAR_FRACTION;
-use crate::model::fem::mesh::sliding_node::{Balanced, Load, Seat, SlidingNode};
+use crate::model::fem::mesh::sliding_node::{Balanced, Load, ONE_MARK_BAR_FRACTION, Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::angle_between;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_weight;
@@ -51,6 +50,11 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
 }
 
 impl Dynamics {
+    /// The answer with the mesh as it is.
+    pub(in crate::model::fem) fn solution_now(&self) -> CableSolution {
+        solution(self, &self.motion.x, &self.motion.v)
+    }
+
     /// Reads the tension at each node, as [`nodes`] has it.
     pub(in crate::model::fem) fn gauge_tension(&mut self) {
         let mut gauged = std::mem::take(&mut self.answers.gauged);

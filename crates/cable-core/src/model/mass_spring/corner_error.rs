@@ -19,7 +19,7 @@
 use crate::energy::bending::turn;
 use crate::math::larger;
 use crate::model::mass_spring::MassSpringModel;
-use crate::solution::{ContactReport, Warning, WarningKind};
+use crate::solution::{ContactReport, Warning, WarningCause};
 
 /// Nodes that share the turn of a round at least: fewer is a corner to this mesh.
 const ROUND_NODES: usize = 3;
@@ -67,8 +67,8 @@ impl MassSpringModel {
         worst.filter(|(_, uncertain)| *uncertain > self.settings.tolerance)
     }
 
-    /// How uncertain tension is, by corners or by what the floor holds, if that is worse than the
-    /// accuracy asked for.
+    /// Returns how uncertain tension is, by corners or by what the floor holds, if that is worse
+    /// than the accuracy asked for.
     pub(in crate::model::mass_spring) fn uncertain(&self) -> Option<f64> {
         let corner = self.least_certain().map_or(0.0, |(_, uncertain)| uncertain);
         let worst = larger(corner, self.held_by_floor());
@@ -79,18 +79,12 @@ impl MassSpringModel {
     pub(in crate::model::mass_spring) fn warn_of_corners(&mut self) {
         let Some((contact, uncertain)) = self.least_certain() else { return };
         let name = &self.problem.cable.name;
-        let by = if uncertain < 1.0 { format!("{:.0} %", (100.0 * uncertain).ceil()) } else { "any factor".to_owned() };
-        let message = format!(
-            "tension of `{name}` beyond `{}` at {:.3} m ({:.3} m, {:.3} m) is uncertain by {by}: it turns {:.0}° there over elements of {:.3} m, and a chain of springs jerks at every node; use fem, which slides through, or shorter elements on a round",
-            contact.obstacle,
-            contact.arc_length_m,
-            contact.x_m,
-            contact.y_m,
-            contact.turn_deg.abs(),
-            self.chain.even
-        );
-        let values = [uncertain, self.settings.tolerance];
-        let warning = Warning::new(WarningKind::Accuracy, name, contact.arc_length_m, values, message);
-        self.report.warnings.push(Warning { at_m: Some([contact.x_m, contact.y_m]), ..warning });
+        let cause = WarningCause::CornerOfMesh {
+            obstacle: contact.obstacle.clone(),
+            turn_deg: contact.turn_deg.abs(),
+            element_m: self.chain.even,
+        };
+        let warning = Warning::new(cause, name, contact.arc_length_m, [uncertain, self.settings.tolerance]);
+        self.report.warnings.push(warning.at([contact.x_m, contact.y_m]));
     }
 }

@@ -8,7 +8,7 @@ use crate::model::settings::Stepping;
 pub(in crate::model::mass_spring) const MOST_SUB_STEPS: f64 = 1000.0;
 
 impl MassSpringModel {
-    /// Whether a dynamic step is to be a preview.
+    /// Returns whether a dynamic step is to be a preview.
     pub(in crate::model::mass_spring) fn previews(&self) -> bool {
         !(self.problem.bending_stiffness > 0.0)
             && match self.settings.stepping {

@@ -190,9 +190,9 @@ impl MassSpringModel {
     }
 }
 
-/// Where each support sits (m): as given, and what slides kept `least` (m), or its share of what
-/// room there is, from what it could run onto. Material lies on both sides of a pulley, however
-/// near to a support it stands.
+/// Returns where each support sits (m): as given, and what slides kept `least` (m), or its share of
+/// what room there is, from what it could run onto. Material lies on both sides of a pulley,
+/// however near to a support it stands.
 fn apart(p: &Problem, slid: &[f64], least: f64) -> Vec<f64> {
     let mut out: Vec<f64> =
         (0..p.supports.len()).map(|k| p.supports[k].arc_length.or(slid.get(k).copied()).unwrap_or(f64::NAN)).collect();
@@ -227,8 +227,8 @@ fn damping_time(p: &Problem, rest: &[f64]) -> f64 {
     bounded(own, 2.0 * MIN_MODE_DAMPING / fastest, 2.0 * MAX_MODE_DAMPING / fastest)
 }
 
-/// Where each support sits on the cable before anything is known, m: material even along the
-/// straight way between those whose place is given; a hanging end gets what the way leaves.
+/// Returns where each support sits on the cable before anything is known, m: material even along
+/// the straight way between those whose place is given; a hanging end gets what the way leaves.
 pub(super) fn lay_supports(p: &Problem) -> Vec<f64> {
     let count = p.supports.len();
     let mut way = vec![0.0; count];

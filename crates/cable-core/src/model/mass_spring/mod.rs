@@ -104,7 +104,7 @@ pub struct MassSpringModel {
     contacts: ContactMemory,
     wheels: Wheels,
     report: Report,
-    /// Whether it has left the route for a shape found by a solve, a step or another model.
+    /// True if it has left the route for a shape found by a solve, a step or another model.
     laid: bool,
     kept: Rollback,
 }
@@ -251,7 +251,7 @@ impl MassSpringModel {
         !self.problem.world.is_empty() || self.problem.floor_friction.is_some()
     }
 
-    /// What a sub-step cannot go beyond.
+    /// Returns what a sub-step cannot go beyond.
     fn non_finite(&self) -> Option<SolveError> {
         let bad =
             (0..self.chain.x.len()).find(|&i| !(self.chain.x[i] + self.chain.v[i]).iter().all(|c| c.is_finite()))?;

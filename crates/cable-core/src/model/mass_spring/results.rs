@@ -142,7 +142,8 @@ impl MassSpringModel {
         }
     }
 
-    /// Where the supports sit on a shape, m: a pulley at the material nearest to it, in order.
+    /// Returns where the supports sit on a shape, m: a pulley at the material nearest to it, in
+    /// order.
     pub(in crate::model::mass_spring) fn slid_in(&self, shape: &State) -> Vec<f64> {
         let scale = self.problem.length / shape.arc_length_m.last().copied().unwrap_or(1.0);
         let mut least = 0.0;

@@ -9,7 +9,7 @@ use crate::math::Vec2;
 use crate::model::Model;
 use crate::model::catenary::layout::hint_of_weight;
 use crate::model::spans::boundary::capstan::Law;
-use crate::model::spans::boundary::curve::Curve;
+use crate::model::spans::boundary::curve::{Curve, SUPPORT_CONTACT_DISTANCE_M};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Course, Tie};
 use crate::problem::Problem;
@@ -83,6 +83,14 @@ pub(in crate::model::spans) fn unsupported(feature: Unsupported) -> SolveError {
 pub(in crate::model::spans) enum CableEnd {
     Start,
     End,
+}
+
+/// All strands of a cable at an instant.
+#[derive(Clone, Debug)]
+pub(in crate::model::spans) struct CableEquilibrium {
+    pub strands: Vec<CableRun>,
+    pub course: Course,
+    pub instant: BoundaryConditions,
 }
 
 impl CableEnd {
@@ -320,7 +328,7 @@ pub(in crate::model::spans) fn place_ends(
         let at = instant.places[support];
         let world = &layout.problem.world;
         let gap = world.signed_gap(at, layout.problem.radius).map(|g| g.gap_m);
-        if gap.is_some_and(|g| g < -crate::model::spans::changes::SUPPORT_CONTACT_DISTANCE_M) {
+        if gap.is_some_and(|g| g < -SUPPORT_CONTACT_DISTANCE_M) {
             return Err(Failure::SupportInside { at });
         }
         crate::model::spans::contact::support_contact::place(strand, course, side, at);

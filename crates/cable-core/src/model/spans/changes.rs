@@ -9,8 +9,8 @@ use crate::contact::swept_corners::{self, Corner};
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp, smaller};
 use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
+use crate::model::spans::boundary::curve::{ChainRange, Curve, SUPPORT_CONTACT_DISTANCE_M};
+use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::kink_load;
 use crate::model::spans::contact::load_landing;
 use crate::model::spans::contact::point_load;
@@ -44,8 +44,6 @@ const MOST_EDGES: usize = 8;
 /// Part of p by which an end of a contact may be off the end of an arc and be taken to be there:
 /// Newton's steps go beyond it by less.
 const ARC_END_FRACTION: f64 = 1e-8;
-/// A support this near to a boundary lies on it, m.
-pub(in crate::model::spans) const SUPPORT_CONTACT_DISTANCE_M: f64 = 1e-9;
 
 /// Solves a strand, events and all.
 ///
@@ -159,7 +157,7 @@ fn let_go(strand: &mut CableRun, course: &mut Course, j: usize) -> Result<bool, 
             return Err(Failure::LoadLies { s: contact.ends.s[0] });
         }
         strand.forces.remove(k);
-        resolve(strand, course, j);
+        strand.resolve_span(course, j);
         return Ok(true);
     }
     // An end that rested on this contact becomes a fixed or a free end.
@@ -175,20 +173,13 @@ fn let_go(strand: &mut CableRun, course: &mut Course, j: usize) -> Result<bool, 
             if strand.contacts.is_empty() && strand.forces.len() > 1 {
                 strand.forces.truncate(1);
             }
-            resolve(strand, course, if side == 0 { 0 } else { m });
+            strand.resolve_span(course, if side == 0 { 0 } else { m });
             return Ok(true);
         }
     }
     strand.forces.remove(j);
-    resolve(strand, course, j);
+    strand.resolve_span(course, j);
     Ok(true)
-}
-
-/// The force of a span that has changed.
-pub(in crate::model::spans) fn resolve(strand: &mut CableRun, course: &Course, k: usize) {
-    if let Some(g) = strand.solve_span(course, k) {
-        strand.forces[k] = g;
-    }
 }
 
 /// A point pulley may be passed on either side.
@@ -275,7 +266,7 @@ fn passed(
     let Some(corner) = swept_corners::through(corners, came, &shape, &mut work.turns) else { return Ok(false) };
     let mut best: Option<(f64, usize, f64, Vec2, Vec2)> = None;
     for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
-        penetration::shapes(strand, course, k, |s0, at, c| {
+        strand.shapes(course, k, |s0, at, c| {
             for i in 1..CORNER_SEARCH_POINTS {
                 let s = c.span().length * i as f64 / CORNER_SEARCH_POINTS as f64;
                 let p = at + c.position_at(s);

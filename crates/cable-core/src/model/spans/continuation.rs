@@ -3,9 +3,10 @@
 
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};
-use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, place_ends};
+use crate::model::spans::boundary::friction_memory::Mode;
+use crate::model::spans::boundary::loose::Loose;
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout, place_ends};
 use crate::model::spans::changes;
-use crate::model::spans::contact::friction_memory::Mode;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::failure::Failure;
@@ -16,9 +17,8 @@ use crate::model::spans::initial::tension;
 use crate::model::spans::newton;
 use crate::model::spans::newton::slip_predictor::foresee;
 use crate::model::spans::newton::{Solved, Work};
-use crate::model::spans::run::{CableRun, Course};
+use crate::model::spans::run::CableRun;
 use crate::model::spans::slack;
-use crate::model::spans::slack::Loose;
 use crate::model::spans::verify::clearance;
 use crate::model::spans::verify::equilibrium;
 use crate::model::spans::verify::tension_loss;
@@ -80,14 +80,6 @@ const LEAST_PART: f64 = 1e-7;
 /// Smaller: what is missing would have to be found to more digits. Larger: a failure to find an
 /// answer is taken for sliding.
 const MOBILISED: f64 = 2e-2;
-
-/// All strands of a cable at an instant.
-#[derive(Clone, Debug)]
-pub(in crate::model::spans) struct CableEquilibrium {
-    pub strands: Vec<CableRun>,
-    pub course: Course,
-    pub instant: BoundaryConditions,
-}
 
 /// Why no rest was found, and how far the cable was let out.
 pub(in crate::model::spans) type Unfound = (Failure, Option<Box<CableEquilibrium>>);

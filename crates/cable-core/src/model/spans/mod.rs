@@ -7,8 +7,8 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | `boundary` | the boundary as the centre line runs along it, and the capstan law on it |
-//! | `contact` | a contact: friction memory, equations, loads on it, supports on it, wheels |
+//! | `boundary` | the boundary as the centre line runs along it, the capstan law and friction memory |
+//! | `contact` | a contact: equations, loads on it, supports on it, wheels |
 //! | `run` | free spans and contacts in a row between two grips: the unknowns |
 //! | `boundary_conditions` | supports and loads at an instant, and how a cable falls into runs |
 //! | `newton`, `numerics` | all unknowns of a run at once; band LU, root finding |
@@ -43,8 +43,8 @@ use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
 use crate::model::catenary::slack_without_weight;
 use crate::model::gauge::TensionGauge;
-use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, Layout, unsupported};
-use crate::model::spans::continuation::{CableEquilibrium, SearchStart, StepStats, Unfound};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, CableEquilibrium, Layout, unsupported};
+use crate::model::spans::continuation::{SearchStart, StepStats, Unfound};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::Work;
 use crate::model::spans::results::Report;
@@ -52,7 +52,7 @@ use crate::model::spans::reversed::Turned;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
-use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
+use crate::solution::{CableSolution, Cost, Histories, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
 /// Supports move by at most this part of the cable in one solve. Larger: sliding that starts and
@@ -201,13 +201,12 @@ impl SpansModel {
         }
     }
 
-    /// What other histories would have left in the cable, in words: as it was laid, and drawn
-    /// towards either end.
+    /// Other histories of the cable, drawn towards either end, and what they would have left.
     ///
     /// An equilibrium that was found without friction is not sought so again: the search would come
     /// to the place from which the cable is drawn here.
-    fn histories(&self, start: SearchStart, work: &mut Work) -> String {
-        let Some(network) = &self.network else { return String::new() };
+    fn histories(&self, start: SearchStart, work: &mut Work) -> Histories {
+        let Some(network) = &self.network else { return Histories::NotSought };
         let turned = self.layout.is_reversed();
         let tensions = |network: &CableEquilibrium| {
             let [start, end, greatest] = results::tensions(network);
@@ -220,25 +219,18 @@ impl SpansModel {
             found.or_else(|| self.laid_anew(drawn, start, work)).map(|n| tensions(&n))
         });
         let all = || std::iter::once(laid).chain(drawn.into_iter().flatten());
-        let range = |k: usize| {
-            let (low, high) = all().map(|t| t[k]).fold((laid[k], laid[k]), |(a, b), t| (smaller(a, t), larger(b, t)));
-            format!("{low:.2} to {high:.2} N")
-        };
-        let most = laid[2];
+        let range = |k: usize| all().map(|t| t[k]).fold([laid[k], laid[k]], |[a, b], t| [smaller(a, t), larger(b, t)]);
+        let greatest_n = laid[2];
         // A range of one history says nothing about the others.
         if drawn.iter().all(Option::is_none) {
-            return format!(
-                ". The greatest tension is {most:.2} N as laid; by how much another history would change it was not found"
-            );
+            return Histories::NotFound { greatest_n };
         }
-        let figure = |of: Option<[f64; 3]>| of.map_or("no balance was found".to_owned(), |t| format!("{:.2} N", t[2]));
-        format!(
-            ". The greatest tension is {most:.2} N as laid; with friction fully mobilised towards the start: {}, towards the end: {}. Among the histories that were found the tension is {} at the start and {} at the end",
-            figure(drawn[0]),
-            figure(drawn[1]),
-            range(0),
-            range(1),
-        )
+        let [towards_start_n, towards_end_n] = drawn.map(|of| of.map(|t| t[2]));
+        Histories::Mobilised { greatest_n, towards_start_n, towards_end_n, start_n: range(0), end_n: range(1) }
+    }
+
+    fn warning(&self, cause: WarningCause) -> Warning {
+        Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2])
     }
 
     /// The cable laid anew along its way while it is drawn.
@@ -327,7 +319,7 @@ impl Mechanics for SpansModel {
             Ok(taken) if taken.eased => SearchStart::WithFriction,
             _ => SearchStart::AlsoWithoutFriction,
         };
-        let range = if seeks { self.histories(start, &mut work) } else { String::new() };
+        let histories = if seeks { self.histories(start, &mut work) } else { Histories::NotSought };
         self.work = work;
         if let Some(part) = needed {
             let why = NoEquilibrium::TooLittleFriction { friction_ratio: part };
@@ -339,28 +331,17 @@ impl Mechanics for SpansModel {
         })?;
         let mut report = self.report_of(taken);
         if !stable {
-            let message = "This balance runs away at the least push: nothing rubs that would hold the cable in it";
-            let name = &self.problem.cable.name;
-            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message.to_owned()));
+            report.warnings.push(self.warning(WarningCause::Unstable));
         }
         let mobilised = self.layout.problem.cable.friction_mobilised;
         if let Some([material, ground]) = loose {
-            let name = &self.problem.cable.name;
             // Whatever the history, nothing but friction on what lies can hold more.
-            let held = self.network.as_ref().map_or(0.0, CableEquilibrium::friction_of_loose);
-            let message = format!(
-                "The cable lies loose: {material:.3} m of it on {ground:.3} m of ground, without tension, and its ends feel only what hangs on them. How it is folded there is not known: it is shown spread evenly. Laid otherwise it may pull at its ends by what friction on it holds, {held:.2} N at most"
-            );
-            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
+            let held_n = self.network.as_ref().map_or(0.0, CableEquilibrium::friction_of_loose);
+            let cause = WarningCause::Loose { material_m: material, ground_m: ground, held_n };
+            report.warnings.push(self.warning(cause));
         } else if self.rubs() && mobilised.is_default() {
-            let message = if taken.eased {
-                "With friction the resting place depends on how the cable was laid. Shown: the frictionless shape, held by friction"
-            } else {
-                "With friction the resting place depends on how the cable was laid. Shown: the one laid along its route with the least sliding"
-            };
-            let name = &self.problem.cable.name;
-            let message = format!("{message}{range}");
-            report.warnings.push(Warning::new(WarningKind::NotUnique, name, 0.0, [0.0; 2], message));
+            let shown = if taken.eased { ShownEquilibrium::Frictionless } else { ShownEquilibrium::LeastSliding };
+            report.warnings.push(self.warning(WarningCause::ManyEquilibria { shown, histories }));
         }
         if instant.hint > 0.0 {
             report.warnings.extend(slack_without_weight(&self.problem, &self.look().nodes));
@@ -425,9 +406,7 @@ impl Mechanics for SpansModel {
             Some(trouble) => Err(self.said(None, trouble)),
             None => {
                 if ran > 0 {
-                    let message = "Nothing held the cable where it was: it slid to the next place that does. How it moved there is not shown";
-                    let name = &self.problem.cable.name;
-                    sum.warnings.push(Warning::new(WarningKind::Stabilised, name, 0.0, [0.0; 2], message.to_owned()));
+                    sum.warnings.push(self.warning(WarningCause::SlidOn));
                 }
                 Ok(sum)
             }

@@ -1,19 +1,18 @@
 //! This module reads the answer: nodes, forces on supports, forces on obstacles.
 
 use crate::catenary::PointForce;
-use crate::math::{GAUSS, Vec2, larger};
+use crate::math::{GAUSS_3, GAUSS_5, Vec2, larger};
 use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point, forget_hint};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::boundary::friction_memory::{Mode, TensionProfile};
 use crate::model::spans::boundary::segment_cursor::{Pivot, SegmentCursor};
+use crate::model::spans::boundary_conditions::CableEquilibrium;
 use crate::model::spans::boundary_conditions::Layout;
-use crate::model::spans::contact::friction_memory::{Mode, TensionProfile};
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::continuation::CableEquilibrium;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
-use crate::model::spans::verify::penetration;
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Nodes on each stretch of an edge.
@@ -24,10 +23,6 @@ const EDGE_NODES: usize = 8;
 const PANEL: f64 = 1.0;
 /// Longest one for which 3 points are as good, rad.
 const THREE_POINT_ARC: f64 = 0.1;
-
-/// Nodes and weights of 3-point Gauss–Legendre quadrature on [0, 1].
-const THREE: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// Everything a solution shows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -70,7 +65,7 @@ pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibriu
         }
         for k in 0..strand.spans() {
             if strand.has_span(k) {
-                penetration::shapes(strand, course, k, |s0, at, shape| nodes.catenary(s0, at, shape));
+                strand.shapes(course, k, |s0, at, shape| nodes.catenary(s0, at, shape));
             }
             if let Some(c) = strand.contacts.get(k) {
                 let track = course.track(c).seen_from(c.ends.p[0]);
@@ -203,7 +198,7 @@ fn pressed(track: &Track<'_>, stretches: &[Stretch]) -> (f64, Vec2, f64, f64) {
         let (a, way, turns) = (stretch.from, stretch.to - stretch.from, stretch.pivot.turns());
         let panels = if turns { (way / PANEL).ceil().max(1.0) } else { 1.0 };
         let h = way / panels;
-        let rule: &[(f64, f64)] = if turns && h <= THREE_POINT_ARC { &THREE } else { &GAUSS };
+        let rule: &[(f64, f64)] = if turns && h <= THREE_POINT_ARC { &GAUSS_3 } else { &GAUSS_5 };
         for k in 0..panels as usize {
             for (u, weight) in rule {
                 let p = a + (k as f64 + u) * h;
@@ -257,7 +252,7 @@ fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
         let h = (stretch.to - stretch.from) / count as f64;
         for k in 0..count {
             let (mut force, mut middle) = (Vec2::zeros(), stretch.s);
-            for (u, weight) in THREE {
+            for (u, weight) in GAUSS_3 {
                 let p = stretch.from + (k as f64 + u) * h;
                 let (t, s) = stretch.at(track, p);
                 let place = stretch.pivot.place(p);

@@ -6,13 +6,12 @@
 //! fixed in space: after S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic
 //! simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011) 39.
 
-use crate::catenary::{Chain, PointForce};
+use crate::catenary::{Catenary, Chain, PointForce};
 use crate::math::Vec2;
 use crate::model::spans::boundary::capstan::{Law, Track};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::contact::friction_memory::{Ends, Held, Mode, TensionProfile};
-use crate::model::spans::contact::kink_load::Kink;
-use crate::model::spans::slack::Loose;
+use crate::model::spans::boundary::friction_memory::{Ends, Held, Mode, TensionProfile};
+use crate::model::spans::boundary::loose::Loose;
 
 /// Everything given at an instant.
 #[derive(Clone, Debug)]
@@ -78,6 +77,31 @@ pub(in crate::model::spans) struct Contact {
 pub(in crate::model::spans) struct RestingLoad {
     /// The kink that it is in, if it is in one.
     pub kink: Option<Kink>,
+}
+
+/// The direction along the boundary of the kink that a load is in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) enum Kink {
+    Back,
+    Ahead,
+}
+
+impl Kink {
+    /// −1 or 1 along the boundary.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Back => -1.0,
+            Self::Ahead => 1.0,
+        }
+    }
+
+    /// The end of the contact at which it is.
+    pub fn side(self) -> usize {
+        match self {
+            Self::Back => 0,
+            Self::Ahead => 1,
+        }
+    }
 }
 
 /// What is between a contact and the next one.
@@ -226,6 +250,29 @@ impl Course {
 }
 
 impl CableRun {
+    /// Solves span `k` anew after a change; what has no answer stays.
+    pub fn resolve_span(&mut self, course: &Course, k: usize) {
+        if let Some(g) = self.solve_span(course, k) {
+            self.forces[k] = g;
+        }
+    }
+
+    /// Calls back with each catenary of span k: its first material point, where that is, and its
+    /// shape.
+    pub fn shapes(&self, course: &Course, k: usize, mut each: impl FnMut(f64, Vec2, &Catenary)) {
+        let (from, to) = self.material(k);
+        let chain = course.chain(from, to);
+        let start = self.force(course, k, from);
+        let origin = match self.ends_of(course, k) {
+            [Some(a), _] => a,
+            [None, Some(b)] => b - chain.reach(start).0,
+            [None, None] => return,
+        };
+        for (s0, at, shape) in chain.spans(start, origin) {
+            each(s0, at, &shape);
+        }
+    }
+
     /// Number of spans (those that are missing beside a lying end included).
     pub fn spans(&self) -> usize {
         self.contacts.len() + 1

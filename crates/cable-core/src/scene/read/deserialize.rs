@@ -23,7 +23,7 @@ type TomlNode<'a> = Spanned<DeValue<'a>>;
 /// A fault on its way up the tree, gathering its path.
 #[derive(Debug)]
 pub(super) struct Refusal {
-    /// What is wrong.
+    /// The fault.
     pub(super) fault: SceneFault,
     /// Bytes of the text it is about.
     pub(super) span: Option<Range<usize>>,

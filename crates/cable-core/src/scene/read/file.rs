@@ -92,10 +92,9 @@ impl Scene {
 fn check_version(table: &DeTable<'_>) -> Result<(), SceneError> {
     let at = Path::Root.key("version");
     match table.get("version").map(Spanned::get_ref) {
-        Some(DeValue::Integer(i)) if i.as_str().parse::<u32>() != Ok(VERSION) => Err(at.fault(SceneFault::Range {
-            value: i.as_str().parse().unwrap_or(f64::NAN),
-            allowed: "1, the only version this program reads",
-        })),
+        Some(DeValue::Integer(i)) if i.as_str().parse::<u32>() != Ok(VERSION) => {
+            Err(at.fault(SceneFault::Version { value: i.as_str().parse().unwrap_or(f64::NAN) }))
+        }
         _ => Ok(()),
     }
 }

@@ -61,15 +61,11 @@ pub(super) fn lines_exist(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checke
         if !slides || apart_m - (a.radius - b.radius).abs() > MIN_SEPARATION_FRACTION * cable.length_m {
             continue;
         }
-        let (inner, outer) = if a.radius < b.radius { (from, to) } else { (to, from) };
-        let reason = if a.radius.max(b.radius) > 0.0 {
-            format!("`{}` lies inside the wheel of `{}`", inner.name, outer.name)
-        } else {
-            "they are in the same place".to_owned()
-        };
-        let (from, to) = (from.name.as_str().into(), to.name.as_str().into());
-        let reason = reason.into();
-        return Err(at.key("supports").index(i + 1).key("at_m").fault(SceneFault::NoWay { from, to, apart_m, reason }));
+        let inner = if a.radius < b.radius { from } else { to };
+        let name = |support: &Support| support.name.as_str().into();
+        let inside = (a.radius.max(b.radius) > 0.0).then(|| name(inner));
+        let fault = SceneFault::NoWay { from: name(from), to: name(to), apart_m, inside };
+        return Err(at.key("supports").index(i + 1).key("at_m").fault(fault));
     }
     Ok(())
 }

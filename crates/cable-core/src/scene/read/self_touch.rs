@@ -6,6 +6,7 @@
 //! too.
 
 use crate::math::Point;
+use crate::scene::LineEnds;
 
 /// Edges in a leaf. Fewer: more boxes. More: more pairs of edges to look at.
 const LEAF_EDGES: usize = 4;
@@ -35,16 +36,17 @@ struct EdgeTree<'a> {
 
 /// The first crossing found, if there is one. A closed line has an edge from its last point to its
 /// first.
-pub(super) fn first_self_touch(points: &[Point], closed: bool) -> Option<SelfTouch> {
+pub(super) fn first_self_touch(points: &[Point], ends: LineEnds) -> Option<SelfTouch> {
     let rises = |axis: usize| points.windows(2).all(|w| w[1][axis] > w[0][axis]);
-    if !closed && (rises(0) || rises(1)) {
+    if ends == LineEnds::Open && (rises(0) || rises(1)) {
         return None;
     }
-    EdgeTree::new(points, closed).search()
+    EdgeTree::new(points, ends).search()
 }
 
 impl<'a> EdgeTree<'a> {
-    fn new(points: &'a [Point], closed: bool) -> Self {
+    fn new(points: &'a [Point], ends: LineEnds) -> Self {
+        let closed = ends == LineEnds::Joined;
         let edges = if closed { points.len() } else { points.len().saturating_sub(1) };
         let leaves = edges.div_ceil(LEAF_EDGES).next_power_of_two();
         let mut line = Self { points, edges, closed, boxes: vec![[[f64::INFINITY, f64::NEG_INFINITY]; 4]; 2 * leaves] };
@@ -111,8 +113,8 @@ impl<'a> EdgeTree<'a> {
         None
     }
 
-    /// Whether two edges meet, i < j; neighbours share a point and meet where they turn back on
-    /// themselves.
+    /// Returns whether two edges meet, i < j; neighbours share a point and meet where they turn
+    /// back on themselves.
     fn edges_meet(&self, i: usize, j: usize) -> bool {
         let ((a, b), (c, d)) = (self.edge(i), self.edge(j));
         if j == i + 1 {
@@ -155,34 +157,37 @@ mod tests {
     #[test]
     fn crossings_touches_and_folds_are_found() {
         let bow: &[Point] = &[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]];
-        assert_eq!(first_self_touch(bow, true), Some(SelfTouch::Edges(0, 2)));
-        assert_eq!(first_self_touch(bow, false), Some(SelfTouch::Edges(0, 2)));
+        assert_eq!(first_self_touch(bow, LineEnds::Joined), Some(SelfTouch::Edges(0, 2)));
+        assert_eq!(first_self_touch(bow, LineEnds::Open), Some(SelfTouch::Edges(0, 2)));
         // Through a corner, onto an edge, back on itself, back on itself where it closes, along
         // another edge.
         let through = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0], [2.0, -1.0], [1.0, 0.0], [0.5, -1.0]];
-        assert!(first_self_touch(&through, true).is_some());
+        assert!(first_self_touch(&through, LineEnds::Joined).is_some());
         let onto = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0], [0.0, 2.0]];
-        assert_eq!(first_self_touch(&onto, true), Some(SelfTouch::Edges(0, 2)));
-        assert_eq!(first_self_touch(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]], false), Some(SelfTouch::Edges(0, 1)));
+        assert_eq!(first_self_touch(&onto, LineEnds::Joined), Some(SelfTouch::Edges(0, 2)));
+        assert_eq!(
+            first_self_touch(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]], LineEnds::Open),
+            Some(SelfTouch::Edges(0, 1))
+        );
         let at_close = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [1.0, 0.0]];
-        assert!(first_self_touch(&at_close, true).is_some());
+        assert!(first_self_touch(&at_close, LineEnds::Joined).is_some());
         let along = [[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [3.0, 1.0], [3.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
-        assert!(first_self_touch(&along, false).is_some());
+        assert!(first_self_touch(&along, LineEnds::Open).is_some());
     }
 
     #[test]
     fn overhangs_steps_slots_and_straight_runs_are_not_crossings() {
         let overhang = [[0.0, 0.0], [4.0, 0.0], [3.0, 1.0], [6.0, 1.0], [5.0, 0.0], [9.0, 0.0]];
-        assert_eq!(first_self_touch(&overhang, false), None);
+        assert_eq!(first_self_touch(&overhang, LineEnds::Open), None);
         let slot = [[0.0, 0.0], [1.0, 0.0], [1.0, -5.0], [1.0 + 1e-9, -5.0], [1.0 + 1e-9, 0.0], [2.0, 0.0]];
-        assert_eq!(first_self_touch(&slot, false), None);
+        assert_eq!(first_self_touch(&slot, LineEnds::Open), None);
         let spike = [[0.0, 0.0], [1.0, 0.0], [1.0 + 1e-12, 9.0], [1.0 + 2e-12, 0.0], [2.0, 0.0]];
-        assert_eq!(first_self_touch(&spike, false), None);
+        assert_eq!(first_self_touch(&spike, LineEnds::Open), None);
         let straight = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
-        assert_eq!(first_self_touch(&straight, true), None);
-        assert_eq!(first_self_touch(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], true), None);
+        assert_eq!(first_self_touch(&straight, LineEnds::Joined), None);
+        assert_eq!(first_self_touch(&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], LineEnds::Joined), None);
         for few in [&[][..], &[[0.0, 0.0]][..], &[[0.0, 0.0], [1.0, 0.0]][..]] {
-            assert_eq!(first_self_touch(few, false), None);
+            assert_eq!(first_self_touch(few, LineEnds::Open), None);
         }
     }
 
@@ -205,10 +210,10 @@ mod tests {
                     at
                 })
                 .collect();
-            for closed in [false, true] {
-                let line = EdgeTree::new(&points, closed);
+            for ends in [LineEnds::Open, LineEnds::Joined] {
+                let line = EdgeTree::new(&points, ends);
                 let any = (0..line.edges).any(|i| (i + 1..line.edges).any(|j| line.edges_meet(i, j)));
-                let found = first_self_touch(&points, closed);
+                let found = first_self_touch(&points, ends);
                 assert_eq!(found.is_some(), any, "{points:?}");
                 if let Some(SelfTouch::Edges(i, j)) = found {
                     assert!(line.edges_meet(i, j));
@@ -231,7 +236,7 @@ mod tests {
                 })
                 .collect();
             assert!(
-                !matches!(first_self_touch(&comb, true), Some(SelfTouch::Edges(i, j)) if j + 1 < comb.len() && i > 0)
+                !matches!(first_self_touch(&comb, LineEnds::Joined), Some(SelfTouch::Edges(i, j)) if j + 1 < comb.len() && i > 0)
             );
         }
     }

@@ -4,6 +4,7 @@
 use super::path::Path;
 use super::range;
 use super::validate::{Checked, MAX_POINTS_ON_CABLE, at_most, force, motion, number, point, unique};
+use crate::error::SceneFault;
 use crate::scene::{Cable, Scene, Support, SupportKind};
 
 use SupportKind::{Clamped, Fixed, Free, Load, Pulley, Robot};
@@ -39,8 +40,8 @@ pub(super) fn check(scene: &Scene, cable: &Cable, cable_at: &Path<'_>) -> Checke
             }
             (false, _, Some(s)) => {
                 if !(s > before && s < cable.length_m) {
-                    let what = format!("{s} m must lie between {before} m and {} m, in order", cable.length_m);
-                    return Err(here.key("arc_length_m").shape(what));
+                    let between_m = [before, cable.length_m];
+                    return Err(here.key("arc_length_m").fault(SceneFault::OutOfOrder { arc_length_m: s, between_m }));
                 }
                 before = s;
             }

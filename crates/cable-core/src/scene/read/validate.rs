@@ -10,7 +10,7 @@ use super::self_touch::{SelfTouch, first_self_touch};
 use super::{length_check, support_rules};
 use crate::error::{SceneError, SceneFault};
 use crate::math::Point;
-use crate::scene::{Cable, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset};
+use crate::scene::{Cable, LineEnds, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset};
 
 /// Most cables. More would be solved, slowly; a file with more is surely a slip.
 const MAX_CABLES: usize = 1000;
@@ -35,8 +35,7 @@ impl Scene {
     pub fn validate(&self) -> Result<(), SceneError> {
         let root = Path::Root;
         if self.version != VERSION {
-            let allowed = "1, the only version this program reads";
-            return Err(root.key("version").fault(SceneFault::Range { value: f64::from(self.version), allowed }));
+            return Err(root.key("version").fault(SceneFault::Version { value: f64::from(self.version) }));
         }
         if self.name.len() > MAX_TITLE {
             return Err(root.key("name").shape(format!("a name has at most {MAX_TITLE} bytes")));
@@ -113,15 +112,15 @@ impl Scene {
             return Err(at.key("preset").fault(preset::unknown("cable preset", id, known)));
         }
         if cable.service_tension_n > cable.breaking_tension_n {
-            return Err(at.key("service_tension_n").shape(format!(
-                "{} N must not be above the breaking tension ({} N)",
-                cable.service_tension_n, cable.breaking_tension_n
-            )));
+            return Err(at.key("service_tension_n").fault(SceneFault::ServiceAboveBreaking {
+                service_n: cable.service_tension_n,
+                breaking_n: cable.breaking_tension_n,
+            }));
         }
         let factor = 1.0 + cable.thermal_expansion_per_k * self.environment.temperature_change_k;
-        if !(range::THERMAL_FACTOR.0..=range::THERMAL_FACTOR.1).contains(&factor) {
-            let what = format!("with temperature_change_k the length changes by a factor {factor}, beyond 0.5 to 2");
-            return Err(at.key("thermal_expansion_per_k").shape(what));
+        let allowed = range::THERMAL_FACTOR;
+        if !(allowed[0]..=allowed[1]).contains(&factor) {
+            return Err(at.key("thermal_expansion_per_k").fault(SceneFault::ThermalFactor { factor, allowed }));
         }
         if let Some(n) = cable.segments {
             #[expect(clippy::cast_precision_loss, reason = "only shown")]
@@ -144,8 +143,8 @@ impl Scene {
         };
         number(&at.key("arc_length_m"), load.arc_length_m, range::ARC_LENGTH)?;
         if load.arc_length_m > cable.length_m {
-            let what = format!("{} m is beyond the cable's end at {} m", load.arc_length_m, cable.length_m);
-            return Err(at.key("arc_length_m").shape(what));
+            let fault = SceneFault::BeyondEnd { arc_length_m: load.arc_length_m, length_m: cable.length_m };
+            return Err(at.key("arc_length_m").fault(fault));
         }
         force(at, load.force_n, &load.times_s, &load.forces_n)
     }
@@ -171,10 +170,7 @@ pub(super) fn motion(at: &Path<'_>, motion: &Motion, start: Point) -> Checked {
     if (p.x - start[0]).hypot(p.y - start[1]) <= PLACE_TOLERANCE {
         Ok(())
     } else {
-        Err(at.key("points_m").shape(format!(
-            "at 0 s it is at [{}, {}], its support's at_m is [{}, {}]: they must agree",
-            p.x, p.y, start[0], start[1]
-        )))
+        Err(at.key("points_m").fault(SceneFault::MotionStartsElsewhere { motion_m: p.into(), support_m: start }))
     }
 }
 
@@ -184,7 +180,7 @@ fn series(times_at: &Path<'_>, values_at: &Path<'_>, times: &[f64], values: &[Po
         return Err(times_at.shape("needs at least one time"));
     }
     if times.len() != values.len() {
-        return Err(values_at.shape(format!("{} values for {} times", values.len(), times.len())));
+        return Err(values_at.fault(SceneFault::UnequalCounts { values: values.len(), times: times.len() }));
     }
     for (i, &t) in times.iter().enumerate() {
         number(&times_at.index(i), t, range::TIME)?;
@@ -192,8 +188,8 @@ fn series(times_at: &Path<'_>, values_at: &Path<'_>, times: &[f64], values: &[Po
     for (i, pair) in times.windows(2).enumerate() {
         // Closer knots than this make velocities overflow.
         if !(pair[1] - pair[0] >= range::MIN_INTERVAL_S) {
-            let what = format!("times must increase: {} s after {} s", pair[1], pair[0]);
-            return Err(times_at.index(i + 1).shape(what));
+            let fault = SceneFault::TimesNotIncreasing { time_s: pair[1], before_s: pair[0] };
+            return Err(times_at.index(i + 1).fault(fault));
         }
     }
     points(values_at, values, range)
@@ -219,7 +215,7 @@ fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneErro
     };
     at_most(&line, corners.len(), MAX_OBSTACLE_POINTS)?;
     if corners.len() < least {
-        return Err(line.shape(format!("{} points where at least {least} are needed", corners.len())));
+        return Err(line.fault(SceneFault::TooFewPoints { count: corners.len(), least }));
     }
     points(&line, corners, range::COORDINATE)?;
     apart(&line, corners)?;
@@ -233,24 +229,21 @@ fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneErro
         (Shape::Polygon { .. }, _, _) if !(area(corners).abs() > 0.0) => {
             Err(line.shape("a polygon needs an area: these points lie on a line or cross it back"))
         }
-        (Shape::Terrain { .. }, _, _) => not_crossing(&line, corners, false),
-        (Shape::Polygon { .. }, _, _) => not_crossing(&line, corners, true),
+        (Shape::Terrain { .. }, _, _) => not_crossing(&line, corners, LineEnds::Open),
+        (Shape::Polygon { .. }, _, _) => not_crossing(&line, corners, LineEnds::Joined),
         _ => Ok(()),
     }?;
     Ok(corners.len())
 }
 
 /// A line with an inside must not cross or touch itself.
-fn not_crossing(at: &Path<'_>, line: &[Point], closed: bool) -> Checked {
-    match first_self_touch(line, closed) {
+fn not_crossing(at: &Path<'_>, line: &[Point], ends: LineEnds) -> Checked {
+    match first_self_touch(line, ends) {
         None => Ok(()),
         Some(SelfTouch::Edges(i, j)) => {
             let end = |k: usize| line.get(k + 1).or(line.first()).copied().unwrap_or_default();
-            let (a, b, c, d) = (line[i], end(i), line[j], end(j));
-            Err(at.index(j).shape(format!(
-                "the edge from here, [{}, {}] to [{}, {}], crosses or touches the edge from point {i}, [{}, {}] to [{}, {}]: move a point of one, or leave it out",
-                c[0], c[1], d[0], d[1], a[0], a[1], b[0], b[1]
-            )))
+            let edges_m = Box::new([j, i].map(|k| [line[k], end(k)]));
+            Err(at.index(j).fault(SceneFault::EdgesCross { other: i, edges_m }))
         }
         Some(SelfTouch::Tangled) => Err(at.shape(
             "so many edges lie side by side that crossings cannot be ruled out in a second: give it fewer or shorter ones",
@@ -293,7 +286,11 @@ fn check_robot(robot: &Robot, at: &Path<'_>) -> Checked {
 
 /// A finite number in its range.
 pub(super) fn number(at: &Path<'_>, value: f64, range: Range) -> Checked {
-    if range.holds(value) { Ok(()) } else { Err(at.fault(SceneFault::Range { value, allowed: range.text })) }
+    if range.holds(value) {
+        Ok(())
+    } else {
+        Err(at.fault(SceneFault::Range { value, allowed: range.limits(), quantity: range.quantity }))
+    }
 }
 
 pub(super) fn point(at: &Path<'_>, value: Point, range: Range) -> Checked {
@@ -314,7 +311,7 @@ fn apart(at: &Path<'_>, line: &[Point]) -> Checked {
 }
 
 pub(super) fn at_most(at: &Path<'_>, count: usize, most: usize) -> Checked {
-    if count <= most { Ok(()) } else { Err(at.shape(format!("{count} are more than the {most} allowed"))) }
+    if count <= most { Ok(()) } else { Err(at.fault(SceneFault::TooMany { count, most })) }
 }
 
 /// Names that are there, short enough and each used once.

@@ -9,7 +9,8 @@ use crate::panels::scene_errors;
 use crate::render::colour::{ColourScale, Quantity};
 use crate::render::theme;
 use crate::state::{AppState, WorkerStatus};
-use crate::units::{labels, translate};
+use crate::units::labels;
+use crate::units::sentence::sentence;
 
 /// Height of the legend beside the canvas, points.
 const STRIP_HEIGHT: f32 = 42.0;
@@ -163,7 +164,7 @@ pub fn banner(view: &mut CanvasView<'_>, state: &AppState) {
     let (title, text) = match (&state.solver.status, &state.live.snapshot.error) {
         (WorkerStatus::Dead(why), _) => ("The solver has stopped", why.clone()),
         (_, Some(why)) => {
-            let told = scene_errors::whole(state).unwrap_or_else(|| translate::display(why).into_owned());
+            let told = scene_errors::whole(state).unwrap_or_else(|| sentence(why));
             ("No answer for this scene", told)
         }
         _ => return,

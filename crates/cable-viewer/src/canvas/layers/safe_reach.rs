@@ -7,7 +7,7 @@ use cable_core::analysis::safe_reach::area::Area;
 use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace};
 use cable_core::math::Point;
 use cable_core::scene::preset::robot_preset;
-use egui::{Align2, Color32, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
+use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
 
 use crate::canvas::view::CanvasView;
 use crate::jobs::safe_reach::Maps;
@@ -171,7 +171,13 @@ pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
         view.rect.min.x + crate::canvas::layers::grid::STRIP[0] + 10.0,
         view.rect.max.y - crate::canvas::layers::grid::STRIP[1] - 30.0,
     );
-    let plate = Rect::from_min_size(corner - vec2(0.0, LEGEND[1]), LEGEND.into());
+    let over = match maps {
+        Maps::Line(_) => "above service".to_owned(),
+        Maps::Area(..) => format!("above service; thick line: breaks, {}", labels::force(breaking_n)),
+    };
+    let words = view.painter.layout_no_wrap(over.clone(), FontId::proportional(10.5), view.palette.text).size().x;
+    let size = vec2(LEGEND[0].max(words + 45.0), LEGEND[1]);
+    let plate = Rect::from_min_size(corner - vec2(0.0, size.y), size);
     if plate.max.x > view.rect.max.x - 20.0 || plate.min.y < view.rect.min.y + 20.0 {
         return;
     }
@@ -180,7 +186,7 @@ pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
     let title = if state.analysis.safe_reach.choice.back { "Safe reach, there and back" } else { "Safe reach" };
     let title = if **scene == state.document.scene { title.to_owned() } else { format!("{title} (out of date)") };
     view.text(plate.min + vec2(9.0, 6.0), Align2::LEFT_TOP, &title, 11.5, view.palette.text);
-    let bar = Rect::from_min_size(plate.min + vec2(9.0, 24.0), vec2(LEGEND[0] - 18.0, 9.0));
+    let bar = Rect::from_min_size(plate.min + vec2(9.0, 24.0), vec2(size.x - 18.0, 9.0));
     let mut mesh = Mesh::default();
     const STRIPS: u32 = 24;
     for k in 0..=STRIPS {
@@ -205,10 +211,6 @@ pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
         let foot = sample + vec2(6.0 * k as f32, 5.0);
         view.painter.line_segment([foot, foot + vec2(6.0, -10.0)], Stroke::new(1.0, view.palette.risk));
     }
-    let over = match maps {
-        Maps::Line(_) => "above service".to_owned(),
-        Maps::Area(..) => format!("above service; thick line: breaks, {}", labels::force(breaking_n)),
-    };
     view.text(sample + vec2(27.0, 0.0), Align2::LEFT_CENTER, &over, 10.5, view.palette.text);
     view.taken.push(plate);
 }

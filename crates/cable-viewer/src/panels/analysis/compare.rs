@@ -14,8 +14,9 @@ use crate::record::run::Peak;
 use crate::render::colour::{LINES, Quantity};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Reference};
-use crate::units::{format, labels, translate};
-use crate::widgets::{field, readout};
+use crate::units::sentence::sentence;
+use crate::units::{format, labels};
+use crate::widgets::{field, highlight, readout};
 
 /// Most lines of difference told; more are counted.
 const MAX_LINES: usize = 12;
@@ -30,7 +31,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             "Keeps this result on screen beside later ones"
         };
         let can = state.live.snapshot.solution.is_some() && !full;
-        if ui.add_enabled(can, egui::Button::new("Pin this result")).on_hover_text(help).clicked() {
+        let pin = ui.add_enabled(can, egui::Button::new("Pin this result")).on_hover_text(help);
+        highlight::offer(&pin, "Pin this result");
+        if pin.clicked() {
             commands.push(Command::View(ViewCommand::Hold));
         }
         let help = "Reads a recorded run from its folder and pins it";
@@ -114,9 +117,10 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             for answer in &found.answers {
                 if let Err(why) = &answer.result {
                     // Most refusals begin with the model's name.
+                    let why = sentence(why);
                     let name = if why.contains(answer.model.name()) { "" } else { labels::model(answer.model) };
                     let colon = if name.is_empty() { "" } else { ": " };
-                    ui.label(RichText::new(format!("{name}{colon}{}", translate::display(why))).small());
+                    ui.label(RichText::new(format!("{name}{colon}{why}")).small());
                 }
             }
         }

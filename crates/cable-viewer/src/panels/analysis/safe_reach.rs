@@ -11,7 +11,7 @@ use crate::state::AppState;
 use crate::state::questions::reach_target;
 use crate::units::format;
 use crate::units::unit::Unit;
-use crate::widgets::field;
+use crate::widgets::{field, highlight};
 
 /// Width of a slider's value beside it, points.
 const SPIN_WIDTH: f32 = 72.0;
@@ -32,15 +32,23 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Some(share) = running {
         let bar = ui.add(ProgressBar::new(share as f32).show_percentage().desired_height(16.0));
         field::name(&bar, "Progress of the safe reach");
-        if ui.button("Cancel safe reach").on_hover_text("Stops the search").clicked() {
-            commands.push(Command::View(ViewCommand::Reach(false)));
-        }
+        ui.horizontal(|ui| {
+            let help = "Stops the search; what was found stays";
+            if ui.button("Cancel safe reach").on_hover_text(help).clicked() {
+                commands.push(Command::View(ViewCommand::Reach(false)));
+            }
+            if let Some(left_s) = view.remaining_s() {
+                ui.weak(time_left(left_s)).on_hover_text("Estimated from the part that is done");
+            }
+        });
     } else {
         ui.horizontal(|ui| {
             let help = "Looks at places along the ground, or all over the part of the picture that is in view, each there and back, \
-                        from where the cable lies now; first coarsely, then finer. The window stays usable meanwhile. Nothing \
+                        from where the cable lies now; first coarsely, then finer, between the ends of the ground. The window stays usable meanwhile. Nothing \
                         limits what moves: the question is what the cable would bear";
-            if ui.button("Find safe reach").on_hover_text(help).clicked() {
+            let find = ui.button("Find safe reach").on_hover_text(help);
+            highlight::offer(&find, "Find safe reach");
+            if find.clicked() {
                 commands.push(Command::View(ViewCommand::Reach(true)));
             }
             let shown = !matches!(view.progress, Progress::None);
@@ -62,6 +70,10 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if **scene != state.document.scene {
         ui.colored_label(ui.visuals().warn_fg_color, "Out of date: edited since");
     }
+    if let Some(share) = view.stopped {
+        let text = format!("Incomplete: stopped at {:.0} %", 100.0 * share);
+        ui.colored_label(ui.visuals().warn_fg_color, text).on_hover_text("Places not reached yet are not shown");
+    }
     for line in describe(maps, view.choice.back) {
         ui.label(line);
     }
@@ -72,7 +84,7 @@ fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Ve
     ui.horizontal(|ui| {
         ui.label("Moves");
         let combo = ComboBox::from_id_salt("moved").selected_text(safe_reach::name(&state.document.scene, moved));
-        let shown = combo.width(ui.available_width() - 8.0).truncate().show_ui(ui, |ui| {
+        let shown = combo.width(ui.available_width() - 14.0).truncate().show_ui(ui, |ui| {
             for other in safe_reach::movable(&state.document.scene) {
                 if ui.selectable_label(other == moved, safe_reach::name(&state.document.scene, other)).clicked() {
                     commands.push(set(Choice { moved: Some(other), ..choice }));
@@ -112,6 +124,15 @@ fn both_ways(ui: &mut Ui, choice: Choice, commands: &mut Vec<Command>) {
     });
 }
 
+/// A time left, as roughly as it is known.
+fn time_left(seconds: f64) -> String {
+    match seconds {
+        s if s < 10.0 => "a few seconds left".to_owned(),
+        s if s < 90.0 => format!("about {:.0} s left", 10.0 * (s / 10.0).round()),
+        s => format!("about {:.0} min left", (s / 60.0).ceil()),
+    }
+}
+
 fn set(choice: Choice) -> Command {
     Command::View(ViewCommand::SetReach(choice))
 }
@@ -144,7 +165,7 @@ fn of_line(map: &ReachMap, back: bool, name: &str, tension_n: f64) -> String {
         match next.map(|p| (p.jammed, if back { p.there_and_back_n } else { p.there_n })) {
             None => "",
             Some((true, _)) => " (beyond, its cable is in the way)",
-            Some((_, n)) if n.is_nan() => " (beyond, no solution)",
+            Some((_, n)) if n.is_nan() => " (beyond, no solution found)",
             Some((_, n)) if n.is_infinite() => " (beyond, the cable is too short)",
             Some(_) => "",
         }

@@ -3,6 +3,7 @@
 
 use cable_core::analysis::tension_budget::{Cause, Contribution, StartEnd, TensionBudget, tension_budget};
 use cable_core::scene::View;
+use cable_core::solution::Node;
 use cable_core::{Scene, Solution};
 use egui::{Color32, Grid, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
@@ -11,6 +12,7 @@ use crate::state::{AppState, TensionMarker};
 use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
 use crate::widgets::property::{Provenance, Quantity, row};
+use crate::widgets::readout;
 
 /// Height of each of the two rows of the bar, points.
 const ROW: f32 = 15.0;
@@ -59,6 +61,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.label("Tension there");
         ui.strong(format::force(found.tension_n));
     });
+    motion(ui, answer, probe);
     let listed = listed(&found);
     bar(ui, &found, &listed, &|t| title(scene, answer, probe.cable, t));
     figures(ui, &listed, &|t| title(scene, answer, probe.cable, t), &|t| how(answer, probe.cable, t));
@@ -95,6 +98,36 @@ fn place(ui: &mut Ui, scene: &Scene, probe: TensionMarker, commands: &mut Vec<Co
             }
         }
     });
+}
+
+/// Displacement, velocity and acceleration of the marked point, live.
+fn motion(ui: &mut Ui, answer: &Solution, marker: TensionMarker) {
+    let Some(cable) = answer.cables.get(marker.cable) else { return };
+    let next = cable.nodes.partition_point(|n| n.arc_length_m < marker.arc_length_m);
+    let (Some(a), Some(b)) = (cable.nodes.get(next.saturating_sub(1)), cable.nodes.get(next).or(cable.nodes.last()))
+    else {
+        return;
+    };
+    let length_m = b.arc_length_m - a.arc_length_m;
+    let share = if length_m > 0.0 { ((marker.arc_length_m - a.arc_length_m) / length_m).clamp(0.0, 1.0) } else { 0.0 };
+    let between = |of: &dyn Fn(&Node) -> [f64; 2]| {
+        let (a, b) = (of(a), of(b));
+        [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])]
+    };
+    let rows: [(&str, Unit, [f64; 2], &str); 3] = [
+        ("Displacement", Unit::M, between(&|n| n.displacement_m), "From where it was when the run began"),
+        ("Velocity", Unit::M_PER_S, between(&|n| [n.vx_m_per_s, n.vy_m_per_s]), "Of the material of the cable"),
+        (
+            "Acceleration",
+            Unit::M_PER_S2,
+            between(&|n| n.acceleration_m_per_s2),
+            "Mean over the last step; 0 at rest and without inertia",
+        ),
+    ];
+    for (name, unit, [x, y], help) in rows {
+        let help = format!("{help}. {} to the right, {} upwards", unit.text(x), unit.text(y));
+        readout::row(ui, name, &unit.text(x.hypot(y)), &help, |_| {});
+    }
 }
 
 /// The terms worth a line.
@@ -157,7 +190,8 @@ fn bar(ui: &mut Ui, found: &TensionBudget, listed: &[Contribution], title: &dyn 
     let x = |n: f64| rect.left() + (n / added) as f32 * rect.width();
     let painter = ui.painter();
     painter.rect_filled(rect, 2.0, ui.visuals().faint_bg_color);
-    let gap = Stroke::new(1.0, ui.visuals().panel_fill);
+    // Pale pieces stand off the panel by their outline.
+    let gap = Stroke::new(1.0, ui.visuals().weak_text_color());
     let piece = |from: f64, to: f64, row: f32, term: &Contribution| {
         let top = rect.top() + row * (ROW + 2.0);
         let piece = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), top..=top + ROW);
@@ -187,7 +221,8 @@ fn figures(
     Grid::new("origin").num_columns(4).min_col_width(0.0).spacing([7.0, 3.0]).show(ui, |ui| {
         for t in listed {
             let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
-            ui.painter().rect_filled(rect, 1.0, colour(t));
+            let line = Stroke::new(1.0, ui.visuals().weak_text_color());
+            ui.painter().rect(rect, 1.0, colour(t), line, egui::StrokeKind::Inside);
             ui.label(title(t));
             let sign = if t.tension_n < 0.0 { "" } else { "+" };
             ui.label(format!("{sign}{}", format::force(t.tension_n)));

@@ -60,7 +60,7 @@ fn picker(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
     let Some(cable) = state.document.scene.cables.get(index) else { return };
     if state.document.scene.cables.len() > 1 {
         labelled(ui, "Cable", "Cable", |ui| {
-            let combo = ComboBox::from_id_salt("cable").selected_text(&cable.name).width(ui.available_width() - 8.0);
+            let combo = ComboBox::from_id_salt("cable").selected_text(&cable.name).width(ui.available_width() - 14.0);
             let shown = combo.show_ui(ui, |ui| {
                 for (k, other) in state.document.scene.cables.iter().enumerate() {
                     if ui.selectable_label(k == index, &other.name).clicked() {
@@ -102,7 +102,7 @@ fn presets(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>
     let present = cable.preset.as_deref().and_then(preset::cable_preset);
     labelled(ui, "Preset", "Cable preset", |ui| {
         let text = present.map_or("None", |p| p.name.as_str());
-        let combo = ComboBox::from_id_salt("preset").selected_text(text).width(ui.available_width() - 8.0).truncate();
+        let combo = ComboBox::from_id_salt("preset").selected_text(text).width(ui.available_width() - 14.0).truncate();
         let shown = combo.height(POPUP_HEIGHT).show_ui(ui, |ui| {
             for p in preset::cable_presets() {
                 let entry = ui.selectable_label(present.is_some_and(|q| q.id == p.id), &p.name);

@@ -15,6 +15,7 @@ use egui::{Color32, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
+use crate::render::theme::{self, Palette};
 use crate::state::questions::{bending_query, bending_query_fits};
 use crate::state::{AppState, Freshness};
 use crate::units::{format, unit};
@@ -96,7 +97,7 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, current: bool, co
         let text = format!("{} of {name} {}", format::percent(share), format::force(limit_n));
         let bar = ProgressBar::new(share.clamp(0.0, 1.0) as f32)
             // No verdict on what is not the answer.
-            .fill(bar_colour(if current { share } else { 0.0 }, name == "break", ui.visuals().dark_mode))
+            .fill(bar_colour(if current { share } else { 0.0 }, name == "break", theme::palette(ui.visuals())))
             .text(text.clone())
             .desired_height(16.0)
             .corner_radius(2);
@@ -106,14 +107,13 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, current: bool, co
     }
 }
 
-/// Calm below the limit, amber above service, red above break; chosen to keep black or white text
-/// readable.
-fn bar_colour(share: f64, breaking: bool, dark: bool) -> Color32 {
+/// Calm below the limit, amber above service, red above break.
+fn bar_colour(share: f64, breaking: bool, palette: &Palette) -> Color32 {
+    let [calm, service, break_] = palette.bars;
     match (share > 1.0, breaking) {
-        (true, true) => Color32::from_rgb(214, 68, 68),
-        (true, false) => Color32::from_rgb(201, 134, 20),
-        _ if dark => Color32::from_rgb(38, 92, 138),
-        _ => Color32::from_rgb(140, 190, 230),
+        (true, true) => break_,
+        (true, false) => service,
+        _ => calm,
     }
 }
 
@@ -130,7 +130,8 @@ fn along(node: &Node) -> String {
     unit::Unit::COORDINATE.text(node.arc_length_m)
 }
 
-fn place(ui: &mut Ui, label: &str, node: &Node, commands: &mut Vec<Command>) {
+/// A button that shows where a node is.
+pub fn place(ui: &mut Ui, label: &str, node: &Node, commands: &mut Vec<Command>) {
     let at_m = [node.x_m, node.y_m];
     let button = icon::plain_button(ui, Icon::Locate, true);
     field::name(&button, label);

@@ -87,14 +87,6 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
             remove(ui, item, &name, "Takes it off", commands);
         });
     });
-    if state.selection.selected == Some(item) {
-        if let Some(force_n) = load.force_n {
-            strength(ui, load, k, force_n, commands);
-        }
-        if let Some(value) = timed(ui, &name, load, &mut faults) {
-            set(value, commands);
-        }
-    }
     if state.document.scene.cables.len() > 1 {
         ui.horizontal(|ui| {
             ui.label("    on");
@@ -107,6 +99,20 @@ fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec
             });
             field::name(&shown.response, &format!("Cable of {name}"));
         });
+    }
+    show_faults(ui, &faults);
+}
+
+/// Everything about a load that its line does not have.
+pub fn form(ui: &mut Ui, state: &AppState, k: usize, commands: &mut Vec<Command>) {
+    let Some(load) = state.document.scene.loads.get(k) else { return };
+    let mut faults = Vec::new();
+    if let Some(force_n) = load.force_n {
+        strength(ui, load, k, force_n, commands);
+    }
+    if let Some(value) = timed(ui, &format!("load {}", k + 1), load, &mut faults) {
+        commands.push(Command::Scene(SceneCommand::SetLoad { load: k, value }));
+        commands.push(Command::Scene(SceneCommand::EditDone));
     }
     show_faults(ui, &faults);
 }

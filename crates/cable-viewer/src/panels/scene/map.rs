@@ -19,7 +19,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             None if state.document.scene.obstacles.is_empty() => "None",
             None => "Custom",
         };
-        let combo = ComboBox::from_id_salt("map").selected_text(text).width(ui.available_width() - 8.0).truncate();
+        let combo = ComboBox::from_id_salt("map").selected_text(text).width(ui.available_width() - 14.0).truncate();
         let shown = combo.show_ui(ui, |ui| {
             if ui.selectable_label(state.document.scene.obstacles.is_empty(), "None").clicked() {
                 choose(&state.document.scene, &[], commands);

@@ -1,18 +1,21 @@
-//! The scene panel edits the name, the map and the things of the scene, with exact coordinates.
+//! The scene panel edits the name, the map and the robot of the scene; the outline lists its things
+//! with exact coordinates.
 //!
+//! - `outline`: everything in the scene as a tree that selects
 //! - `map`, `robot`: pickers of known tanks and robots
-//! - `supports`, `obstacles`, `loads`: a list each, and everything else of the selected one
+//! - `supports`, `obstacles`, `loads`: a list each, and a form for everything else of one
 //! - `rows`: the cells, headings and fields that lists are made of
 
-mod loads;
+pub(super) mod loads;
 mod map;
-mod obstacles;
+pub(super) mod obstacles;
+pub mod outline;
 mod robot;
 pub mod rows;
-mod supports;
+pub(super) mod supports;
 
 use cable_core::scene::catalog;
-use egui::{CollapsingHeader, ComboBox, Ui};
+use egui::{ComboBox, Ui};
 
 use crate::command::{Command, FileCommand, SceneCommand};
 use crate::panels::scene_errors;
@@ -22,28 +25,9 @@ use crate::widgets::property::labelled;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let width = ui.available_width();
     name(ui, state, commands);
     pickers(ui, state, commands);
     scene_errors::inline(ui, state, "version", commands);
-    let index = state.current_cable();
-    let supports = state.document.scene.cables.get(index).map_or(0, |c| c.supports.len());
-    let title = match state.document.scene.cables.get(index) {
-        Some(cable) if state.document.scene.cables.len() > 1 => format!("Supports of {} ({supports})", cable.name),
-        _ => format!("Supports ({supports})"),
-    };
-    list(ui, width, ("supports", &title), |ui| supports::ui(ui, state, index, commands));
-    let title = format!("Obstacles ({})", state.document.scene.obstacles.len());
-    list(ui, width, ("obstacles", &title), |ui| obstacles::ui(ui, state, commands));
-    let title = format!("Loads ({})", state.document.scene.loads.len());
-    list(ui, width, ("loads", &title), |ui| loads::ui(ui, state, commands));
-}
-
-fn list(ui: &mut Ui, width: f32, (id, title): (&str, &str), contents: impl FnOnce(&mut Ui)) {
-    CollapsingHeader::new(title).id_salt(id).default_open(true).show_unindented(ui, |ui| {
-        ui.set_max_width(width);
-        contents(ui);
-    });
 }
 
 fn name(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -67,7 +51,7 @@ fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     labelled(ui, "Open", "Open scene", |ui| {
         let combo = ComboBox::from_id_salt("scene")
             .selected_text("Choose a scene…")
-            .width(ui.available_width() - 8.0)
+            .width(ui.available_width() - 14.0)
             .truncate();
         let shown = combo.show_ui(ui, |ui| {
             for (id, scene) in catalog::all() {

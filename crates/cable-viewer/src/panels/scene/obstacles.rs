@@ -1,9 +1,9 @@
-//! The list of obstacles gives form and place of each, and everything else of the selected one.
+//! The list of obstacles gives form and place of each; a form has everything else of one.
 
 use cable_core::Obstacle;
 use cable_core::math::Point;
 use cable_core::scene::Shape;
-use egui::{Button, Frame, ScrollArea, Ui};
+use egui::{Button, ScrollArea, Ui};
 
 use crate::command::{Command, SceneCommand};
 use crate::panels::scene::rows::{
@@ -62,7 +62,7 @@ fn add(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-fn form(shape: &Shape) -> (&'static str, &'static str) {
+fn shape_name(shape: &Shape) -> (&'static str, &'static str) {
     match shape {
         Shape::Terrain { .. } => ("Terrain", "Ground from left to right, solid below"),
         Shape::Polygon { .. } => ("Polygon", "Closed, solid inside"),
@@ -84,32 +84,27 @@ fn anchor(shape: &Shape) -> Option<Point> {
 fn line(ui: &mut Ui, state: &AppState, k: usize, obstacle: &Obstacle, commands: &mut Vec<Command>) {
     let item = Item::Obstacle(k);
     let mut faults = Vec::new();
-    let selected = ui
-        .horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = GAP;
-            let selected = selectable_name(ui, state, item, &obstacle.name, commands);
-            let (text, help) = form(&obstacle.shape);
-            cell(ui, KIND_WIDTH, |ui| ui.weak(text).on_hover_text(help));
-            if let Some(at_m) = anchor(&obstacle.shape)
-                && let Some(to_m) = coordinates(ui, &obstacle.name, at_m, &mut faults)
-            {
-                commands.push(Command::Scene(SceneCommand::Move { item, to_m }));
-                commands.push(Command::Scene(SceneCommand::EditDone));
-            }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                remove(ui, item, &obstacle.name, "Removes it", commands);
-            });
-            selected
-        })
-        .inner;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
+        selectable_name(ui, state, item, &obstacle.name, commands);
+        let (text, help) = shape_name(&obstacle.shape);
+        cell(ui, KIND_WIDTH, |ui| ui.weak(text).on_hover_text(help));
+        if let Some(at_m) = anchor(&obstacle.shape)
+            && let Some(to_m) = coordinates(ui, &obstacle.name, at_m, &mut faults)
+        {
+            commands.push(Command::Scene(SceneCommand::Move { item, to_m }));
+            commands.push(Command::Scene(SceneCommand::EditDone));
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            remove(ui, item, &obstacle.name, "Removes it", commands);
+        });
+    });
     show_faults(ui, &faults);
-    let corner_selected = matches!(state.selection.selected, Some(Item::Corner { obstacle, .. }) if obstacle == k);
-    if selected || corner_selected {
-        Frame::group(ui.style()).inner_margin(5).show(ui, |ui| details(ui, k, obstacle, commands));
-    }
 }
 
-fn details(ui: &mut Ui, k: usize, obstacle: &Obstacle, commands: &mut Vec<Command>) {
+/// Everything about an obstacle that its line does not have.
+pub fn form(ui: &mut Ui, state: &AppState, k: usize, commands: &mut Vec<Command>) {
+    let Some(obstacle) = state.document.scene.obstacles.get(k) else { return };
     let mut faults = Vec::new();
     let mut value = obstacle.clone();
     labelled(ui, "Name", "Obstacle name", |ui| {

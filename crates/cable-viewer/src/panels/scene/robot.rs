@@ -20,7 +20,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     labelled(ui, "Robot", "Robot", |ui| {
         let shown = present.map(|r| preset::robot_preset(&r.preset).map_or(r.preset.as_str(), |p| p.name.as_str()));
         let combo = ComboBox::from_id_salt("robot").selected_text(shown.unwrap_or("None"));
-        let combo = combo.width(ui.available_width() - 8.0).truncate();
+        let combo = combo.width(ui.available_width() - 14.0).truncate();
         let shown = combo.show_ui(ui, |ui| {
             if ui.selectable_label(present.is_none(), "None").clicked() {
                 set(None, commands);

@@ -39,7 +39,7 @@ pub const KIND_WIDTH: f32 = 60.0;
 pub const GAP: f32 = 3.0;
 
 /// The name of a thing in a list: picks it.
-pub fn selectable_name(ui: &mut Ui, state: &AppState, item: Item, name: &str, commands: &mut Vec<Command>) -> bool {
+pub fn selectable_name(ui: &mut Ui, state: &AppState, item: Item, name: &str, commands: &mut Vec<Command>) {
     let selected = state.selection.selected == Some(item);
     let button = Button::selectable(selected, (name, Atom::grow())).truncate();
     let width = name_width(ui);
@@ -49,7 +49,6 @@ pub fn selectable_name(ui: &mut Ui, state: &AppState, item: Item, name: &str, co
         let item = if selected { None } else { Some(item) };
         commands.push(Command::View(ViewCommand::Select(item)));
     }
-    selected
 }
 
 /// Width of the column of names at the start of a line, points.

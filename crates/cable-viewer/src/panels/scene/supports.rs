@@ -1,9 +1,9 @@
-//! The list of supports gives kind and place of each, and everything else of the selected one.
+//! The list of supports gives kind and place of each; a form has everything else of one.
 
 use cable_core::math::Point;
 use cable_core::scene::{Motion, PulleySide, SupportKind};
 use cable_core::{Cable, Support};
-use egui::{ComboBox, Frame, Ui};
+use egui::{ComboBox, Ui};
 
 use crate::command::support_kind::{KINDS, of_kind, refusal};
 use crate::command::{Command, SceneCommand};
@@ -96,40 +96,34 @@ pub(super) fn position_at(state: &AppState, cable: usize, arc_length_m: f64) -> 
 
 fn line(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command>) {
     let mut faults = Vec::new();
-    let selected = ui
-        .horizontal(|ui| {
-            ui.spacing_mut().item_spacing.x = GAP;
-            let selected = selectable_name(ui, state, row.item(), &row.value.name, commands);
-            cell(ui, KIND_WIDTH, |ui| kind(ui, state, row, commands));
-            match row.value.at_m {
-                Some(at_m) => {
-                    if let Some(to_m) = coordinates(ui, &row.value.name, at_m, &mut faults) {
-                        commands.push(Command::Scene(SceneCommand::Move { item: row.item(), to_m }));
-                        commands.push(Command::Scene(SceneCommand::EditDone));
-                    }
-                }
-                None => {
-                    let (at_m, _) = row.now;
-                    for v in at_m {
-                        cell(ui, number_width(ui), |ui| {
-                            ui.weak(Unit::COORDINATE.bare().text(v)).on_hover_text("Where it is now; not held there");
-                        });
-                    }
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = GAP;
+        selectable_name(ui, state, row.item(), &row.value.name, commands);
+        cell(ui, KIND_WIDTH, |ui| kind(ui, state, row, commands));
+        match row.value.at_m {
+            Some(at_m) => {
+                if let Some(to_m) = coordinates(ui, &row.value.name, at_m, &mut faults) {
+                    commands.push(Command::Scene(SceneCommand::Move { item: row.item(), to_m }));
+                    commands.push(Command::Scene(SceneCommand::EditDone));
                 }
             }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                let help = if row.end { "Frees this end" } else { "Removes it" };
-                if !(row.end && row.value.kind == SupportKind::Free) {
-                    remove(ui, row.item(), &row.value.name, help, commands);
+            None => {
+                let (at_m, _) = row.now;
+                for v in at_m {
+                    cell(ui, number_width(ui), |ui| {
+                        ui.weak(Unit::COORDINATE.bare().text(v)).on_hover_text("Where it is now; not held there");
+                    });
                 }
-            });
-            selected
-        })
-        .inner;
+            }
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let help = if row.end { "Frees this end" } else { "Removes it" };
+            if !(row.end && row.value.kind == SupportKind::Free) {
+                remove(ui, row.item(), &row.value.name, help, commands);
+            }
+        });
+    });
     show_faults(ui, &faults);
-    if selected {
-        Frame::group(ui.style()).inner_margin(5).show(ui, |ui| details(ui, row, commands));
-    }
 }
 
 fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command>) {
@@ -149,8 +143,12 @@ fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
     shown.response.on_hover_text("What it does to the cable");
 }
 
-/// Everything about the selected support.
-fn details(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>) {
+/// Everything about a support that its line does not have.
+pub fn form(ui: &mut Ui, state: &AppState, cable: usize, support: usize, commands: &mut Vec<Command>) {
+    let Some(of) = state.document.scene.cables.get(cable) else { return };
+    let Some(value) = of.supports.get(support) else { return };
+    let end = support == 0 || support + 1 == of.supports.len();
+    let row = &Row { cable, support, value, end, now: place_now(state, cable, support, of) };
     let s = row.value;
     let mut faults = Vec::new();
     labelled(ui, "Name", "Support name", |ui| {
@@ -168,7 +166,8 @@ fn details(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>) {
         }
     } else {
         labelled(ui, "Sits at", "Place on the cable", |ui| {
-            ui.label(format!("{} along the cable", Unit::COORDINATE.text(row.now.1)))
+            let help = "Unstretched length from the start of the cable, as it is now";
+            ui.label(Unit::COORDINATE.text(row.now.1)).on_hover_text(help)
         });
     }
     match s.kind {
@@ -280,7 +279,7 @@ fn load(ui: &mut Ui, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Ve
     };
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
-        ui.label(format!("Force right, up, {}", Unit::N.display().symbol));
+        ui.label(Unit::N.display().symbol).on_hover_text("Force to the right and upwards");
         let labels = ["Force to the right", "Force upwards"].map(str::to_owned);
         if let Some(force_n) = components(ui, labels, Unit::N, force_n, faults) {
             row.changed(commands, |s| s.force_n = Some(force_n));

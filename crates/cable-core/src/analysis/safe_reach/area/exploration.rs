@@ -172,8 +172,8 @@ impl Exploration<'_> {
         (0..=stride).flat_map(move |j| (0..wide).map(move |i| low + i + j * columns)).filter(move |k| *k < count)
     }
 
-    /// Whether a cell of a grid is all there and nothing is in it: nothing lies across sides and
-    /// diagonals of its finest squares.
+    /// Returns whether a cell of a grid is all there and nothing is in it: nothing lies across
+    /// sides and diagonals of its finest squares.
     fn is_empty(&self, low: usize, stride: usize) -> bool {
         let columns = self.found.columns;
         if low % columns + stride >= columns || low + stride * (columns + 1) >= self.known.len() {
@@ -187,7 +187,7 @@ impl Exploration<'_> {
             && (self.world.is_empty() || (0..stride * stride).all(|k| clear(low + k % stride + k / stride * columns)))
     }
 
-    /// Whether the corners of a cell agree and nothing is in it.
+    /// Returns whether the corners of a cell agree and nothing is in it.
     fn agree(&self, low: usize, stride: usize) -> bool {
         if !self.is_empty(low, stride) {
             return false;
@@ -299,7 +299,7 @@ impl Exploration<'_> {
         }
     }
 
-    /// Whether the tension of a place is known, or taken from others for good.
+    /// Returns whether the tension of a place is known, or taken from others for good.
     fn is_decided(&self, place: usize) -> bool {
         let [known, settled] = [&self.known, &self.settled].map(|l| l.get(place) == Some(&true));
         (known || settled) && self.found.most_n[place].is_finite()
@@ -323,13 +323,13 @@ impl Exploration<'_> {
         vec2(self.found.at(place))
     }
 
-    /// Whether a place is free and not hopelessly far.
+    /// Returns whether a place is free and not hopelessly far.
     fn may(&self, place: usize) -> bool {
         let p = self.at(place);
         place == self.first || (self.is_free(p) && self.holds.iter().all(|h| (p - h).norm() <= self.far_m))
     }
 
-    /// Whether a cable that nothing holds would reach a place by far.
+    /// Returns whether a cable that nothing holds would reach a place by far.
     fn near(&self, place: usize) -> bool {
         self.holds.iter().all(|h| (self.at(place) - h).norm() <= RETRY_DISTANCE_FRACTION * self.far_m)
     }
@@ -338,8 +338,8 @@ impl Exploration<'_> {
         self.world.is_empty() || self.world.signed_gap(p, f64::INFINITY).is_none_or(|g| g.gap_m >= 0.0)
     }
 
-    /// Whether nothing lies between two free places: looked at in steps no longer than the way to
-    /// the nearest obstacle.
+    /// Returns whether nothing lies between two free places: looked at in steps no longer than the
+    /// way to the nearest obstacle.
     fn clear(&self, from: Vec2, to: Vec2) -> bool {
         let (way, mut gone, mut before) = (to - from, 0.0, f64::NEG_INFINITY);
         while !self.world.is_empty() && gone < way.norm() {

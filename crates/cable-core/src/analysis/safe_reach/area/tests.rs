@@ -11,7 +11,7 @@ fn query(scene: Scene, corners_m: [Point; 2], spacing_m: f64) -> ReachQuery {
     ReachQuery { scene, now: None, settings: Settings::default(), cable: 0, support, corners_m, spacing_m, back: false }
 }
 
-/// What is known of the place nearest to a point, and where that is.
+/// Returns what is known of the place nearest to a point, and where that is.
 fn place(area: &Area, p: Point) -> (Point, f64) {
     let near = |k: &usize| (vec2(area.at(*k)) - vec2(p)).norm();
     let k = (0..area.most_n.len()).min_by(|a, b| near(a).total_cmp(&near(b))).unwrap();

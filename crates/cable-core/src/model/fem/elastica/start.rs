@@ -3,11 +3,11 @@
 
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};
-use crate::model::fem::beam::mesh::places;
 use crate::model::fem::elastica::relax::{Chain, ContactPair};
 use crate::model::fem::elastica::{
     ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, tangent,
 };
+use crate::model::fem::free::beam::mesh::places;
 use crate::model::fem::free::stations::place as support_place;
 use crate::model::fem::mesh::sliding_node::round_of;
 use crate::problem::Problem;
@@ -101,7 +101,7 @@ impl<'a> Curve<'a> {
             .map(|p| {
                 let d = p[1].at() - p[0].at();
                 let raw = if d.norm() > 0.0 { d.y.atan2(d.x) } else { last.unwrap_or(0.0) };
-                let angle = last.map_or(raw, |l| crate::model::fem::beam::equilibrium::nearest_turn(raw, l));
+                let angle = last.map_or(raw, |l| crate::model::fem::free::beam::equilibrium::nearest_turn(raw, l));
                 last = Some(angle);
                 angle
             })
@@ -322,7 +322,7 @@ impl Elastica {
 
     /// Gives all nodes the bends and forces of the answer of a mesh.
     fn bend_as(&mut self, curve: &Curve<'_>) -> Option<()> {
-        use crate::model::fem::beam::equilibrium::nearest_turn;
+        use crate::model::fem::free::beam::equilibrium::nearest_turn;
         for (which, u) in
             [(0, self.pieces.first()?.nodes.first()?[ANGLE]), (1, self.pieces.last()?.nodes.last()?[ANGLE])]
         {
@@ -590,7 +590,7 @@ impl Elastica {
     /// Adds the layers at the ends of free pieces, θ ∓ Δ e^{−s/λ}, and counts the angles of clamps
     /// on from their neighbours.
     fn bend_layers(&mut self) -> Option<()> {
-        use crate::model::fem::beam::equilibrium::nearest_turn;
+        use crate::model::fem::free::beam::equilibrium::nearest_turn;
         let count = self.pieces.len();
         let end = |p: &Piece, which: usize| if which == 0 { p.nodes.first() } else { p.nodes.last() }.copied();
         let mut turns = vec![[0.0; 2]; count];

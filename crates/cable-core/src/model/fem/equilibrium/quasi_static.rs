@@ -3,14 +3,15 @@
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, bounded, larger};
 use crate::model::fem::dynamics::{Dynamics, REACH};
-use crate::model::fem::equilibrium::initial_guess::push_out;
+use crate::model::fem::newton::initial_guess::push_out;
 use crate::model::fem::newton::minimize::DRIFT;
-use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose, StepInput};
-use crate::model::fem::newton::step_setup::{StickSlipChanges, load_scale, tolerance};
-use crate::model::fem::obstacle::moving_outline::MovingOutline;
 use crate::model::fem::results;
+use crate::model::fem::state::moving_outline::MovingOutline;
 use crate::model::fem::system::friction_state::SLIDE;
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose, StepInput};
+use crate::model::fem::system::step_input::{load_scale, tolerance};
 use crate::model::fem::time::bdf2::ROUNDS_EACH;
+use crate::model::fem::time::step_setup::StickSlipChanges;
 use crate::model::{Inertia, Model, StepReport};
 use crate::state::State;
 

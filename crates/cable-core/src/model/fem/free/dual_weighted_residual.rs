@@ -16,7 +16,7 @@
 //! horizontal force wrong in the third.
 
 use crate::math::{Vec2, larger};
-use crate::model::fem::beam::equilibrium::Beam;
+use crate::model::fem::free::beam::equilibrium::Beam;
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::pulley_balance::Network;
 use crate::model::fem::free::results::Point;

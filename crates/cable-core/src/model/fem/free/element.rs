@@ -20,10 +20,7 @@
 //! The whole of Ψ is the dual of the cable's potential energy (M. Irvine, *Cable Structures*, MIT
 //! Press 1981, for the exact chord below).
 
-use crate::math::{Mat2, Vec2, cross};
-
-/// Half the distance of the two Gauss points of an interval of length 1.
-const GAUSS: f64 = 0.288_675_134_594_812_9;
+use crate::math::{GAUSS_2_HALF_DISTANCE, Mat2, Vec2, cross};
 
 /// What all elements of a cable share.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +59,7 @@ impl Material {
     #[must_use]
     pub fn respond(&self, ds: f64, force: Vec2) -> Response {
         let rest = self.thermal_stretch * ds;
-        let g = self.body * (GAUSS * ds);
+        let g = self.body * (GAUSS_2_HALF_DISTANCE * ds);
         let ((t1, u1), (t2, u2)) = (self.direction(force + g), self.direction(force - g));
         let (half, elastic) = (0.5 * rest, rest / self.axial_stiffness);
         let (c1, c2) = (half / t1, half / t2);
@@ -80,7 +77,7 @@ impl Material {
     /// ∂chord/∂(ds) at a constant middle force.
     #[must_use]
     pub fn chord_rate(&self, ds: f64, force: Vec2) -> Vec2 {
-        let g = self.body * GAUSS;
+        let g = self.body * GAUSS_2_HALF_DISTANCE;
         let half = 0.5 * self.thermal_stretch;
         let side = |sign: f64| {
             let (t, u) = self.direction(force + g * (sign * ds));

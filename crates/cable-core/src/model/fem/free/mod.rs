@@ -1,5 +1,7 @@
-//! These modules find the equilibrium of a flexible cable that touches nothing but its supports.
+//! These modules find the equilibrium of a cable that touches nothing but its supports; `beam` that
+//! of a stiff one.
 
+pub(in crate::model::fem) mod beam;
 pub(in crate::model::fem) mod dual_weighted_residual;
 pub mod element;
 pub(in crate::model::fem) mod pulley_balance;

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
-use crate::model::fem::beam::equilibrium::{Beam, Outcome};
+use crate::model::fem::free::beam::equilibrium::{Beam, Outcome};
 use crate::model::fem::free::dual_weighted_residual;
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::pulley_balance::{Failure, Network};
@@ -21,7 +21,7 @@ use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::ErrorEstimates;
-use crate::solution::{Assumptions, CableSolution, Cost, Warning, WarningKind};
+use crate::solution::{Assumptions, CableSolution, Cost, Histories, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
 /// Elements to start with where nothing says how many: 1e-6 for a usual span, and 50 µs.
@@ -427,28 +427,20 @@ impl Statics {
     fn warnings(&self, hinted: bool) -> Vec<Warning> {
         let problem = &self.problem;
         let mut out = Vec::new();
-        let mut warn = |kind, value: f64, limit: f64, message: String| {
-            out.push(Warning::new(kind, &problem.cable.name, 0.0, [value, limit], message));
+        let mut warn = |cause, value: f64, limit: f64| {
+            out.push(Warning::new(cause, &problem.cable.name, 0.0, [value, limit]));
         };
-        if let Some(rubbing) = problem.supports.iter().find(|s| s.friction > 0.0) {
-            let message = format!(
-                "Pulley `{}` rubs, so a resting place is not unique: this is the one of least sliding from the way the cable was laid or moved",
-                rubbing.name
-            );
-            warn(WarningKind::NotUnique, rubbing.friction, 0.0, message);
+        if problem.supports.iter().any(|s| s.friction > 0.0) {
+            let (shown, histories) = (ShownEquilibrium::EvenlyLaid, Histories::NotSought);
+            warn(WarningCause::ManyEquilibria { shown, histories }, 0.0, 0.0);
         }
         if hinted && problem.loads.is_empty() {
-            let message = "The cable has no weight: where it is slack its shape is that of a very light one".to_owned();
-            warn(WarningKind::NotUnique, 0.0, 0.0, message);
+            warn(WarningCause::Weightless, 0.0, 0.0);
         }
         if let Some(estimate) = self.estimate
             && !(estimate <= self.settings.tolerance)
         {
-            let message = format!(
-                "{} elements give the largest tension to about {:.1e}; {:.1e} was asked for: use more segments",
-                self.segments, estimate, self.settings.tolerance
-            );
-            warn(WarningKind::Accuracy, estimate, self.settings.tolerance, message);
+            warn(WarningCause::CoarseTension { elements: self.segments }, estimate, self.settings.tolerance);
         }
         out
     }

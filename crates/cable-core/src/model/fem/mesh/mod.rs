@@ -1,7 +1,5 @@
-//! These modules hold the nodes and bars of one cable and change them between steps.
+//! These modules hold the sliding nodes of a cable and the paths of its bars round what they slide
+//! over.
 
-pub(in crate::model::fem) mod adapt;
-pub(in crate::model::fem) mod arc_nodes;
-pub(in crate::model::fem) mod edit;
 pub(in crate::model::fem) mod sliding_node;
 pub(in crate::model::fem) mod tangent_path;

@@ -17,7 +17,13 @@
 use crate::contact::geometry::Geometry;
 use crate::math::Vec2;
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
-use crate::model::fem::system::floor_friction;
+
+/// An arc of more than this (rad) from the tangent to the first mark gets another mark, in the
+/// middle of it.
+pub(in crate::model::fem) const MARKED_ARC_LIMIT: f64 = 0.8;
+
+/// Rounds with less than this part of an even bar on them keep one mark.
+pub(in crate::model::fem) const ONE_MARK_BAR_FRACTION: f64 = 0.3;
 
 /// What a sliding node runs over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -193,7 +199,7 @@ impl Load {
         let [before, after] = self.at_material;
         let slope = |grip: StickSlip| {
             let (ratio, factor) = (self.ratio(grip, node.exponent), self.factor(grip, node.exponent, stiffness));
-            let floor = self.floor[0] + self.floor[1] * floor_friction::mean_factor(ratio) + self.floor[2] * ratio;
+            let floor = self.floor[0] + self.floor[1] * mean_factor(ratio) + self.floor[2] * ratio;
             after * factor + floor - before + inertia
         };
         match node.grip {
@@ -241,4 +247,11 @@ pub fn round_of(geometry: &Geometry, feature: usize, clear: f64, least: f64) -> 
         _ => true,
     };
     turns.then_some((corner.at, body.offset + clear))
+}
+
+/// (γ − 1)/ln γ.
+pub(in crate::model::fem) fn mean_factor(ratio: f64) -> f64 {
+    let z = ratio.ln();
+    // Beyond the series' third term nothing is left at this size.
+    if z.abs() < 1e-4 { 1.0 + z * (0.5 + z / 6.0) } else { (ratio - 1.0) / z }
 }

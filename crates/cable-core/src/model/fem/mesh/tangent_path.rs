@@ -125,6 +125,12 @@ impl Path {
     }
 }
 
+/// A vector turned by an angle (rad), counter-clockwise.
+pub(in crate::model::fem) fn rotate(v: Vec2, angle: f64) -> Vec2 {
+    let (sin, cos) = angle.sin_cos();
+    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

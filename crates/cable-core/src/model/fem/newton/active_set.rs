@@ -25,10 +25,10 @@ use crate::math::Vec2;
 use crate::model::fem::newton::gap_constraint::Stop;
 use crate::model::fem::newton::minimize::{StepContext, Workspace};
 use crate::model::fem::newton::step_bound::longest;
-use crate::model::fem::newton::step_input::Pose;
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::Coupling;
+use crate::model::fem::system::step_input::Pose;
 
 /// Rounds of adding constraints. More find nothing new where a front of contact runs along the
 /// cable.

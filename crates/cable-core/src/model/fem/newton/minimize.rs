@@ -16,13 +16,15 @@ use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
 use crate::model::fem::newton::active_set::PredictedContacts;
-use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose, StepInput, WorkBudget};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::contact_energy::{add_floor, add_rubs, add_touch};
 use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
 use crate::model::fem::system::self_contact;
 use crate::model::fem::system::self_contact::Coupling;
+use crate::model::fem::system::step_input::{
+    Converged, Failure, FailureCause, Pose, StepInput, WORK_MAGNITUDE_FRACTION, WorkBudget, node_scale,
+};
 use crate::problem::Problem;
 
 /// Sufficient decrease (Armijo).
@@ -37,11 +39,6 @@ const STALLED_RESIDUAL_TOLERANCES: f64 = 30.0;
 
 /// Energies are trusted to this part of the sum of their magnitudes.
 const ENERGY_NOISE: f64 = 1e-13;
-
-/// Part of force times coordinate that counts as magnitude: times `ENERGY_NOISE` four roundings of
-/// the coordinate. With none, a stiff pendulum's last iteration is lost in the rounding of 98 N
-/// times 1 m and its step is halved for nothing.
-pub const WORK_MAGNITUDE_FRACTION: f64 = 0.01;
 
 /// Rounding of a gap, part of the coordinates it is worked out from. Smaller: a cable squeezed to a
 /// gap of 1e-7 m fails for 0.01 N in 1e6; larger: contact forces are known worse than they could
@@ -514,11 +511,6 @@ fn add_coupling(s: &mut System, task: &StepInput, x: &[Vec2]) -> f64 {
         value -= 0.5 * k * late.norm_squared();
     }
     value
-}
-
-/// Factor of the equations of a node.
-pub(in crate::model::fem) fn node_scale(task: &StepInput, node: usize) -> f64 {
-    task.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
 }
 
 fn grow(shift: f64, task: &StepInput) -> f64 {

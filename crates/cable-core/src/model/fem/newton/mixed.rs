@@ -16,10 +16,10 @@ use crate::contact::friction::Branch;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::newton::minimize::{StepContext, Workspace};
-use crate::model::fem::newton::step_input::{Converged, Failure, Pose, StepInput};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::friction_state::ContactSet;
+use crate::model::fem::system::step_input::{Converged, Failure, Pose, StepInput};
 
 /// Iterations before the minimiser is asked. Fewer: one of its iterations costs as much as five of
 /// these, and with 24 eleven steps of a cable of 1000 bars dropped on a floor came to it, of 336;

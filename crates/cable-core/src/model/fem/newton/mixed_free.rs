@@ -20,9 +20,9 @@
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
-use crate::model::fem::newton::step_input::{Converged, Pose, StepInput};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
+use crate::model::fem::system::step_input::{Converged, Pose, StepInput};
 
 /// Iterations before the minimiser is asked. Measured: 2 to 5 in a swing, up to 12 where a slack
 /// chain snaps taut.

@@ -1,10 +1,9 @@
-//! These modules solve one step: its input, three Newton iterations, and what bounds them.
+//! These modules solve one step: its initial guess, three Newton iterations, and what bounds them.
 
 pub(in crate::model::fem) mod active_set;
 pub(in crate::model::fem) mod gap_constraint;
+pub mod initial_guess;
 pub mod minimize;
 pub(in crate::model::fem) mod mixed;
 pub(in crate::model::fem) mod mixed_free;
 pub(in crate::model::fem) mod step_bound;
-pub(in crate::model::fem) mod step_input;
-pub(in crate::model::fem) mod step_setup;

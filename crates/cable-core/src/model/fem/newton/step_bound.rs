@@ -5,7 +5,7 @@ use crate::contact::sweep::Sweep;
 use crate::math::{Vec2, larger};
 use crate::model::fem::mesh::tangent_path::{End, Path};
 use crate::model::fem::newton::minimize::{StepContext, Workspace};
-use crate::model::fem::newton::step_input::{Pose, StepInput};
+use crate::model::fem::system::step_input::{Pose, StepInput};
 
 /// Part of each gap that a Newton step leaves. Smaller: gaps shrink faster than Newton opens them
 /// again (with 0.2 twice as many steps of ends thrown about are halved, five times as many where

@@ -20,27 +20,23 @@ use std::sync::Arc;
 
 use crate::contact::distance::segment_segment;
 use crate::contact::geometry::{Geometry, Part};
-use crate::contact::outline::Outline;
 use crate::contact::self_contact::SortedNodes;
 use crate::contact::sweep::Sweep;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::model::RobotContact;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::newton::step_setup::clear_way;
 use crate::model::fem::results::rub_force;
 use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::friction_state::ContactPair;
-use crate::problem::{Problem, SupportPoint};
+use crate::model::fem::system::friction_state::{ContactPair, OutlineMotion};
+use crate::model::fem::time::step_setup::clear_way;
+use crate::problem::SupportPoint;
 use crate::scene::SupportKind;
 
 /// Bars nearer than this (m), and four ways of the outline, go with it. Nearer: bars just beyond
 /// are folded against those that go; farther: what lies on the ground some way off is moved for
 /// nothing.
 const GOES_ALONG_M: f64 = 0.02;
-
-/// Longest way of the outline in a step without inertia, m.
-const LONGEST_WAY_M: f64 = 5e-3;
 
 /// Parts of its way that are tried. Fewer: it stops before it must; more: a cable squeezed against
 /// a wall is asked again.
@@ -53,9 +49,6 @@ const KEPT_GAP_FRACTIONS: [f64; 2] = [0.1, 0.05];
 /// Rounds of giving gaps back. A node in a corner between outline and ground needs a few; a
 /// squeezed one never ends.
 const ROUNDS: usize = 40;
-
-/// Part of the time of a way that counts as nothing.
-const ARRIVAL_TOLERANCE: f64 = 1e-9;
 
 /// A hitch that a wall stopped is left behind by so much, m; then the outline waits for it.
 const LEFT_BEHIND_M: f64 = 0.06;
@@ -74,75 +67,6 @@ fn is_passed_by(geometry: &Geometry, part: Part, from: [Vec2; 2], to: [Vec2; 2])
     let Some(edge) = part.edge.and_then(|k| body.edges.get(k)) else { return false };
     let heights = [from[0], from[1], to[0], to[1]].map(|p| (p - edge.p).dot(&edge.normal()));
     heights.iter().all(|h| *h > body.offset) || heights.iter().all(|h| *h < -body.offset)
-}
-
-/// The outline of a robot as a cable meets it.
-#[derive(Clone, Debug)]
-pub(in crate::model::fem) struct MovingOutline {
-    shape: Arc<Outline>,
-    /// Its number among the obstacles.
-    pub(in crate::model::fem) obstacle: usize,
-    /// Where it was when the way began, and where it is led to, with times in s.
-    from: (f64, RigidPose),
-    to: (f64, RigidPose),
-    /// Where it was led before.
-    led_before: RigidPose,
-    /// Whether it stays where it is until the end of this advance.
-    waits: bool,
-}
-
-/// How the outline moved in the present step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OutlineMotion {
-    /// Its number among the obstacles.
-    pub obstacle: usize,
-    /// From where.
-    pub from: RigidPose,
-    /// To where.
-    pub to: RigidPose,
-}
-
-impl OutlineMotion {
-    /// Where a point that was at `p` (m) would be now if it had gone with the outline.
-    #[must_use]
-    pub fn carried(&self, p: Vec2) -> Vec2 {
-        self.from.carried(&self.to, p)
-    }
-
-    /// How far the point of the outline that is at `p` (m) came.
-    #[must_use]
-    pub fn way(&self, p: Vec2) -> Vec2 {
-        p - self.to.carried(&self.from, p)
-    }
-}
-
-/// The problem with the outline of the robot among its obstacles.
-pub(in crate::model::fem) fn with_outline(problem: Arc<Problem>) -> Arc<Problem> {
-    MovingOutline::of(problem).1
-}
-
-impl MovingOutline {
-    /// That of a problem, and the problem with it among its obstacles.
-    pub(in crate::model::fem) fn of(problem: Arc<Problem>) -> (Option<Self>, Arc<Problem>) {
-        let Some(shape) = problem.outline.clone() else { return (None, problem) };
-        let world = Arc::new(problem.world.with_outline(&shape, problem.radius));
-        let obstacle = world.geometry().bodies().last().map_or(0, |b| b.obstacle);
-        let at = (0.0, shape.placement);
-        let with_it = Problem { world, ..Problem::clone(&problem) };
-        (Some(Self { shape, obstacle, from: at, to: at, led_before: at.1, waits: false }), Arc::new(with_it))
-    }
-
-    /// Where it is to be at a time, s.
-    fn goal(&self, time: f64) -> RigidPose {
-        let (whole, left) = (self.to.0 - self.from.0, self.to.0 - time);
-        // Sums of steps come as near to their end as rounding lets them.
-        if left > ARRIVAL_TOLERANCE * whole { self.from.1.towards(&self.to.1, 1.0 - left / whole) } else { self.to.1 }
-    }
-
-    /// How many steps without inertia its way takes at least.
-    pub(in crate::model::fem) fn pieces(&self) -> f64 {
-        self.shape.max_displacement(&self.from.1, &self.to.1) / LONGEST_WAY_M
-    }
 }
 
 impl Dynamics {

@@ -14,10 +14,9 @@
 
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::newton::minimize::WORK_MAGNITUDE_FRACTION;
-use crate::model::fem::newton::step_input::{Pose, StepInput};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::bar_weight::Weight;
+use crate::model::fem::system::step_input::{Pose, StepInput, WORK_MAGNITUDE_FRACTION};
 
 /// EA with which a bar resists at its length, N: a flexible one only pulls, as it gives way
 /// sideways between its nodes instead of pushing. With any part of EA slack cables stand in arches

@@ -229,7 +229,8 @@ mod tests {
         let ends = |mark: Vec2| if j == 1 { [round(mark), End::point(at)] } else { [End::point(at), round(mark)] };
         let [a, b] = ends(Vec2::x());
         let touches = Path::between(&a, &b).ends[1 - j] / radius;
-        let back = crate::model::fem::mesh::arc_nodes::rotate(touches, if j == 1 { -sense * lap } else { sense * lap });
+        let back =
+            crate::model::fem::mesh::tangent_path::rotate(touches, if j == 1 { -sense * lap } else { sense * lap });
         let mut sliding = vec![None, None];
         sliding[1 - j] = Some(on(round(back)));
         let mesh = Mesh {
@@ -269,7 +270,7 @@ mod tests {
             let mut sum = (path.ends[0] + path.ends[1]) * (0.5 * path.straight);
             for k in 0..parts {
                 let turned = lap * (f64::from(k) + 0.5) / f64::from(parts) * if j == 1 { sense } else { -sense };
-                sum += crate::model::fem::mesh::arc_nodes::rotate(end.mark, turned) * (end.radius * end.radius * lap / f64::from(parts));
+                sum += crate::model::fem::mesh::tangent_path::rotate(end.mark, turned) * (end.radius * end.radius * lap / f64::from(parts));
             }
             let w = weight(&mesh, &x);
             prop_assert!((w.center - sum / path.length).norm() < 1e-6, "{} {}", w.center, sum / path.length);
@@ -303,7 +304,7 @@ mod tests {
         ) {
             use crate::model::fem::system::assembly::System;
             use crate::model::fem::system::bar_energy;
-            use crate::model::fem::newton::step_input::{Pose, StepInput};
+            use crate::model::fem::system::step_input::{Pose, StepInput};
             use crate::energy::Curvature;
             let (j, sense) = (usize::from(first), if round.1 { 1.0 } else { -1.0 });
             let (mut mesh, x) = bar(j, unit(place.1) * place.0, round.0, sense, round.2);

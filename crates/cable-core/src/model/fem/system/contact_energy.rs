@@ -3,10 +3,9 @@
 use crate::contact::friction::{self, Branch};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::newton::minimize::node_scale;
-use crate::model::fem::newton::step_input::{Pose, StepInput};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
+use crate::model::fem::system::step_input::{Pose, StepInput, node_scale};
 
 /// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.
 pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &ContactPair, gradient: Vec2, block: &Mat2) {

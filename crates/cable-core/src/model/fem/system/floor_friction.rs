@@ -12,6 +12,7 @@
 //! A cable that slips has m = ±μ: with γ = e^{±μφ}, T₁ = γT₂ + f₀ + γf₂ + f (γ − 1)/ln γ.
 
 use crate::math::Vec2;
+use crate::model::fem::mesh::sliding_node::mean_factor;
 use crate::model::fem::system::assembly::Mesh;
 
 /// Iterations for the rate at which tension grows over a round: Newton's method on a function that
@@ -43,13 +44,6 @@ pub(in crate::model::fem) fn reaches(mesh: &Mesh, k: usize, x: &[Vec2], slide: O
     let [_, before, on] = if k > 0 { shares(mesh, k - 1, x, slide) } else { [0.0; 3] };
     let [lies, after, _] = if k + 1 < mesh.nodes() { shares(mesh, k, x, slide) } else { [0.0; 3] };
     [before, on + lies, after]
-}
-
-/// (γ − 1)/ln γ.
-pub(in crate::model::fem) fn mean_factor(ratio: f64) -> f64 {
-    let z = ratio.ln();
-    // Beyond the series' third term nothing is left at this size.
-    if z.abs() < 1e-4 { 1.0 + z * (0.5 + z / 6.0) } else { (ratio - 1.0) / z }
 }
 
 /// Floor friction as the slope of the scaled energy by the slide sees it, in parts of its own size.

@@ -4,8 +4,7 @@ use crate::contact::barrier::Barrier;
 use crate::contact::friction;
 use crate::contact::neighbour_lists::NeighbourLists;
 use crate::contact::pairs::Pair;
-use crate::math::{Vec2, bounded, larger};
-use crate::model::fem::obstacle::moving_outline::OutlineMotion;
+use crate::math::{RigidPose, Vec2, bounded, larger};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::self_contact::Own;
 use crate::problem::Problem;
@@ -85,6 +84,31 @@ impl ContactPair {
     #[must_use]
     pub fn load(&self, barrier: &Barrier) -> f64 {
         -barrier.at(self.pair.gap.gap_m).slope * self.pair.weight
+    }
+}
+
+/// How the outline moved in the present step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OutlineMotion {
+    /// Its number among the obstacles.
+    pub obstacle: usize,
+    /// From where.
+    pub from: RigidPose,
+    /// To where.
+    pub to: RigidPose,
+}
+
+impl OutlineMotion {
+    /// Where a point that was at `p` (m) would be now if it had gone with the outline.
+    #[must_use]
+    pub fn carried(&self, p: Vec2) -> Vec2 {
+        self.from.carried(&self.to, p)
+    }
+
+    /// How far the point of the outline that is at `p` (m) came.
+    #[must_use]
+    pub fn way(&self, p: Vec2) -> Vec2 {
+        p - self.to.carried(&self.from, p)
     }
 }
 

@@ -24,10 +24,14 @@
 //! slackness in that step. Branches are strained in steps only in which their force acts, so that
 //! what they give back has been put in.
 
-use crate::math::{Vec2, bounded};
-use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::newton::step_setup::damping_time;
+use crate::math::bounded;
 use crate::problem::Problem;
+
+/// Time constant of material damping, s, of a cable that may rub, where its own damping ratio does
+/// not ask for more. Without it a soft cable (EA 1e5 N) shows 11 % of axial noise in a drag. A
+/// cable that can touch nothing has its own damping alone: of what a weight that swings 9 times a
+/// second pulls beyond itself this would take a twelfth.
+const MATERIAL_DAMPING: f64 = 1e-3;
 
 /// Lowest frequency of constant loss, rad/s (0.1 Hz). Lower: more branches, and a cable that
 /// stiffens more; higher: slow swings have less loss.
@@ -50,7 +54,7 @@ const ROUNDS: usize = 40;
 
 /// A relaxation branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Branch {
+pub(in crate::model::fem) struct Branch {
     /// Relaxation time θ, s.
     time: f64,
     /// Stiffness in parts of EA, y.
@@ -59,7 +63,7 @@ struct Branch {
 
 impl Branch {
     /// d and y g of a step of `h` (s).
-    fn in_step(&self, h: f64) -> [f64; 2] {
+    pub(in crate::model::fem) fn in_step(&self, h: f64) -> [f64; 2] {
         let r = h / self.time;
         [(-r).exp(), self.part * -(-r).exp_m1() / r]
     }
@@ -68,9 +72,9 @@ impl Branch {
 /// The loss of a cable's material.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::model::fem) struct Loss {
-    branches: Vec<Branch>,
+    pub(in crate::model::fem) branches: Vec<Branch>,
     /// Time constant of what is viscous of the loss of a taut bar, s.
-    viscous: f64,
+    pub(in crate::model::fem) viscous: f64,
 }
 
 impl Loss {
@@ -124,97 +128,14 @@ fn loss_factor(branches: &[Branch], omega: f64) -> f64 {
     imaginary / real
 }
 
-/// Engineering strain of bar `e` at places `x` (m).
-fn strain(d: &Dynamics, e: usize, x: &[Vec2]) -> f64 {
-    (x[e + 1] - x[e]).norm() / d.mesh.rest_length[e] - 1.0
-}
-
-impl Dynamics {
-    /// Whether the bars have branches: those of a cable that can touch nothing and slides over
-    /// nothing.
-    ///
-    /// In contact, with the viscous loss in slack bars and those beside sliding nodes only, the
-    /// tank of the catalogue costs 1.14 times as much, but the greatest tension of a drop on rubble
-    /// is 555 and 771 N with 84 and 168 bars at 1/960 s and 1105 N with 168 at 1/3840 s, where the
-    /// viscous loss of 1 ms in all bars has 409, 455 and 479 N.
-    pub(in crate::model::fem) fn has_branches(&self) -> bool {
-        !self.loss.branches.is_empty() && !self.mesh.spread.is_lumped()
-    }
-
-    /// Whether a bar so strained at the start of a step has the loss of its branches in it.
-    fn relaxes(&self, strain: f64) -> bool {
-        strain >= 0.0 || !self.mesh.is_flexible()
-    }
-
-    /// Puts the loss of the branches in the place of the viscous one in a step of `h` (s), whose
-    /// rates are `rate` (1/s) times differences.
-    pub(in crate::model::fem) fn add_branches(&mut self, h: f64, rate: f64) {
-        if !self.has_branches() {
-            return;
-        }
-        let (count, bars, ea) = (self.loss.branches.len(), self.mesh.rest_length.len(), self.problem.axial_stiffness);
-        let viscous = ea * self.loss.viscous * rate;
-        let mut stiffness = viscous;
-        let mut decay = std::mem::take(&mut self.solver.decay);
-        decay.clear();
-        decay.extend(self.loss.branches.iter().map(|b| b.in_step(h)[0]));
-        stiffness += self.loss.branches.iter().map(|b| ea * b.in_step(h)[1]).sum::<f64>();
-        let has_memory = self.motion.branch.len() == count * bars;
-        for e in 0..bars {
-            let before = strain(self, e, &self.motion.x);
-            if !self.relaxes(before) {
-                continue;
-            }
-            let kept = if has_memory {
-                self.motion.branch[e * count..][..count].iter().zip(&decay).map(|(q, d)| q * d).sum()
-            } else {
-                0.0
-            };
-            let l = self.mesh.rest_length[e];
-            let late = self.task.predicted_length[e];
-            let part = viscous / stiffness;
-            self.task.predicted_length[e] = part * late + (1.0 - part) * l * (1.0 + before) - l * kept / stiffness;
-            self.task.loss[e][0] = stiffness;
-        }
-        self.solver.decay = decay;
-    }
-
-    /// The branches after a step of `h` (s) to places `x` (m), before the motion is there.
-    pub(in crate::model::fem) fn relax_branches(&mut self, h: f64, x: &[Vec2]) {
-        if !self.has_branches() {
-            return;
-        }
-        let (count, bars, ea) = (self.loss.branches.len(), self.mesh.rest_length.len(), self.problem.axial_stiffness);
-        let mut memory = std::mem::take(&mut self.motion.branch);
-        if memory.len() != count * bars {
-            memory.clear();
-            memory.resize(count * bars, 0.0);
-        }
-        for (k, b) in self.loss.branches.iter().enumerate() {
-            let [decay, part] = b.in_step(h);
-            for e in 0..bars {
-                let before = strain(self, e, &self.motion.x);
-                let change = if self.relaxes(before) {
-                    let now = strain(self, e, x);
-                    if self.relaxes(now) { now - before } else { -before }
-                } else {
-                    0.0
-                };
-                let q = &mut memory[e * count + k];
-                *q = *q * decay + ea * part * change;
-            }
-        }
-        self.motion.branch = memory;
-    }
-
-    /// What the branches of bar `e` pull with, N.
-    pub(in crate::model::fem) fn held_by_branches(&self, e: usize) -> f64 {
-        let count = self.loss.branches.len();
-        if !self.has_branches() || self.motion.branch.len() != count * self.mesh.rest_length.len() {
-            return 0.0;
-        }
-        self.motion.branch[e * count..][..count].iter().sum()
-    }
+/// Time constant of viscous loss, s: that of the damping ratio at the first axial mode of the whole
+/// cable, and where it `rubs` no less than [`MATERIAL_DAMPING`]. Taut bars of a cable that can
+/// touch nothing have relaxation branches in its place (`loss`).
+pub(in crate::model::fem) fn damping_time(problem: &Problem, rubs: bool) -> f64 {
+    let wave = (problem.axial_stiffness / problem.linear_density).sqrt();
+    let first_mode = std::f64::consts::PI * wave / problem.damped_length;
+    let own = 2.0 * problem.cable.damping_ratio / first_mode;
+    if rubs { MATERIAL_DAMPING.max(own) } else { own }
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! These modules assemble the energies of one step into value, gradient and banded Hessian.
+//! These modules hold the input of one step and assemble its energies into value, gradient and
+//! banded Hessian.
 
 pub(in crate::model::fem) mod assembly;
 pub(in crate::model::fem) mod bar_energy;
@@ -9,3 +10,4 @@ pub(in crate::model::fem) mod friction_state;
 pub(in crate::model::fem) mod loss;
 pub mod mass;
 pub(in crate::model::fem) mod self_contact;
+pub(in crate::model::fem) mod step_input;

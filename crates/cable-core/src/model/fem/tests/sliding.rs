@@ -271,7 +271,7 @@ fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
     let node = d.mesh.sliding[k].unwrap();
     let (radius, aside) = (node.end.radius, 0.3 * turn);
     // The material that is there, but for what its strain makes of a hundredth of a millimetre.
-    let mark = crate::model::fem::mesh::arc_nodes::rotate(node.end.mark, node.end.sense * aside);
+    let mark = crate::model::fem::mesh::tangent_path::rotate(node.end.mark, node.end.sense * aside);
     d.mesh.sliding[k] = Some(crate::model::fem::mesh::sliding_node::SlidingNode {
         end: crate::model::fem::mesh::tangent_path::End { mark, ..node.end },
         ..node

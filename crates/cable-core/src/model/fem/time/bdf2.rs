@@ -17,10 +17,10 @@ use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::Inertia;
 use crate::model::fem::dynamics::{Dynamics, STIFFNESS_CHANGE};
 use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
-use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose};
-use crate::model::fem::newton::step_setup::damping_time;
+use crate::model::fem::state::history::Motion;
 use crate::model::fem::system::friction_state::SLIDE;
-use crate::model::fem::time::history::Motion;
+use crate::model::fem::system::loss::damping_time;
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose};
 use crate::model::fem::time::momentum::mass_with;
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.

@@ -3,8 +3,8 @@
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::newton::step_input::Pose;
 use crate::model::fem::system::bar_weight;
+use crate::model::fem::system::step_input::Pose;
 use crate::model::input_filter::{Hand, SmoothedTarget, is_led};
 use crate::solution::Warning;
 

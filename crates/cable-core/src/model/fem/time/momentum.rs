@@ -12,53 +12,20 @@ use crate::contact::friction;
 use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::Seat;
-use crate::model::fem::newton::step_input::Pose;
+use crate::model::fem::state::account::{Account, Kinds};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::bar_weight;
+use crate::model::fem::system::step_input::Pose;
 use crate::model::fem::time::bdf2::Weights;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::MomentumAccount;
 
-/// Something for each kind of force: weight, loads, supports, contacts.
-pub(in crate::model::fem) type Kinds = [Vec2; 4];
-
 const WEIGHT: usize = 0;
 const LOADS: usize = 1;
 const SUPPORTS: usize = 2;
 const CONTACTS: usize = 3;
-
-/// What became of the momentum since the caller's step began.
-#[derive(Clone, Copy, Debug, Default)]
-pub(in crate::model::fem) struct Account {
-    /// When it began, and up to when it goes, s.
-    from: f64,
-    to: f64,
-    /// Momentum as it began, kg m/s.
-    before: Vec2,
-    /// Momentum after the last step, on the mesh that it balanced, kg m/s.
-    pub(in crate::model::fem) reached: Vec2,
-    /// Impulses since it began, N s.
-    sum: Kinds,
-    /// Of those, what came of changes of the mesh after the last step, N s.
-    late: Kinds,
-    /// Impulses of the last step that the history of the next one has, N s.
-    last: Kinds,
-    /// Those of the step before that, N s.
-    older: Kinds,
-}
-
-impl Account {
-    /// The caller's step ends now (s): the sum of its inner steps rounds.
-    pub(in crate::model::fem) fn ends_at(&mut self, time: f64) {
-        self.to = time;
-    }
-
-    fn add(&mut self, kind: usize, impulse: Vec2) {
-        self.sum[kind] += impulse;
-    }
-}
 
 fn kind_of(seat: Seat) -> usize {
     match seat {

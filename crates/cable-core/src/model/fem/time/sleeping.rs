@@ -7,6 +7,7 @@
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::{Dynamics, REACH};
+use crate::model::fem::state::stepping::Sleep;
 
 /// How long a cable must have been still, s. Shorter: a slow swing that turns round may be caught.
 const SLEEP_DELAY_S: f64 = 0.5;
@@ -14,18 +15,6 @@ const SLEEP_DELAY_S: f64 = 0.5;
 /// How far (m) a node may have moved in that time: five times the reach of the barrier: a trembling
 /// contact moves its neighbours by a few.
 const SLEEP_DISTANCE: f64 = 5.0 * REACH;
-
-/// What is watched to know whether the cable is still, and what acted when it fell asleep.
-#[derive(Clone, Debug, Default)]
-pub(in crate::model::fem) struct Sleep {
-    since: f64,
-    place: Vec<Vec2>,
-    arc_length: Vec<f64>,
-    force: Vec<Vec2>,
-    target: Vec<Vec2>,
-    held: Vec<bool>,
-    asleep: bool,
-}
 
 impl Dynamics {
     /// Looks whether the cable has been still since the last look; to be called after a step.

@@ -26,29 +26,6 @@ const STEP_CHANGE_LIMIT: f64 = 2.0;
 /// in it: with less the step would be short where a vibration turns and long where it is fastest.
 const MEMORY: f64 = 0.25;
 
-/// What was seen of the motion, and the step that follows from it.
-#[derive(Clone, Debug)]
-pub(in crate::model::fem) struct StepSizeController {
-    /// ∫ Σ l |a|² dt, m³/s³, ∫ Σ l |v|² dt, m³/s, and ∫ dt, s.
-    seen: [f64; 3],
-    /// Longest step of the next frame, s.
-    pub(in crate::model::fem) step: f64,
-    /// Longest step of all, s.
-    longest: f64,
-}
-
-impl StepSizeController {
-    /// Nothing was seen yet.
-    pub(in crate::model::fem) fn new(longest: f64) -> Self {
-        Self { seen: [0.0; 3], step: longest, longest }
-    }
-
-    /// What was seen is forgotten.
-    pub(in crate::model::fem) fn forget(&mut self) {
-        *self = Self::new(self.longest);
-    }
-}
-
 impl Dynamics {
     /// Looks at a step of `h` (s) just made. What falls or lands is no vibration.
     pub(in crate::model::fem) fn note_pace(&mut self, h: f64) {

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
 use crate::model::fem::dynamics::{Dynamics, REACH};
-use crate::model::fem::equilibrium::initial_guess::push_out;
 use crate::model::fem::free::stations::{Hold, Layout};
 use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, StickSlip};
 use crate::model::fem::mesh::tangent_path::End;
+use crate::model::fem::newton::initial_guess::push_out;
 use crate::scene::PulleySide;
 use crate::state::State;
 

@@ -34,8 +34,8 @@ impl MassSpringModel {
         }
     }
 
-    /// Where nodes that hands hold go without springs of the cable in a preview's sub-step of `h`
-    /// (s): nodes and their velocities before it.
+    /// Returns where nodes that hands hold go without springs of the cable in a preview's sub-step
+    /// of `h` (s): nodes and their velocities before it.
     pub(in crate::model::mass_spring) fn predict_hands(&mut self, h: f64, chain: &mut Chain) -> Vec<(usize, Vec2)> {
         let mut found = Vec::new();
         for (hand, &node) in self.drives.hands.iter().zip(&self.chain.node_of) {

@@ -6,7 +6,7 @@
 
 use crate::math::Vec2;
 use crate::model::mass_spring::MassSpringModel;
-use crate::solution::{Warning, WarningKind};
+use crate::solution::{Warning, WarningCause};
 
 /// Fastest a node may move, m/s. Recoil of a broken rope stays below it (breaking strain times wave
 /// speed: 20 m/s for steel, 300 m/s for nylon); a lower limit cuts that, a higher one lets thin
@@ -119,29 +119,11 @@ impl MassSpringModel {
     /// Says what was held back.
     pub(in crate::model::mass_spring) fn warn_of(&mut self, trouble: &Trouble) {
         let name = &self.problem.cable.name;
-        let place = |e: &Excess| {
-            format!("at {:.3} m ({:.3} m, {:.3} m) after {:.4} s", e.arc_length_m, e.at.x, e.at.y, e.time_s)
-        };
-        let fast = trouble.speed.map(|e| {
-            let message = format!(
-                "`{name}` moved at {:.0} m/s {}: its velocity was cut to {NODE_SPEED_LIMIT} m/s and the motion from then on is not to be believed; use fem",
-                e.value,
-                place(&e)
-            );
-            (e, message)
-        });
-        let violent = trouble.energy.map(|e| {
-            let message = format!(
-                "the kinetic energy of `{name}` reached {:.3e} J, fastest {}, where supports, loads and stretch can give {:.3e} J: the motion was braked and is not to be believed; use fem, or more segments",
-                e.value,
-                place(&e),
-                e.limit
-            );
-            (e, message)
-        });
-        for (e, message) in fast.into_iter().chain(violent) {
-            let w = Warning::new(WarningKind::Stabilised, name, e.arc_length_m, [e.value, e.limit], message);
-            self.report.warnings.push(Warning { at_m: Some([e.at.x, e.at.y]), since_s: Some(e.time_s), ..w });
+        let fast = trouble.speed.map(|e| (e, WarningCause::SpeedCut));
+        let violent = trouble.energy.map(|e| (e, WarningCause::EnergyCut));
+        for (e, cause) in fast.into_iter().chain(violent) {
+            let w = Warning::new(cause, name, e.arc_length_m, [e.value, e.limit]).at(e.at.into());
+            self.report.warnings.push(Warning { since_s: Some(e.time_s), ..w });
         }
     }
 }

@@ -274,7 +274,7 @@ impl Contacts {
         value
     }
 
-    /// Where friction holds from now on.
+    /// Returns where friction holds from now on.
     pub(in crate::model::mass_spring) fn commit(&self, model: &MassSpringModel) -> Vec<Anchor> {
         self.rubs
             .iter()
@@ -314,7 +314,7 @@ impl Contacts {
 const SLIP_FRACTION: f64 = 0.999;
 
 impl Rub {
-    /// How far the material has moved from its anchor, m.
+    /// Returns how far the material has moved from its anchor, m.
     fn shift(&self, model: &MassSpringModel) -> Vec2 {
         let (a, b) = (model.chain.x[self.element], model.chain.x[self.element + 1]);
         a + (b - a) * self.fraction - self.anchor.at
@@ -322,9 +322,9 @@ impl Rub {
 }
 
 impl MassSpringModel {
-    /// What a floor leaves open of tension, over the largest: where the cable does not slide on it,
-    /// friction is whatever the way there left, up to μ times what presses. 0 where nothing is
-    /// remembered.
+    /// Returns what a floor leaves open of tension, over the largest: where the cable does not
+    /// slide on it, friction is whatever the way there left, up to μ times what presses. 0 where
+    /// nothing is remembered.
     pub(in crate::model::mass_spring) fn held_by_floor(&self) -> f64 {
         let Some((mu, normal)) = self.problem.floor_friction else { return 0.0 };
         let on_floor = self.contacts.anchors.iter().take_while(|a| a.surface == Surface::Floor).count();

@@ -42,7 +42,7 @@ impl MassSpringModel {
         changed
     }
 
-    /// Whether a node only belongs to the mesh.
+    /// Returns whether a node only belongs to the mesh.
     fn plain(&self, n: usize) -> bool {
         n > 0
             && n + 1 < self.chain.x.len()

@@ -165,7 +165,7 @@ impl MassSpringModel {
         self.wheels.pulley_at.get(node).copied().flatten().and_then(|k| self.wheels.pulleys.get(k))
     }
 
-    /// How element `e` lies at positions `x`.
+    /// Returns how element `e` lies at positions `x`.
     pub(in crate::model::mass_spring) fn reach_at(&self, e: usize, x: &[Vec2]) -> Reach {
         let (a, b) = (x[e], x[e + 1]);
         let wheel = |node: usize| self.pulley_of(node).filter(|p| p.radius > 0.0);
@@ -193,17 +193,17 @@ impl MassSpringModel {
         Reach { start, end, direction, free, length, arc: arcs, middle: (start + end) * 0.5, hung }
     }
 
-    /// How element `e` lies now.
+    /// Returns how element `e` lies now.
     pub(in crate::model::mass_spring) fn reach(&self, e: usize) -> Reach {
         self.reach_at(e, &self.chain.x)
     }
 
-    /// Whether an end of the element is on a pulley.
+    /// Returns whether an end of the element is on a pulley.
     pub(in crate::model::mass_spring) fn at_pulley(&self, e: usize) -> bool {
         self.wheels.pulley_at[e].is_some() || self.wheels.pulley_at[e + 1].is_some()
     }
 
-    /// Whether an end of the element is on a wheel with a radius.
+    /// Returns whether an end of the element is on a wheel with a radius.
     pub(in crate::model::mass_spring) fn on_wheel(&self, e: usize) -> bool {
         [e, e + 1].iter().any(|&n| self.pulley_of(n).is_some_and(|p| p.radius > 0.0))
     }

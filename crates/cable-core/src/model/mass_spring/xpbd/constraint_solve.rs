@@ -179,8 +179,8 @@ impl MassSpringModel {
         p.rate * h - sense * self.problem.thermal_stretch * p.grip() * self.beyond(p) * h * h / p.mass
     }
 
-    /// How much more the tensions at the wheel sum up to than those of the elements, N, in the last
-    /// sub-step.
+    /// Returns how much more the tensions at the wheel sum up to than those of the elements, N, in
+    /// the last sub-step.
     fn beyond(&self, p: &Pulley) -> f64 {
         p.tension[0] + p.tension[1] - self.chain.tension[p.node - 1] - self.chain.tension[p.node]
     }

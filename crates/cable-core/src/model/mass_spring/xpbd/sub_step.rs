@@ -20,7 +20,7 @@ use crate::model::mass_spring::MassSpringModel;
 use crate::model::mass_spring::integrator::MOST_SUB_STEPS;
 use crate::model::mass_spring::xpbd::constraint_solve::Chain;
 use crate::model::settings::Stepping;
-use crate::solution::{Warning, WarningKind};
+use crate::solution::{Warning, WarningCause};
 
 /// Longest sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in
 /// proportion.
@@ -146,10 +146,7 @@ impl MassSpringModel {
             return;
         }
         let name = &self.problem.cable.name;
-        let message = format!(
-            "`{name}` is too stiff for explicit steps in real time: this is a preview in steps of {h:.2e} s that damps fast motion; use fem, fewer segments or a smaller axial stiffness for figures"
-        );
         let stable = 1.0 / 60.0 / MOST_SUB_STEPS;
-        self.report.warnings.push(Warning::new(WarningKind::Stabilised, name, 0.0, [h, stable], message));
+        self.report.warnings.push(Warning::new(WarningCause::StiffPreview, name, 0.0, [h, stable]));
     }
 }

@@ -21,6 +21,8 @@ use std::sync::Arc;
 use crate::contact::geometry::{Body, Edge};
 use crate::math::{Vec2, bounded, cross, perp, sin_cos};
 
+/// A support this near to a boundary lies on it, m.
+pub(in crate::model::spans) const SUPPORT_CONTACT_DISTANCE_M: f64 = 1e-9;
 /// An edge holds the cable if the load presses on it with more than this part of itself. Smaller: a
 /// wall that rounding tilts would hold a cable that hangs beside it. Larger: floors steeper than
 /// 89.99° would not hold.

@@ -15,7 +15,7 @@
 use crate::math::larger;
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::Place;
-use crate::model::spans::contact::friction_memory::{Ends, Front, Held, Mode, TensionProfile};
+use crate::model::spans::boundary::friction_memory::{Ends, Front, Held, Mode, TensionProfile};
 
 /// Residuals and their derivatives by (p₁, s₁, T₁, p₂, s₂, T₂).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

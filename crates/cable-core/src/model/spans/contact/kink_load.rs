@@ -6,11 +6,10 @@
 //! rest on either edge, joined to the load.
 
 use crate::math::{Vec2, larger};
-use crate::model::spans::changes::resolve;
-use crate::model::spans::contact::friction_memory::{Knot, Mode, TensionProfile};
+use crate::model::spans::boundary::friction_memory::{Knot, Mode, TensionProfile};
 use crate::model::spans::contact::point_load::{LoadBalance, felt};
 use crate::model::spans::failure::Failure;
-use crate::model::spans::run::{CableRun, Contact, Course, RestingLoad};
+use crate::model::spans::run::{CableRun, Contact, Course, Kink, RestingLoad};
 
 /// A load so far beyond the end of its chain (m or rad) is in the kink there. Smaller: rounding.
 const CHAIN_END_ROUNDING: f64 = 1e-12;
@@ -18,29 +17,6 @@ const CHAIN_END_ROUNDING: f64 = 1e-12;
 const CONE_ROUNDING: f64 = 1e-12;
 /// Part of the strand that a contact gives way by where a load leaves it, to begin with.
 const GIVE_WAY_FRACTION: f64 = 1e-6;
-
-/// Which way along the boundary the kink lies that a load is in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::model::spans) enum Kink {
-    Back,
-    Ahead,
-}
-
-impl Kink {
-    fn sign(self) -> f64 {
-        match self {
-            Self::Back => -1.0,
-            Self::Ahead => 1.0,
-        }
-    }
-
-    fn side(self) -> usize {
-        match self {
-            Self::Back => 0,
-            Self::Ahead => 1,
-        }
-    }
-}
 
 /// The piece beyond the kink at an end of a contact's chain, and p of the kink.
 fn beyond(course: &Course, c: &Contact, kink: Kink) -> Option<(i64, f64)> {
@@ -138,7 +114,7 @@ fn part(strand: &mut CableRun, course: &Course, j: usize, side: usize) {
     }
     strand.contacts[if side == 0 { i } else { j }].next.part();
     give_way(strand, i, 1 - side);
-    resolve(strand, course, j + side);
+    strand.resolve_span(course, j + side);
 }
 
 /// An end of contact i gives way by a little, for a span to begin there.

@@ -3,11 +3,10 @@
 
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp};
-use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
+use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie};
-use crate::model::spans::verify::penetration;
 
 /// A load of span k, or the tip of it, that is deeper inside something than `deep` (m).
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +45,7 @@ pub(in crate::model::spans) fn find(
         }
     };
     let mut before: Option<Vec2> = None;
-    penetration::shapes(strand, course, k, |s0, at, shape| {
+    strand.shapes(course, k, |s0, at, shape| {
         let (start, end) = (shape.start_force(), shape.end_force());
         match before.take() {
             Some(force) => look(s0, at, force / force.norm() + start / start.norm(), None, &mut worst),

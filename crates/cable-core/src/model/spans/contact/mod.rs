@@ -1,8 +1,6 @@
-//! These modules hold what a contact is: its friction memory, its equations, loads on it and its
-//! ends.
+//! These modules hold the equations of a contact, the loads on it and its ends.
 
 pub(in crate::model::spans) mod equations;
-pub(in crate::model::spans) mod friction_memory;
 pub(in crate::model::spans) mod kink_load;
 pub(in crate::model::spans) mod load_landing;
 pub(in crate::model::spans) mod point_load;

@@ -17,8 +17,7 @@
 use crate::catenary::PointForce;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::changes::resolve;
-use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
+use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::kink_load;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
@@ -217,13 +216,13 @@ fn lift(strand: &mut CableRun, course: &Course, j: usize) {
             if !lies {
                 strand.ties[side] = Tie::Hangs(force);
             }
-            resolve(strand, course, if side == 0 { 0 } else { strand.contacts.len() });
+            strand.resolve_span(course, if side == 0 { 0 } else { strand.contacts.len() });
             return;
         }
     }
     strand.contacts.remove(j);
     strand.forces.remove(j + usize::from(!before));
-    resolve(strand, course, j);
+    strand.resolve_span(course, j);
 }
 
 /// Joins loads to what lies on their chains beside them.

@@ -7,8 +7,7 @@
 //! post with a bottom between them are two until they meet.
 
 use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::changes::resolve;
-use crate::model::spans::contact::friction_memory::{Ends, Mode, TensionProfile};
+use crate::model::spans::boundary::friction_memory::{Ends, Mode, TensionProfile};
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 use crate::model::spans::run::{CableRun, Contact, Course, Next};
 
@@ -78,15 +77,15 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
             strand.contacts.insert(j + 1, other);
             let g = strand.forces[j + 1];
             strand.forces.insert(j + 1, g);
-            resolve(strand, course, j + 1);
+            strand.resolve_span(course, j + 1);
         }
         (true, false) => {
             c.ends = Ends { p: [e.p[0], edges[0]], s: [e.s[0], s0], t: [e.t[0], t0] };
-            resolve(strand, course, j + 1);
+            strand.resolve_span(course, j + 1);
         }
         (false, true) => {
             c.ends = Ends { p: [edges[1], e.p[1]], s: [s1, e.s[1]], t: [t1, e.t[1]] };
-            resolve(strand, course, j);
+            strand.resolve_span(course, j);
         }
         (false, false) => return false,
     }

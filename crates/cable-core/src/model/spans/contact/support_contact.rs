@@ -1,7 +1,7 @@
 //! A support may come to lie on a boundary, slide along it, or lift the cable off it.
 
 use crate::math::Vec2;
-use crate::model::spans::changes::SUPPORT_CONTACT_DISTANCE_M;
+use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::run::{CableRun, Course, Tie};
 
 /// Part of a contact that the first guess of a lifted end leaves lying at least.

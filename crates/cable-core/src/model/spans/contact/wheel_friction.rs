@@ -8,8 +8,8 @@
 use crate::math::Vec2;
 use crate::model::spans::boundary::capstan::{Law, Track};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
+use crate::model::spans::boundary::friction_memory::{Ends, Held, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::equations;
-use crate::model::spans::contact::friction_memory::{Ends, Held, Knot, Mode, TensionProfile};
 
 /// A wheel is one arc.
 const WHEEL_RANGE: ChainRange = ChainRange { first: 0, last: 0 };

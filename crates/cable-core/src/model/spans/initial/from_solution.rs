@@ -8,10 +8,10 @@
 //! cone.
 
 use crate::math::{Vec2, cross, perp};
+use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
+use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
-use crate::model::spans::changes::SUPPORT_CONTACT_DISTANCE_M;
-use crate::model::spans::contact::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::solution::Node;

@@ -1,6 +1,6 @@
 //! This module lays a run along its shortest path.
 
-use crate::model::spans::contact::friction_memory::TensionProfile;
+use crate::model::spans::boundary::friction_memory::TensionProfile;
 use crate::model::spans::initial::contacts::{measure, spread};
 use crate::model::spans::run::{CableRun, Contact, Course};
 

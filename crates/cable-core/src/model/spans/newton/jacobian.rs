@@ -3,9 +3,9 @@
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::boundary::segment_cursor::Pivot;
 use crate::model::spans::contact::equations;
-use crate::model::spans::contact::friction_memory::Mode;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::numerics::band_lu::Band;
 use crate::model::spans::run::{CableRun, Contact, Course, Tie};

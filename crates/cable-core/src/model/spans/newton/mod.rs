@@ -22,9 +22,9 @@ mod tests;
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::capstan::Track;
+use crate::model::spans::boundary::friction_memory::{Held, Mode, TensionProfile};
 use crate::model::spans::boundary_conditions::BoundaryConditions;
 use crate::model::spans::contact::equations;
-use crate::model::spans::contact::friction_memory::{Held, Mode, TensionProfile};
 use crate::model::spans::contact::point_load;
 use crate::model::spans::newton::jacobian::{System, assemble, gather, lies, pinned, renew, scatter};
 use crate::model::spans::newton::slip_predictor::Foresight;

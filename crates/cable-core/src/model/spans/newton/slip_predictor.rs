@@ -22,8 +22,8 @@
 use crate::math::{Vec2, angle, exp, larger};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::boundary::friction_memory::{Ends, Mode};
 use crate::model::spans::boundary::segment_cursor::Pivot;
-use crate::model::spans::contact::friction_memory::{Ends, Mode};
 use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 
 /// Rounds of changing sides, over two for each contact.

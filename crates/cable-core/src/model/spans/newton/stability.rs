@@ -1,6 +1,6 @@
 //! This check finds whether an equilibrium is stable.
 
-use crate::model::spans::contact::friction_memory::Mode;
+use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::newton::{Work, assemble, lies};
 use crate::model::spans::run::{CableRun, Course, Next, Tie};
 

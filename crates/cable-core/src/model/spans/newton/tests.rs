@@ -1,5 +1,5 @@
+use crate::model::spans::boundary_conditions::CableEquilibrium;
 use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, Layout};
-use crate::model::spans::continuation::CableEquilibrium;
 use crate::model::spans::newton::*;
 use crate::model::spans::run::Next;
 use crate::problem::problems;

@@ -13,8 +13,9 @@
 //! falls plumb it rises beyond all bounds.
 
 use crate::math::{Vec2, larger};
+use crate::model::spans::boundary::loose::{Line, Part};
 use crate::model::spans::slack::joint::Profile;
-use crate::model::spans::slack::{Drape, HALVINGS, Line, Part};
+use crate::model::spans::slack::{Drape, HALVINGS};
 
 /// How far from its support a span may end, of its length and the size of coordinates: next to
 /// plumb rounding of where it touches moves its end a thousand times as much. Larger: a jump could

@@ -6,35 +6,10 @@
 
 use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::boundary::loose::{Borne, Heap, Line, Part, Stretch};
 use crate::model::spans::initial::drained_route::Frame;
 use crate::model::spans::run::Course;
-use crate::model::spans::slack::{CREST_CONE_ROUNDING, Line, Part, Stretch};
-
-/// A heap.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Heap {
-    pub at: Vec2,
-    /// What carries it.
-    pub edges: [Option<Borne>; 2],
-}
-
-/// What an edge carries of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Borne {
-    /// Index of the boundary.
-    pub curve: usize,
-    pub normal: Vec2,
-    /// Force on the cable along the normal and along the boundary, N.
-    pub press: f64,
-    pub friction: f64,
-    pub tangent: Vec2,
-}
-
-impl Borne {
-    pub fn force(&self) -> Vec2 {
-        self.normal * self.press + self.tangent * self.friction
-    }
-}
+use crate::model::spans::slack::CREST_CONE_ROUNDING;
 
 /// The lowest place that holds a heap drawn by a force (N), and before which part that is.
 pub(super) fn heap(parts: &[Part], course: &Course, frame: Frame, force: Vec2) -> Option<(usize, Heap)> {

@@ -18,7 +18,8 @@
 //! is as far from the centre of the round as its radius, where it is nearest.
 
 use crate::math::{Vec2, cross, larger};
-use crate::model::spans::slack::{Drape, HALVINGS, Line, Part, STRAIGHT_TURN, Stretch};
+use crate::model::spans::boundary::loose::{Line, Part, Stretch};
+use crate::model::spans::slack::{Drape, HALVINGS, STRAIGHT_TURN};
 
 /// Doublings of the force across the load in the search for one that is too large.
 const MOST_DOUBLED: usize = 60;

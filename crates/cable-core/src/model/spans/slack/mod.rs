@@ -31,11 +31,12 @@ mod report;
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::capstan::Step;
 use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::boundary::loose::{Line, Loose, Part, Stretch};
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout};
 use crate::model::spans::initial::drained_route::{Drained, Frame, Leg, NONE_M, Roofs};
 use crate::model::spans::initial::route::way;
 use crate::model::spans::run::{CableRun, Course, Tie};
-use crate::model::spans::slack::heap::{Heap, heap};
+use crate::model::spans::slack::heap::heap;
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
 const CREST_CONE_ROUNDING: f64 = 1e-9;
@@ -47,48 +48,6 @@ const EXCESS_CABLE_FRACTION: f64 = 1e-9;
 const STRAIGHT_TURN: f64 = 1e-6;
 /// Halvings of a stretch in the search for where its tension ends.
 const HALVINGS: usize = 60;
-
-/// How a strand lies.
-#[derive(Clone, Debug, PartialEq)]
-pub(in crate::model::spans) struct Loose {
-    parts: Vec<Part>,
-    /// Dead loads on free ends, which lie, N.
-    drawn: Vec2,
-}
-
-/// A part of it, in order along the cable.
-#[derive(Clone, Debug, PartialEq)]
-struct Part {
-    /// Material at its ends, m.
-    s: [f64; 2],
-    /// Tension at its ends, N.
-    tension: [f64; 2],
-    form: Line,
-}
-
-/// Where it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Line {
-    /// Plumb, from one point to another.
-    Hangs([Vec2; 2]),
-    /// On a piece of a boundary.
-    Lies(Stretch),
-    /// In one place.
-    Heap(Heap),
-    /// Free between a support and a crest, with tension: from a point, with a force in the cable
-    /// there (N).
-    Spans { from: Vec2, force: Vec2 },
-}
-
-/// A stretch of a boundary, p from where to where, with the part `m` of friction that is called
-/// upon against going on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Stretch {
-    curve: usize,
-    piece: i64,
-    p: [f64; 2],
-    m: f64,
-}
 
 impl Stretch {
     fn place(&self, course: &Course, p: f64) -> Place {

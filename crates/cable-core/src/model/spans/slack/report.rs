@@ -3,10 +3,9 @@
 use crate::math::Vec2;
 use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point};
+use crate::model::spans::boundary::loose::{Heap, Line, Loose, Part, Stretch};
 use crate::model::spans::initial::drained_route::NONE_M;
 use crate::model::spans::run::Course;
-use crate::model::spans::slack::heap::Heap;
-use crate::model::spans::slack::{Line, Loose, Part, Stretch};
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// Nodes of a plumb line and of a straight stretch.
@@ -91,7 +90,9 @@ impl Part {
         match &self.form {
             Line::Hangs(_) | Line::Spans { .. } => Vec2::zeros(),
             Line::Lies(_) => self.force(course, 0) - self.force(course, 1) - course.law.load * (self.s[1] - self.s[0]),
-            Line::Heap(heap) => heap.edges.iter().flatten().map(crate::model::spans::slack::heap::Borne::force).sum(),
+            Line::Heap(heap) => {
+                heap.edges.iter().flatten().map(crate::model::spans::boundary::loose::Borne::force).sum()
+            }
         }
     }
 }

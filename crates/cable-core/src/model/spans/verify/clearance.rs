@@ -12,7 +12,6 @@ use crate::contact::geometry::{Body, Edge};
 use crate::math::{Vec2, cross, perp, smaller};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Contact, Course};
-use crate::model::spans::verify::penetration;
 
 /// Depth that is none, m: what is asked of every answer.
 const DEPTH: f64 = 1e-6;
@@ -111,7 +110,7 @@ pub(in crate::model::spans) fn clear(strand: &CableRun, course: &Course, world: 
     let mut inside = None;
     for k in 0..strand.spans() {
         if strand.has_span(k) {
-            penetration::shapes(strand, course, k, |s0, at, shape| {
+            strand.shapes(course, k, |s0, at, shape| {
                 let length = shape.span().length;
                 let point = |s: f64| (at + shape.position_at(s), shape.force_at(s));
                 let fold = shape.lowest_s();

@@ -2,12 +2,12 @@
 //! the balance of each contact from its ends, and the cone of friction along it. `clearance` asks
 //! that nothing is inside an obstacle.
 
-use crate::math::{GAUSS, Vec2, bounded, cross};
+use crate::math::{GAUSS_5, Vec2, bounded, cross};
 use crate::model::spans::boundary::capstan::{Step, Track};
+use crate::model::spans::boundary_conditions::CableEquilibrium;
 use crate::model::spans::boundary_conditions::Layout;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::continuation::CableEquilibrium;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::results;
 use crate::model::spans::run::{CableRun, Contact, Course, Tie};
@@ -113,7 +113,7 @@ fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Ve
     if middle < 2.0 * from - to || middle > 2.0 * to - from || far > ONE_PANEL_FOLD_DISTANCE * (to - from) {
         let panels = if far > ONE_PANEL_FOLD_DISTANCE * (to - from) { 1 } else { TAUT_PANELS };
         let h = (to - from) / panels as f64;
-        let points = (0..panels).flat_map(|j| GAUSS.map(|(u, weight)| (from + (j as f64 + u) * h, weight * h)));
+        let points = (0..panels).flat_map(|j| GAUSS_5.map(|(u, weight)| (from + (j as f64 + u) * h, weight * h)));
         return points.fold(Vec2::zeros(), |sum, (s, weight)| sum + course.rate(force(s)) * weight);
     }
     let (v0, v1) = ((b * (from - middle) / across).asinh(), (b * (to - middle) / across).asinh());
@@ -121,7 +121,7 @@ fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Ve
     let h = (v1 - v0) / panels;
     let mut sum = Vec2::zeros();
     for j in 0..panels as usize {
-        for (u, weight) in GAUSS {
+        for (u, weight) in GAUSS_5 {
             let v = v0 + (j as f64 + u) * h;
             sum += course.rate(force(middle + across / b * v.sinh())) * (weight * h * across / b * v.cosh());
         }

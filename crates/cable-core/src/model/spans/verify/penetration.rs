@@ -155,7 +155,7 @@ pub(in crate::model::spans) fn deepest(
         return None;
     }
     let mut best: Option<Penetration> = None;
-    shapes(strand, course, k, |s0, at, shape| {
+    strand.shapes(course, k, |s0, at, shape| {
         let arc = Arc::new(s0, at, shape, course.law.load);
         let (low, high) = arc.bounds();
         for (index, body) in world.geometry().bodies().iter().enumerate() {
@@ -174,26 +174,6 @@ pub(in crate::model::spans) fn deepest(
         }
     });
     best
-}
-
-/// Calls back with each catenary of span k: its first material point, where that is, and its shape.
-pub(in crate::model::spans) fn shapes(
-    strand: &CableRun,
-    course: &Course,
-    k: usize,
-    mut each: impl FnMut(f64, Vec2, &Catenary),
-) {
-    let (from, to) = strand.material(k);
-    let chain = course.chain(from, to);
-    let start = strand.force(course, k, from);
-    let origin = match strand.ends_of(course, k) {
-        [Some(a), _] => a,
-        [None, Some(b)] => b - chain.reach(start).0,
-        [None, None] => return,
-    };
-    for (s0, at, shape) in chain.spans(start, origin) {
-        each(s0, at, &shape);
-    }
 }
 
 /// Calls back with the points of a catenary that may be deepest in a body.

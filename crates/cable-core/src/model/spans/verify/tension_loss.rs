@@ -4,7 +4,6 @@ use crate::error::TensionLoss;
 use crate::math::{Vec2, cross};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Course};
-use crate::model::spans::verify::penetration;
 
 /// A span has hardly any tension left when the force across its load is below this part of the load
 /// on it: it then hangs in a hairpin 1/50 as wide as it is long. Smaller: failures of slack spans
@@ -37,7 +36,7 @@ pub(in crate::model::spans) fn lost(
                 continue;
             }
             let mut place = None;
-            penetration::shapes(strand, course, k, |s0, at, shape| {
+            strand.shapes(course, k, |s0, at, shape| {
                 let s = shape.lowest_s();
                 place = place.or(Some((s0 + s, at + shape.position_at(s))));
             });

@@ -86,7 +86,7 @@ pub(in crate::model::spans) fn shape(strand: &CableRun, course: &Course, out: &m
     out.clear();
     for k in 0..strand.spans() {
         if strand.has_span(k) {
-            penetration::shapes(strand, course, k, |_, at, c| {
+            strand.shapes(course, k, |_, at, c| {
                 let h = c.span().length / POINTS as f64;
                 out.extend((0..=POINTS).map(|i| at + c.position_at(i as f64 * h)));
             });

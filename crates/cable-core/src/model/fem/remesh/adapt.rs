@@ -16,9 +16,9 @@ use crate::model::Inertia;
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Load, Seat, SlidingNode, StickSlip, round_of};
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
-use crate::model::fem::newton::step_setup::load_scale;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::floor_friction;
+use crate::model::fem::system::step_input::load_scale;
 
 /// Corners that turn by less (rad) are left to the barrier: there a chain jerks by less than 1e-3
 /// of its tension.

@@ -2,6 +2,15 @@
 
 pub use crate::error::FailureCause;
 use crate::math::Vec2;
+use crate::problem::Problem;
+
+/// Part of force times coordinate that counts as magnitude: times the noise of an energy four
+/// roundings of the coordinate. With none, a stiff pendulum's last iteration is lost in the
+/// rounding of 98 N times 1 m and its step is halved for nothing.
+pub const WORK_MAGNITUDE_FRACTION: f64 = 0.01;
+
+/// Unbalanced force accepted, part of the whole load.
+const TOLERANCE: f64 = 1e-6;
 
 /// The unknowns of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -150,4 +159,24 @@ pub struct Converged {
     pub iterations: usize,
     /// Largest unbalanced force left, N.
     pub residual: f64,
+}
+
+/// Factor of the equations of a node.
+pub(in crate::model::fem) fn node_scale(task: &StepInput, node: usize) -> f64 {
+    task.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
+}
+
+/// Load per metre that presses on the ground and the whole load, N/m and N; never 0.
+pub(in crate::model::fem) fn load_scale(problem: &Problem) -> (f64, f64) {
+    // What presses on the floor of a plan view counts by what it rubs.
+    let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal);
+    let whole = problem.force_scale().max(floor * problem.length);
+    let per_m = problem.body_force(0.0).norm().max(floor).max(1e-3 * whole / problem.length);
+    (per_m, whole)
+}
+
+/// Unbalanced force to reach, N: not below the rounding of the axial forces.
+pub(in crate::model::fem) fn tolerance(problem: &Problem, whole: f64) -> f64 {
+    let rounding = 64.0 * f64::EPSILON * problem.axial_stiffness * 100.0;
+    (TOLERANCE * whole).max(rounding)
 }

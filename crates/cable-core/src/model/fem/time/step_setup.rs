@@ -5,21 +5,12 @@ use crate::math::Vec2;
 use crate::model::fem::dynamics::{Dynamics, INNER_STEP, REACH};
 use crate::model::fem::mesh::sliding_node::Seat;
 use crate::model::fem::newton::minimize::{StepContext, Workspace};
-use crate::model::fem::newton::step_input::{Converged, Failure, FailureCause, Pose};
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::floor_friction;
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose};
 use crate::model::input_filter::MAX_SPEED;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-
-/// Unbalanced force accepted, part of the whole load.
-const TOLERANCE: f64 = 1e-6;
-
-/// Time constant of material damping, s, of a cable that may rub, where its own damping ratio does
-/// not ask for more. Without it a soft cable (EA 1e5 N) shows 11 % of axial noise in a drag. A
-/// cable that can touch nothing has its own damping alone: of what a weight that swings 9 times a
-/// second pulls beyond itself this would take a twelfth.
-const MATERIAL_DAMPING: f64 = 1e-3;
 
 /// Newton iterations of a dynamic step.
 const STEP_ITERATIONS: usize = 120;
@@ -358,29 +349,4 @@ pub(in crate::model::fem) fn clear_way(problem: &Problem, from: Vec2, to: Vec2) 
         part *= 0.5;
     }
     from
-}
-
-/// Load per metre that presses on the ground and the whole load, N/m and N; never 0.
-pub(in crate::model::fem) fn load_scale(problem: &Problem) -> (f64, f64) {
-    // What presses on the floor of a plan view counts by what it rubs.
-    let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal);
-    let whole = problem.force_scale().max(floor * problem.length);
-    let per_m = problem.body_force(0.0).norm().max(floor).max(1e-3 * whole / problem.length);
-    (per_m, whole)
-}
-
-/// Unbalanced force to reach, N: not below the rounding of the axial forces.
-pub(in crate::model::fem) fn tolerance(problem: &Problem, whole: f64) -> f64 {
-    let rounding = 64.0 * f64::EPSILON * problem.axial_stiffness * 100.0;
-    (TOLERANCE * whole).max(rounding)
-}
-
-/// Time constant of viscous loss, s: that of the damping ratio at the first axial mode of the whole
-/// cable, and where it `rubs` no less than [`MATERIAL_DAMPING`]. Taut bars of a cable that can
-/// touch nothing have relaxation branches in its place (`loss`).
-pub(in crate::model::fem) fn damping_time(problem: &Problem, rubs: bool) -> f64 {
-    let wave = (problem.axial_stiffness / problem.linear_density).sqrt();
-    let first_mode = std::f64::consts::PI * wave / problem.damped_length;
-    let own = 2.0 * problem.cable.damping_ratio / first_mode;
-    if rubs { MATERIAL_DAMPING.max(own) } else { own }
 }

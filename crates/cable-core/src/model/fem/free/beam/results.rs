@@ -1,7 +1,7 @@
 //! This module reads nodes out of a solved stiff cable: places, tensions, moments and curvatures.
 
-use crate::math::{Vec2, larger};
-use crate::model::fem::beam::equilibrium::{BEND_STIFFNESS_INTEGRALS, Beam, GAUSS, dot};
+use crate::math::{GAUSS_3, Vec2, larger};
+use crate::model::fem::free::beam::equilibrium::{BEND_STIFFNESS_INTEGRALS, Beam, dot};
 use crate::model::fem::free::results::Point;
 use crate::model::fem::free::stations::Stop;
 
@@ -96,7 +96,7 @@ impl Beam {
         let step = 1.0 / parts;
         for k in 1..parts as usize {
             let (from, x) = ((k - 1) as f64 * step, k as f64 * step);
-            for (part, weight) in GAUSS {
+            for (part, weight) in GAUSS_3 {
                 let x = from + part * step;
                 let t = self.tangent(self.angle(e, x));
                 let stretched = 1.0 + self.force(bar, x, starts).dot(&t) / self.material.axial_stiffness;

@@ -1,20 +1,13 @@
 //! Marks are the places on a round at which its material is counted.
 
-use crate::math::{Vec2, smaller};
+use crate::math::smaller;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::adapt::{MAX_CHANGES, NODE_REMOVAL_FRACTION};
-use crate::model::fem::mesh::sliding_node::SlidingNode;
-use crate::model::fem::mesh::tangent_path::End;
+use crate::model::fem::mesh::sliding_node::{MARKED_ARC_LIMIT, ONE_MARK_BAR_FRACTION, SlidingNode};
+use crate::model::fem::mesh::tangent_path::{End, rotate};
+use crate::model::fem::remesh::adapt::{MAX_CHANGES, NODE_REMOVAL_FRACTION};
 
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
 const MARK_TOLERANCE: f64 = 1e-9;
-
-/// An arc of more than this (rad) from the tangent to the first mark gets another mark, in the
-/// middle of it.
-pub(in crate::model::fem) const MARKED_ARC_LIMIT: f64 = 0.8;
-
-/// Rounds with less than this part of an even bar on them keep one mark.
-pub(in crate::model::fem) const ONE_MARK_BAR_FRACTION: f64 = 0.3;
 
 /// Logarithm of two tensions below which the next term of the series (x³/720) is rounding.
 const SERIES_LOG_RATIO: f64 = 1e-4;
@@ -136,12 +129,6 @@ impl Dynamics {
 fn part_before([before, after]: [f64; 2]) -> f64 {
     let x = if before > 0.0 && after > 0.0 { (before / after).ln() } else { 0.0 };
     if x.abs() < SERIES_LOG_RATIO { 0.5 - x / 12.0 } else { 1.0 / x - 1.0 / x.exp_m1() }
-}
-
-/// A vector turned by an angle (rad), counter-clockwise.
-pub(in crate::model::fem) fn rotate(v: Vec2, angle: f64) -> Vec2 {
-    let (sin, cos) = angle.sin_cos();
-    Vec2::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y)
 }
 
 #[cfg(test)]

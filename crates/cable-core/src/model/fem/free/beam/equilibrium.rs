@@ -22,8 +22,8 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::linalg::{BandFactor, BandMatrix};
-use crate::math::{Vec2, larger, perp};
-use crate::model::fem::beam::mesh::places;
+use crate::math::{GAUSS_3, Vec2, larger, perp};
+use crate::model::fem::free::beam::mesh::places;
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::pulley_balance::Network;
 use crate::model::fem::free::stations::{Layout, SpanEnds, Stop};
@@ -37,9 +37,6 @@ const LONGEST_TURN: f64 = 0.5;
 const STEP_TOLERANCE: f64 = 1e-11;
 /// Tries with other bending stiffnesses on the way to the real one.
 const MAX_TRIES: usize = 80;
-/// Gauss points of a bar from 0 to 1 and their weights.
-pub(in crate::model::fem) const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 /// 3l ∫φₐ'φ_b' ds of a bar of length l.
 pub(in crate::model::fem) const BEND_STIFFNESS_INTEGRALS: [[f64; 3]; 3] =
     [[7.0, -8.0, 1.0], [-8.0, 16.0, -8.0], [1.0, -8.0, 7.0]];
@@ -288,7 +285,7 @@ impl Beam {
 
     /// Bar `e` at its Gauss points.
     pub(in crate::model::fem) fn samples(&self, e: usize, starts: &[Vec2]) -> [Sample; 3] {
-        GAUSS.map(|(x, weight)| {
+        GAUSS_3.map(|(x, weight)| {
             let angle = self.angle(e, x);
             let t = Vec2::new(angle.cos(), angle.sin());
             let f = self.force(&self.bars[e], x, starts);
@@ -476,7 +473,7 @@ mod tests {
         };
         for a in 0..3 {
             for b in 0..3 {
-                let sum: f64 = GAUSS.iter().map(|&(x, w)| 3.0 * w * slope(x)[a] * slope(x)[b]).sum();
+                let sum: f64 = GAUSS_3.iter().map(|&(x, w)| 3.0 * w * slope(x)[a] * slope(x)[b]).sum();
                 assert!((sum - BEND_STIFFNESS_INTEGRALS[a][b]).abs() < 1e-12, "{a} {b}: {sum}");
             }
         }

@@ -1,0 +1,57 @@
+//! The outline of a robot has a way that it is led along in an advance.
+
+use std::sync::Arc;
+
+use crate::contact::outline::Outline;
+use crate::math::RigidPose;
+use crate::problem::Problem;
+
+/// Part of the time of a way that counts as nothing.
+const ARRIVAL_TOLERANCE: f64 = 1e-9;
+
+/// Longest way of the outline in a step without inertia, m.
+const LONGEST_WAY_M: f64 = 5e-3;
+
+/// The outline of a robot as a cable meets it.
+#[derive(Clone, Debug)]
+pub(in crate::model::fem) struct MovingOutline {
+    pub(in crate::model::fem) shape: Arc<Outline>,
+    /// Its number among the obstacles.
+    pub(in crate::model::fem) obstacle: usize,
+    /// Where it was when the way began, and where it is led to, with times in s.
+    pub(in crate::model::fem) from: (f64, RigidPose),
+    pub(in crate::model::fem) to: (f64, RigidPose),
+    /// Where it was led before.
+    pub(in crate::model::fem) led_before: RigidPose,
+    /// Whether it stays where it is until the end of this advance.
+    pub(in crate::model::fem) waits: bool,
+}
+
+/// The problem with the outline of the robot among its obstacles.
+pub(in crate::model::fem) fn with_outline(problem: Arc<Problem>) -> Arc<Problem> {
+    MovingOutline::of(problem).1
+}
+
+impl MovingOutline {
+    /// That of a problem, and the problem with it among its obstacles.
+    pub(in crate::model::fem) fn of(problem: Arc<Problem>) -> (Option<Self>, Arc<Problem>) {
+        let Some(shape) = problem.outline.clone() else { return (None, problem) };
+        let world = Arc::new(problem.world.with_outline(&shape, problem.radius));
+        let obstacle = world.geometry().bodies().last().map_or(0, |b| b.obstacle);
+        let at = (0.0, shape.placement);
+        let with_it = Problem { world, ..Problem::clone(&problem) };
+        (Some(Self { shape, obstacle, from: at, to: at, led_before: at.1, waits: false }), Arc::new(with_it))
+    }
+
+    /// Where it is to be at a time, s.
+    pub(in crate::model::fem) fn goal(&self, time: f64) -> RigidPose {
+        let (whole, left) = (self.to.0 - self.from.0, self.to.0 - time);
+        // Sums of steps come as near to their end as rounding lets them.
+        if left > ARRIVAL_TOLERANCE * whole { self.from.1.towards(&self.to.1, 1.0 - left / whole) } else { self.to.1 }
+    }
+
+    /// How many steps without inertia its way takes at least.
+    pub(in crate::model::fem) fn pieces(&self) -> f64 {
+        self.shape.max_displacement(&self.from.1, &self.to.1) / LONGEST_WAY_M
+    }
+}

@@ -1,0 +1,115 @@
+//! The sentences of warnings, errors and verdicts are made here from their data, in SI or US units.
+//!
+//! | room | sentences |
+//! |---|---|
+//! | `mod.rs` | [`Sentence`], and figures with their units |
+//! | `warning.rs` | warnings |
+//! | `scene_error.rs` | why a scene is refused |
+//! | `solve_error.rs` | why a model has no answer |
+//! | `verification.rs` | verdicts of the laws of mechanics |
+//!
+//! `Display` writes the sentence in SI units. Names stand between backticks.
+
+mod scene_error;
+mod solve_error;
+mod verification;
+mod warning;
+
+use crate::units::{Quantity, UnitSystem};
+
+/// Data that can be told in a sentence.
+pub trait Sentence {
+    /// The sentence in a system of units, without a full stop.
+    fn sentence(&self, units: UnitSystem) -> String;
+}
+
+/// `Display` as the sentence in SI units.
+macro_rules! display_in_si {
+    ($($data:ty),+) => {$(
+        impl std::fmt::Display for $data {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(&crate::wording::Sentence::sentence(self, crate::units::UnitSystem::Si))
+            }
+        }
+    )+};
+}
+pub(crate) use display_in_si;
+
+/// Figures in a system of units: a number in SI units, its unit behind it.
+#[derive(Clone, Copy)]
+struct Figures(UnitSystem);
+
+impl Figures {
+    /// With so many decimals.
+    fn fixed(self, quantity: Quantity, value: f64, decimals: usize) -> String {
+        self.with_unit(quantity, format!("{:.decimals$}", quantity.convert(value, self.0)))
+    }
+
+    /// As a power of ten with so many decimals.
+    fn power(self, quantity: Quantity, value: f64, decimals: usize) -> String {
+        self.with_unit(quantity, self.bare_power(quantity, value, decimals))
+    }
+
+    /// The same without the unit.
+    fn bare_power(self, quantity: Quantity, value: f64, decimals: usize) -> String {
+        format!("{:.decimals$e}", quantity.convert(value, self.0))
+    }
+
+    /// As it was given; converted, with five digits.
+    fn given(self, quantity: Quantity, value: f64) -> String {
+        self.with_unit(quantity, self.bare(quantity, value))
+    }
+
+    /// The same without the unit.
+    fn bare(self, quantity: Quantity, value: f64) -> String {
+        let converted = quantity.convert(value, self.0);
+        // Units that both systems share keep every digit.
+        if converted == value {
+            return format!("{value}");
+        }
+        let rounded = format!("{converted:.4e}");
+        rounded.parse::<f64>().map_or(rounded, |rounded| format!("{rounded}"))
+    }
+
+    fn with_unit(self, quantity: Quantity, number: String) -> String {
+        match quantity.symbol(self.0) {
+            "" => number,
+            symbol => format!("{number} {symbol}"),
+        }
+    }
+
+    /// A length (m) with so many decimals.
+    fn length(self, length_m: f64, decimals: usize) -> String {
+        self.fixed(Quantity::Length, length_m, decimals)
+    }
+
+    /// A length (m) with three decimals, or three digits where it is small or huge.
+    fn distance(self, length_m: f64) -> String {
+        let size = length_m.abs();
+        if size > 0.0 && size < 0.01 || size >= 1e6 {
+            self.power(Quantity::Length, length_m, 2)
+        } else {
+            self.length(length_m, 3)
+        }
+    }
+
+    /// A point (m) with so many decimals.
+    fn point(self, at_m: [f64; 2], decimals: usize) -> String {
+        format!("({}, {})", self.length(at_m[0], decimals), self.length(at_m[1], decimals))
+    }
+
+    /// A point (m) as a scene has it, without a unit.
+    fn bare_point(self, at_m: [f64; 2]) -> String {
+        format!("[{}, {}]", self.bare(Quantity::Length, at_m[0]), self.bare(Quantity::Length, at_m[1]))
+    }
+
+    /// A force (N) with so many decimals.
+    fn force(self, force_n: f64, decimals: usize) -> String {
+        self.fixed(Quantity::Force, force_n, decimals)
+    }
+
+    /// From one force (N) to another, with two decimals.
+    fn forces(self, [from_n, to_n]: [f64; 2]) -> String {
+        format!("{:.2} to {}", Quantity::Force.convert(from_n, self.0), self.force(to_n, 2))
+    }
+}

@@ -1,0 +1,272 @@
+//! Why a model has no answer. Every sentence says where, in lengths and names, and what can be
+//! done; none holds a number that is not finite.
+
+use super::{Figures, Sentence, display_in_si};
+use crate::error::{FailureCause, NoEquilibrium, Place, SolveError, SpanError, Unsupported};
+use crate::units::{Quantity, UnitSystem};
+
+/// A force that no cable bears, N: left over it says that a search ran away, not how much is
+/// missing.
+const MAX_CREDIBLE_FORCE_N: f64 = 1e9;
+
+display_in_si!(SolveError, NoEquilibrium, FailureCause, Unsupported, SpanError, Place);
+
+impl std::error::Error for SolveError {}
+impl std::error::Error for NoEquilibrium {}
+impl std::error::Error for FailureCause {}
+impl std::error::Error for Unsupported {}
+impl std::error::Error for SpanError {}
+
+impl Sentence for Place {
+    fn sentence(&self, units: UnitSystem) -> String {
+        let f = Figures(units);
+        let mut text = match self.arc_length_m.is_finite() {
+            true => format!("{} along the cable", f.distance(self.arc_length_m)),
+            false => "somewhere along the cable".to_owned(),
+        };
+        if self.at_m.iter().all(|c| c.is_finite()) {
+            text += &format!(", at ({}, {})", f.distance(self.at_m.x), f.distance(self.at_m.y));
+        }
+        match &self.near {
+            Some((name, distance)) if distance.is_finite() && *distance > 0.0 => {
+                text + &format!(", {} from {name}", f.distance(*distance))
+            }
+            Some((name, _)) => text + ", at " + name,
+            None => text,
+        }
+    }
+}
+
+impl Sentence for SolveError {
+    fn sentence(&self, units: UnitSystem) -> String {
+        let f = Figures(units);
+        match self {
+            Self::NotConverged { model, residual_n, place, .. } => format!(
+                "{model} found no resting place: {} {}. Lay the cable by another way there (route_m), or ask another model",
+                left_over(f, *residual_n),
+                place.sentence(units)
+            ),
+            Self::TooMuchWork { model, segments, residual_n, place, .. } => format!(
+                "{model} has found no resting place with {segments} segments by all the work it does for one: {} {}. Draw the cable a route_m nearer to where it will lie, or give it fewer segments",
+                left_over(f, *residual_n),
+                place.sentence(units)
+            ),
+            Self::Compressed { model, tension_n, place } => {
+                let by = if tension_n.is_finite() && *tension_n < 0.0 {
+                    format!(" with {}", f.power(Quantity::Force, -tension_n, 3))
+                } else {
+                    String::new()
+                };
+                format!(
+                    "{model} found only a state in which the cable pushes{by} {}, and a cable cannot push: it needs more tension there, or another model",
+                    place.sentence(units)
+                )
+            }
+            Self::Indefinite { model } => format!(
+                "{model} found only a shape that does not stay (it would snap to another): lay the cable on the side where it shall rest (route_m)"
+            ),
+            Self::TensionLost { model, loss, arc_length_m, at_m } => format!(
+                "{model} follows a taut cable only: {loss} {} along it, at {}",
+                f.length(*arc_length_m, 3),
+                f.point((*at_m).into(), 3)
+            ),
+            Self::NoRestingPlace { why } => format!("there is no resting place: {}", why.sentence(units)),
+            Self::Neither { told, other } => format!("{}; and {}", told.sentence(units), other.sentence(units)),
+            Self::Unsupported { model, feature } => {
+                format!("{model} cannot answer this scene: {}", feature.sentence(units))
+            }
+            Self::NonFinite { quantity, arc_length_m, time_s } => format!(
+                "{quantity} is no finite number {} along the cable at {}: a time step, a load or a stiffness is far out of proportion to the others",
+                f.distance(*arc_length_m),
+                if time_s.is_finite() { format!("{time_s} s") } else { "no finite time".to_owned() }
+            ),
+            Self::Buried { model, obstacle, depth_m, arc_length_m, at_m } => format!(
+                "{model} cannot go on from where the cable runs through `{obstacle}`: {} inside at {} along it, at {}",
+                f.length(*depth_m, 4),
+                f.length(*arc_length_m, 3),
+                f.point((*at_m).into(), 3)
+            ),
+            Self::Unsound { model, finding } => {
+                format!("the answer of {model} is not sound: {}", finding.sentence(units))
+            }
+            Self::Setting { name, value, allowed } => {
+                format!("the setting {name} = {value} cannot be worked by: it must lie in {allowed}")
+            }
+            Self::TimeStep { dt_s, allowed } => {
+                format!("a time step of {dt_s} s cannot be taken: it must lie in {allowed}")
+            }
+            Self::StepFailed { model, time_s, dt_s, residual_n, place, cause } => format!(
+                "{model} stopped at {time_s:.6} s: the step was halved to {dt_s:.3e} s and still failed: {} {} ({})",
+                left_over(f, *residual_n),
+                place.sentence(units),
+                cause.sentence(units)
+            ),
+        }
+    }
+}
+
+/// A force that is left over, where a solver knows one: a figure that is not finite, or beyond all
+/// measure, says nothing to anybody.
+fn left_over(f: Figures, residual_n: f64) -> String {
+    if residual_n.abs() < MAX_CREDIBLE_FORCE_N {
+        format!("{} stay unbalanced", f.power(Quantity::Force, residual_n, 3))
+    } else {
+        "no balance of forces was reached".to_owned()
+    }
+}
+
+impl Sentence for NoEquilibrium {
+    fn sentence(&self, units: UnitSystem) -> String {
+        let f = Figures(units);
+        match self {
+            Self::NothingHolds => "nothing holds the cable".to_owned(),
+            Self::NothingBelow => "no support holds the cable and there is nothing that it could lie on".to_owned(),
+            Self::SlidesOff => {
+                "nothing holds the cable where it is laid: it slides away by more than its length".to_owned()
+            }
+            Self::NoFriction => "it slides: nothing rubs that would hold it where it is laid".to_owned(),
+            Self::TooLittleFriction { friction_ratio } => missing_friction(*friction_ratio),
+            Self::UnheldForce { left_n, loads_n } => format!(
+                "it slides: {} of {} are held by nothing",
+                f.power(Quantity::Force, *left_n, 3),
+                f.power(Quantity::Force, *loads_n, 3)
+            ),
+            Self::ThroughObstacle { obstacle, at_m, arc_length_m } => format!(
+                "the cable is laid through `{obstacle}`, at {}, {} along it, and nothing leads it out: draw a route_m round it, or leave a way to where its ends are held",
+                f.point((*at_m).into(), 3),
+                f.length(*arc_length_m, 3)
+            ),
+            Self::RunsOut { pulley } => format!("the cable runs out through pulley `{pulley}`"),
+            Self::RunsOff { pulley } => {
+                format!("the cable runs off through pulley `{pulley}`, which nothing holds back")
+            }
+            Self::LeavesWheel { pulley } => {
+                format!("the cable does not press on the wheel of pulley `{pulley}` on the side it runs on")
+            }
+            Self::Span(error) => error.sentence(units),
+        }
+    }
+}
+
+/// Returns how much more friction holds a cable: three digits, the last one rounded up, so that it
+/// does.
+fn missing_friction(friction_ratio: f64) -> String {
+    let more = 100.0 * (friction_ratio - 1.0);
+    let digits = (2.0 - more.log10().floor()).clamp(0.0, 9.0);
+    let unit = 10f64.powi(-(digits as i32));
+    let shown = (more / unit).ceil() * unit;
+    format!("it slides: {shown:.0$} % more friction would hold it where it is laid", digits as usize)
+}
+
+impl Sentence for SpanError {
+    fn sentence(&self, units: UnitSystem) -> String {
+        let metres = |length_m: f64| Figures(units).given(Quantity::Length, length_m);
+        match *self {
+            Self::NotANumber => "a span needs finite numbers, a positive length and a positive stiffness".to_owned(),
+            Self::Slack { length_m, chord_m } => format!(
+                "a cable of {} without weight is slack over {}: it has no one shape",
+                metres(length_m),
+                metres(chord_m)
+            ),
+            Self::TooShort { length_m, chord_m } => {
+                format!("an inextensible cable of {} cannot span {}", metres(length_m), metres(chord_m))
+            }
+            Self::NotConverged { iterations, closure_m } => format!(
+                "no convergence in {iterations} iterations: the span closes to {}",
+                Figures(units).power(Quantity::Length, closure_m, 3)
+            ),
+        }
+    }
+}
+
+impl Sentence for FailureCause {
+    fn sentence(&self, units: UnitSystem) -> String {
+        let text = match self {
+            Self::EnergyNotFinite => "the energy is not finite",
+            Self::StateNotFinite => "not finite",
+            Self::TooManyIterations => "too many iterations",
+            Self::WorkSpent => "the work for one resting place is spent",
+            Self::TangentIndefinite => "the tangent is not positive definite",
+            Self::CornerPulls => "a corner would have to pull",
+            Self::StickSlipUndecided => "it was not found which corners hold the cable and over which it slips",
+            Self::CornerCrossed => "the cable would run through a corner",
+            Self::StillMoves => "it never came to rest",
+            Self::SlidesAway => "it slides away",
+            Self::SupportShort => "a support cannot reach its place",
+            Self::NoDescent => "no descent",
+            Self::OutOfMemory => "there is no memory for it",
+            Self::RunawaySpeed { speed_m_per_s } => {
+                return format!("it moves at {} there", Figures(units).power(Quantity::Speed, *speed_m_per_s, 3));
+            }
+            Self::NoBalance { iterations } => return format!("no balance in {iterations} iterations"),
+        };
+        text.to_owned()
+    }
+}
+
+impl Sentence for Unsupported {
+    fn sentence(&self, units: UnitSystem) -> String {
+        let f = Figures(units);
+        let text = match self {
+            Self::BendingStiffness => "the cable has bending stiffness",
+            Self::BendingOverPulleys => "bending stiffness over pulleys",
+            Self::PlanView => "in plan view the floor rubs everywhere",
+            Self::SelfContact => "the cable can touch itself",
+            Self::SelfContactWithPulleys => "contact of the cable with itself in a scene with pulleys",
+            Self::SelfContactAtStart { arc_length_m } => {
+                return format!(
+                    "a cable that touches itself where it is laid (near {}): draw it a route that does not",
+                    f.length(*arc_length_m, 2)
+                );
+            }
+            Self::Release => "a support lets go",
+            Self::Inertia => "motion with inertia",
+            Self::MobilisedFriction { towards } => {
+                return format!("friction mobilised {towards} (only spans answers that, of a flexible cable at rest)");
+            }
+            Self::ExternalModel => "it is built by the program that brings it along",
+            Self::Obstacle { arc_length_m } => {
+                return format!("the cable reaches an obstacle {} along it", f.length(*arc_length_m, 3));
+            }
+            Self::ContactWithoutSeat { arc_length_m, at_m } => {
+                let (along, at) = (f.length(*arc_length_m, 3), f.point((*at_m).into(), 3));
+                return format!("an obstacle is met {along} along the cable at {at}");
+            }
+            Self::OffWheel { support } => return format!("the cable lifts off the wheel of `{support}`"),
+            Self::NothingHolds => "no support holds the cable: two loads or loose ends, and obstacles at most",
+            Self::SupportWithoutPlace => "a grip without a place",
+            Self::EndlessContacts { arc_length_m } => {
+                return format!("contacts come and go without end near {}", f.length(*arc_length_m, 3));
+            }
+            Self::CornerPassed { at_m } => {
+                return format!("the cable springs past a corner at {}", f.point((*at_m).into(), 3));
+            }
+            Self::SupportInside { at_m } => {
+                return format!("a support is inside an obstacle at {}", f.point((*at_m).into(), 3));
+            }
+            Self::LoadOnObstacle { arc_length_m } => {
+                return format!("the load at {} lies on an obstacle", f.length(*arc_length_m, 3));
+            }
+            Self::LooseCableDrawn { arc_length_m } => {
+                return format!("the cable lies loose and is drawn along, from {}", f.length(*arc_length_m, 3));
+            }
+            Self::Unverified { finding, arc_length_m, at_m } => {
+                let (along, at) = (f.length(*arc_length_m, 3), f.point((*at_m).into(), 3));
+                return format!("{finding} {along} along it at {at}");
+            }
+            Self::EmptyState => "a state of no nodes",
+            Self::StateOfOtherLength => "a state of a cable of another length",
+            Self::StateOfWholeCable => "the state of a whole cable for one that broke (reset first)",
+            Self::EditOfBrokenCable => "another length, other supports or loads for a cable that broke (reset first)",
+            Self::MotionTooFast { support, speed_m_per_s, time_s, limit_m_per_s } => {
+                return format!(
+                    "the motion of support `{support}`, which reaches {} at {time_s:.4} s: with inertia one is followed up to {}",
+                    f.fixed(Quantity::Speed, *speed_m_per_s, 1),
+                    f.given(Quantity::Speed, *limit_m_per_s)
+                );
+            }
+            Self::Reach(why) => return why.to_string(),
+        };
+        text.to_owned()
+    }
+}

@@ -1,0 +1,43 @@
+//! A verdict names the broken law, by how much it is broken, and where.
+
+use super::{Figures, Sentence, display_in_si};
+use crate::solution::verification::{Finding, Verification};
+use crate::units::{Quantity, UnitSystem};
+
+display_in_si!(Finding);
+
+impl Sentence for Finding {
+    fn sentence(&self, units: UnitSystem) -> String {
+        let (f, quantity) = (Figures(units), self.law.quantity());
+        let mut text = self.law.broken().to_owned();
+        if quantity != Quantity::Number {
+            let limit = f.bare_power(quantity, self.limit, 1);
+            text += &format!(" by {} ({limit} allowed)", f.power(quantity, self.value, 3));
+        }
+        if !self.with.is_empty() {
+            text += &format!(" at `{}`", self.with);
+        }
+        if self.at_m.iter().all(|c| c.is_finite()) && self.arc_length_m.is_finite() {
+            let along = f.length(self.arc_length_m, 3);
+            text += &format!(", {along} along `{}` at {}", self.cable, f.point(self.at_m, 3));
+        }
+        text
+    }
+}
+
+impl Sentence for Verification {
+    /// The verdict in a line: sound or not, the balance, and what was not asked.
+    fn sentence(&self, units: UnitSystem) -> String {
+        let (residual_n, scale_n) = (self.balance.residual_n, self.balance.scale_n);
+        let share = if scale_n > 0.0 { residual_n / scale_n } else { 0.0 };
+        let mut line = match self.worst() {
+            None => format!("sound, forces balance within {share:.0e} of {}", Figures(units).force(scale_n, 4)),
+            Some(worst) => format!("NOT SOUND: {}", worst.sentence(units)),
+        };
+        for what in &self.not_checked {
+            line.push_str("; not checked: ");
+            line.push_str(what);
+        }
+        line
+    }
+}

@@ -1,0 +1,275 @@
+//! A warning says what happens, where, why, and what can be done.
+
+use super::{Figures, Sentence, display_in_si};
+use crate::error::NoEquilibrium;
+use crate::solution::{EndMove, Histories, ShownEquilibrium, SlideReason, Warning, WarningCause};
+use crate::units::{Quantity, UnitSystem};
+
+display_in_si!(Warning);
+
+impl Sentence for Warning {
+    fn sentence(&self, units: UnitSystem) -> String {
+        use WarningCause as Cause;
+        let (f, cable, value, limit) = (Figures(units), &self.cable, self.value, self.limit);
+        // The place of a warning, and its value and limit in their unit.
+        let place = {
+            let at = self.at_m.map_or_else(String::new, |at| format!(" {}", f.point(at, 3)));
+            format!("{}{at}", f.length(self.arc_length_m, 3))
+        };
+        let given = |value: f64| f.given(self.cause.quantity(), value);
+        let pulled = |decimals: usize| f.force(value, decimals);
+        match &self.cause {
+            Cause::AboveService { time_s } => format!(
+                "`{cable}` is pulled with {} at {place}{}, above its service tension of {}: it wears out early; lengthen the cable or lighten the load",
+                pulled(1),
+                instant(*time_s),
+                given(limit)
+            ),
+            Cause::BrieflyAboveBreaking { time_s, breaking_n, held_n, over_s } => format!(
+                "`{cable}` is pulled with {} at {place}{}, for an instant, above its service tension of {} and its breaking tension of {}. It holds, as its mean over {over_s} s is {} at most; but how high such an instant is hangs on loss and mesh",
+                pulled(1),
+                instant(Some(*time_s)),
+                given(limit),
+                given(*breaking_n),
+                f.force(*held_n, 1)
+            ),
+            Cause::AboveBreaking { mean } => format!(
+                "`{cable}` is pulled with {} at {place}{}, {}above its breaking tension of {}: it would break here; the figures assume that it does not",
+                pulled(1),
+                instant(mean.map(|m| m.time_s)),
+                mean.map_or_else(String::new, |m| format!("in the mean over {} s, ", m.over_s)),
+                given(limit)
+            ),
+            Cause::Broke { time_s, over_s, detached_from } => {
+                let (how, rest) = match detached_from {
+                    Some(support) => (format!("tore off `{support}`"), "the rest goes on without it"),
+                    None => ("broke".to_owned(), "the pieces go on apart"),
+                };
+                let held = if *over_s > 0.0 {
+                    format!("the mean of its tension over {over_s} s")
+                } else {
+                    "its tension".to_owned()
+                };
+                format!(
+                    "`{cable}` {how} at {place} at {time_s:.4} s, where {held} reached its breaking tension of {}: {rest}; pull less, or take a stronger cable",
+                    given(limit)
+                )
+            }
+            Cause::BreakageUncertain { broke, held_n, lowest_n, over_s } => format!(
+                "`{cable}` {}: its greatest mean tension over {over_s} s is {}, {:.0} to {} as coarser runs differ from it, and it breaks at {}: pull less, or more slowly",
+                if *broke { "broke here, and may hold" } else { "held here, and may break" },
+                f.force(*held_n, 0),
+                Quantity::Force.convert(*lowest_n, units),
+                pulled(0),
+                given(limit)
+            ),
+            Cause::NarrowGuide | Cause::FreeKink => format!(
+                "`{cable}` is bent to a radius of {} at {place}, below {}: {}",
+                f.length(value, 4),
+                given(limit),
+                if self.cause == Cause::FreeKink {
+                    "it kinks there and stays bent; give it more way to turn, or a guide"
+                } else {
+                    "its strands are overstretched there; lead it round something wider"
+                }
+            ),
+            Cause::Pressure => format!(
+                "`{cable}` is pressed with {} against what leads it at {place}, above the {} it stands: its insulation is crushed; pull less, or lead it round something wider",
+                f.fixed(Quantity::ForcePerLength, value, 0),
+                given(limit)
+            ),
+            Cause::Folds { material_m, ground_m, on_ground } => format!(
+                "{} of `{cable}` lie without tension in folds on {} of {}, most of it at {place}: in a plane layers and loops cannot be seen, so how they lie is left open; shorten the cable or give it more ground",
+                f.length(*material_m, 2),
+                f.length(*ground_m, 2),
+                if *on_ground { "ground" } else { "way" }
+            ),
+            Cause::LowTension { below_n } => format!(
+                "{} of `{cable}` round {place} have less than {} of tension: this part may be run over, snag or loop; shorten the cable or pull it in",
+                f.length(value, 2),
+                f.force(*below_n, 3)
+            ),
+            Cause::Crossing { other_arc_length_m, count } => format!(
+                "`{cable}` crosses itself{}: {} and {} along it ({count} in all); the loop of {} between can tighten into a kink or a knot when it is pulled; lay it without the loop, or draw it in from the slack end",
+                self.at_m.map_or_else(String::new, |at| format!(" at {}", f.point(at, 3))),
+                f.length(self.arc_length_m, 3),
+                f.length(*other_arc_length_m, 3),
+                f.length(value, 3)
+            ),
+            Cause::TightTurn { within_m } => format!(
+                "`{cable}` curls up at {place}: it turns {value:.0}° within {}; pulled, the curl closes into a kink; take the turn out of it before pulling",
+                f.length(*within_m, 3)
+            ),
+            Cause::RoundObstacle { obstacle } => format!(
+                "`{cable}` goes round `{obstacle}` {value:.2} times at {place}: friction multiplies the pull with every turn and pulling an end does not free it; drive back round it"
+            ),
+            Cause::Caught { obstacle, first_ratio } => format!(
+                "`{cable}` is caught by `{obstacle}` at {place}: it does not slip there while the tension across it has grown from {first_ratio:.2} to {value:.2} times; the pull goes into the obstacle, not along the cable; stop, drive back, and lead it past"
+            ),
+            Cause::Weightless => "The cable has no weight: where it is slack it has no tension and any shape is at rest; this one is that of a very light cable".to_owned(),
+            Cause::Unstable => "This balance runs away at the least push: nothing rubs that would hold the cable in it".to_owned(),
+            Cause::Loose { material_m, ground_m, held_n } => format!(
+                "The cable lies loose: {} of it on {} of ground, without tension, and its ends feel only what hangs on them. How it is folded there is not known: it is shown spread evenly. Laid otherwise it may pull at its ends by what friction on it holds, {} at most",
+                f.length(*material_m, 3),
+                f.length(*ground_m, 3),
+                f.force(*held_n, 2)
+            ),
+            Cause::ManyEquilibria { shown, histories: known } => {
+                let shown = match shown {
+                    ShownEquilibrium::EvenlyLaid => ": this is the one laid evenly along its way with the least sliding",
+                    ShownEquilibrium::LeastSliding => ". Shown: the one laid along its route with the least sliding",
+                    ShownEquilibrium::Frictionless => ". Shown: the frictionless shape, held by friction",
+                    ShownEquilibrium::FromRoute => ": this is the one found from its way",
+                    ShownEquilibrium::FromRouteAsFlexible => ": this is the one found from its way; the histories are those of a flexible cable in its place",
+                };
+                format!("With friction the resting place depends on how the cable was laid{shown}{}", histories(f, known))
+            }
+            Cause::Blocked { support } => {
+                format!("support `{support}` cannot reach where it is sent: an obstacle blocks it")
+            }
+            Cause::Lags { support, behind_m } => format!(
+                "support `{support}` lags {} behind where it is sent: it follows at {} at most",
+                f.length(*behind_m, 2),
+                given(limit)
+            ),
+            Cause::HandLags { support, behind_m, hand_behind_m, pull_n, stiffness_n_per_m } => {
+                let mut parts = Vec::new();
+                if let Some(behind_m) = behind_m {
+                    parts.push(format!(
+                        "is {} behind the hand, which pulls it with {} by a spring of {}",
+                        f.length(*behind_m, 2),
+                        f.force(*pull_n, 0),
+                        f.fixed(Quantity::ForcePerLength, *stiffness_n_per_m, 0)
+                    ));
+                }
+                if *hand_behind_m > 0.0 {
+                    let hand = if behind_m.is_some() { "the hand" } else { "its hand" };
+                    let behind = f.length(*hand_behind_m, 2);
+                    parts.push(format!("{hand} lags {behind} behind where it is sent: it follows at {} at most", given(limit)));
+                }
+                format!("support `{support}`: {}", parts.join("; "))
+            }
+            Cause::RouteBuried { obstacle } => format!(
+                "The route leads {} deep below `{obstacle}`{}: the cable is laid along the surface there",
+                f.length(value, 3),
+                self.at_m.map_or_else(String::new, |at| format!(" at {}", f.point(at, 3)))
+            ),
+            Cause::SupportOnSurface { support, obstacle } => format!(
+                "Support `{support}` is on the surface of `{obstacle}`: the cable's centre line is held {} off it{}",
+                f.length(value, 4),
+                self.at_m.map_or_else(String::new, |at| format!(", at {}", f.point(at, 4)))
+            ),
+            Cause::RobotIgnored { model } => {
+                format!("`{cable}` lies through the robot: {model} knows nothing of it")
+            }
+            Cause::SlidFromRoute { why } => format!(
+                "This is not where the cable was laid: from there there is no resting place: {}. How it moved there is not shown",
+                NoEquilibrium::from(*why).sentence(units)
+            ),
+            Cause::SlidOn => "Nothing held the cable where it was: it slid to the next place that does. How it moved there is not shown".to_owned(),
+            Cause::SpeedCut => format!(
+                "`{cable}` moved at {} at {place}{}: its velocity was cut to {} and the motion from then on is not to be believed; use fem",
+                f.fixed(Quantity::Speed, value, 0),
+                after(self.since_s),
+                given(limit)
+            ),
+            Cause::EnergyCut => format!(
+                "the kinetic energy of `{cable}` reached {}, fastest at {place}{}, where supports, loads and stretch can give {}: the motion was braked and is not to be believed; use fem, or more segments",
+                f.power(Quantity::Energy, value, 3),
+                after(self.since_s),
+                f.power(Quantity::Energy, limit, 3)
+            ),
+            Cause::StiffPreview => format!(
+                "`{cable}` is too stiff for explicit steps in real time: this is a preview in steps of {} that damps fast motion; use fem, fewer segments or a smaller axial stiffness for figures",
+                f.power(Quantity::Time, value, 2)
+            ),
+            Cause::EnergyFromNowhere { from_s, work_j, speed_m_per_s } => format!(
+                "`{cable}` has {} more energy than at {from_s:.4} s that came from nowhere: what moves it can have given {} at most since then, and rounding is below {}. It is fastest at {place} with {}. The motion from then on is not to be believed; use fem, shorter steps, or damping",
+                f.power(Quantity::Energy, value, 3),
+                f.power(Quantity::Energy, *work_j, 3),
+                f.power(Quantity::Energy, limit, 3),
+                f.fixed(Quantity::Speed, *speed_m_per_s, 1)
+            ),
+            Cause::CornerOfMesh { obstacle, turn_deg, element_m } => {
+                let by = if value < 1.0 {
+                    format!("{:.0} %", (100.0 * value).ceil())
+                } else {
+                    "any factor".to_owned()
+                };
+                format!(
+                    "tension of `{cable}` beyond `{obstacle}` at {place} is uncertain by {by}: it turns {turn_deg:.0}° there over elements of {}, and a chain of springs jerks at every node; use fem, which slides through, or shorter elements on a round",
+                    f.length(*element_m, 3)
+                )
+            }
+            Cause::CoarseBend { bars } => format!(
+                "{bars} bars show the bend of a stiff cable where it is led round something to {value:.1e} of the greatest tension only; {limit:.1e} was asked for: use more segments"
+            ),
+            Cause::BarContacts => format!(
+                "The contacts of this stiff cable are known to a chain of bars only, which gives the forces to about {value:.1e} of the greatest tension; {limit:.1e} was asked for"
+            ),
+            Cause::CoarseForces { elements } => format!(
+                "{elements} elements give the forces to about {value:.1e} of the greatest tension; {limit:.1e} was asked for: use more segments"
+            ),
+            Cause::CoarseTension { elements } => format!(
+                "{elements} elements give the largest tension to about {value:.1e}; {limit:.1e} was asked for: use more segments"
+            ),
+            Cause::Recorded { message, .. } => message.clone(),
+        }
+    }
+}
+
+fn instant(time_s: Option<f64>) -> String {
+    time_s.map_or_else(String::new, |t| format!(" at {t:.4} s"))
+}
+
+fn after(time_s: Option<f64>) -> String {
+    time_s.map_or_else(String::new, |t| format!(" after {t:.4} s"))
+}
+
+/// Returns what other histories would have left, to follow what is said of the one that is shown.
+fn histories(f: Figures, known: &Histories) -> String {
+    match known {
+        Histories::NotSought => ", no other was sought".to_owned(),
+        Histories::NotFound { greatest_n } => format!(
+            ". The greatest tension is {} as laid; by how much another history would change it was not found",
+            f.force(*greatest_n, 2)
+        ),
+        Histories::Mobilised { greatest_n, towards_start_n, towards_end_n, start_n, end_n } => {
+            let figure = |of: Option<f64>| of.map_or_else(|| "no balance was found".to_owned(), |n| f.force(n, 2));
+            format!(
+                ". The greatest tension is {} as laid; with friction fully mobilised towards the start: {}, towards the end: {}. Among the histories that were found the tension is {} at the start and {} at the end",
+                f.force(*greatest_n, 2),
+                figure(*towards_start_n),
+                figure(*towards_end_n),
+                f.forces(*start_n),
+                f.forces(*end_n)
+            )
+        }
+        Histories::EndsMoved { greatest_n, moves, start_n, end_n, range_n } => {
+            let each = |m: &EndMove| {
+                let what = if m.drawn_out_m < 0.0 { "let in" } else { "drawn out" };
+                let (by, left) = (f.length(m.drawn_out_m.abs(), 3), f.force(m.greatest_n, 2));
+                format!("with `{}` {what} by {by} and put back: {left}", m.support)
+            };
+            format!(
+                ". The greatest tension is {} as laid; {}. Among these histories the tension is {} at the start and {} at the end, and the greatest {}",
+                f.force(*greatest_n, 2),
+                moves.iter().map(each).collect::<Vec<_>>().join("; "),
+                f.forces(*start_n),
+                f.forces(*end_n),
+                f.forces(*range_n)
+            )
+        }
+    }
+}
+
+impl From<SlideReason> for NoEquilibrium {
+    fn from(why: SlideReason) -> Self {
+        match why {
+            SlideReason::NoFriction => Self::NoFriction,
+            SlideReason::TooLittleFriction { friction_ratio } => Self::TooLittleFriction { friction_ratio },
+            SlideReason::UnheldForce { left_n, loads_n } => Self::UnheldForce { left_n, loads_n },
+            SlideReason::NothingHolds => Self::SlidesOff,
+        }
+    }
+}

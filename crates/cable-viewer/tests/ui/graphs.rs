@@ -1,0 +1,74 @@
+//! One playhead: the timeline, the graphs over time, the graph along the cable and the canvas show the same instant.
+
+use cable_viewer::ViewerApp;
+use cable_viewer::command::{Command, PlaybackCommand};
+use cable_viewer::plot;
+use egui::Vec2;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use crate::{apply, drag, open_span};
+
+fn shown_s(harness: &Harness<'_, ViewerApp>) -> Option<f64> {
+    harness.state().state.live.recording.shown_s
+}
+
+fn in_view(harness: &Harness<'_, ViewerApp>) -> [f64; 2] {
+    let id = egui::Id::unique(("in view", "Over time"));
+    harness.ctx.data(|d| d.get_temp(id)).expect("a graph over time")
+}
+
+fn played(seconds: u32) -> Harness<'static, ViewerApp> {
+    let mut harness = open_span();
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(60 * seconds as usize);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+    harness
+}
+
+#[test]
+fn a_drag_in_the_graph_over_time_moves_the_playhead_of_all() {
+    let mut harness = played(2);
+    let graph =
+        harness.get_all_by_label("Over time").map(|n| n.rect()).max_by(|a, b| a.height().total_cmp(&b.height()));
+    let from = graph.unwrap().center() + Vec2::new(100.0, 0.0);
+    // From where nothing is recorded yet to within the first two of ten seconds.
+    drag(&mut harness, from, Vec2::new(-220.0, 0.0));
+    let shown = shown_s(&harness).expect("an earlier time is shown");
+    let solution = harness.state().state.live.snapshot.solution.clone().unwrap();
+    assert!((solution.time_s - shown).abs() < 1.0 / 60.0 && shown < 1.9, "{shown} {}", solution.time_s);
+    harness.get_by_label_contains(&format!("showing {shown:.2} s"));
+    assert!(harness.state().state.live.playback.paused);
+    assert_eq!(plot::hovered(&harness.ctx, "along"), None);
+}
+
+/// D10.10: the graph showed 20 to 30 s while 3 s were shown. One that was zoomed goes there too.
+#[test]
+fn a_zoomed_graph_goes_to_the_time_that_is_scrubbed_to() {
+    let mut harness = played(4);
+    let graph =
+        harness.get_all_by_label("Over time").map(|n| n.rect()).max_by(|a, b| a.height().total_cmp(&b.height()));
+    let right = graph.unwrap().center();
+    harness.hover_at(right);
+    harness.step();
+    for _ in 0..12 {
+        harness.event(egui::Event::MouseWheel {
+            unit: egui::MouseWheelUnit::Point,
+            delta: Vec2::new(0.0, 120.0),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: egui::Modifiers::NONE,
+        });
+        harness.run_steps(3);
+    }
+    // The wheel is smoothed over some frames.
+    harness.hover_at(egui::Pos2::new(640.0, 300.0));
+    harness.run_steps(60);
+    let [left, right] = in_view(&harness);
+    assert!(right - left < 2.0 && left > 0.5, "{left} to {right}");
+    apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.3))));
+    harness.run_steps(3);
+    let [left, right] = in_view(&harness);
+    assert!(left < 0.3 && 0.3 < right, "{left} to {right}");
+    assert!(right - left < 2.0, "it stays zoomed");
+}

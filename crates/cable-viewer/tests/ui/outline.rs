@@ -1,0 +1,108 @@
+//! The outline on the left selects, and the panel on the right follows what is selected.
+
+use cable_core::scene::catalog;
+use cable_viewer::ViewerApp;
+use cable_viewer::command::{Command, ViewCommand};
+use cable_viewer::state::Item;
+use egui::Vec2;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+
+use crate::open;
+
+fn click(harness: &mut Harness<'_, ViewerApp>, label: &str) {
+    harness.get_by_label(label).click();
+    harness.run_steps(3);
+}
+
+fn selected(harness: &Harness<'_, ViewerApp>) -> Option<Item> {
+    harness.state().state.selection.selected
+}
+
+#[test]
+fn the_outline_begins_the_left_panel_and_selects() {
+    for size in [[1024.0, 640.0], [1280.0, 800.0], [1920.0, 1080.0]] {
+        let mut harness = open(catalog::tank());
+        harness.set_size(Vec2::from(size));
+        harness.run_steps(4);
+        let [outline, scene, canvas] = ["Outline", "Scene name", "Canvas"].map(|l| harness.get_by_label(l).rect());
+        assert!(outline.bottom() < scene.top() && outline.right() < canvas.left(), "{size:?}");
+        for (label, item) in [
+            ("Select umbilical", Item::Cable(0)),
+            ("Select hitch", Item::Support { cable: 0, support: 1 }),
+            ("Select pipe", Item::Obstacle(4)),
+        ] {
+            click(&mut harness, label);
+            assert_eq!(selected(&harness), Some(item), "{size:?}");
+        }
+        // Warnings are the last of it, and lead to the worst.
+        let before = harness.state().state.view.camera.points_per_m;
+        click(&mut harness, "2 warnings");
+        assert!(harness.state().state.view.camera.points_per_m > 1.5 * before, "{size:?}");
+    }
+    let mut harness = open(catalog::robot_drive());
+    click(&mut harness, "Select robot");
+    assert_eq!(selected(&harness), Some(Item::Robot));
+    click(&mut harness, "Select leg 1");
+    assert_eq!(selected(&harness), Some(Item::Leg(0)));
+}
+
+#[test]
+fn the_right_panel_follows_the_selection() {
+    for (scene, row, title, figures) in [
+        (catalog::tank(), "Select hitch", "support hitch of umbilical", &["Force on it", "On the cable"][..]),
+        (catalog::pulley_waypoints(), "Select wheel", "support wheel of cable", &["Tension before", "Tension after"]),
+        (catalog::tank(), "Select beam", "obstacle beam", &["Lying on it", "Friction"]),
+        (catalog::loads_wind_heat(), "Select load 1", "load 1", &["Tension there"]),
+        (catalog::robot_drive(), "Select robot", "the robot", &["Pull of cable"]),
+    ] {
+        let mut harness = open(scene);
+        let canvas = harness.get_by_label("Canvas").rect();
+        assert!(harness.query_by_label("Deselect").is_none());
+        click(&mut harness, row);
+        let beside = |label: &str| {
+            let mut found = harness.get_all_by_label(label);
+            assert!(found.any(|n| n.rect().left() > canvas.right()), "{title}: {label} stands in the right panel");
+        };
+        beside(title);
+        figures.iter().for_each(|label| beside(label));
+        assert_eq!(harness.get_by_label("Canvas").rect(), canvas, "{title}: the canvas stays");
+        click(&mut harness, "Deselect");
+        assert_eq!(selected(&harness), None);
+    }
+}
+
+/// What is too wide for the panel pushes its figures out of sight.
+#[test]
+fn the_form_of_what_is_selected_fits_the_panel() {
+    for (scene, item) in [
+        (catalog::tank(), Item::Support { cable: 0, support: 1 }),
+        (catalog::pulley_waypoints(), Item::Support { cable: 0, support: 1 }),
+        (catalog::tank(), Item::Obstacle(0)),
+        (catalog::loads_wind_heat(), Item::Load(0)),
+        (catalog::robot_drive(), Item::Robot),
+    ] {
+        let mut harness = open(scene);
+        harness.set_size(Vec2::new(1024.0, 1600.0));
+        crate::apply(&mut harness, Command::View(ViewCommand::Select(Some(item))));
+        harness.run_steps(4);
+        let canvas = harness.get_by_label("Canvas").rect();
+        let (mut left, mut too_wide) = (vec![harness.root()], Vec::new());
+        while let Some(node) = left.pop() {
+            left.extend(node.children());
+            let told = node.accesskit_node().label().unwrap_or_default();
+            if told.is_empty() {
+                continue;
+            }
+            let rect = node.rect();
+            // What is in the panel of figures on supports scrolls by itself.
+            let right = rect.left() > canvas.right() && rect.right() > 1024.0 - 3.0;
+            let left =
+                rect.top() > canvas.top() && rect.right() < canvas.left() + 60.0 && rect.right() > canvas.left() - 3.0;
+            if left || right {
+                too_wide.push(format!("{told} ends at {}", rect.right()));
+            }
+        }
+        assert!(too_wide.is_empty(), "{item:?}: {too_wide:?} beside {canvas}");
+    }
+}

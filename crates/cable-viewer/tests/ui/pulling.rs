@@ -1,0 +1,81 @@
+//! D10.9: dragging an end past the length while time runs. Refused unless the user wants it to pull.
+
+use cable_core::Settings;
+use cable_viewer::ViewerApp;
+use cable_viewer::command::{Command, PlaybackCommand, ViewCommand};
+use egui::{Pos2, Vec2};
+use egui_kittest::Harness;
+
+use crate::{apply, open_span, press, support};
+
+/// The right end of the span (10 m apart, 12 m of cable), held by the mouse while time runs.
+fn held(stiffness_n_per_m: f64) -> (Harness<'static, ViewerApp>, Pos2) {
+    let mut harness = open_span();
+    let hand_stiffness_n_per_m = Some(stiffness_n_per_m);
+    let settings =
+        Settings { hand_stiffness_n_per_m, hand_speed_m_per_s: 4.0, ..harness.state().state.solver.settings };
+    apply(&mut harness, Command::SetSettings(settings));
+    apply(&mut harness, Command::View(ViewCommand::Zoom { about_m: [3.0, 4.0], factor: 0.6 }));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    let from = support(&harness, "right");
+    harness.hover_at(from);
+    harness.step();
+    press(&harness, from, true);
+    harness.step();
+    (harness, from)
+}
+
+/// Moves the pointer in small steps.
+fn lead(harness: &mut Harness<'_, ViewerApp>, from: Pos2, by_m: f64) -> Pos2 {
+    let points = by_m * harness.state().state.view.camera.points_per_m;
+    for k in 1..=20 {
+        harness.hover_at(from + Vec2::new((points * f64::from(k) / 20.0) as f32, 0.0));
+        harness.run_steps(2);
+    }
+    from + Vec2::new(points as f32, 0.0)
+}
+
+fn tension_n(harness: &Harness<'_, ViewerApp>) -> f64 {
+    harness.state().state.live.latest.solution.as_ref().unwrap().max_tension().tension_n
+}
+
+#[test]
+fn a_pull_past_the_length_is_refused_at_first() {
+    let (mut harness, from) = held(1e3);
+    lead(&mut harness, from, 5.0);
+    let state = &harness.state().state;
+    assert!(state.document.fault.is_some() && state.live.playback.paused);
+}
+
+#[test]
+fn s15_a_pull_past_the_length_pulls_harder_and_harder_until_the_cable_breaks() {
+    let (mut harness, from) = held(4e3);
+    apply(&mut harness, Command::Playback(PlaybackCommand::PullPastLength(true)));
+    // Taut at 12 m: a metre beyond the spring pulls with kilonewtons.
+    let mut at = lead(&mut harness, from, 3.0);
+    harness.run_steps(60);
+    let state = &harness.state().state;
+    assert!(state.document.fault.is_none() && !state.live.playback.paused, "{:?}", state.document.fault);
+    assert!(state.document.scene.validate().is_ok(), "the scene keeps a place that the cable reaches");
+    let first_n = tension_n(&harness);
+    assert!((1e3..8e3).contains(&first_n), "{first_n} N");
+    at = lead(&mut harness, at, 0.6);
+    harness.run_steps(60);
+    let second_n = tension_n(&harness);
+    assert!(second_n > first_n + 500.0 && second_n < 1e4, "{first_n} N, then {second_n} N");
+    let broken = |h: &Harness<'_, ViewerApp>| {
+        h.state().state.live.latest.solution.as_ref().is_some_and(|s| s.cables.iter().any(|c| !c.breaks.is_empty()))
+    };
+    assert!(!broken(&harness));
+    at = lead(&mut harness, at, 2.0);
+    harness.run_steps(60);
+    assert!(broken(&harness), "{} N", tension_n(&harness));
+    // Let go: the window goes on, and a reset makes the cable whole, held where it just reaches.
+    press(&harness, at, false);
+    harness.run_steps(10);
+    assert!(harness.state().state.document.fault.is_none());
+    assert_eq!(harness.state().state.live.latest.error, None);
+    apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
+    harness.run_steps(3);
+    assert!(!broken(&harness) && tension_n(&harness) < 1e4, "{} N", tension_n(&harness));
+}

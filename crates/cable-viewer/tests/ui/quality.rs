@@ -1,0 +1,80 @@
+//! T6 to T8 by hand: how far an answer can be relied on, and the motion of any point of the cable.
+
+use cable_core::scene::catalog;
+use cable_core::{Model, Settings};
+use cable_viewer::ViewerApp;
+use cable_viewer::command::{Command, PlaybackCommand, SceneCommand, ViewCommand};
+use cable_viewer::state::TensionMarker;
+use cable_viewer::units::unit::Unit;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use crate::{apply, open, open_span};
+
+fn tall(harness: &mut Harness<'_, ViewerApp>) {
+    harness.set_size(egui::Vec2::new(1600.0, 2400.0));
+    harness.run_steps(3);
+}
+
+#[test]
+fn t06_residual_displacement_and_condition_stand_in_the_solver_panel() {
+    let mut harness = open_span();
+    tall(&mut harness);
+    for row in ["Residual", "Greatest displacement", "Condition number", "Kinetic energy"] {
+        harness.get_by_label(row);
+    }
+    // EA = 2 MN under some 70 N in 100 elements: ten million and more.
+    let read = |h: &Harness<'_, ViewerApp>| {
+        let found = h.get_by_label_contains("≈ ");
+        use egui_kittest::kittest::NodeT;
+        found.accesskit_node().value().or(found.accesskit_node().label()).unwrap_or_default()
+    };
+    assert!(read(&harness).contains('e'), "{}", read(&harness));
+    // Too stiff: said before anybody believes the figures.
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
+    cable.axial_stiffness_n *= 1e4;
+    apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+    let settings = Settings { tolerance: 1e-6, ..harness.state().state.solver.settings };
+    apply(&mut harness, Command::SetSettings(settings));
+    harness.run_steps(3);
+    let told = read(&harness);
+    assert!(told.ends_with("e11"), "{told} with {:?}", harness.state().state.live.snapshot.error);
+    // A model without a mesh has none.
+    let mut harness = open(catalog::hanging_span());
+    apply(&mut harness, Command::SetModel(Model::Catenary));
+    tall(&mut harness);
+    harness.get_by_label("no mesh");
+}
+
+#[test]
+fn t08_the_motion_of_any_point_is_shown_live() {
+    let mut harness = open_span();
+    tall(&mut harness);
+    let from = cable_core::analysis::tension_budget::StartEnd::Start;
+    let marker = TensionMarker { cable: 0, arc_length_m: 6.0, from };
+    apply(&mut harness, Command::View(ViewCommand::MarkTension(Some(marker))));
+    for row in ["Displacement", "Velocity", "Acceleration"] {
+        harness.get_by_label(row);
+    }
+    // Something to swing about: an end moves at once.
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(4);
+    let item = cable_viewer::state::Item::Support { cable: 0, support: 1 };
+    apply(&mut harness, Command::Scene(SceneCommand::Move { item, to_m: [9.6, 5.2] }));
+    harness.run_steps(40);
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+    harness.run_steps(2);
+    let answer = harness.state().state.live.snapshot.solution.clone().unwrap();
+    let node = answer.cables[0].nodes.iter().min_by_key(|n| ((n.arc_length_m - 6.0).abs() * 1e9) as i64).unwrap();
+    assert!((node.arc_length_m - 6.0).abs() < 1e-6, "a node stands there: {}", node.arc_length_m);
+    for (unit, [x, y]) in [
+        (Unit::M, node.displacement_m),
+        (Unit::M_PER_S, [node.vx_m_per_s, node.vy_m_per_s]),
+        (Unit::M_PER_S2, node.acceleration_m_per_s2),
+    ] {
+        assert!(x.hypot(y) > 0.0, "{}", unit.symbol);
+        assert!(harness.get_all_by_label(&unit.text(x.hypot(y))).count() > 0, "{}", unit.text(x.hypot(y)));
+    }
+    harness.get_by_label("Show greatest displacement").click();
+    harness.run_steps(2);
+}
