@@ -77,6 +77,22 @@ pub struct SlidingNode {
 }
 
 impl SlidingNode {
+    /// One on a round, through which nothing has slid yet.
+    #[must_use]
+    pub fn new(end: End, friction: f64, seat: Seat) -> Self {
+        Self {
+            end,
+            friction,
+            seat,
+            grip: StickSlip::Stick,
+            factor: 1.0,
+            exponent: 0.0,
+            floor_factor: 1.0,
+            lies: [1.0; 2],
+            balanced: None,
+        }
+    }
+
     /// Where it is, m.
     #[must_use]
     pub fn position(&self) -> Vec2 {

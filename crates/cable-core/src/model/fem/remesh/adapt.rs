@@ -14,7 +14,7 @@ use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp, smaller};
 use crate::model::Inertia;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::sliding_node::{Load, Seat, SlidingNode, StickSlip, round_of};
+use crate::model::fem::mesh::sliding_node::{Load, Seat, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::floor_friction;
@@ -538,17 +538,9 @@ impl Dynamics {
         let before = path.arcs[0] * mesh.end(bar, x).radius;
         let part = if path.length > 0.0 { (before + fraction * path.straight) / path.length } else { fraction };
         let arc_length = s[0] + bounded(part, LEAST_PART, 1.0 - LEAST_PART) * (s[1] - s[0]);
-        let sliding = SlidingNode {
-            end: End { center, radius, mark: gap.normal, sense },
-            friction: gap.friction,
-            seat: Seat::Obstacle { obstacle: gap.obstacle, feature: gap.feature },
-            grip: StickSlip::Stick,
-            factor: 1.0,
-            exponent: 0.0,
-            floor_factor: 1.0,
-            lies: [1.0; 2],
-            balanced: None,
-        };
+        let end = End { center, radius, mark: gap.normal, sense };
+        let seat = Seat::Obstacle { obstacle: gap.obstacle, feature: gap.feature };
+        let sliding = SlidingNode::new(end, gap.friction, seat);
         Some((bar, arc_length, sliding))
     }
 

@@ -196,7 +196,7 @@ pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, StickSlip};
+    use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode};
     use crate::model::fem::mesh::tangent_path::End;
     use proptest::prelude::*;
 
@@ -208,18 +208,7 @@ mod tests {
 
     fn on(end: End) -> SlidingNode {
         let seat = Seat::Obstacle { obstacle: 0, feature: 0 };
-        let (grip, balanced) = (StickSlip::Stick, None);
-        SlidingNode {
-            end,
-            friction: 0.3,
-            seat,
-            grip,
-            factor: 1.0,
-            exponent: 0.0,
-            floor_factor: 1.0,
-            lies: [0.7; 2],
-            balanced,
-        }
+        SlidingNode { lies: [0.7; 2], ..SlidingNode::new(end, 0.3, seat) }
     }
 
     /// A bar with its mark on a round at the origin at one end (`j` the free one), and a mark at an

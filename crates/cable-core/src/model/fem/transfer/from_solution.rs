@@ -13,7 +13,7 @@ use crate::math::{Vec2, perp};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::dynamics::REACH;
 use crate::model::fem::mesh::sliding_node::{MARKED_ARC_LIMIT, ONE_MARK_BAR_FRACTION};
-use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, StickSlip, round_of};
+use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::rotate;
 use crate::model::fem::mesh::tangent_path::{End, angle_between};
 use crate::model::fem::newton::initial_guess::push_out;
@@ -128,8 +128,12 @@ impl Dynamics {
         self.adopt_friction(&curve);
         self.adopt_floor_friction(&curve);
         // Bars that stick from node to node are far from their balance by hardly any way: where
-        // Newton's method alone does not find it, a resistance that fades leads there.
-        let found = self.rest_step(time_s, dragged).or_else(|_| self.relax(time_s, dragged));
+        // Newton's method alone does not find it, a resistance that fades leads there. From bars
+        // that cut a corner it would lead to where they still do.
+        let found = self.rest_step(time_s, dragged).or_else(|failed| match self.cuts_nothing() {
+            true => self.relax(time_s, dragged),
+            false => Err(failed),
+        });
         if found.is_ok() {
             self.rested = true;
         } else {
@@ -232,22 +236,9 @@ impl Dynamics {
             if out.last().is_some_and(|a| a.node.seat == seat && a.nodes[1] + 1 >= i) {
                 continue;
             }
-            let mut arc = Arc {
-                nodes: [i, i],
-                turn: 0.0,
-                material: [n.arc_length_m; 2],
-                node: SlidingNode {
-                    end: End { center, radius, mark: gap.normal, sense: 1.0 },
-                    friction: gap.friction,
-                    seat,
-                    grip: StickSlip::Stick,
-                    factor: 1.0,
-                    exponent: 0.0,
-                    floor_factor: 1.0,
-                    lies: [1.0; 2],
-                    balanced: None,
-                },
-            };
+            let end = End { center, radius, mark: gap.normal, sense: 1.0 };
+            let node = SlidingNode::new(end, gap.friction, seat);
+            let mut arc = Arc { nodes: [i, i], turn: 0.0, material: [n.arc_length_m; 2], node };
             arc.grow(curve, radius - clearance);
             if arc.turn > LEAST_TURN {
                 out.push(arc);

@@ -7,7 +7,7 @@ use crate::error::SolveError;
 use crate::math::{Vec2, perp};
 use crate::model::fem::dynamics::{Dynamics, REACH};
 use crate::model::fem::free::stations::{Hold, Layout};
-use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, StickSlip};
+use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::End;
 use crate::model::fem::newton::initial_guess::push_out;
 use crate::scene::PulleySide;
@@ -34,18 +34,7 @@ impl Dynamics {
             let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
             let right = if passing.x < 0.0 { -1.0 } else { 1.0 };
             let end = End { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense: -up * right };
-            let sliding = SlidingNode {
-                end,
-                friction: wheel.friction,
-                seat: Seat::Pulley(support),
-                grip: StickSlip::Stick,
-                factor: 1.0,
-                exponent: 0.0,
-                floor_factor: 1.0,
-                lies: [1.0; 2],
-                balanced: None,
-            };
-            self.insert(k, at, Some(sliding));
+            self.insert(k, at, Some(SlidingNode::new(end, wheel.friction, Seat::Pulley(support))));
         }
         self.even_out();
         self.renew_task();
