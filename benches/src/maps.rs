@@ -180,10 +180,9 @@ pub fn maps() -> Vec<Map> {
     for (id, model) in [("drag-fem", Model::Fem), ("drag-mass-spring", Model::MassSpring)] {
         out.push(Map {
             id,
-            about: "a cable on a floor drawn along it in motion, 20 elements: mean pull once all of it slides, against μ w L",
+            about: "a cable on a floor drawn along it in motion, 20 elements: impulse of the pull, less what momentum it makes, once all of it slides, against μ w L t",
             model,
-            // Faster, the cable has not lost the momentum of its start when the mean is taken.
-            axes: [logarithmic("speed, m/s", [0.02, 0.5]), even("friction", [0.1, 1.2])],
+            axes: [logarithmic("speed, m/s", [0.02, 8.0]), even("friction", [0.05, 1.2])],
             tolerance: 3e-2,
             others: &[Model::Fem],
             ask: drag,
@@ -276,11 +275,18 @@ fn moving(name: &str, from: [f64; 2], to: [f64; 2], seconds: f64) -> Support {
     Support { motion: Some(motion), ..Support::fixed(name, from) }
 }
 
-/// An end that gets to a velocity (m/s) in a fifth of a time (s), and keeps it to the end of that time.
+/// Knots of the ramp of a hand's speed, and parts of its time in which it is over.
+const RAMP_KNOTS: u32 = 8;
+const RAMP_PART: f64 = 0.2;
+
+/// An end that gets to a velocity (m/s) evenly in a fifth of a time (s), and keeps it to the end of that time.
 fn moving_evenly(name: &str, from: [f64; 2], velocity: f64, seconds: f64) -> Support {
-    let times_s: Vec<f64> = (0..=6).map(|k| 0.2 * f64::from(k) * seconds).collect();
-    // In the first fifth it is half as fast; the last knot, at which it stops, is not reached.
-    let way = |t: f64| velocity * if t > 0.0 { t - 0.1 * seconds } else { 0.0 };
+    let step = RAMP_PART * seconds / f64::from(RAMP_KNOTS);
+    // The last knot, at which it stops, is not reached.
+    let count = (1.2 * seconds / step).ceil() as u32;
+    let times_s: Vec<f64> = (0..=count).map(|k| step * f64::from(k)).collect();
+    let ramp = RAMP_PART * seconds;
+    let way = |t: f64| velocity * if t < ramp { 0.5 * t * t / ramp } else { t - 0.5 * ramp };
     let points_m = times_s.iter().map(|t| [from[0] + way(*t), from[1]]).collect();
     Support { motion: Some(Path { times_s, points_m }), ..Support::fixed(name, from) }
 }
@@ -324,6 +330,16 @@ fn corner(model: Model, [degrees, friction]: [f64; 2]) -> Result<Asked, Error> {
     drawn(over(shape, [CORD_RADIUS, friction, angle], 1e5), model, (friction * angle).exp())
 }
 
+/// Step of a drag in motion, s.
+const DRAG_STEP_S: f64 = 1.0 / 240.0;
+
+/// Momentum of the first cable to the right, kg m/s.
+fn momentum(answer: &Solution, density: f64) -> f64 {
+    let nodes = answer.cables.first().map_or(&[][..], |c| &c.nodes);
+    let pieces = nodes.windows(2);
+    pieces.map(|w| 0.5 * (w[0].vx_m_per_s + w[1].vx_m_per_s) * (w[1].arc_length_m - w[0].arc_length_m) * density).sum()
+}
+
 fn drag(model: Model, [speed, friction]: [f64; 2]) -> Result<Asked, Error> {
     let (length, density, lies) = (5.0, 1.0, 0.01);
     // All of it slides evenly once the hand is at its speed, and has gone a tenth of the length.
@@ -338,18 +354,23 @@ fn drag(model: Model, [speed, friction]: [f64; 2]) -> Result<Asked, Error> {
     }
     let (mut simulation, answer) = settled(scene, model, 20)?;
     let mut warned = warned(&answer);
-    let (mut sum, mut count) = (0.0, 0.0);
+    let (mut sum, mut began) = (0.0, None);
     while simulation.time_s() < seconds - 1e-9 {
-        simulation.step(1.0 / 240.0)?;
+        simulation.step(DRAG_STEP_S)?;
         let answer = simulation.solution();
         warned |= self::warned(&answer);
-        if simulation.time_s() > 0.6 * seconds {
-            sum += force(&answer, 1).x.abs();
-            count += 1.0;
+        if began.is_some() {
+            sum += force(&answer, 1).x.abs() * DRAG_STEP_S;
+        } else if simulation.time_s() > 0.6 * seconds {
+            began = Some((simulation.time_s(), momentum(&answer, density)));
         }
     }
-    let right = friction * density * G * length;
-    Ok(Asked { error: (sum / count / right - 1.0).abs(), answer: simulation.solution(), warned })
+    let answer = simulation.solution();
+    let (from_s, before) = began.unwrap_or((f64::NAN, f64::NAN));
+    // What is left of its start, or comes and goes with slack, is the cable's momentum.
+    let given = sum - (momentum(&answer, density) - before);
+    let right = friction * density * G * length * (simulation.time_s() - from_s);
+    Ok(Asked { error: (given / right - 1.0).abs(), answer, warned })
 }
 
 fn pendulum(model: Model, [step_s, stiffness]: [f64; 2]) -> Result<Asked, Error> {
