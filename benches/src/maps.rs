@@ -367,7 +367,7 @@ fn drag(model: Model, [speed, friction]: [f64; 2]) -> Result<Asked, Error> {
     }
     let answer = simulation.solution();
     let (from_s, before) = began.unwrap_or((f64::NAN, f64::NAN));
-    // What is left of its start, or comes and goes with slack, is the cable's momentum.
+    // The remainder of its start, and of slack that comes and goes, is the cable's momentum.
     let given = sum - (momentum(&answer, density) - before);
     let right = friction * density * G * length * (simulation.time_s() - from_s);
     Ok(Asked { error: (given / right - 1.0).abs(), answer, warned })

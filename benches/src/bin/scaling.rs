@@ -1,4 +1,4 @@
-//! What size costs: time and memory over elements, contacts, corners of the ground, and cables.
+//! The page of scaling: time and memory over elements, contacts, corners of the ground, and cables.
 //!
 //! Run from the root of the repository: `cargo run --release -p cable-benches --bin scaling-page`. It writes
 //! `docs/charts/scaling.csv`, `scaling.svg` and `scaling.md`.
@@ -32,13 +32,13 @@ struct Ladder {
     id: &'static str,
     /// What is asked.
     about: &'static str,
-    /// What its size counts.
+    /// The things that its size counts.
     size: &'static str,
     sizes: Vec<usize>,
     ask: fn(usize) -> Result<Cost, Box<dyn Error>>,
 }
 
-/// What an answer costs.
+/// The cost of an answer.
 #[derive(Clone, Copy)]
 struct Cost {
     time_s: f64,

@@ -45,12 +45,12 @@ pub struct Answer<'a> {
     pub warnings: Vec<WarningEntry<'a>>,
     /// What the laws say of the answer.
     pub verification: Option<&'a Verification>,
-    /// What other models and meshes answer, with `--compare`.
+    /// The answers of other models and meshes, with `--compare`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub compared: &'a Vec<ComparedEntry>,
 }
 
-/// What another model or mesh answers.
+/// The answer of another model or mesh.
 #[derive(Clone, Debug, Serialize)]
 pub struct ComparedEntry {
     #[serde(flatten)]
@@ -130,7 +130,7 @@ pub struct Figures {
     pub bending: Vec<NeglectedBending>,
     /// The greatest tensions of a run so far, one a cable.
     pub run_peaks: Vec<RunPeaksEntry>,
-    /// What other models and meshes answer, where it was asked for.
+    /// The answers of other models and meshes, where they were asked for.
     pub compared: Vec<ComparedEntry>,
 }
 

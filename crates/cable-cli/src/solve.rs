@@ -77,7 +77,7 @@ pub fn solve(arguments: &SolveArguments) -> Done {
     }
 }
 
-/// What every model and mesh answers beside an answer, and how long each took.
+/// The answers of every model and mesh beside a given one, with the time that each took.
 fn compared(scene: &Scene, given: &Solution, a: &Common) -> Vec<ComparedEntry> {
     let ask = |setting| {
         let began = Instant::now();

@@ -22,7 +22,7 @@ pub enum NoEquilibrium {
     },
     /// The cable slides: forces on its whole are left over.
     UnheldForce {
-        /// What is left over, N.
+        /// The unbalanced force, N.
         left_n: f64,
         /// All loads, N.
         loads_n: f64,

@@ -91,7 +91,7 @@ fn short(text: &str) -> String {
     text.chars().take(40).collect()
 }
 
-/// What stands before the decimals of a number.
+/// The digits before the decimals of a number.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum DecimalMark {
     Comma,

@@ -78,7 +78,7 @@ pub enum WarningKind {
     BreakingTension,
     /// It broke here; value and limit are the breaking tension.
     Broken,
-    /// Whether it breaks is open: the run is not fine enough to say, or no mesh is.
+    /// It is open whether the cable breaks: the run is not fine enough to say, or no mesh is.
     MayBreak,
     /// Led round something narrower than the smallest bend radius allowed.
     BendRadius,
@@ -294,7 +294,7 @@ pub enum WarningCause {
     ManyEquilibria {
         /// The one that is shown.
         shown: ShownEquilibrium,
-        /// What other loading histories would have left.
+        /// Other loading histories.
         histories: Histories,
     },
     /// An obstacle blocks a support.
@@ -422,8 +422,8 @@ pub enum ShownEquilibrium {
     FromRouteAsFlexible,
 }
 
-/// What other loading histories would have left in a cable. Tensions in N, ranges from the least to
-/// the greatest.
+/// The tensions that other loading histories would have left in a cable, N; ranges from the least
+/// to the greatest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -496,7 +496,7 @@ impl Histories {
 pub struct EndMove {
     /// The support's name.
     pub support: String,
-    /// How far it was drawn out, m; negative = let in.
+    /// Length by which it was drawn out, m; negative = let in.
     pub drawn_out_m: f64,
     /// Greatest tension that it left, N.
     pub greatest_n: f64,
@@ -516,7 +516,7 @@ pub enum SlideReason {
     },
     /// Nothing holds all of its loads.
     UnheldForce {
-        /// What is left over, N.
+        /// The unbalanced force, N.
         left_n: f64,
         /// All loads, N.
         loads_n: f64,
@@ -526,7 +526,7 @@ pub enum SlideReason {
 }
 
 impl WarningCause {
-    /// What other histories would have left, of a warning that there are many equilibria.
+    /// The other histories, of a warning that there are many equilibria.
     #[must_use]
     pub fn histories(&self) -> Option<&Histories> {
         match self {

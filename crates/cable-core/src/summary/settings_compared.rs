@@ -35,7 +35,7 @@ impl Setting {
     }
 }
 
-/// What a setting answers beside the answer that was given.
+/// The answer of a setting beside the one that was given.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compared {
     /// Greatest tension of all cables, N.
@@ -70,7 +70,7 @@ pub fn answer_with(setting: Setting, scene: &Scene, given: &Solution, settings: 
         let apart = ErrorEstimates::between(own, of_given);
         let greatest = of_given.nodes.iter().map(|n| n.tension_n.abs()).fold(0.0, larger);
         for force in [apart.max_tension_n, apart.support_force_n].into_iter().flatten() {
-            // Where nothing pulls, a difference is told as it is.
+            // A difference from an answer without any tension is stated in newtons.
             let part = if greatest > 0.0 { force / greatest } else { force };
             found.force_difference = larger(found.force_difference, part);
         }

@@ -44,7 +44,7 @@ pub const STATES: [State; 8] = [
 /// Draws all of them into a folder.
 ///
 /// # Errors
-/// What is missing, in one sentence with the remedy.
+/// The missing thing, in one sentence with the remedy.
 pub fn save(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     for state in &STATES {

@@ -16,7 +16,7 @@ const FRESH: Duration = Duration::from_secs(2);
 /// No hand cancels a dialog within this time: there was none.
 const NO_DIALOG: Duration = Duration::from_millis(300);
 
-/// What the path is for.
+/// The purpose of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// Something that exists is read.
@@ -29,7 +29,7 @@ pub enum Purpose {
 type Read = (Result<Listing, String>, Instant);
 
 /// Lists the folder of the typed path; a click enters a folder or puts a file into the path.
-/// Whether a file was double-clicked.
+/// Returns whether a file was double-clicked.
 pub fn list(ui: &mut Ui, path: &mut String, endings: &[&str], purpose: Purpose) -> bool {
     let folder = folder::of(path);
     let id = Id::unique("path picker").with((&folder, endings));

@@ -20,7 +20,7 @@ const LONGEST_WAIT: Duration = Duration::from_secs(300);
 /// Draws a scene at a size in points and writes a PNG; `prepare` sets what is to be shown.
 ///
 /// # Errors
-/// What is missing, in one sentence with the remedy.
+/// The missing thing, in one sentence with the remedy.
 pub fn save(
     scene: Scene,
     path: &Path,
@@ -34,7 +34,7 @@ pub fn save(
 /// Draws a scene at a size in points.
 ///
 /// # Errors
-/// What is missing, in one sentence with the remedy.
+/// The missing thing, in one sentence with the remedy.
 pub fn draw(
     scene: Scene,
     size: [u32; 2],
@@ -47,7 +47,7 @@ pub fn draw(
 /// is done.
 ///
 /// # Errors
-/// What is missing, in one sentence with the remedy.
+/// The missing thing, in one sentence with the remedy.
 pub fn draw_after(
     scene: Scene,
     size: [u32; 2],

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use cable_core::files;
 
-/// Whether an earlier window saw the first steps done.
+/// Returns whether an earlier window saw the first steps done.
 #[must_use]
 pub fn are_done(mark: &Path) -> bool {
     mark.exists()

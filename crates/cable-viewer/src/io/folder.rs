@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// Most entries of a folder that are looked at: a list of more is not searched by eye.
 const MAX_ENTRIES: usize = 2000;
 
-/// What a dialog shows of a folder.
+/// The listing of a folder in a dialog.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Listing {
     /// The folder, absolute.

@@ -1,4 +1,4 @@
-//! How far the answer can be relied on: the force left unbalanced, the greatest displacement, the
+//! The quality of the answer: the force left unbalanced, the greatest displacement, the
 //! conditioning of the equations, and whether the motion gains energy.
 
 use cable_core::solution::{CableSolution, Node};

@@ -60,7 +60,7 @@ pub fn envelope(
     [left, right]: [f64; 2],
     columns: usize,
 ) -> (Vec<[f64; 2]>, Vec<[f64; 3]>) {
-    /// What a column holds.
+    /// The bounds and sums of a column.
     #[derive(Clone, Copy)]
     struct Column {
         low: f64,

@@ -146,7 +146,7 @@ pub enum NoAnswer {
     Cancelled,
     /// The solver panicked.
     Panicked {
-        /// What it said.
+        /// The sentence as it was recorded.
         message: String,
     },
 }

@@ -36,7 +36,7 @@ pub struct Ui {
     pub after_message: Option<Dialog>,
     /// Files opened and saved last, the latest first.
     pub recent: Vec<PathBuf>,
-    /// What a newcomer is still asked to do.
+    /// The first steps that are still to be done.
     pub first_steps: FirstSteps,
     /// The tutorial that is on.
     pub tutorial: Option<TutorialPlace>,

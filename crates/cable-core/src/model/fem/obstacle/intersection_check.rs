@@ -23,8 +23,8 @@ impl Dynamics {
         self.way_is_clear(&self.mesh.path(e, &self.motion.x), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))
     }
 
-    /// Whether no bar between two nodes that move runs through anything. Where supports are is the scene's
-    /// business.
+    /// Returns whether every bar between two nodes that move is clear of obstacles. The place of
+    /// supports is the scene's business.
     pub(in crate::model::fem) fn cuts_nothing(&self) -> bool {
         let moves = |k: usize| self.mesh.sliding[k].is_some() || self.mesh.is_free(k);
         (0..self.mesh.rest_length.len()).all(|e| !(moves(e) && moves(e + 1)) || self.is_clear(e))

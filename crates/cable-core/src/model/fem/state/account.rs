@@ -5,7 +5,7 @@ use crate::math::Vec2;
 /// Something for each kind of force: weight, loads, supports, contacts.
 pub(in crate::model::fem) type Kinds = [Vec2; 4];
 
-/// What became of the momentum since the caller's step began.
+/// The account of momentum since the caller's step began.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::model::fem) struct Account {
     /// When it began, and up to when it goes, s.

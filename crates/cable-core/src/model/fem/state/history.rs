@@ -8,7 +8,7 @@ use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::friction_state::ContactSet;
 use crate::model::input_filter::{Hand, SmoothedTarget};
 
-/// What a step may change, kept to go back to.
+/// The parts of the state that a step may change, kept to go back to.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct Motion {
     pub(in crate::model::fem) x: Vec<Vec2>,
@@ -34,9 +34,9 @@ pub(in crate::model::fem) struct Motion {
     /// Hands that hold supports by springs.
     pub(in crate::model::fem) hands: Vec<Option<Hand>>,
     pub(in crate::model::fem) time: f64,
-    /// Where the outline of the robot is, if there is one.
+    /// The pose of the robot's outline, if there is one.
     pub(in crate::model::fem) placement: Option<RigidPose>,
-    /// What became of the momentum since the caller's step began.
+    /// The account of momentum since the caller's step began.
     pub(in crate::model::fem) account: Account,
 }
 

@@ -21,7 +21,7 @@ pub(in crate::model::fem) struct MovingOutline {
     /// Where it was when the way began, and where it is led to, with times in s.
     pub(in crate::model::fem) from: (f64, RigidPose),
     pub(in crate::model::fem) to: (f64, RigidPose),
-    /// Where it was led before.
+    /// The pose to which it was led before.
     pub(in crate::model::fem) led_before: RigidPose,
     /// Whether it stays where it is until the end of this advance.
     pub(in crate::model::fem) waits: bool,
@@ -43,14 +43,14 @@ impl MovingOutline {
         (Some(Self { shape, obstacle, from: at, to: at, led_before: at.1, waits: false }), Arc::new(with_it))
     }
 
-    /// Where it is to be at a time, s.
+    /// Its pose at a time (s).
     pub(in crate::model::fem) fn goal(&self, time: f64) -> RigidPose {
         let (whole, left) = (self.to.0 - self.from.0, self.to.0 - time);
         // Sums of steps come as near to their end as rounding lets them.
         if left > ARRIVAL_TOLERANCE * whole { self.from.1.towards(&self.to.1, 1.0 - left / whole) } else { self.to.1 }
     }
 
-    /// How many steps without inertia its way takes at least.
+    /// The least number of steps without inertia for its way.
     pub(in crate::model::fem) fn pieces(&self) -> f64 {
         self.shape.max_displacement(&self.from.1, &self.to.1) / LONGEST_WAY_M
     }

@@ -2,7 +2,7 @@
 
 use crate::math::Vec2;
 
-/// What was seen of the motion, and the step that follows from it.
+/// The observed frequency of the motion, and the step that follows from it.
 #[derive(Clone, Debug)]
 pub(in crate::model::fem) struct StepSizeController {
     /// ∫ Σ l |a|² dt, m³/s³, ∫ Σ l |v|² dt, m³/s, and ∫ dt, s.
@@ -25,7 +25,7 @@ impl StepSizeController {
     }
 }
 
-/// What is watched to know whether the cable is still, and what acted when it fell asleep.
+/// The measures by which the cable is found to be still, and the loads when it fell asleep.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct Sleep {
     pub(in crate::model::fem) since: f64,

@@ -87,7 +87,7 @@ impl ContactPair {
     }
 }
 
-/// How the outline moved in the present step.
+/// The motion of the outline in the present step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OutlineMotion {
     /// Its number among the obstacles.

@@ -86,7 +86,7 @@ impl Dynamics {
         self.motion.branch = memory;
     }
 
-    /// What the branches of bar `e` pull with, N.
+    /// The force of the branches of bar `e`, N.
     pub(in crate::model::fem) fn held_by_branches(&self, e: usize) -> f64 {
         let count = self.loss.branches.len();
         if !self.has_branches() || self.motion.branch.len() != count * self.mesh.rest_length.len() {
