@@ -51,6 +51,7 @@ fn warnings() -> Vec<Warning> {
                     greatest_n: 80.0,
                     towards_start_n: Some(90.5),
                     towards_end_n: None,
+                    loose_n: Some(12.0),
                     start_n: range,
                     end_n: range,
                 },

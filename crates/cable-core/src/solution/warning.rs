@@ -443,6 +443,9 @@ pub enum Histories {
         towards_start_n: Option<f64>,
         /// The same towards the end, N.
         towards_end_n: Option<f64>,
+        /// The same laid down loose, N; None = there is no cable to spare.
+        #[serde(default)]
+        loose_n: Option<f64>,
         /// Range of the tension at the start, N.
         start_n: [f64; 2],
         /// Range of the tension at the end, N.

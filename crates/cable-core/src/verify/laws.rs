@@ -396,8 +396,7 @@ impl CheckedCable<'_> {
         }
         sums.residual_n = larger(larger(sums.residual_n, in_air.sqrt()), beyond);
         let allowed = limit + CONE_EXCESS * pressed;
-        let allowed = if beyond <= allowed { allowed } else { allowed + self.lumped_friction(near) };
-        if !(beyond <= allowed) {
+        if !(beyond <= allowed) && !(self.beyond_lumped_friction(near) <= allowed) {
             let mut finding = self.finding(Law::Friction, worst.1, beyond, allowed);
             let here = near.of(worst.1).first();
             here.map_or("", |n| self.surroundings.name(n.body)).clone_into(&mut finding.with);
@@ -491,21 +490,28 @@ impl CheckedCable<'_> {
         self.wheels.iter().any(|&(center, radius, _)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
     }
 
-    /// Friction that the bars' own weight may add or hide where the ground turns, N: a bar carries
-    /// it to its ends, where it turns the cable by weight over tension, and so presses as no edge
-    /// does.
-    fn lumped_friction(&self, near: &Neighbours) -> f64 {
+    /// The sum (N) of what pieces ask of obstacles beyond their cones, less the friction that the
+    /// bars' own weight may add or hide where the ground turns: a bar carries it to its ends, where
+    /// it turns the cable by weight over tension, and so presses as no edge does.
+    fn beyond_lumped_friction(&self, near: &Neighbours) -> f64 {
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
         let mut rays = Vec::new();
         let of_piece = |piece: CheckedPiece| {
+            let excess = self.excess(near, &piece, &mut rays).unwrap_or(0.0);
+            if excess == 0.0 {
+                return 0.0;
+            }
             let [from, to] = [piece.nodes[0].saturating_sub(1), (piece.nodes[1] + 1).min(last)];
-            let weight = self.body.norm() * (nodes[to].arc_length_m - nodes[from].arc_length_m);
+            // Material that lies in folds is beside the way, and turns nothing.
+            let way: f64 = nodes[from..=to].windows(2).map(|pair| (pair[1].at() - pair[0].at()).norm()).sum();
+            let weight = self.body.norm() * smaller(nodes[to].arc_length_m - nodes[from].arc_length_m, way);
             let force = larger(nodes[piece.nodes[0]].force().norm(), nodes[piece.nodes[1]].force().norm());
             let turn = if weight < force { weight / force } else { 1.0 };
-            if self.rays(near, &piece, &mut rays) { weight * turn } else { 0.0 }
+            let lumped = if self.rays(near, &piece, &mut rays) { weight * turn } else { 0.0 };
+            larger(excess - LUMPED_WEIGHT_TURN * self.greatest_friction() * lumped, 0.0)
         };
-        LUMPED_WEIGHT_TURN * self.greatest_friction() * self.pieces().map(of_piece).sum::<f64>()
+        self.pieces().map(of_piece).sum()
     }
 
     /// The greatest friction coefficient that the cable may meet.

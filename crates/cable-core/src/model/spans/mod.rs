@@ -201,7 +201,8 @@ impl SpansModel {
         }
     }
 
-    /// Other histories of the cable, drawn towards either end, and what they would have left.
+    /// Other histories of the cable, drawn towards either end or laid down loose, and what they
+    /// would have left.
     ///
     /// An equilibrium that was found without friction is not sought so again: the search would come
     /// to the place from which the cable is drawn here.
@@ -218,15 +219,25 @@ impl SpansModel {
             let found = network.drawn(&self.layout, drawn.way(), work);
             found.or_else(|| self.laid_anew(drawn, start, work)).map(|n| tensions(&n))
         });
-        let all = || std::iter::once(laid).chain(drawn.into_iter().flatten());
+        // Where there is more cable than its way needs it may as well lie loose.
+        let heap = CableEquilibrium::heaped(&self.layout, &network.instant);
+        let loose = heap.filter(|heap| heap.loose().is_some_and(|[material, _]| material > 0.0)).map(|n| tensions(&n));
+        let all = || std::iter::once(laid).chain(drawn.into_iter().flatten()).chain(loose);
         let range = |k: usize| all().map(|t| t[k]).fold([laid[k], laid[k]], |[a, b], t| [smaller(a, t), larger(b, t)]);
         let greatest_n = laid[2];
         // A range of one history says nothing about the others.
-        if drawn.iter().all(Option::is_none) {
+        if loose.is_none() && drawn.iter().all(Option::is_none) {
             return Histories::NotFound { greatest_n };
         }
         let [towards_start_n, towards_end_n] = drawn.map(|of| of.map(|t| t[2]));
-        Histories::Mobilised { greatest_n, towards_start_n, towards_end_n, start_n: range(0), end_n: range(1) }
+        Histories::Mobilised {
+            greatest_n,
+            towards_start_n,
+            towards_end_n,
+            loose_n: loose.map(|t| t[2]),
+            start_n: range(0),
+            end_n: range(1),
+        }
     }
 
     fn warning(&self, cause: WarningCause) -> Warning {

@@ -297,7 +297,8 @@ pub(in crate::model::spans) fn tensions(network: &CableEquilibrium) -> [f64; 3] 
             let ends = [from, to].map(|s| strand.force(course, k, s).norm());
             greatest = larger(greatest, larger(ends[0], ends[1]));
         }
-        greatest = strand.contacts.iter().flat_map(|c| c.ends.t).fold(greatest, larger);
+        let of_loose = strand.loose.iter().flat_map(|l| &l.parts).flat_map(|part| part.tension);
+        greatest = strand.contacts.iter().flat_map(|c| c.ends.t).chain(of_loose).fold(greatest, larger);
     }
     [start, last, greatest]
 }
