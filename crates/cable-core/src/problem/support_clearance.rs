@@ -18,7 +18,10 @@ use crate::solution::{Warning, WarningCause};
 const ON_SURFACE_FRACTION: f64 = 1e-3;
 /// The same in parts of the coordinates, for cables much thinner than their scene.
 const COORDINATE_ROUNDING: f64 = 1e-9;
-/// The same of a place that is clear: some roundings.
+/// A support that is moved by more than this part of its coordinates (and of the radius, as above)
+/// is spoken of. Larger: supports of thin cables far from (0, 0) are moved without a word.
+const SILENT_MOVE_FRACTION: f64 = 1e-12;
+/// Part of its coordinates by which a place that is clear may be inside: some roundings.
 const CLEAR_ROUNDING: f64 = 1e-14;
 /// Times a support is pushed out of one obstacle and into the next; in a corner of 30° twenty leave
 /// a millionth of the way.
@@ -60,7 +63,7 @@ pub(super) fn clear_supports(problem: &mut Problem) -> Result<(), SceneError> {
         };
         let by = out - at;
         // Rounding is put right without a word.
-        let told = by.norm() > most;
+        let told = by.norm() > ON_SURFACE_FRACTION * problem.radius + SILENT_MOVE_FRACTION * at.amax();
         let cause = WarningCause::SupportOnSurface { support: support.name.clone(), obstacle: obstacle.to_owned() };
         let s = support.arc_length.unwrap_or(0.0);
         let note = Warning::new(cause, &problem.cable.name, s, [by.norm(), problem.radius]).at(out.into());
