@@ -24,3 +24,13 @@ fn no_cell_is_wrong_in_silence() {
     assert!(2 * right > all.len() * CELLS * CELLS, "a map of refusals says nothing: {right} cells are right");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+/// A cord that lies along both faces of a corner leaves them where it sags: at 2° to 150°, on
+/// either side, `spans` finds where (it refused 4 of 20 angles, by rounding).
+#[test]
+fn no_angle_of_a_corner_is_refused_by_spans() {
+    let map = maps().into_iter().find(|m| m.id == "corner-spans").expect("the map");
+    let refused: Vec<f64> =
+        (0..20).map(|k| map.axes[0].value(k, 20)).filter(|angle| map.cell([*angle, 0.3]).0 != Verdict::Right).collect();
+    assert!(refused.is_empty(), "at {refused:?} degrees");
+}

@@ -337,12 +337,12 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
         .and_then(|j| strand.contacts.get_mut(j))
         .filter(|c| same(c) && p > c.ends.p[1] && bears(c, (c.ends.p[1], p)))
     {
-        let p = beyond_edges(curve, home, p, 1, ends[1]);
+        let p = beyond_edges(curve, home, p, 1, ends[1], None);
         (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.s, force);
         return Ok(());
     }
     if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0] && bears(c, (p, c.ends.p[0]))) {
-        let p = beyond_edges(curve, home, p, 0, ends[0]);
+        let p = beyond_edges(curve, home, p, 0, ends[0], None);
         (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.s, force);
         return Ok(());
     }
@@ -396,7 +396,16 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
 /// From p, where a contact ends on a side, on to the corner behind each edge that the way to the
 /// far end of the span there leads into: along an edge nothing turns, and Newton's method does not
 /// find across it.
-fn beyond_edges(curve: &Curve, home: ChainRange, mut p: f64, side: usize, far: Option<Vec2>) -> f64 {
+///
+/// `leans`: the way that the span takes there, where it is known better than by its far end.
+fn beyond_edges(
+    curve: &Curve,
+    home: ChainRange,
+    mut p: f64,
+    side: usize,
+    far: Option<Vec2>,
+    mut leans: Option<Vec2>,
+) -> f64 {
     let (step, forward) = if side == 0 { (-1, -1.0) } else { (1, 1.0) };
     let Some(far) = far else { return p };
     let inside = |i: i64| i >= home.first && i <= home.last;
@@ -404,10 +413,10 @@ fn beyond_edges(curve: &Curve, home: ChainRange, mut p: f64, side: usize, far: O
     for _ in 0..MOST_EDGES {
         let edge = if curve.is_arc(i) { i + step } else { i };
         let arc = edge + step;
-        let way = (far - curve.place(p, home).at) * forward;
         if !inside(edge) || !inside(arc) || curve.is_arc(edge) || !curve.is_arc(arc) {
             break;
         }
+        let way = leans.unwrap_or_else(|| (far - curve.place(p, home).at) * forward);
         // An arc leads on to its edge where it does not come to run along the way.
         if curve.is_arc(i) && curve.aside(i, way) != step {
             break;
@@ -416,10 +425,14 @@ fn beyond_edges(curve: &Curve, home: ChainRange, mut p: f64, side: usize, far: O
         let corner = curve.place_on(arc, if side == 0 { curve.piece(arc).extent } else { 0.0 }).at;
         // On beyond the end of the edge, and below it there.
         let on = (far - corner) * forward;
-        if (far - corner).dot(&place.normal) >= 0.0 || on.dot(&place.tangent) <= 0.0 {
+        let below = leans.take().map_or(far - corner, |way| way * forward);
+        if below.dot(&place.normal) >= 0.0 || on.dot(&place.tangent) <= 0.0 {
             break;
         }
-        (p, i) = (curve.with_tangent(arc, on), arc);
+        // On the arc itself: at its border with the edge before it, it counts as that edge, along
+        // which nothing turns.
+        let border = curve.end(arc) - ARC_END_FRACTION * curve.piece(arc).extent;
+        (p, i) = (smaller(curve.with_tangent(arc, on), border), arc);
     }
     p
 }
@@ -428,16 +441,16 @@ fn beyond_edges(curve: &Curve, home: ChainRange, mut p: f64, side: usize, far: O
 fn lead(strand: &mut CableRun, course: &Course, k: usize) {
     for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
         if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.is_load())) {
-            lead_end(strand, course, j, side);
+            lead_end(strand, course, j, side, None);
         }
     }
 }
 
 /// Leads an end of contact j over edges; whether there was one.
-fn lead_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bool {
+fn lead_end(strand: &mut CableRun, course: &Course, j: usize, side: usize, leans: Option<Vec2>) -> bool {
     let far = strand.ends_of(course, j + side)[side];
     let c = &mut strand.contacts[j];
-    let p = beyond_edges(&course.curves[c.curve], c.home, c.ends.p[side], side, far);
+    let p = beyond_edges(&course.curves[c.curve], c.home, c.ends.p[side], side, far, leans);
     if p == c.ends.p[side] {
         return false;
     }
@@ -490,7 +503,11 @@ fn grow(strand: &mut CableRun, course: &Course) -> bool {
                 && strand.has_span(j + side)
                 && (border(curve.origin(i)) || border(curve.end(i)))
             {
-                any |= lead_end(strand, course, j, side) || lift_end(strand, course, j, side);
+                let s = strand.contacts[j].ends.s[side];
+                let leans = strand.force(course, j + side, s).try_normalize(0.0);
+                any |= lead_end(strand, course, j, side, None)
+                    || lift_end(strand, course, j, side)
+                    || lead_end(strand, course, j, side, leans);
             }
         }
     }
