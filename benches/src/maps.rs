@@ -360,7 +360,8 @@ fn drag(model: Model, [speed, friction]: [f64; 2]) -> Result<Asked, Error> {
         let answer = simulation.solution();
         warned |= self::warned(&answer);
         if began.is_some() {
-            sum += force(&answer, 1).x.abs() * DRAG_STEP_S;
+            // The hand's impulse over the whole step: its force at the end of it trembles.
+            sum += answer.cables[0].momentum.map_or(f64::NAN, |account| account.supports_n_s[0]);
         } else if simulation.time_s() > 0.6 * seconds {
             began = Some((simulation.time_s(), momentum(&answer, density)));
         }
