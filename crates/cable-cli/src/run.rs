@@ -1,4 +1,4 @@
-//! `cable run`: settles, then steps, and writes what it sees at every output time.
+//! `cable run` settles a scene, then steps it, and writes an answer at every output time.
 //!
 //! A thread of its own solves and writes; the first thread waits for it and for signals, so that one which arrives in the midst of a
 //! long step, or while a reader of standard output is slow, ends the run at once with what was written.
@@ -51,13 +51,13 @@ impl Shared {
         Some(guard.take()?.finish(end).map_err(Failure::File))
     }
 
-    /// Where it lies for now.
+    /// Its place for now.
     fn place(&self) -> Option<PathBuf> {
         self.lock().as_ref().map(|folder| folder.place().to_owned())
     }
 }
 
-/// Where the answers of a run go.
+/// Destinations of the answers of a run.
 struct Outputs {
     arguments: RunArguments,
     scene: Scene,
@@ -74,7 +74,7 @@ struct Outputs {
     run_peaks: Vec<RunPeaksEntry>,
 }
 
-/// What is said of a whole run.
+/// Totals of a whole run.
 struct Reached {
     /// Of the cable that is pulled hardest.
     peaks: RunPeaks,

@@ -1,4 +1,4 @@
-//! `cable solve`, `cable check` and `cable schema`.
+//! This file holds the commands `cable solve`, `cable check` and `cable schema`.
 
 use std::io::IsTerminal;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What is read first of an answer, as text.
+//! This file writes as text the figures of an answer that are read first.
 
 use std::fmt::Write as _;
 
@@ -116,7 +116,8 @@ fn percent(ratio: f64) -> String {
     format!("{:.4} %", 100.0 * ratio)
 }
 
-/// What a cable would be like with the bending stiffness that was left out; `most` is the greatest tension without it, N.
+/// The text on the changes that the neglected bending stiffness would make; `most` is the greatest
+/// tension without it, N.
 fn neglected(b: &NeglectedBending, most: f64) -> String {
     let range = match b.range_n_m2 {
         [Some(low), Some(high)] => format!(" ({low} to {high})"),

@@ -297,7 +297,8 @@ fn solve_tells_the_tightest_bend_and_the_highest_pressure() {
     }
 }
 
-/// What is read first is in JSON and text, and the tightest bend is the greatest curvature of the nodes.
+/// The figures that are read first are in JSON and text, and the tightest bend is the greatest
+/// curvature of the nodes.
 #[test]
 fn solve_compares_models_and_meshes() {
     let folder = tempfile::tempdir().unwrap();

@@ -67,7 +67,8 @@ fn signal(child: &Child, name: &str) {
     assert!(done.success());
 }
 
-/// What another program makes of a table: every line ends, every record has a field for each column, every number is one. Rows.
+/// Reads a table as another program would: every line ends, every record has a field for each
+/// column, every number is one; returns the number of rows.
 fn foreign_rows(path: &Path) -> Result<usize, String> {
     let bytes = std::fs::read(path).map_err(|e| e.to_string())?;
     if bytes.last().is_some_and(|b| *b != b'\n') {
@@ -91,7 +92,8 @@ fn foreign_rows(path: &Path) -> Result<usize, String> {
     Ok(rows)
 }
 
-/// What another program, or this one, cannot read of a folder; a run that was killed before it came to its tables has none.
+/// Files of a folder that another program, or this one, cannot read; a run that was killed before
+/// it came to its tables has none.
 fn unreadable(folder: &Path) -> Vec<String> {
     let there = TABLES.iter().filter(|name| folder.join(name).exists());
     let mut out: Vec<String> =

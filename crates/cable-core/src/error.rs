@@ -1,4 +1,4 @@
-//! The errors of a scene and of a solve, by operation, with the numbers in them;
+//! The errors of a scene and of a solve are data, by operation, with their numbers;
 //! [`crate::wording`] makes the sentences.
 
 mod no_equilibrium;
@@ -19,11 +19,11 @@ pub use self::unsupported::{Unsupported, UnsupportedReach};
 /// Why a scene is refused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneError {
-    /// Where in the scene, for example `cables[0].length_m`.
+    /// Place in the scene, for example `cables[0].length_m`.
     pub path: String,
     /// The fault.
     pub fault: SceneFault,
-    /// Where in the text, when it came from a text.
+    /// Place in the text, when it came from a text.
     pub at: Option<TextPosition>,
 }
 
@@ -65,7 +65,7 @@ pub enum SceneFault {
     },
     /// A key that must be there, or must not.
     Shape {
-        /// What must be there or must not, and why; it holds no figure with a unit.
+        /// The thing that must be there or must not, and why; it holds no figure with a unit.
         what: String,
     },
     /// More elements than a scene may have.
@@ -79,7 +79,7 @@ pub enum SceneFault {
     TooFewPoints {
         /// Their number.
         count: usize,
-        /// How many it needs.
+        /// The number it needs.
         least: usize,
     },
     /// A series with another number of values than of times.
@@ -126,9 +126,9 @@ pub enum SceneFault {
     },
     /// A motion that does not start where its support is.
     MotionStartsElsewhere {
-        /// Where the motion starts, m.
+        /// Start of the motion, m.
         motion_m: [f64; 2],
-        /// Where the support is, m.
+        /// Place of the support, m.
         support_m: [f64; 2],
     },
     /// An outline whose edges cross or touch.
@@ -140,7 +140,7 @@ pub enum SceneFault {
     },
     /// A name that nothing has.
     UnknownName {
-        /// What was looked for (cable, preset …).
+        /// Kind of the thing that was looked for (cable, preset …).
         what: &'static str,
         /// The name as given.
         name: String,
@@ -151,7 +151,7 @@ pub enum SceneFault {
     RouteInside {
         /// The obstacle.
         obstacle: String,
-        /// How deep inside it, m.
+        /// Depth inside it, m.
         depth_m: f64,
         /// Place, m.
         x_m: f64,
@@ -164,7 +164,7 @@ pub enum SceneFault {
         name: Box<str>,
         /// The obstacle.
         obstacle: Box<str>,
-        /// How deep the point is below the obstacle's surface, m.
+        /// Depth of the point below the obstacle's surface, m.
         depth_m: f64,
         /// The nearest place where the cable's centre line touches nothing, m.
         clear_m: Option<[f64; 2]>,
@@ -198,7 +198,7 @@ pub enum SceneFault {
     },
 }
 
-/// How a cable loses its tension.
+/// The way in which a cable loses its tension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum TensionLoss {
     /// A free span hangs in one line and folds.
@@ -207,7 +207,7 @@ pub enum TensionLoss {
     /// A free span has hardly any tension left.
     #[error("a span goes slack")]
     Span,
-    /// What lies on an obstacle would have to push.
+    /// A cable that lies on an obstacle would have to push.
     #[error("what lies goes slack")]
     Lay,
 }
@@ -235,7 +235,7 @@ pub enum SolveError {
         iterations: usize,
         /// Largest unbalanced force, N; NaN where none is known.
         residual_n: f64,
-        /// Where it acts.
+        /// Its place.
         place: Box<Place>,
     },
     /// The budget of work was spent before there was an answer.
@@ -248,7 +248,7 @@ pub enum SolveError {
         segments: usize,
         /// Largest unbalanced force, N.
         residual_n: f64,
-        /// Where it acts.
+        /// Its place.
         place: Box<Place>,
     },
     /// The only equilibrium found carries compression, which a cable cannot.
@@ -257,7 +257,7 @@ pub enum SolveError {
         model: Model,
         /// Its tension, N (negative).
         tension_n: f64,
-        /// Where.
+        /// Its place.
         place: Box<Place>,
     },
     /// The state found is not a stable equilibrium.
@@ -278,26 +278,26 @@ pub enum SolveError {
     },
     /// Nothing can hold the loads.
     NoRestingPlace {
-        /// What pulls it away.
+        /// The force that pulls it away.
         why: NoEquilibrium,
     },
     /// Two models were asked, and neither has an answer or a reason that is one for every model.
     Neither {
-        /// What says more of the scene.
+        /// The error that says more of the scene.
         told: Box<Self>,
-        /// What the other model said.
+        /// The other model's error.
         other: Box<Self>,
     },
     /// The model cannot answer this kind of scene.
     Unsupported {
         /// The model.
         model: Model,
-        /// What it lacks.
+        /// The missing capability.
         feature: Unsupported,
     },
     /// A number blew up.
     NonFinite {
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
         /// Place on the cable, m.
         arc_length_m: f64,
@@ -326,7 +326,7 @@ pub enum SolveError {
     },
     /// A setting that no model can work by.
     Setting {
-        /// Which.
+        /// Its name.
         name: &'static str,
         /// Its value.
         value: f64,
@@ -350,7 +350,7 @@ pub enum SolveError {
         dt_s: f64,
         /// Largest unbalanced force, N; NaN where none is known.
         residual_n: f64,
-        /// Where it acts.
+        /// Its place.
         place: Box<Place>,
         /// Why the last try failed.
         cause: FailureCause,

@@ -34,7 +34,7 @@ pub enum FileError {
     /// It is a folder or a device.
     #[error("cannot read {path}: it is not a file")]
     NotAFile {
-        /// What it is called.
+        /// Its name.
         path: String,
     },
     /// It is larger than what is asked for can be.
@@ -45,7 +45,7 @@ pub enum FileError {
         /// The limit, bytes.
         limit_bytes: u64,
     },
-    /// What it holds is not a scene that can be solved.
+    /// Its content is not a scene that can be solved.
     #[error("{path}: {fault}")]
     Scene {
         /// The file.
@@ -53,7 +53,7 @@ pub enum FileError {
         /// The fault.
         fault: Box<SceneError>,
     },
-    /// What it holds is not a table of a run.
+    /// Its content is not a table of a run.
     #[error("{path}: {fault}")]
     Table {
         /// The folder.
@@ -101,7 +101,7 @@ pub enum RunFolderFault {
     /// In the place of a file of the run there is something else.
     #[error("`{name}` in it is a link, a folder or a device, not a file")]
     NotAFile {
-        /// What it is called.
+        /// Its name.
         name: String,
     },
     /// A file of the run is not as the run wrote it.
@@ -118,7 +118,7 @@ pub enum RunFolderFault {
     /// There are as many unfinished runs in it as have numbers.
     #[error("it holds {count} unfinished runs; remove those that are not needed")]
     Full {
-        /// How many.
+        /// Their number.
         count: usize,
     },
 }
@@ -232,7 +232,7 @@ pub fn create_folder(path: impl AsRef<Path>) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|e| FileError::write(path, &e))
 }
 
-/// What a run folder says about itself.
+/// Name of the file in which a run folder describes itself.
 const MANIFEST_NAME: &str = "run.toml";
 /// The scene of a run.
 const SCENE_NAME: &str = "scene.toml";
@@ -257,7 +257,7 @@ struct TableFile {
     pages: Pages,
 }
 
-/// What a [`TableFile`] held at some moment.
+/// The content of a [`TableFile`] at some moment.
 #[derive(Clone)]
 struct Mark {
     bytes: u64,
@@ -304,7 +304,7 @@ impl Write for TableFile {
     }
 }
 
-/// How a run ended.
+/// The end of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RunEnd {
     /// With everything that was asked.
@@ -323,7 +323,7 @@ pub enum RunEnd {
 /// ends.
 pub struct RunFolder {
     folder: PathBuf,
-    /// Where the files are written: the folder, or `unfinished-N` in it.
+    /// The folder into which the files are written: the run's, or `unfinished-N` in it.
     place: PathBuf,
     manifest: Manifest,
     node_choice: NodeChoice,
@@ -722,7 +722,7 @@ fn sync_folder(folder: &Path) {
 pub struct SavedRun {
     /// Its scene.
     pub scene: Scene,
-    /// What it says about itself; None for a run of a version before there was such a file.
+    /// Its manifest; None for a run of a version before there was such a file.
     pub manifest: Option<Manifest>,
     /// Its tables.
     pub tables: RunTables,

@@ -1,4 +1,4 @@
-//! 2D cable mechanics: where a cable goes, how hard it pulls, where it rubs.
+//! This library computes where a 2D cable goes, how hard it pulls and where it rubs.
 //!
 //! ```
 //! use cable_core::{Model, Scene, Simulation};

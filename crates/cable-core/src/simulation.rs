@@ -46,7 +46,7 @@ const MIN_ELEMENTS: usize = 4;
 #[derive(Clone)]
 pub struct Simulation {
     scene: Scene,
-    /// What the user asked for.
+    /// The model that the user asked for.
     requested: Model,
     /// As it was built: `Auto` where two models may take turns.
     source: ModelSource,
@@ -59,7 +59,7 @@ pub struct Simulation {
     vehicle: Option<Vehicle>,
     /// The answers of the cables at the present instant.
     answers: Vec<CableSolution>,
-    /// Where the cables were when the run began.
+    /// Positions of the cables when the run began.
     initial_places: Vec<AlongCable>,
     warning_monitor: WarningMonitor,
     energy: Energy,
@@ -69,7 +69,7 @@ pub struct Simulation {
     verification: Verification,
 }
 
-/// What an instant that is read is part of.
+/// The series of instants that an instant belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Instant {
     /// The cables rest, and a run begins here.
@@ -246,14 +246,14 @@ impl Simulation {
         self.settings
     }
 
-    /// What is known of the errors of the present answers.
+    /// Sets the error estimates of the present answers.
     pub(crate) fn set_error_estimates(&mut self, errors: impl Iterator<Item = ErrorEstimates>) {
         for (answer, errors) in self.answers.iter_mut().zip(errors) {
             (answer.error_estimate, answer.errors) = (errors.relative(answer), errors);
         }
     }
 
-    /// What else is to be said of the present instant.
+    /// Sets further warnings of the present instant.
     pub(crate) fn set_break_warnings(&mut self, warnings: Vec<Warning>) {
         self.warnings.retain(|w| w.kind != WarningKind::MayBreak);
         self.warnings.extend(warnings);

@@ -35,7 +35,7 @@ pub struct TensionRange {
     pub high_n: f64,
 }
 
-/// What less and more friction does.
+/// The effect of less and of more friction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionRange {
     /// Of each cable: along it, at the end of the time asked for.
@@ -59,22 +59,22 @@ pub struct FrictionQuery {
     pub settings: Settings,
     /// Least and greatest friction over that of the scene.
     pub factors: [f64; 2],
-    /// How long time runs, s; 0 asks for the resting place.
+    /// Duration of the motion, s; 0 asks for the resting place.
     pub span_s: f64,
-    /// What a hand did meanwhile, in order of time; what it did at 0 s is how the scene begins.
+    /// Actions of a hand meanwhile, in order of time; those at 0 s are how the scene begins.
     pub hands: Vec<Action>,
 }
 
-/// What a hand did.
+/// An action of a hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Action {
     /// When, s.
     pub time_s: f64,
-    /// What.
+    /// Its kind.
     pub what: ActionKind,
 }
 
-/// What a hand moves.
+/// A thing that a hand moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ActionKind {
     /// A support is then at a place.

@@ -94,9 +94,9 @@ pub(crate) struct BreakableCable {
     pieces: Vec<Piece>,
     breaks: Vec<Break>,
     dragged: Vec<Option<Vec2>>,
-    /// Which of them a hand holds by a spring.
+    /// True for those that a hand holds by a spring.
     pulled: Vec<bool>,
-    /// Where the outline of the robot was led.
+    /// Pose to which the outline of the robot was led.
     robot_pose: Option<RigidPose>,
     /// The greatest tensions since they were last forgotten, in motion.
     peaks: Option<TensionPeaks>,
@@ -121,13 +121,13 @@ struct Piece {
     account: Option<MomentumAccount>,
 }
 
-/// Where a piece breaks.
+/// The break of a piece.
 struct BreakPoint {
     /// When, s.
     time_s: f64,
-    /// Where the piece then is.
+    /// The state of the piece then.
     state: State,
-    /// Where on it.
+    /// The place on it.
     at: rupture::Rupture,
 }
 
@@ -140,7 +140,7 @@ enum Grasp {
     Spring,
 }
 
-/// What became of a piece in a step.
+/// The outcome of a step of a piece.
 enum StepOutcome {
     Intact,
     Broke(Box<BreakPoint>),

@@ -22,13 +22,13 @@ pub(super) struct CablePart {
 /// A place to cut at, and what is known of the cable there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cut<'a> {
-    /// Where, m on the whole cable.
+    /// Its place, m on the whole cable.
     pub at: f64,
     /// Supports and loads as near as this (m) sit at the cut.
     pub near: f64,
     /// The cable gives way on the side of greater arc length of what sits at the cut.
     pub after: bool,
-    /// Where each support of the scene sits now, m on the whole cable.
+    /// Present place of each support of the scene, m on the whole cable.
     pub support_arc_lengths: &'a [f64],
 }
 

@@ -173,8 +173,8 @@ fn struck(held_s: f64) -> Scene {
     scene
 }
 
-/// What lasts shorter than the breaking time does not break, however high it is, and is told
-/// whichever instants are looked at.
+/// A tension that lasts shorter than the breaking time does not break, however high it is, and is
+/// told whichever instants are looked at.
 #[test]
 fn a_jerk_between_two_looks_is_told_and_breaks_what_it_holds() {
     for step_s in [1.0 / 60.0, 1.0 / 30.0, 1.0 / 240.0] {

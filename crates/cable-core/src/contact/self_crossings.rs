@@ -15,7 +15,7 @@ pub(crate) struct SelfCrossing {
     pub first: usize,
     /// Index of a later one.
     pub second: usize,
-    /// Where on each, from 0 up to but not 1: a crossing at a joint is found once.
+    /// Place on each, from 0 up to but not 1: a crossing at a joint is found once.
     pub fractions: [f64; 2],
     /// Sine of the angle between them.
     pub sine: f64,

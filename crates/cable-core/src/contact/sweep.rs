@@ -100,13 +100,13 @@ impl Geometry {
 pub struct Sweep {
     /// Its ends at the start, m.
     pub from: [Vec2; 2],
-    /// How far they go, m.
+    /// Their displacements, m.
     pub go: [Vec2; 2],
     /// Corners of the box that holds it all the way, m.
     pub low: Vec2,
     /// See `low`.
     pub high: Vec2,
-    /// What is farther from the box than this keeps its part of the gap by itself, m.
+    /// Distance from the box beyond which a thing keeps its part of the gap by itself, m.
     pub margin: f64,
     speed: f64,
     keep: f64,

@@ -1,10 +1,10 @@
-//! The features of a scene, or of a question about it, that a model lacks.
+//! This file lists the features of a scene, or of a question about it, that a model lacks.
 
 use thiserror::Error;
 
 use crate::math::Vec2;
 
-/// What a model lacks.
+/// A capability that a model lacks.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Unsupported {
@@ -62,7 +62,7 @@ pub enum Unsupported {
     },
     /// The cable would jump over a corner.
     CornerPassed {
-        /// Where the corner is, m.
+        /// Position of the corner, m.
         at_m: Vec2,
     },
     /// A support is inside an obstacle.
@@ -77,10 +77,10 @@ pub enum Unsupported {
     },
     /// A part of the cable without tension is drawn along.
     LooseCableDrawn {
-        /// Where that part begins, m.
+        /// Start of that part, m.
         arc_length_m: f64,
     },
-    /// What the model found does not pass its own verification.
+    /// The answer of the model does not pass its own verification.
     Unverified {
         /// The fault.
         finding: &'static str,

@@ -118,12 +118,12 @@ pub enum NodeInterval {
     Never,
 }
 
-/// What goes into `nodes.csv`; all of it unless something else is chosen.
+/// The content of `nodes.csv`; all of it unless something else is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeChoice {
-    /// Which columns.
+    /// Its columns.
     pub columns: NodeColumns,
-    /// How often.
+    /// Its interval.
     pub interval: NodeInterval,
 }
 

@@ -11,7 +11,7 @@ use super::tables::{EVENTS, HISTORY, HistoryTable, NODES, NodeRow, ReadError, re
 use super::whole::WholeRecords;
 use crate::record::Event;
 
-/// How far a run came.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RunStatus {
@@ -24,7 +24,7 @@ pub enum RunStatus {
     Replacing,
 }
 
-/// What was asked of a run.
+/// The request for a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunRequest {
     /// The program and its version.
@@ -35,7 +35,7 @@ pub struct RunRequest {
     /// Without inertia.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quasi_static: Option<bool>,
-    /// How long, s.
+    /// Duration, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration_s: Option<f64>,
     /// Time between outputs, s.
@@ -46,7 +46,7 @@ pub struct RunRequest {
     pub step_s: Option<f64>,
 }
 
-/// What is written of the nodes.
+/// The part of the nodes that is written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NodeSummary {
     /// Time between their outputs, s; none where they are written at each output, or never.
@@ -91,7 +91,7 @@ impl FileRecord {
 pub struct Manifest {
     /// Of this format.
     pub version: u32,
-    /// How far it came.
+    /// Its progress.
     pub status: RunStatus,
     /// Why a partial run ended, where it ended with a word.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -102,9 +102,9 @@ pub struct Manifest {
     /// The folder in this one that holds what is being put in its place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub successor: Option<String>,
-    /// What was asked.
+    /// The request.
     pub request: RunRequest,
-    /// What is written of the nodes.
+    /// The part of the nodes that is written.
     pub nodes: NodeSummary,
     /// Its files; those of the tables once it ended with a word.
     #[serde(default)]
@@ -164,7 +164,7 @@ pub struct RunTables {
     pub nodes: Vec<NodeRow>,
     /// A row per event.
     pub events: Vec<Event>,
-    /// What was in the tables and is not here.
+    /// Content of the tables that is not here.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -173,16 +173,16 @@ pub struct RunTables {
 pub enum LeftOut {
     /// The last line has no end.
     IncompleteLine {
-        /// Which table.
+        /// The table.
         table: &'static str,
         /// Its length, bytes.
         bytes: usize,
     },
     /// Rows of an instant that has no row in `history.csv`.
     BeyondHistory {
-        /// Which table.
+        /// The table.
         table: &'static str,
-        /// How many.
+        /// Their number.
         rows: usize,
     },
 }

@@ -16,16 +16,16 @@ pub enum WriteError {
     /// The row could not be written, or not flushed.
     #[error("{table}: {source}")]
     Io {
-        /// Which table.
+        /// The table.
         table: &'static str,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The answer has other supports, or another robot, than the table; nothing of this time was
     /// written.
     #[error("{table}: the answer at {time_s} s has other columns than the table")]
     Columns {
-        /// Which table.
+        /// The table.
         table: &'static str,
         /// Time, s.
         time_s: f64,
@@ -33,9 +33,9 @@ pub enum WriteError {
     /// A number is not finite; nothing of this time was written.
     #[error("{table}: {column} is not finite at {time_s} s")]
     NonFinite {
-        /// Which table.
+        /// The table.
         table: &'static str,
-        /// Which column.
+        /// The column.
         column: String,
         /// Time, s.
         time_s: f64,
@@ -48,7 +48,7 @@ pub enum ReadError {
     /// It is not the table it should be.
     #[error("{table}, line {line}: {what}")]
     Row {
-        /// Which table.
+        /// The table.
         table: &'static str,
         /// Line, from 1.
         line: u64,
@@ -58,7 +58,7 @@ pub enum ReadError {
     /// More rows than a run may have.
     #[error("{table} has more than {limit} rows")]
     TooLong {
-        /// Which table.
+        /// The table.
         table: &'static str,
         /// The most rows read.
         limit: usize,
@@ -110,7 +110,7 @@ pub struct HistoryTable {
     pub time_s: Vec<f64>,
     /// Greatest tension at each time, N.
     pub max_tension_n: Vec<f64>,
-    /// Where it was, m.
+    /// Its place, m.
     pub max_tension_arc_length_m: Vec<f64>,
     /// Reactions of each support.
     pub supports: Vec<SupportColumn>,

@@ -26,7 +26,7 @@
 //! CISM 302, 1988): all of them fall as v' grows, m v'/h grows, so there is one v'. What the cable
 //! does to the outline is that of the end of the step.
 //!
-//! What the ground does where it tips the vehicle over a corner takes nothing from its speed: on
+//! The work of the ground where it tips the vehicle over a corner takes nothing from its speed: on
 //! such ground its weight and the hitch do work that is not along the way, and
 //! [`RobotWork::ground_j`] is that.
 //!
@@ -102,7 +102,7 @@ pub struct Vehicle {
     rate: Vec2,
     /// Speed that the governor asked for in the last step, m/s.
     set: f64,
-    /// How fast it tips, rad/s.
+    /// Tipping speed, rad/s.
     tipping: f64,
     report: RobotReport,
 }
@@ -463,7 +463,7 @@ pub struct Pulls {
     pub outline: Vec2,
 }
 
-/// What a step is to do.
+/// The task of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Drive {
     /// Speed asked for, m/s.
@@ -472,7 +472,7 @@ pub struct Drive {
     h: f64,
 }
 
-/// How the forces of a step balance; along the ground to the right.
+/// The balance of forces of a step; along the ground to the right.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SpeedBalance {
     /// Speed at the end, m/s.
@@ -572,7 +572,7 @@ impl TrackGrip {
     }
 }
 
-/// What the ground does to it, N.
+/// The force of the ground on it, N.
 #[derive(Clone, Copy, Debug)]
 struct Forces {
     normal: f64,

@@ -24,12 +24,12 @@ pub struct Line {
     pub closed: bool,
 }
 
-/// What was read and what was done to it.
+/// The scene that was read and the changes made to it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Import {
     /// The lines, those of the ground from left to right.
     pub lines: Vec<Line>,
-    /// What was left out, merged or turned, in words.
+    /// The points that were left out, merged or turned, in words.
     pub report: Vec<String>,
 }
 

@@ -46,7 +46,7 @@ struct CoupledStep<'a> {
     hitches: &'a [(usize, usize)],
 }
 
-/// What became of a trial.
+/// Outcome of a trial.
 enum TrialOutcome {
     /// The robot at the end of the step.
     Ends(Box<Vehicle>),
@@ -61,11 +61,11 @@ enum TrialOutcome {
 struct Trial {
     /// Speed at its end, m/s.
     speed: f64,
-    /// How much faster it comes out, m/s.
+    /// Excess of the speed that comes out, m/s.
     off: f64,
 }
 
-/// What is known of the speed that is sought.
+/// Knowledge of the speed that is sought.
 #[derive(Clone, Copy, Debug)]
 struct Search {
     left: usize,

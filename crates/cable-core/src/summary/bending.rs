@@ -22,7 +22,7 @@ use crate::simulation::Simulation;
 use crate::solution::ErrorEstimates;
 use crate::solution::{CableSolution, Solution, WarningKind};
 
-/// What an answer at rest without bending stiffness left out, for one cable.
+/// Effects that an answer at rest without bending stiffness left out, for one cable.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct NeglectedBending {
     /// Name of the cable.
@@ -33,7 +33,7 @@ pub struct NeglectedBending {
     pub range_n_m2: [Option<f64>; 2],
     /// The greatest tension with the likely stiffness, N; None where no answer was found.
     pub greatest_tension_n: Option<f64>,
-    /// What each figure changes by with it, no less than the answer with it is known to.
+    /// Change of each figure with it, no less than the error of the answer with it.
     pub changes: ErrorEstimates,
     /// Why there is no answer with it.
     pub unknown: Option<String>,
@@ -84,13 +84,13 @@ fn greatest(of: &CableSolution) -> f64 {
     of.nodes.iter().map(|n| n.tension_n).fold(0.0, larger)
 }
 
-/// Which bending stiffness cables have that are perfectly flexible in the scene.
+/// Bending stiffness of the cables that are perfectly flexible in the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Bending {
     /// None, as the scene says.
     #[default]
     AsWritten,
-    /// What their presets are likely to have.
+    /// The bending stiffness that their presets are likely to have.
     Likely,
     /// That, of cables which without it are bent tighter than they stand, curl up, or cross
     /// themselves.

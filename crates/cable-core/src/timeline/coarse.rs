@@ -14,7 +14,7 @@ use crate::model::Inertia;
 use crate::simulation::Simulation;
 use crate::solution::ErrorEstimates;
 
-/// How many times as long elements and steps are.
+/// Factors by which elements and steps are longer.
 const COARSENING: [u64; 2] = [2, 3];
 /// Steps after which all runs are at one instant.
 const COMMON_STEPS: u64 = 6;
@@ -33,9 +33,9 @@ const WINDOW_S: f64 = 0.05;
 /// the others. Of random motions (`motion_errors.rs`) some 92 figures in 100 are covered; with 1.5
 /// it is two less.
 const ERROR_FACTOR: f64 = 2.0;
-/// Where the finest is so much nearer to the second than to the third they converge, and what it
-/// differs by from the second counts alone. With 0.6 it is 92 in 100, too; without this what swings
-/// freely is said to be up to 20 times as wrong as it is.
+/// Ratio of differences below which the runs converge: the finest is then so much nearer to the
+/// second than to the third, and what it differs by from the second counts alone. With 0.6 it is 92
+/// in 100, too; without this what swings freely is said to be up to 20 times as wrong as it is.
 const CONVERGENCE_RATIO: f64 = 0.5;
 /// The logarithm of the greatest tension of a window may be so many times as far down and up on
 /// finer meshes as it is apart in the three runs. With [2, 2] 9 in 100 runs on four times as many
@@ -58,7 +58,7 @@ pub(super) struct CoarseRuns {
     /// When the present window began, s.
     window_began_s: f64,
     own: Vec<RecentPeaks>,
-    /// What is known from the windows before, a cable.
+    /// Ranges of the windows before, a cable.
     before: Vec<TensionRanges>,
 }
 
@@ -88,7 +88,7 @@ impl RecentPeaks {
 #[derive(Debug)]
 struct CoarseRun {
     simulation: Simulation,
-    /// How many steps of the fine run are one of it.
+    /// Number of steps of the fine run that make one of it.
     times: u64,
     /// Remembered difference of each cable from the fine run.
     differences: Vec<ErrorEstimates>,
@@ -169,7 +169,7 @@ impl CoarseRuns {
         [larger(before[0], here[0]), larger(before[1], here[1])]
     }
 
-    /// What is known of the errors of each cable.
+    /// Error estimates of each cable.
     pub fn errors(&self) -> impl Iterator<Item = ErrorEstimates> {
         let cables = self.runs.first().map_or(0, |run| run.differences.len());
         (0..cables).map(|k| {

@@ -24,7 +24,7 @@ pub(super) struct CheckedCable<'a> {
     scene: &'a Scene,
     pub cable: &'a Cable,
     pub answer: &'a CableSolution,
-    /// What its supports do to it.
+    /// The actions of its supports on it.
     pub holds: Vec<SupportHold<'a>>,
     /// Centre, radius of the centre line and friction of the wheels that lead the cable now.
     pub wheels: Vec<(Vec2, f64, f64)>,
@@ -59,8 +59,8 @@ struct CheckedBar<'a> {
     forces: [f64; 2],
 }
 
-/// How far the way of a piece is from what it should be, how far it may, and its material beyond
-/// its way, m.
+/// Difference of a piece's way from what it should be, its tolerance, and the material beyond its
+/// way, m.
 #[derive(Clone, Copy, Debug)]
 struct Lengths {
     value: f64,
@@ -73,7 +73,7 @@ struct Lengths {
 struct CheckedPiece {
     /// First and last node.
     nodes: [usize; 2],
-    /// What obstacles must do to it, N.
+    /// The force that obstacles must exert on it, N.
     contact: Vec2,
 }
 
@@ -423,7 +423,7 @@ impl CheckedCable<'_> {
         touches.then(|| self.floor_excess(piece, outside_cone(piece.contact, rays)))
     }
 
-    /// What is reported of contacts and wheels adds up to what the cable asks for.
+    /// Checks that the reported forces of contacts and wheels add up to those the cable needs.
     fn sums(&self, found: &mut Verification, mut sums: Balance, [contacts, wheels]: [Vec2; 2]) {
         let limit = BALANCE_FRACTION * self.scale;
         let known_here = |c: &&ContactReport| self.surroundings.find(&c.obstacle).is_some();

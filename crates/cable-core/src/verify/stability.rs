@@ -15,7 +15,7 @@ use crate::math::larger;
 use crate::scene::SupportKind;
 
 impl CheckedCable<'_> {
-    /// Whether what pushes stays.
+    /// Checks the stability of stretches in compression.
     pub fn stability(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Stability);
         let nodes = &self.answer.nodes;
@@ -66,7 +66,7 @@ pub(super) struct CompressedBar {
     pub held: bool,
     /// True if the node before it is a support that lets it turn.
     pub pinned: bool,
-    /// Whether the node before it and the one after it are clamped.
+    /// True if the node before it is clamped, and the one after it.
     pub clamped: [bool; 2],
 }
 

@@ -33,15 +33,15 @@ const GROWTH_LIMIT: f64 = 0.25;
 /// cables may grow unseen.
 const MIN_GROWTH_FRACTION: f64 = 3e-4;
 
-/// What is least is the greatest of so long a time, s, and of [`RECENT_INSTANTS`] instants.
-/// Shorter: a velocity that an integrator swings beyond its own for a few steps after an impact and
-/// back is growth; longer: growth is told later.
+/// Length of the moving window, s, whose greatest energy may become the least of the motion; it
+/// holds [`RECENT_INSTANTS`] instants at least. Shorter: a velocity that an integrator swings
+/// beyond its own for a few steps after an impact and back is growth; longer: growth is told later.
 const RECENT_S: f64 = 0.05;
 
 /// See [`RECENT_S`].
 const RECENT_INSTANTS: usize = 3;
 
-/// What one cable had, and what it has been given since.
+/// Energy that one cable had, and that it has been given since.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EnergyGrowth {
     before: Option<Snapshot>,
@@ -65,7 +65,7 @@ struct EnergyMinimum {
     ranges: [[f64; 2]; 4],
 }
 
-/// What is known of a cable at an instant.
+/// Observation of a cable at an instant.
 #[derive(Clone, Debug)]
 struct Snapshot {
     time_s: f64,
@@ -74,7 +74,7 @@ struct Snapshot {
     /// Of each support: place, m; its own speed, m/s; size of what it pulls with, N; whether it
     /// holds.
     supports: Vec<(Vec2, f64, f64, bool)>,
-    /// Where each load is, those at supports first, m.
+    /// Position of each load, those at supports first, m.
     loads: Vec<Vec2>,
     /// Force times way of wind and current if it were from the origin: the place integrated over
     /// the cable, m².

@@ -482,8 +482,8 @@ fn degenerate_lines_have_no_crossings() {
     assert!(crossings(&spiral, |_| true).is_empty());
 }
 
-/// What is named in the catalogue at rest: slack on floors, the corners in which the cables between
-/// the posts and behind the robot were laid, and nothing else.
+/// Warnings of the catalogue at rest: slack on floors, the corners in which the cables between the
+/// posts and behind the robot were laid, and nothing else.
 const NAMED: [(&str, &[WarningKind]); 7] = [
     ("tank", &[WarningKind::Kink]),
     ("slack-to-floor", &[]),
@@ -612,7 +612,7 @@ fn a_model_that_gains_speed_from_nowhere_is_told() {
     }
 }
 
-/// What supports, loads and wind give is not from nowhere.
+/// Energy from supports, loads and wind is accounted for.
 #[test]
 fn work_is_not_energy_from_nowhere() {
     let mut s = scene();

@@ -1,4 +1,4 @@
-//! Why a scene is refused: the place in its file, the fault, and what mends it.
+//! These sentences say why a scene is refused: the place in its file, the fault, and what mends it.
 
 use super::{Figures, Sentence, display_in_si};
 use crate::error::{SceneError, SceneFault};

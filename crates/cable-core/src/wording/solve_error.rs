@@ -1,5 +1,5 @@
-//! Why a model has no answer. Every sentence says where, in lengths and names, and what can be
-//! done; none holds a number that is not finite.
+//! These sentences say why a model has no answer. Every one says where, in lengths and names, and
+//! what can be done; none holds a number that is not finite.
 
 use super::{Figures, Sentence, display_in_si};
 use crate::error::{FailureCause, NoEquilibrium, Place, SolveError, SpanError, Unsupported};

@@ -23,12 +23,12 @@ use crate::solution::Solution;
 /// shorter: more answers.
 const STEP_M: f64 = 0.05;
 
-/// What the cable may leave of a step, m: a robot that it holds back by a hair has not been
-/// stopped.
+/// Distance that the cable may leave of a step, m: a robot that it holds back by a hair has not
+/// been stopped.
 const MAX_SHORTFALL_M: f64 = 1e-3;
 
-/// Where a heap of slack cable has no rest to be pushed to it is thrown over: such a step is taken
-/// with inertia, at this speed, m/s. Faster: its swing shows in the tension; slower: longer.
+/// Speed of a step that is taken with inertia because a heap of slack cable has no rest to be
+/// pushed to and is thrown over, m/s. Faster: its swing shows in the tension; slower: longer.
 const PUSH_SPEED_M_PER_S: f64 = 0.3;
 
 /// Every how manieth way back is looked at, one after the other. Begun with less: longer until the
@@ -42,7 +42,7 @@ const AGREEMENT_FRACTION: f64 = 0.02;
 /// A place of the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachPlace {
-    /// Where the tracks' middle is, m.
+    /// Position of the tracks' middle, m.
     pub at_m: Point,
     /// Largest tension with the robot there, N; infinite where the cable does not reach, not a
     /// number where no answer was found.
@@ -55,12 +55,12 @@ pub struct ReachPlace {
     pub jammed: bool,
 }
 
-/// What there is to know of every place.
+/// The results at every place.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReachMap {
     /// In order of x.
     pub places: Vec<ReachPlace>,
-    /// Where the robot started, m.
+    /// Position at which the robot started, m.
     pub start_x_m: f64,
     /// Service tension, N: the least of all cables that hang on it.
     pub service_n: f64,
@@ -162,9 +162,9 @@ enum Obstruction {
 
 /// A place on one side of the start, and robot and cable there.
 struct VisitedPlace {
-    /// Where its tracks' middle is, m.
+    /// Position of its tracks' middle, m.
     at_m: Point,
-    /// Which place it was led to, m.
+    /// Place to which it was led, m.
     x_m: f64,
     /// There, if it got there.
     simulation: Option<Simulation>,
@@ -182,13 +182,13 @@ fn value(found: Result<f64, Obstruction>) -> f64 {
     }
 }
 
-/// How the robot is moved.
+/// The motion of the robot.
 struct Traverse<'a> {
     cables: &'a [usize],
     limit_n: f64,
 }
 
-/// What is heard of the map, and how much farther it went, m.
+/// A function that receives the progress of a map, and how much farther it went, m.
 type LineProgress<'a> = &'a mut dyn FnMut(&ReachMap, f64) -> ControlFlow<()>;
 
 impl Traverse<'_> {

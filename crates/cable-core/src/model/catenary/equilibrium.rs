@@ -21,7 +21,7 @@ pub(super) struct Equilibrium {
     pub residual: f64,
 }
 
-/// Where a solve starts and what friction remembers.
+/// Initial unknowns of a solve and the slip that friction remembers.
 pub(super) struct Start<'a> {
     /// Material points friction holds, m.
     pub held: &'a [f64],

@@ -15,7 +15,7 @@ use crate::scene::{PulleySide, SupportKind};
 pub(super) struct Anchor {
     /// Index of the support.
     pub support: usize,
-    /// Where it is (a wheel's centre), m.
+    /// Position (of a wheel, its centre), m.
     pub at: Vec2,
     /// Material point held, m; None = slides.
     pub held: Option<f64>,
@@ -39,7 +39,7 @@ pub(super) struct Layout {
     /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one
     /// that has weight.
     pub hint: f64,
-    /// Whether the start and the end dangle.
+    /// True for an end (start, end) that is free.
     pub free: [bool; 2],
     /// Dead force on a dangling start and end, N.
     pub end_force: [Vec2; 2],
@@ -130,8 +130,8 @@ impl Layout {
         (self.weight, self.hint) = hint_of_weight(p, loads);
     }
 
-    /// Which side of its wheel the cable runs on, seen along it: over means above where it travels
-    /// to the right.
+    /// Sets the side of its wheel on which the cable runs, seen along it: over means above where it
+    /// travels to the right.
     fn face_wheels(&mut self, p: &Problem) {
         let centres: Vec<Vec2> = self.anchors.iter().map(|a| a.at).collect();
         for (k, a) in self.anchors.iter_mut().enumerate() {

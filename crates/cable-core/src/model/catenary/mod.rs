@@ -1,10 +1,10 @@
-//! Rung 0 as a model: exact elastic catenaries between supports, loads and pulleys. Statics and
-//! slow motion with friction that remembers; no obstacles within reach, no bending, no inertia.
+//! `catenary` joins exact elastic catenaries between supports, loads and pulleys. It does statics
+//! and slow motion with friction that remembers; no obstacles within reach, no bending, no inertia.
 //!
-//! What is unknown is only where the material sits at each pulley (`slide`); everything between is
-//! a convex problem of two forces ([`crate::catenary`]). With friction the resting place depends on
-//! how the cable was laid: [`Mechanics::settle`] takes it spread evenly along its way and lets it
-//! slip only where friction cannot hold it.
+//! The only unknowns are the arc lengths of the material at the pulleys (`slide`); everything
+//! between is a convex problem of two forces ([`crate::catenary`]). With friction the resting place
+//! depends on how the cable was laid: [`Mechanics::settle`] takes it spread evenly along its way
+//! and lets it slip only where friction cannot hold it.
 
 mod equilibrium;
 pub(super) mod layout;

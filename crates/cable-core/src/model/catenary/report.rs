@@ -161,7 +161,7 @@ pub(super) fn report(p: &Problem, layout: &Layout, e: &Equilibrium) -> (Vec<Node
     (nodes.out, reactions)
 }
 
-/// What only the hint of weight pulls is slack: its tension is 0.
+/// Sets the tension to 0 where only the auxiliary weight pulls: the cable is slack there.
 pub(in crate::model) fn forget_hint(nodes: &mut [Node], reactions: &mut [SupportReaction], hint: f64) {
     for n in nodes.iter_mut().filter(|n| n.tension_n <= hint) {
         (n.tension_n, n.strain, n.stress_pa, n.force_n) = (0.0, 0.0, 0.0, [0.0; 2]);

@@ -21,7 +21,7 @@ use crate::catenary::{Chain, ChainForce};
 use crate::math::{Vec2, cross, larger};
 use crate::problem::Problem;
 
-/// How a pulley stands.
+/// State of a pulley.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Mode {
     /// Friction holds: σ stays.
@@ -35,7 +35,7 @@ pub(super) enum Mode {
 pub(super) struct Arc {
     /// Angle of the cable where it arrives, rad.
     pub arrive: f64,
-    /// How far it turns, rad, ≥ 0.
+    /// Turn of the cable on it, rad, ≥ 0.
     pub turn: f64,
     /// Angle of the cable at the point of the wheel where σ is read, rad: fixed to the wheel, so
     /// that a touch point that wanders does not move material.
@@ -295,6 +295,7 @@ impl Slide<'_> {
     }
 }
 
-/// Where cable and wheel bend almost alike the touch point is hardly defined; steps are not made
-/// longer than by this divisor. Smaller: the touch point jumps to and fro. Larger: more rounds.
+/// Least divisor by which a step of the touch point is divided: where cable and wheel bend almost
+/// alike the touch point is ill-conditioned. Smaller: the touch point jumps to and fro. Larger:
+/// more rounds.
 const LEAST_GAIN: f64 = 0.2;

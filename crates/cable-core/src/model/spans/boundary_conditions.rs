@@ -52,14 +52,14 @@ pub(in crate::model::spans) struct Pulley {
     pub facing: f64,
 }
 
-/// Where the cable is held and loaded, whatever the instant.
+/// Supports and loads of the cable that do not change with time.
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct Layout {
     pub problem: Arc<Problem>,
     /// The end of the scene's cable from which it counts.
     pub counted_from: CableEnd,
     loads: Vec<Load>,
-    /// Where it must not pass, in order of x.
+    /// Corners that it must not pass, in order of x.
     pub corners: Arc<[Corner]>,
     /// Strands: material from, to (m) and the support at each end; None = free or dead load.
     pub strands: Vec<Part>,
@@ -103,7 +103,7 @@ impl CableEnd {
 }
 
 impl Layout {
-    /// Whether its problem is that of the scene reversed.
+    /// True if its problem is that of the scene reversed.
     pub fn is_reversed(&self) -> bool {
         self.counted_from == CableEnd::End
     }
@@ -171,7 +171,8 @@ impl Layout {
         Ok(layout)
     }
 
-    /// Which side of its wheel the cable passes: over means above where it travels to the right.
+    /// Sets the side of its wheel on which the cable passes: over means above where it travels to
+    /// the right.
     fn face_wheels(&mut self) {
         let (p, reversed) = (&self.problem, self.counted_from == CableEnd::End);
         let held: Vec<usize> = (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).collect();
@@ -203,7 +204,7 @@ impl Layout {
         out
     }
 
-    /// What is given at a time, with supports dragged by hand where they are.
+    /// Writes the boundary conditions at a time, with supports dragged by hand at their places.
     pub fn instant(&self, dragged: &[Option<Vec2>], time_s: f64, out: &mut BoundaryConditions) {
         let p = &self.problem;
         let gravity = if p.linear_density > 0.0 { p.weight / p.linear_density } else { Vec2::zeros() };

@@ -35,7 +35,7 @@ const DEPTH_FRACTION: f64 = 1e-9;
 const DEPTH_LIMIT_M: f64 = 1e-6;
 /// Times in one solve at most that something is done about loads where Newton stalls.
 const MOST_CAUGHT: usize = 4;
-/// What lies beside a load is let go where it is shorter than this part of the strand when Newton
+/// A stretch beside a load is released where it is shorter than this part of the strand when Newton
 /// stalls. Smaller: Newton comes so near to its end only after many halvings. Larger: it is laid
 /// down again for nothing.
 const SHED_LENGTH_FRACTION: f64 = 1e-4;
@@ -111,7 +111,7 @@ fn release(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> 
     let_go(strand, course, j)
 }
 
-/// Whether a contact is a wheel, which has a side; an eye has none.
+/// True if a contact is a wheel, which has a side; an eye has none.
 fn is_round_wheel(c: &Contact, course: &Course) -> bool {
     c.wheel.is_some() && course.track(c).place(c.ends.p[0]).stretch > 0.0
 }
@@ -424,7 +424,7 @@ fn beyond_edges(curve: &Curve, home: ChainRange, mut p: f64, side: usize, far: O
     p
 }
 
-/// What has been laid down in span k leads the contacts beside it over their edges.
+/// Moves the contacts beside span k over their edges to what has been laid down in it.
 fn lead(strand: &mut CableRun, course: &Course, k: usize) {
     for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
         if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.is_load())) {

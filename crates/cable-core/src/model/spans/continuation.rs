@@ -84,13 +84,13 @@ const MOBILISED: f64 = 2e-2;
 /// Why no rest was found, and how far the cable was let out.
 pub(in crate::model::spans) type Unfound = (Failure, Option<Box<CableEquilibrium>>);
 
-/// How a route is seen: what stands for a post, and the tension (of the weight) to which the cable
-/// is shrunk at first.
+/// Resolution of a route: the points that stand for a post, and the tension (of the weight) to
+/// which the cable is shrunk at first.
 #[derive(Clone, Copy, Debug)]
 struct Seen {
     ring: Ring,
     cooled: Option<f64>,
-    /// Whether what spreads on the ground may lie there without tension.
+    /// True if a cable that spreads on the ground may lie there without tension.
     loose: bool,
 }
 
@@ -100,7 +100,7 @@ impl Default for Seen {
     }
 }
 
-/// Where the search for an initial equilibrium may begin.
+/// Places at which the search for an initial equilibrium may begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::spans) enum SearchStart {
     /// With friction only.
@@ -109,14 +109,14 @@ pub(in crate::model::spans) enum SearchStart {
     AlsoWithoutFriction,
 }
 
-/// What a step took.
+/// Cost of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::model::spans) struct StepStats {
     pub solved: Solved,
     pub halved: usize,
     /// Times it ran away from where it was to another place that holds it.
     pub ran: usize,
-    /// Whether the rest was found without friction, which held it from then on.
+    /// True if the rest was found without friction, which held it from then on.
     pub eased: bool,
     /// Friction that what came down would have had in the step it came down in, of the force there.
     pub fresh: f64,
@@ -184,8 +184,8 @@ impl CableEquilibrium {
         Some(Self { strands, course, instant: instant.clone() })
     }
 
-    /// How a cable can be laid as it is: posts seen nearer, too, where it lies on something and
-    /// nothing else holds it.
+    /// The resolutions in which a cable can be laid as it is: posts seen nearer, too, where it lies
+    /// on something and nothing else holds it.
     fn seen(layout: &Layout) -> Vec<Seen> {
         let loose = layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none));
         let rings = if loose { &RINGS[..] } else { &RINGS[..1] };
@@ -576,7 +576,7 @@ impl CableEquilibrium {
         Err(pushed.unwrap_or(Failure::Restless { s: 0.0 }))
     }
 
-    /// Whether every strand is a rest and not a balance that runs away.
+    /// True if every strand is a stable rest and not a balance that runs away.
     pub fn stable(&self, work: &mut Work) -> bool {
         self.strands.iter().all(|s| newton::stable(s, &self.course, work))
     }
@@ -694,7 +694,7 @@ fn strands_of(layout: &Layout, lay: impl Fn(usize) -> Option<CableRun>) -> Optio
     (0..layout.strands.len()).map(lay).collect()
 }
 
-/// How a way to an instant ended that was not gone to its end.
+/// The end of a continuation that did not come to its instant.
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct Stopped {
     /// Why.

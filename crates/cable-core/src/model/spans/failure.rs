@@ -3,7 +3,7 @@
 
 use crate::math::Vec2;
 
-/// What went wrong.
+/// Reason of a failure.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::model::spans) enum Failure {
     /// Newton stopped short: iterations, scaled residual, material point of the worst equation, m.
@@ -22,7 +22,7 @@ pub(in crate::model::spans) enum Failure {
     LoadLies { s: f64 },
     /// An obstacle is met where this model cannot lay the cable.
     NoSeat { s: f64, at: Vec2 },
-    /// What lies loose is drawn along: material point, m.
+    /// A cable that lies loose is drawn along: material point, m.
     Drawn { s: f64 },
     /// The answer does not pass the check that does not use the solver.
     Unsound { what: &'static str, s: f64, at: Vec2 },

@@ -66,7 +66,7 @@ const LONGEST_STEP_S: f64 = 1e6;
 #[derive(Clone, Debug)]
 pub struct SpansModel {
     problem: Arc<Problem>,
-    /// Whether other histories are sought.
+    /// True if other histories are searched.
     histories: bool,
     /// The cable as it is laid: counted from either end.
     layout: Layout,
@@ -75,9 +75,9 @@ pub struct SpansModel {
     dragged: Vec<Option<Vec2>>,
     network: Option<CableEquilibrium>,
     work: Work,
-    /// Where a step starts, where it goes, and a piece of it.
+    /// The start and the goal of a step, and a part of it.
     instants: [BoundaryConditions; 3],
-    /// What is shown while there is no network.
+    /// The report shown while there is no network.
     shown: Report,
 }
 
@@ -112,17 +112,17 @@ impl SpansModel {
         Ok(Self { problem, histories, layout, time_s: 0.0, dragged, network: None, work, instants, shown })
     }
 
-    /// Whether what was found lies without tension.
+    /// True if the cable that was found lies without tension.
     pub(super) fn lies_loose(&self) -> bool {
         self.network.as_ref().is_some_and(|n| n.loose().is_some())
     }
 
-    /// Whether a resting place has been found.
+    /// True if a resting place has been found.
     pub(super) fn stands(&self) -> bool {
         self.network.is_some()
     }
 
-    /// What there is to show now.
+    /// The report of the present state.
     fn look(&self) -> Report {
         match &self.network {
             Some(network) => {
@@ -133,7 +133,7 @@ impl SpansModel {
         }
     }
 
-    /// How far any support moves between two instants, m.
+    /// The greatest distance that any support moves between two instants, m.
     fn travel(from: &BoundaryConditions, to: &BoundaryConditions) -> f64 {
         from.places.iter().zip(&to.places).map(|(a, b)| (b - a).norm()).fold(0.0, |m, d| if d > m { d } else { m })
     }
@@ -156,8 +156,7 @@ impl SpansModel {
         said(&self.problem, if self.layout.is_reversed() { self.turned().trouble(trouble) } else { trouble })
     }
 
-    /// What leads from how the layout counts the cable to how the scene does, where that is
-    /// otherwise.
+    /// The map from the layout's direction along the cable to the scene's, where they differ.
     fn turned(&self) -> Turned<'_> {
         Turned { problem: &self.problem }
     }
@@ -241,7 +240,7 @@ impl SpansModel {
         CableEquilibrium::rest_from(&layout, &instant, start, work).ok().map(|n| n.0).filter(|n| n.loose().is_none())
     }
 
-    /// Whether some of the cable is held by nothing but friction.
+    /// True if some of the cable is held by nothing but friction.
     fn hangs_by_friction(&self) -> bool {
         self.layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none))
     }

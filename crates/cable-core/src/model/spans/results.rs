@@ -302,7 +302,7 @@ pub(in crate::model::spans) fn tensions(network: &CableEquilibrium) -> [f64; 3] 
     [start, last, greatest]
 }
 
-/// What is left of all forces on the cable as they are reported, and their size, N: supports and
+/// The sum of all forces on the cable as they are reported, and their size, N: supports and
 /// contacts hold weight and loads.
 pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquilibrium) -> (Vec2, f64) {
     let (p, course) = (&layout.problem, &network.course);
@@ -398,7 +398,7 @@ fn heap(strand: &CableRun, course: &Course, j: usize, name: &str) -> Vec<Contact
 /// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where
 /// all is alike.
 fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> {
-    /// What is called upon of friction counts as all of it from this share on: rounding.
+    /// Share of mobilised friction from which on it counts as all of it: rounding.
     const LIMIT: f64 = 1.0 - 1e-9;
     let state = |s: &Stretch| if s.m.abs() >= LIMIT * friction { ContactState::Slip } else { ContactState::Stick };
     let Some(first) = stretches.first().map(state).filter(|f| stretches.iter().any(|s| state(s) != *f)) else {

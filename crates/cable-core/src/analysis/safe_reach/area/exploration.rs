@@ -99,7 +99,7 @@ pub(super) struct Exploration<'a> {
     pub found: Area,
 }
 
-/// What is heard of it.
+/// A function that receives the progress of a map.
 type AreaProgress<'a> = &'a mut dyn FnMut(&Area, f64) -> ControlFlow<()>;
 
 impl Exploration<'_> {
@@ -287,8 +287,8 @@ impl Exploration<'_> {
         }
     }
 
-    /// What lies between four neighbours on a coarse grid is guessed from them until a finer one
-    /// knows.
+    /// Interpolates the places between four neighbours on a coarse grid until a finer one computes
+    /// them.
     fn guess(&mut self, place: usize, stride: usize) {
         let around: Vec<usize> = self.neighbours(place, stride).map(|(k, _)| k).chain([place]).collect();
         for low in around.iter().copied() {

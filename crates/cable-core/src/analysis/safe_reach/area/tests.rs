@@ -118,8 +118,8 @@ fn it_ends_when_it_is_told_to_and_is_the_same_each_time() {
     assert_eq!(bits(&look(&query)), bits(&look(&query)));
 }
 
-/// What is heard of a fine map before it is done covers it from a coarse one, and is told to be
-/// guessed; in the end only places between others that agree are.
+/// A fine map that is not done is covered from a coarse one and is told to be guessed; in the end
+/// only places between others that agree are.
 #[test]
 fn a_coarse_map_comes_first_and_finer_ones_go_on_from_it() {
     let query = query(free(), [[-2.0, -2.0], [12.0, 6.0]], 0.5);

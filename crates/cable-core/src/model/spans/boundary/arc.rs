@@ -33,7 +33,7 @@ pub(in crate::model::spans) struct Way {
     /// Radius, m.
     c: f64,
     count: usize,
-    /// How far each goes, rad, with sine and cosine.
+    /// Angle of each, rad, with sine and cosine.
     h: f64,
     turn: (f64, f64),
     /// b·t and b·n at the start, N/m.
@@ -44,7 +44,7 @@ pub(in crate::model::spans) struct Way {
 /// nowhere takes a minute.
 pub(in crate::model::spans) const MOST_TURN: f64 = 1e4;
 
-/// How tension and material go on from a point of an arc: derivatives by the angle.
+/// Derivatives of tension and material by the angle at a point of an arc.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct Rates {
     /// dT/dψ, d²T/dψ², d³T/dψ³, N.

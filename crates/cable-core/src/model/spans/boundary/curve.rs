@@ -36,7 +36,7 @@ const ARC_END_TOLERANCE: f64 = 1e-9;
 pub(in crate::model::spans) enum Form {
     /// Straight.
     Edge {
-        /// Where it starts, m.
+        /// Start, m.
         from: Vec2,
         /// Direction of travel, a unit vector.
         tangent: Vec2,
@@ -56,9 +56,9 @@ pub(in crate::model::spans) enum Form {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct Piece {
     pub form: Form,
-    /// How far it goes: m on an edge, rad on an arc.
+    /// Extent: m on an edge, rad on an arc.
     pub extent: f64,
-    /// Whether a concave kink lies before it.
+    /// True if a concave kink lies before it.
     pub kink_before: bool,
     /// Feature of the obstacle it belongs to; None of a wheel.
     pub feature: Option<usize>,
@@ -73,7 +73,7 @@ pub(in crate::model::spans) struct Curve {
     pub friction: f64,
     /// +1 with the solid right of travel, −1 with the solid left of it.
     pub sense: f64,
-    /// How far it has been moved, m (a wheel that travels).
+    /// Displacement from the scene's place, m (a wheel that travels).
     pub shift: Vec2,
     /// Shared by all copies: scanned ground has a million.
     pieces: Arc<[Piece]>,
@@ -168,7 +168,7 @@ impl Curve {
         Self::new(pieces, self.period.is_some(), self.obstacle, self.friction, -self.sense)
     }
 
-    /// Whether it is round all the way: a post or a wheel.
+    /// True if it is round all the way: a post or a wheel.
     pub fn is_round(&self) -> bool {
         matches!(self.pieces[..], [Piece { form: Form::Arc { .. }, .. }])
     }
@@ -189,12 +189,12 @@ impl Curve {
         }
     }
 
-    /// Whether a piece is an arc.
+    /// True if a piece is an arc.
     pub fn is_arc(&self, i: i64) -> bool {
         matches!(self.piece(i).form, Form::Arc { .. })
     }
 
-    /// Where a piece starts in p.
+    /// Start of a piece in p.
     pub fn origin(&self, i: i64) -> f64 {
         if let Some(start) = self.starts.get(i as usize) {
             return *start;
@@ -204,7 +204,7 @@ impl Curve {
         self.starts[i.rem_euclid(n) as usize] + if turns == 0 { 0.0 } else { turns as f64 * self.period.unwrap_or(0.0) }
     }
 
-    /// Where a piece ends in p.
+    /// End of a piece in p.
     pub fn end(&self, i: i64) -> f64 {
         self.origin(i) + self.piece(i).extent
     }
@@ -264,7 +264,7 @@ impl Curve {
         (self.origin(i + 1) - a) * weight(i) + inner + (b - self.origin(j)) * weight(j)
     }
 
-    /// Whether the cable can lie on a piece under a load per metre.
+    /// True if the cable can lie on a piece under a load per metre.
     fn holds(&self, i: i64, load: Vec2) -> bool {
         let piece = self.piece(i);
         match piece.form {
@@ -377,8 +377,8 @@ impl Curve {
         }
     }
 
-    /// Whether the tangent of arc i comes to be `along` only before its start (−1) or after its end
-    /// (+1); 0 where it does on it.
+    /// Side of arc i, before its start (−1) or after its end (+1), on which alone its tangent comes
+    /// to be `along`; 0 where it does so on the arc.
     pub fn aside(&self, i: i64, along: Vec2) -> i64 {
         let piece = self.piece(i);
         let Form::Arc { from, .. } = piece.form else { return 0 };

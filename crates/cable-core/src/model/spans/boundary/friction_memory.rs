@@ -1,7 +1,7 @@
 //! A contact remembers its friction as a profile of tension, in closed form.
 //!
-//! Where the cable has stuck the tension is what it was, where it slides it follows the law of
-//! sliding from one end:
+//! A cable that sticks keeps the tension that it had; one that slides follows the capstan law from
+//! one end:
 //!
 //! ```text
 //! T(p) = clamp(T_old(p), max(L₁, L₂), min(U₁, U₂))
@@ -54,7 +54,7 @@ pub(in crate::model::spans) struct Ends {
     pub t: [f64; 2],
 }
 
-/// How a contact stands.
+/// Mode of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) enum Mode {
     /// Some of it sticks.
@@ -63,14 +63,14 @@ pub(in crate::model::spans) enum Mode {
     Slide(f64),
 }
 
-/// Where sliding from an end stops.
+/// The point at which sliding from an end stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Front {
     pub p: f64,
     /// The way from the end to it.
     pub way: Step,
     pub m: f64,
-    /// Whether the old tension stopped it; else it came to the other end.
+    /// True if the old tension stopped it; else it came to the other end.
     pub met: bool,
     /// Old material at p, m.
     pub old: f64,
@@ -240,7 +240,7 @@ impl TensionProfile {
         }
     }
 
-    /// What is remembered up to p, and from there on.
+    /// The profile up to p, and from there on.
     pub fn split(&self, track: &Track<'_>, p: f64) -> (Self, Self) {
         let (tension, s) = self.at(track, p);
         let knot = Knot { p, s, tension, m: self.called(track, p) };
@@ -341,7 +341,7 @@ impl TensionProfile {
         Front { p: to, way, m, met: false, old: s }
     }
 
-    /// Where a contact sticks under its end tensions.
+    /// The stick zone of a contact under its end tensions.
     pub fn hold(&self, track: &Track<'_>, e: &Ends) -> Held {
         let friction = track.friction;
         let [p1, p2] = e.p;

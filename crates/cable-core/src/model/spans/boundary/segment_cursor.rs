@@ -10,8 +10,8 @@ use crate::model::spans::boundary::capstan::{Law, LocalLoad, Step};
 use crate::model::spans::boundary::curve::{ChainRange, Curve, Place};
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 
-/// Where two tensions are about one before this part of a piece it is not asked whether they are so
-/// on it. Larger: asked after all more often.
+/// Part of a piece before which two tensions that meet are not searched for on it again. Larger:
+/// asked after all more often.
 const MEETING_SKIP_FRACTION: f64 = 0.9;
 
 /// Looks at both tensions before their meeting is sought within bounds.
@@ -24,7 +24,7 @@ pub(in crate::model::spans) struct Pivot {
     pub at: Place,
     /// b·t and b·n there, N/m.
     load: (f64, f64),
-    /// Where the piece begins and ends; beyond the ends of its chain it goes on.
+    /// Start and end of the piece; beyond the ends of its chain it goes on.
     ends: [f64; 2],
 }
 
@@ -45,17 +45,17 @@ impl Pivot {
         ([pivot.at, if pivot.holds(last) { pivot.place(last) } else { curve.place(last, home) }], pivot)
     }
 
-    /// Whether p is on this piece.
+    /// True if p is on this piece.
     pub fn holds(&self, p: f64) -> bool {
         p >= self.ends[0] && p < self.ends[1]
     }
 
-    /// Whether p is on this piece or at its end.
+    /// True if p is on this piece or at its end.
     pub fn reaches(&self, p: f64) -> bool {
         p >= self.ends[0] && p <= self.ends[1]
     }
 
-    /// Whether it is an arc.
+    /// True on an arc.
     pub fn turns(&self) -> bool {
         self.at.turn != 0.0
     }
@@ -107,9 +107,10 @@ impl SegmentCursor<'_> {
         self.law.along(&self.from, p - self.p0, t, m)
     }
 
-    /// Where before p₁ two tensions, each with its m, that differ at its point come to be one, and
-    /// both ways there; None where that is not before p₁, and both ways there. On an edge both Θ
-    /// are linear, round a sharp corner both T are exponential, else about.
+    /// The place before p₁ where two tensions, each with its m, that differ at its point become
+    /// equal, and both integrations up to there; None where that is not before p₁, and both
+    /// integrations up to p₁. On an edge both Θ are linear, round a sharp corner both T are
+    /// exponential, else about.
     pub fn crossing(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> (Option<f64>, [Step; 2]) {
         let law = self.law;
         let whole = p1 - self.p0;

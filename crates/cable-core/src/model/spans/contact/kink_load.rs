@@ -52,7 +52,7 @@ pub(in crate::model::spans) fn press(course: &Course, c: &Contact, f: &LoadBalan
     }
 }
 
-/// Whether the load keeps its kink, to a part of its forces.
+/// True if the load keeps its kink, to a part of its forces.
 pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) -> bool {
     leaves(course, c, kink, f, room).is_none()
 }
@@ -103,7 +103,8 @@ pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: 
     Ok(true)
 }
 
-/// What is joined to the load that is contact j but lies on another chain leaves it by a span.
+/// Separates by a span a contact that is joined to the load that is contact j but lies on another
+/// chain.
 fn part(strand: &mut CableRun, course: &Course, j: usize, side: usize) {
     if !strand.is_joined(j, side) {
         return;
@@ -127,7 +128,7 @@ pub(in crate::model::spans) fn give_way(strand: &mut CableRun, i: usize, end: us
     e.p[end] += sign * 0.5 * (e.p[1] - e.p[0]) * if most > 0.0 { by / most } else { 0.0 };
 }
 
-/// Whether contact `c` lies on the chain beyond the kink that a load is in, on that side.
+/// True if contact `c` lies on the chain beyond the kink that a load is in, on that side.
 pub(in crate::model::spans) fn follows(course: &Course, load: &Contact, c: &Contact, side: usize) -> bool {
     load.kink().is_some_and(|kink| {
         kink.side() == side

@@ -21,7 +21,7 @@ pub(in crate::model::spans) struct Landing {
     tip: Option<usize>,
 }
 
-/// What of span k is inside something.
+/// The deepest point of span k inside an obstacle.
 pub(in crate::model::spans) fn find(
     strand: &CableRun,
     course: &Course,

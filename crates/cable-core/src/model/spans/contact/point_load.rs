@@ -36,7 +36,7 @@ const BALANCE_TOLERANCE: f64 = 1e-7;
 /// after more halvings. Larger: loads in the air are set down for nothing.
 const CATCH_DISTANCE_FRACTION: f64 = 0.02;
 
-/// What a load feels.
+/// Forces on a load.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct LoadBalance {
     /// V, N, and what of it does not turn with the boundary.
@@ -55,7 +55,7 @@ impl LoadBalance {
     }
 }
 
-/// What the load that is contact j feels.
+/// Forces on the load that is contact j.
 pub(in crate::model::spans) fn felt(strand: &CableRun, course: &Course, j: usize) -> LoadBalance {
     let c = &strand.contacts[j];
     let place = course.track(c).place(c.ends.p[0]);
@@ -130,8 +130,8 @@ pub(in crate::model::spans) fn fresh(strand: &CableRun, course: &Course) -> f64 
     (0..strand.contacts.len()).map(missing).fold(0.0, larger)
 }
 
-/// Whether all of a strand is about to slide one way (1: towards its end, −1: towards its start):
-/// at each contact the tensions are those of sliding, but for this part of them.
+/// True if all of a strand is about to slide `way` (1: towards its end, −1: towards its start): at
+/// each contact the tensions are those of sliding, but for this part of them.
 pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way: f64, near: f64) -> bool {
     let slides = |(j, c): (usize, &Contact)| {
         let m = way * course.friction(c);
@@ -147,12 +147,12 @@ pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way
     !strand.contacts.is_empty() && strand.contacts.iter().enumerate().all(slides)
 }
 
-/// Where a load was last, p.
+/// The place of a load in the state before, p.
 pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
     c.history.knots().first().map_or(c.ends.p[0], |k| k.p)
 }
 
-/// Whether an answer holds at the load that is contact j.
+/// Checks the load that is contact j against its laws.
 pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usize) -> Result<(), Failure> {
     let c = &strand.contacts[j];
     let f = felt(strand, course, j);
@@ -235,7 +235,7 @@ pub(in crate::model::spans) fn join(strand: &mut CableRun, course: &Course) -> R
     Ok(())
 }
 
-/// Whether there was one more beside the load that is contact j.
+/// Joins one more contact beside the load that is contact j, and says whether there was one.
 fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Failure> {
     let load = strand.contacts[j].clone();
     for side in 0..2 {

@@ -7,7 +7,7 @@
 //! material between them as there is over, surplus = s₁ − s₂ ≥ 0. Where the surplus is used up the
 //! cable draws a span across the kink again. Between the two nothing jumps: T → 0 as surplus → 0.
 //!
-//! What is over is a heap in the kink that weighs B = −b·surplus and more where dead loads are in
+//! The surplus is a heap in the kink that weighs B = −b·surplus and more where dead loads are in
 //! it. The two edges have to carry it: pressed alone, N₁n₁ + N₂n₂ = −B, where −B is between their
 //! normals; else by the one edge it lies on, within its cone. A heap that neither carries slides on
 //! down (see [`heap`]).
@@ -32,8 +32,8 @@ const HEAP_CONE_ROUNDING: f64 = 1e-9;
 /// A span drawn across a kink takes at most this part of the contacts beside it.
 const KINK_SPAN_FRACTION: f64 = 0.3;
 
-/// Where the ends of the contacts before and after span k would lie in a kink: p on both, the turn,
-/// rad.
+/// The places at which the ends of the contacts before and after span k would lie in a kink: p on
+/// both, the turn, rad.
 fn kink(strand: &CableRun, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
     let (a, b) = (strand.contacts.get(k.checked_sub(1)?)?, strand.contacts.get(k)?);
     if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.is_load() || b.is_load() {
@@ -87,7 +87,8 @@ pub(in crate::model::spans) struct Borne {
     pub friction: f64,
 }
 
-/// What carries the heap between contacts k − 1 and k; None where nothing does, and it slides.
+/// The edges that carry the heap between contacts k − 1 and k; None where nothing does, and it
+/// slides.
 pub(in crate::model::spans) fn heap(strand: &CableRun, course: &Course, k: usize) -> Option<[Borne; 2]> {
     let (a, b) = (&strand.contacts[k - 1], &strand.contacts[k]);
     let edge = |c: &Contact, contact: usize, end: usize| {

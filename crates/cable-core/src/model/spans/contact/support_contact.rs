@@ -32,7 +32,7 @@ pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, sid
     }
 }
 
-/// Whether p lies outside contact `j` on that side.
+/// True if p lies outside contact `j` on that side.
 fn beyond(strand: &CableRun, j: usize, side: usize, p: f64) -> bool {
     let e = &strand.contacts[j].ends;
     if side == 0 { p <= e.p[0] } else { p >= e.p[1] }

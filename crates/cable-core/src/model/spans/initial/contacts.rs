@@ -31,12 +31,12 @@ const ROUTE_EXCESS_FRACTION: f64 = 0.05;
 /// Points of a route between its ends lie on a boundary if they are this near, of the cable's
 /// radius: routes follow the surface, the centre line is cut off at kinks.
 const ROUTE_CONTACT_RADII: f64 = 0.5;
-/// How far along the route, in radii of a post, the cable may come up to it before or after the
-/// string does: less than half a turn, so that turns are not mistaken for each other.
+/// Distance along the route, in radii of a post, within which the cable may come up to it before or
+/// after the string does: less than half a turn, so that turns are not mistaken for each other.
 const POST_APPROACH_RADII: f64 = 2.5;
-/// How much further than at its nearest a route that is drawn round a wheel may be from its centre,
-/// of the radius. Smaller: the chords of a coarse polygon are left; larger: of a route that only
-/// comes near more is taken for its round.
+/// Distance from a wheel's centre beyond the nearest one, in radii, up to which a route counts as
+/// drawn round the wheel. Smaller: the chords of a coarse polygon are left; larger: of a route that
+/// only comes near more is taken for its round.
 const ABOUT: f64 = 0.1;
 /// Rounds of bringing a free end to where the material ends; each gains the digits of the strain.
 const END_FIT_ROUNDS: usize = 6;
@@ -55,7 +55,7 @@ struct Seat {
     wheel: Option<usize>,
     /// First and last of it along the route, m.
     way: [f64; 2],
-    /// How far the string turns there, rad.
+    /// Turn of the string there, rad.
     turn: f64,
 }
 
@@ -439,7 +439,7 @@ struct Head {
     count: usize,
 }
 
-/// Whether the first points of a route (the last, for side 1) lie on one chain: the end and the
+/// True if the first points of a route (the last, for side 1) lie on one chain: the end and the
 /// others as `near` as that, m.
 fn lying(course: &Course, world: &World, near: [f64; 2], points: &[Vec2], side: usize) -> Option<Head> {
     let n = points.len();
@@ -459,7 +459,7 @@ fn lying(course: &Course, world: &World, near: [f64; 2], points: &[Vec2], side: 
     (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, home, p, count: on.len() })
 }
 
-/// What the string bends round, pulleys among it; posts are seen as rings of points.
+/// The bodies that the string bends round, pulleys among them; posts are seen as rings of points.
 fn seats(
     layout: &Layout,
     part: &Part,

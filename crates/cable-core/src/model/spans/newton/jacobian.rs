@@ -26,18 +26,18 @@ pub(super) fn gather(strand: &CableRun, out: &mut Vec<f64>) {
     }
 }
 
-/// Whether the tension of that side of contact j is an unknown of its own.
+/// True if the tension of that side of contact j is an unknown of its own.
 pub(super) fn lies(strand: &CableRun, j: usize, side: usize) -> bool {
     let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
     outer && matches!(strand.ties[side], Tie::Lies(_))
 }
 
-/// Which ends of contact j are held on the boundary.
+/// True for the ends of contact j that are held on the boundary.
 pub(super) fn pinned(strand: &CableRun, j: usize) -> [bool; 2] {
     [0, 1].map(|side| lies(strand, j, side) || strand.is_pinned(j, side))
 }
 
-/// Whether that side of contact j is an end of the strand that lies.
+/// True if that side of contact j is an end of the strand that lies.
 fn is_end(strand: &CableRun, j: usize, side: usize) -> bool {
     let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
     outer && !strand.ties[side].has_span()

@@ -1,5 +1,5 @@
-//! Newton's method for a strand: all spans and contacts at once, never a span solved inside another
-//! iteration.
+//! Newton's method solves a strand: all spans and contacts at once, never a span solved inside
+//! another iteration.
 //!
 //! Six unknowns and six equations for each contact, two more for the last span, in the order span,
 //! contact, span …:
@@ -48,8 +48,8 @@ const STIFF_RESIDUAL: f64 = 2e-14;
 const REFINED_RESIDUAL_FACTOR: f64 = 1e-8;
 /// Residual that no step makes smaller: rounding.
 const RESIDUAL_ROUNDING: f64 = 5e-15;
-/// Where no step gains anything the residual is rounding if it is below so many times the one
-/// wanted. Larger: a step that was halved often enough is taken without having been solved.
+/// Where no step lowers the residual, it counts as rounding below this multiple of the one wanted.
+/// Larger: a step that was halved often enough is taken without having been solved.
 const ROUNDING: f64 = 20.0;
 /// A contact's end moves by at most so many radians in one iteration. Larger: it jumps a turn of a
 /// post.
@@ -79,7 +79,7 @@ pub(super) struct Work {
     rhs: Vec<f64>,
     saved: Vec<f64>,
     best: Vec<f64>,
-    /// What the search for corners passed through counts with.
+    /// Winding numbers of the search for corners passed through.
     pub turns: Vec<i32>,
     /// The shape before and after a step.
     pub shapes: [Vec<Vec2>; 2],
@@ -89,7 +89,7 @@ pub(super) struct Work {
     pub before: Vec<CableRun>,
     /// Instants: before a step; where a way begins; where a step goes.
     pub instants: [BoundaryConditions; 3],
-    /// What a guess at the modes is made with.
+    /// Scratch space of the slip predictor.
     pub foresight: Foresight,
     /// A contact's past as it was.
     pub past: TensionProfile,
@@ -111,7 +111,7 @@ pub(super) struct Stall {
     pub at: usize,
 }
 
-/// What a solve took.
+/// Cost of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Solved {
     pub iterations: usize,
@@ -143,7 +143,7 @@ fn tolerance(strand: &CableRun, course: &Course) -> f64 {
     larger(RESIDUAL, stiff.min(1e3 * RESIDUAL))
 }
 
-/// Whether a residual that will do leaves forces off by more than need be: a length that is missing
+/// True if a residual that suffices leaves forces with too great an error: a length that is missing
 /// is strain, and that times EA is force.
 fn is_rough(strand: &CableRun, course: &Course, residual: f64) -> bool {
     let least = least_tension(strand, course);
@@ -306,7 +306,7 @@ fn asked(strand: &CableRun, course: &Course, sheet: &System, j: usize, patience:
     equations::next_mode(&track, &c.history, &c.ends, c.held, c.mode, pinned(strand, j), patience)
 }
 
-/// Whether every contact is in the mode that its state asks for; the sheet is that of the state.
+/// True if every contact is in the mode that its state asks for; the sheet is that of the state.
 fn agreed(strand: &CableRun, course: &Course, sheet: &System) -> bool {
     // What is rounding grows with the stiffness as the residual does.
     let patience = CYCLE_ROUNDINGS * tolerance(strand, course) / RESIDUAL;

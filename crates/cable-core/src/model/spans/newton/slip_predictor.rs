@@ -46,7 +46,7 @@ const FOLLOWED_ANGLE: f64 = 0.2;
 /// A span to first order.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bar {
-    /// Where it starts and ends, m; None where it keeps its force.
+    /// Start and end, m; None where it keeps its force.
     ends: Option<[Vec2; 2]>,
     /// G, N, and material at both ends, m.
     force: Vec2,
@@ -58,21 +58,21 @@ struct Bar {
     tension: [f64; 2],
     /// Change of tension at each end by σ before and after it, N/m.
     by: [[f64; 2]; 2],
-    /// Whether the last round left it where it was: what is said of it holds on.
+    /// True if the last round left it unmoved, so that its prediction holds on.
     still: bool,
 }
 
 /// A contact to first order.
 #[derive(Clone, Copy, Debug)]
 struct Link {
-    /// Where it ends, material and tensions there.
+    /// End places, material and tensions there.
     ends: Ends,
     /// Tension that sliding with −μ and +μ makes of that, N, and its derivative; None where it is
     /// not ours to say.
     reach: Option<[(f64, f64); 2]>,
     /// −1, 0, +1: slides back, sticks, slides on.
     side: i8,
-    /// What slides in a round, and what slid before it, m.
+    /// Slip of this round, and slip before it, m.
     sigma: f64,
     slid: f64,
 }

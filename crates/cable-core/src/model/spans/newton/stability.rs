@@ -4,7 +4,7 @@ use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::newton::{Work, assemble, lies};
 use crate::model::spans::run::{CableRun, Course, Next, Tie};
 
-/// Whether a balance without friction is a rest: what is pushed comes back.
+/// True if a balance without friction is stable: it returns after a disturbance.
 ///
 /// A contact that sticks keeps its material, one that slides has T₂ − T₁ = 0 instead, which must
 /// rise with the material s that comes to it. By s₁ = s₂ = s the two rows are [−1, 1] and [−∂T₁,

@@ -62,8 +62,8 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Resu
     Ok(())
 }
 
-/// Whether supports and contacts, as they are reported, hold all of the weight and the loads: what
-/// no part of the network asked for is missed by each part's own check.
+/// Checks that supports and contacts, as they are reported, hold all of the weight and the loads:
+/// what no part of the network asked for is missed by each part's own check.
 pub(in crate::model::spans) fn balanced(layout: &Layout, network: &CableEquilibrium) -> Result<(), Failure> {
     let (left, size) = results::unbalanced(layout, network);
     if left.norm() <= BALANCE_TOLERANCE * size {
@@ -242,7 +242,7 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(
     Ok(())
 }
 
-/// Whether tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and
+/// True if tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and
 /// N ds/dp > T − cb.
 fn firm(track: &Track<'_>, p: f64, q: f64, t: f64, m: f64) -> bool {
     let place = track.place(p);
@@ -250,8 +250,8 @@ fn firm(track: &Track<'_>, p: f64, q: f64, t: f64, m: f64) -> bool {
     place.turn != 0.0 && track.law.stiffness > 0.0 && t - (q - p) * (m.abs() * t + 2.0 * load) > load && m.abs() <= 1.0
 }
 
-/// Where the load has changed since something was laid, what sticks has changed by less than
-/// friction takes up: the cone from point to point.
+/// Checks the cone from point to point where the load has changed since something was laid: what
+/// sticks has changed by less than friction takes up.
 fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Failure> {
     let past = &c.history;
     let [first, last] = c.ends.p;

@@ -10,7 +10,8 @@ use crate::model::spans::run::{CableRun, Course};
 /// are put down to the solver. Larger: the other way round.
 const SLACK_FORCE_FRACTION: f64 = 5e-3;
 
-/// What was lost, where on the cable (m) and in the plane (m), in the last state that was found.
+/// The kind of loss, its place on the cable (m) and in the plane (m), in the last state that was
+/// found.
 pub(in crate::model::spans) fn lost(
     strands: &[CableRun],
     course: &Course,

@@ -16,7 +16,7 @@ const CHECKED_MOVE: f64 = 0.5;
 /// A corner this near to a tangent is on it, m: rounding.
 const TANGENCY_DISTANCE_M: f64 = 1e-12;
 
-/// Whether the ends of the spans alone tell that nothing was passed: contacts are the same, and
+/// True if the ends of the spans alone tell that nothing was passed: contacts are the same, and
 /// every corner lies on the same side of each span before and after. A span is convex: above its
 /// tangents and below its chord, seen against the load.
 pub(in crate::model::spans) fn clear(old: &CableRun, new: &CableRun, course: &Course, corners: &[Corner]) -> bool {
@@ -68,12 +68,12 @@ impl Bow {
         Some(Self { low, high, ends: [a, b], tangents: [side(a, from), side(b, to)] })
     }
 
-    /// Whether a point between its ends lies below it.
+    /// True if a point between its ends lies below it.
     fn is_above(&self, v: Vec2) -> bool {
         self.tangents.iter().flatten().any(|(at, normal)| (v - at).dot(normal) <= TANGENCY_DISTANCE_M)
     }
 
-    /// Whether a point between its ends lies above it.
+    /// True if a point between its ends lies above it.
     fn is_below(&self, v: Vec2) -> bool {
         let [a, b] = self.ends;
         let up = cross(b - a, v - a);

@@ -1,4 +1,5 @@
-//! How tension changes along a boundary while the cable slides, and how much material lies there.
+//! This file integrates the tension of a cable that slides along a boundary, and the material that
+//! lies there.
 //!
 //! With b the load per unstretched metre, t the direction of travel, n the outward normal, λ =
 //! τ(1 + T/EA) the stretch, τ = 1 + αΔT, c the radius (∞ on an edge), equilibrium of a piece of
@@ -47,13 +48,13 @@ pub(in crate::model::spans) struct Law {
 pub(in crate::model::spans) struct LocalLoad {
     /// d(length)/dp, m.
     pub stretch: f64,
-    /// Whether it is on an arc.
+    /// True on an arc.
     pub turns: bool,
     /// b·t and b·n, N/m.
     pub load: (f64, f64),
 }
 
-/// What came of a way along the boundary.
+/// Result of an integration along the boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Step {
     /// Tension at its end, N.
@@ -167,7 +168,7 @@ pub(in crate::model::spans) struct Track<'a> {
     pub friction: f64,
     /// See [`Course`](crate::model::spans::run::Course).
     pub drag: f64,
-    /// Whether all of it slides away from the end that is drawn as far as there is tension, and
+    /// True if all of it slides away from the end that is drawn, as far as there is tension, and
     /// lies loose beyond that.
     pub floored: bool,
     /// A point of it from which what lies on the same piece is seen.
@@ -188,7 +189,7 @@ impl Track<'_> {
         }
     }
 
-    /// Whether p is on an arc.
+    /// True if p is on an arc.
     pub fn turns(&self, p: f64) -> bool {
         match &self.pivot {
             Some(pivot) if pivot.holds(p) => pivot.turns(),

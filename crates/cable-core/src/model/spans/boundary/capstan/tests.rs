@@ -34,8 +34,8 @@ fn stepped(track: &Track<'_>, from: f64, to: f64, t: f64, m: f64) -> (f64, f64) 
     (t, s)
 }
 
-/// What the closed form leaves out, N and m: with δT of the order of ε = cb/EA of T the tension is
-/// corrected by it, the material is not: ε² T and c ψ ε T/EA.
+/// Terms that the closed form leaves out, N and m: with δT of the order of ε = cb/EA of T the
+/// tension is corrected by it, the material is not: ε² T and c ψ ε T/EA.
 fn left_out(track: &Track<'_>, radius: f64, turn: f64, t: f64) -> [f64; 2] {
     let stiffness = track.law.stiffness;
     let part = 9.0 * radius / stiffness;
