@@ -1,8 +1,8 @@
 //! This file makes the JSON object of an answer: SI units in the key names, never a number that is not finite.
 
 use cable_core::solution::{
-    Bend, CableSolution, ContactReport, ContactSample, ContactState, Node, Pressure, Solution, SupportReaction,
-    TensionPeaks, Warning,
+    Bend, CableSolution, ContactReport, ContactSample, ContactState, ModelReason, Node, Pressure, Solution,
+    SupportReaction, TensionPeaks, Warning,
 };
 use cable_core::summary::{CableSummary, Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::timeline::RunPeaks;
@@ -16,7 +16,7 @@ pub struct Answer<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_s: Option<f64>,
     pub model: &'static str,
-    pub reason: &'a str,
+    pub reason: &'a ModelReason,
     pub converged: bool,
     pub residual_n: f64,
     pub iterations: usize,
@@ -189,11 +189,11 @@ pub struct Contact<'a> {
 
 /// The output of `--json` where there is no answer.
 #[derive(Debug, Serialize)]
-pub struct NoAnswer<'a> {
+pub struct NoAnswer {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_s: Option<f64>,
     pub model: &'static str,
-    pub reason: &'a str,
+    pub reason: String,
     pub converged: bool,
     pub error: String,
 }

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
-use cable_core::record::{RunRequest, WriteError};
+use cable_core::record::{RunRequest, RunStop, WriteError};
 use cable_core::solution::{Solution, TensionPeak, TensionPeaks, Warning, WarningKind};
 use cable_core::summary::summaries;
 use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
@@ -262,14 +262,14 @@ pub fn run(a: RunArguments) -> Done {
                 if let Some(signal) = signals.arrived() {
                     let place = shared.place();
                     // The tables are readable and marked as partial already, whether this can be noted or not.
-                    let _ = shared.finish(RunEnd::Partial(format!("interrupted by {}", signal.name())));
+                    let _ = shared.finish(RunEnd::Partial(RunStop::Interrupted { signal: signal.name().to_owned() }));
                     wait_for_line(&printing);
                     return Err(Failure::Interrupted(signal, place));
                 }
             }
             Err(RecvTimeoutError::Disconnected) => match solver.join() {
                 Err(panic) => {
-                    let _ = shared.finish(RunEnd::Partial("the solver panicked".to_owned()));
+                    let _ = shared.finish(RunEnd::Partial(RunStop::Panicked));
                     std::panic::resume_unwind(panic)
                 }
                 Ok(()) => return Err(Failure::Ended),
@@ -295,7 +295,7 @@ fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began:
     outputs.progress.end();
     let end = match &walked {
         Ok(()) => RunEnd::Complete,
-        Err(failure) => RunEnd::Partial(failure.to_string()),
+        Err(failure) => RunEnd::Partial(RunStop::Failed { message: failure.to_string() }),
     };
     let finished = outputs.folder.finish(end);
     // Why the run stopped matters more than a folder that could not be closed after it.
@@ -376,7 +376,7 @@ fn stopped(outputs: &mut Outputs, simulation: &Simulation, error: SolveError) ->
     let reached_s = simulation.time_s();
     if outputs.arguments.common.json
         && let Err(e) =
-            no_answer(&mut outputs.printer, simulation.model(), simulation.reason(), Some(reached_s), &error)
+            no_answer(&mut outputs.printer, simulation.model(), Some(simulation.reason()), Some(reached_s), &error)
     {
         return e;
     }

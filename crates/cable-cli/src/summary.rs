@@ -125,7 +125,10 @@ fn neglected(b: &NeglectedBending, most: f64) -> String {
     };
     let with = format!("with {}{range} N·m², likely of its preset,", b.bending_stiffness_n_m2);
     let Some(tension) = b.greatest_tension_n else {
-        return format!("{with} no answer was found: {}", b.unknown.as_deref().unwrap_or("not sought"));
+        return format!(
+            "{with} no answer was found: {}",
+            b.unknown.as_ref().map_or_else(|| "not sought".to_owned(), ToString::to_string)
+        );
     };
     let more = if most > 0.0 { format!(" ({:+.2} %)", 100.0 * (tension / most - 1.0)) } else { String::new() };
     let change = |what: &str, of: Option<f64>, unit: &str| {

@@ -155,10 +155,10 @@ fn interrupted(count: u32, name: &str) -> (usize, usize) {
         let faults = unreadable(&out);
         let run = files::load_run(&out, 4 << 30).unwrap();
         assert_eq!(run.is_complete(), Some(false), "{name} {k} is not marked as partial");
-        assert!(run.remarks().iter().any(|r| r.contains("partial")), "{:?}", run.remarks());
+        assert!(run.remarks().iter().any(|r| r.to_string().contains("partial")), "{:?}", run.remarks());
         if let Some(code) = code {
             assert_eq!(run.remarks().len(), 1, "what ends in order leaves nothing out: {:?}", run.remarks());
-            assert!(run.remarks()[0].contains(&format!("SIG{name}")), "{code}: {:?}", run.remarks());
+            assert!(run.remarks()[0].to_string().contains(&format!("SIG{name}")), "{code}: {:?}", run.remarks());
             assert!(said(&o).contains(&format!("SIG{name}")), "{}", said(&o));
         }
         if !faults.is_empty() {

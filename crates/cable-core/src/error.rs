@@ -1,18 +1,20 @@
 //! The errors of a scene and of a solve are data, by operation, with their numbers;
 //! [`crate::wording`] makes the sentences.
 
+mod equilibrium_fault;
 mod no_equilibrium;
+mod shape_fault;
 mod span;
 mod unsupported;
 
-use thiserror::Error;
-
 use crate::math::Vec2;
 use crate::model_id::Model;
-use crate::solution::verification::Finding;
 use crate::units::Quantity;
+use crate::verification::Finding;
 
+pub use self::equilibrium_fault::EquilibriumFault;
 pub use self::no_equilibrium::{FailureCause, NoEquilibrium};
+pub use self::shape_fault::ShapeFault;
 pub use self::span::SpanError;
 pub use self::unsupported::{Unsupported, UnsupportedReach};
 
@@ -39,10 +41,29 @@ pub struct TextPosition {
 /// The fault with a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SceneFault {
-    /// Not TOML, or a wrong type.
+    /// Not TOML.
     Syntax {
         /// The parser's own words.
         message: String,
+    },
+    /// Bytes that are not UTF-8.
+    NotUtf8 {
+        /// The encoding that they look like.
+        encoding: Option<&'static str>,
+    },
+    /// A value of a wrong type.
+    Type {
+        /// What was found, in the reader's words.
+        found: String,
+        /// What is needed, in the reader's words.
+        needed: String,
+    },
+    /// A list with a wrong number of elements.
+    Elements {
+        /// Their number.
+        count: usize,
+        /// What is needed, in the reader's words.
+        needed: String,
     },
     /// A number out of range or not finite.
     Range {
@@ -63,11 +84,8 @@ pub enum SceneFault {
         /// The nearest known key.
         nearest: Option<String>,
     },
-    /// A key that must be there, or must not.
-    Shape {
-        /// The thing that must be there or must not, and why; it holds no figure with a unit.
-        what: String,
-    },
+    /// A key, a name or a line that must be there, or must not.
+    Shape(ShapeFault),
     /// More elements than a scene may have.
     TooMany {
         /// Their number.
@@ -199,16 +217,13 @@ pub enum SceneFault {
 }
 
 /// The way in which a cable loses its tension.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TensionLoss {
     /// A free span hangs in one line and folds.
-    #[error("a span folds")]
     Fold,
     /// A free span has hardly any tension left.
-    #[error("a span goes slack")]
     Span,
     /// A cable that lies on an obstacle would have to push.
-    #[error("what lies goes slack")]
     Lay,
 }
 
@@ -219,9 +234,28 @@ pub struct Place {
     pub arc_length_m: f64,
     /// Its place, m.
     pub at_m: Vec2,
-    /// The nearest support or obstacle by kind and name, and its distance, m; none where there is
-    /// nothing.
-    pub near: Option<(String, f64)>,
+    /// The nearest support or obstacle; none where there is nothing.
+    pub near: Option<Near>,
+}
+
+/// The thing nearest to a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Near {
+    /// Its kind.
+    pub kind: NearKind,
+    /// Its name.
+    pub name: String,
+    /// Its distance, m; 0 where it touches.
+    pub distance_m: f64,
+}
+
+/// The kind of a thing near a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NearKind {
+    /// A support.
+    Support,
+    /// An obstacle.
+    Obstacle,
 }
 
 /// Why a model has no answer.
@@ -330,15 +364,17 @@ pub enum SolveError {
         name: &'static str,
         /// Its value.
         value: f64,
-        /// The allowed range.
-        allowed: &'static str,
+        /// The least and the greatest that is allowed; infinite where there is no greatest.
+        allowed: [f64; 2],
+        /// The quantity.
+        quantity: Quantity,
     },
     /// A time step that cannot be taken.
     TimeStep {
         /// The step asked for, s.
         dt_s: f64,
-        /// The allowed range.
-        allowed: &'static str,
+        /// The longest step, s; infinite where there is none. It must be more than 0 s.
+        longest_s: f64,
     },
     /// The step was halved down to its floor and still failed.
     StepFailed {
@@ -392,7 +428,7 @@ mod tests {
                 Box::new(Place {
                     arc_length_m: bad,
                     at_m: Vec2::new(bad, 1.0),
-                    near: Some(("support `a`".to_owned(), bad)),
+                    near: Some(Near { kind: NearKind::Support, name: "a".to_owned(), distance_m: bad }),
                 })
             };
             let all = [

@@ -21,7 +21,7 @@
 //! | time | s |
 //!
 //! Dependencies between the modules point one way, without a loop:
-//! `math, model_id, units → solution → error → wording → scene → contact, catenary,
+//! `math, model_id, units → verification → error → solution → wording → scene → contact, catenary,
 //! energy → problem → state → model → breakage, warnings, verify
 //! → simulation → timeline, analysis, summary, conformance`, and `record → files → any_error`
 //! beside them.
@@ -49,6 +49,7 @@ pub mod state;
 pub mod summary;
 pub mod timeline;
 pub mod units;
+pub mod verification;
 pub mod verify;
 mod warnings;
 pub mod wording;

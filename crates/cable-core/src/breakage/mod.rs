@@ -32,7 +32,7 @@ use crate::model::input_filter::default_hand_stiffness;
 use crate::model::{Inertia, Mechanics, Model, ModelSource, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost, MomentumAccount, TensionPeak, TensionPeaks};
+use crate::solution::{CableSolution, Cost, ModelReason, MomentumAccount, TensionPeak, TensionPeaks};
 use crate::state::State;
 
 /// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the
@@ -194,7 +194,7 @@ impl BreakableCable {
     }
 
     /// Why it is that model, where that changed on the way.
-    pub fn reason(&self) -> Option<&str> {
+    pub fn reason(&self) -> Option<&ModelReason> {
         self.pieces.iter().find_map(|p| p.mechanics.reason())
     }
 
@@ -405,7 +405,7 @@ impl BreakableCable {
 
     /// Gives the whole cable to the next model: see
     /// [`Mechanics::fall_back`](crate::model::Mechanics::fall_back).
-    pub(crate) fn fall_back(&mut self, why: &str) -> bool {
+    pub(crate) fn fall_back(&mut self, why: &SolveError) -> bool {
         match self.pieces.as_mut_slice() {
             [whole] if self.breaks.is_empty() => whole.mechanics.fall_back(why),
             _ => false,

@@ -1,6 +1,5 @@
 //! A run is read as a whole: what its folder says about itself, and its three tables together.
 
-use std::fmt;
 use std::io::Read;
 
 use serde::{Deserialize, Serialize};
@@ -22,6 +21,47 @@ pub enum RunStatus {
     Complete,
     /// A complete successor, which lies in a folder in this one, is being put in its place.
     Replacing,
+}
+
+/// Why a run ended before its end. `run.toml` holds it as a sentence.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub enum RunStop {
+    /// A signal interrupted it.
+    Interrupted {
+        /// Name of the signal.
+        signal: String,
+    },
+    /// The solver panicked.
+    Panicked,
+    /// It failed.
+    Failed {
+        /// The sentence that the program said about it.
+        message: String,
+    },
+}
+
+const INTERRUPTED: &str = "interrupted by ";
+const PANICKED: &str = "the solver panicked";
+
+impl From<RunStop> for String {
+    fn from(stop: RunStop) -> Self {
+        match stop {
+            RunStop::Interrupted { signal } => format!("{INTERRUPTED}{signal}"),
+            RunStop::Panicked => PANICKED.to_owned(),
+            RunStop::Failed { message } => message,
+        }
+    }
+}
+
+impl From<String> for RunStop {
+    fn from(text: String) -> Self {
+        match text.strip_prefix(INTERRUPTED).filter(|signal| !signal.contains(' ')) {
+            Some(signal) => Self::Interrupted { signal: signal.to_owned() },
+            None if text == PANICKED => Self::Panicked,
+            None => Self::Failed { message: text },
+        }
+    }
 }
 
 /// The request for a run.
@@ -95,7 +135,7 @@ pub struct Manifest {
     pub status: RunStatus,
     /// Why a partial run ended, where it ended with a word.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ended: Option<String>,
+    pub ended: Option<RunStop>,
     /// Time of its last instant, s, where it ended with a word.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reached_s: Option<f64>,
@@ -187,19 +227,6 @@ pub enum LeftOut {
     },
 }
 
-impl fmt::Display for LeftOut {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::IncompleteLine { table, bytes } => {
-                write!(f, "{table} ends within a line, of which {bytes} bytes were left out")
-            }
-            Self::BeyondHistory { table, rows } => {
-                write!(f, "{table} has {rows} rows later than the end of {HISTORY}, which were left out")
-            }
-        }
-    }
-}
-
 /// Reads the tables of a run together, wherever they were cut off. Of tables that are still written
 /// to, `history` must have been opened and read first: what has a row there is in the others
 /// already.
@@ -232,4 +259,21 @@ pub(crate) fn read_run(history: impl Read, nodes: impl Read, events: impl Read) 
     beyond(EVENTS, count - out.events.len());
     out.left_out = left_out;
     Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stop_is_read_back_from_its_sentence() {
+        let failed = "interrupted by a wish, or so".to_owned();
+        for stop in [
+            RunStop::Interrupted { signal: "SIGINT".to_owned() },
+            RunStop::Panicked,
+            RunStop::Failed { message: failed },
+        ] {
+            assert_eq!(RunStop::from(String::from(stop.clone())), stop);
+        }
+    }
 }

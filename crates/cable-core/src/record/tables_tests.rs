@@ -1,6 +1,6 @@
 use super::*;
 use crate::model::Model;
-use crate::solution::{CableSolution, Cost, Energy, Node, SupportReaction};
+use crate::solution::{CableSolution, Cost, Energy, ModelReason, Node, SupportReaction};
 use proptest::prelude::*;
 
 fn solution(time_s: f64, values: [f64; NodeColumns::COUNT], name: &str) -> Solution {
@@ -35,7 +35,7 @@ fn solution(time_s: f64, values: [f64; NodeColumns::COUNT], name: &str) -> Solut
     Solution {
         time_s,
         model: Model::Fem,
-        reason: String::new(),
+        reason: ModelReason::Requested,
         cables: vec![CableSolution {
             name: name.to_owned(),
             nodes: vec![node],

@@ -5,34 +5,35 @@
 //! | `mod.rs` | [`Solution`], [`CableSolution`]: nodes, supports, contacts, warnings |
 //! | `error_estimates.rs` | [`ErrorEstimates`]: how wrong each figure is |
 //! | `robot_report.rs` | [`robot_report::RobotReport`]: the vehicle at the same instant |
-//! | `verification.rs` | [`verification::Verification`]: the verdict of the laws of mechanics |
+//! | `model_reason.rs` | [`ModelReason`]: why that model answered |
 //! | `warning.rs` | [`Warning`]: what a user should know, as data |
 
 pub mod error_estimates;
+mod model_reason;
 pub mod robot_report;
-pub mod verification;
 mod warning;
 
 use serde::{Deserialize, Serialize};
 
 use crate::math::{Vec2, larger};
 use crate::model_id::Model;
+use crate::verification::Verification;
 
 pub use self::error_estimates::ErrorEstimates;
+pub use self::model_reason::{LikelyBending, ModelReason, TakenStiffness};
 use self::robot_report::RobotReport;
-use self::verification::Verification;
 pub use self::warning::{EndMove, Histories, MeanTension, ShownEquilibrium, SlideReason};
 pub use self::warning::{Warning, WarningCause, WarningKind};
 
 /// The answer of a model at an instant, all cables of the scene.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solution {
     /// Time, s.
     pub time_s: f64,
     /// The model that gave it.
     pub model: Model,
     /// Why that model.
-    pub reason: String,
+    pub reason: ModelReason,
     /// One a cable, in the scene's order.
     pub cables: Vec<CableSolution>,
     /// Warnings for the user.

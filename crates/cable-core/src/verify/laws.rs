@@ -13,7 +13,7 @@ use super::tolerance::{
     LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE, MIN_STRAIN, MOMENT, MOMENTUM, NORMAL_TOLERANCE, REACH_DIAMETERS, REACH_M,
     REPORTED_BALANCE, TURN,
 };
-use super::{Balance, Depth, Finding, Law, Verification};
+use super::{Balance, Depth, Finding, Law, NotChecked, Verification};
 use crate::math::{Vec2, cross, larger, smaller, vec2};
 use crate::scene::{Cable, Scene, View};
 use crate::solution::{CableSolution, ContactReport, Node, SupportReaction};
@@ -92,8 +92,11 @@ pub(super) fn check(found: &mut Verification, mut subject: CheckedCable<'_>, dep
     subject.penetration(found, &near);
     subject.reported_contacts(found);
     if answer.assumptions.inertia || !answer.breaks.is_empty() {
-        let why = if answer.breaks.is_empty() { "it moves" } else { "it is broken" };
-        found.not_checked.push(format!("balance and length of `{}`: {why}", cable.name));
+        let cable = cable.name.clone();
+        found.not_checked.push(match answer.breaks.is_empty() {
+            true => NotChecked::MovingBalance { cable },
+            false => NotChecked::BrokenBalance { cable },
+        });
         subject.momentum(found);
     } else {
         subject.supports(found);
@@ -109,7 +112,7 @@ pub(super) fn check(found: &mut Verification, mut subject: CheckedCable<'_>, dep
     if cable.self_contact && depth == Depth::Full {
         subject.self_contact(found);
     } else if cable.self_contact {
-        found.not_checked.push(format!("contact of `{}` with itself", cable.name));
+        found.not_checked.push(NotChecked::SelfContact { cable: cable.name.clone() });
     }
 }
 

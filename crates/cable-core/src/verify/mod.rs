@@ -32,8 +32,8 @@ use serde::{Deserialize, Serialize};
 use self::surroundings::Obstacles;
 use crate::scene::Scene;
 use crate::solution::robot_report::RobotReport;
-pub use crate::solution::verification::{Balance, Finding, Law, Verification};
 use crate::solution::{CableSolution, Solution};
+pub use crate::verification::{Balance, Finding, Law, NotChecked, Verification};
 
 /// Extent of the check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 
 use super::layout::{Anchor, Layout, angle_near, angle_of, unsupported};
 use super::slide::{Arc, Mode, Slide, Stretches};
-use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
+use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
 use crate::problem::Problem;
@@ -134,7 +134,11 @@ fn not_converged(p: &Problem, layout: &Layout, anchor: usize, iterations: usize,
     let place = layout.anchors.get(anchor).map(|a| Place {
         arc_length_m: a.held.unwrap_or(f64::NAN),
         at_m: a.at,
-        near: p.supports.get(a.support).map(|s| (format!("support `{}`", s.name), 0.0)),
+        near: p.supports.get(a.support).map(|s| Near {
+            kind: NearKind::Support,
+            name: s.name.clone(),
+            distance_m: 0.0,
+        }),
     });
     let place = Box::new(place.unwrap_or_default());
     SolveError::NotConverged { model: Model::Catenary, iterations, residual_n, place }

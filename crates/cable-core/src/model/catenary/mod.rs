@@ -297,7 +297,7 @@ impl Mechanics for CatenaryModel {
             return Err(unsupported(Unsupported::Inertia));
         }
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
-            return Err(SolveError::TimeStep { dt_s, allowed: "0 < dt ≤ 1e6 s" });
+            return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
         }
         let (start, end) = (self.time_s, self.time_s + dt_s);
         let pieces = (self.support_travel(start, end) / (STEP * self.problem.length)).ceil().clamp(1.0, 1000.0);

@@ -1,6 +1,7 @@
 //! A failure says why a run has no answer here, before it becomes a
 //! [`SolveError`](crate::SolveError).
 
+use crate::error::EquilibriumFault;
 use crate::math::Vec2;
 
 /// Reason of a failure.
@@ -25,5 +26,5 @@ pub(in crate::model::spans) enum Failure {
     /// A cable that lies loose is drawn along: material point, m.
     Drawn { s: f64 },
     /// The answer does not pass the check that does not use the solver.
-    Unsound { what: &'static str, s: f64, at: Vec2 },
+    Unsound { what: EquilibriumFault, s: f64, at: Vec2 },
 }

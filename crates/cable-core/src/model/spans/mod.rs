@@ -52,7 +52,7 @@ use crate::model::spans::reversed::Turned;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
-use crate::solution::{CableSolution, Cost, Histories, Node, ShownEquilibrium, Warning, WarningCause};
+use crate::solution::{CableSolution, Cost, Histories, ModelReason, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
 /// Supports move by at most this part of the cable in one solve. Larger: sliding that starts and
@@ -290,8 +290,8 @@ impl Mechanics for SpansModel {
         Model::Spans
     }
 
-    fn reason(&self) -> Option<&str> {
-        self.lies_loose().then_some("the cable lies loose: what hangs is plumb, what lies has no tension")
+    fn reason(&self) -> Option<&ModelReason> {
+        self.lies_loose().then_some(&ModelReason::LooseCable)
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
@@ -358,7 +358,7 @@ impl Mechanics for SpansModel {
             return Err(unsupported(Unsupported::Inertia));
         }
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
-            return Err(SolveError::TimeStep { dt_s, allowed: "0 < dt ≤ 1e6 s" });
+            return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
         }
         if self.network.is_none() {
             self.settle()?;

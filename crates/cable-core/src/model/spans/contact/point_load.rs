@@ -15,6 +15,7 @@
 //! draws the end.
 
 use crate::catenary::PointForce;
+use crate::error::EquilibriumFault;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
@@ -157,22 +158,22 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usiz
     let c = &strand.contacts[j];
     let f = felt(strand, course, j);
     let unsound =
-        |what: &'static str| Failure::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
+        |what: EquilibriumFault| Failure::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
     let room = BALANCE_TOLERANCE * f.size;
     if !(kink_load::press(course, c, &f) >= -room) {
-        return Err(unsound("a load is held down"));
+        return Err(unsound(EquilibriumFault::LoadHeldDown));
     }
     if let Some(kink) = c.kink() {
         if !kink_load::holds(course, c, kink, &f, BALANCE_TOLERANCE) {
-            return Err(unsound("a load is out of its kink"));
+            return Err(unsound(EquilibriumFault::LoadOutOfKink));
         }
     } else if !(f.sum.dot(&f.tangent).abs() <= course.friction(c) * f.press() + room) {
-        return Err(unsound("a load slides against more than its friction"));
+        return Err(unsound(EquilibriumFault::LoadSlides));
     }
     for side in (0..2).filter(|&side| strand.is_joined(j, side)) {
         let beside = strand.contacts[j + 2 * side - 1].ends;
         if !((beside.p[1 - side] - c.ends.p[side]).abs() <= BALANCE_TOLERANCE * (strand.to - strand.from)) {
-            return Err(unsound("a load is not where the cable beside it ends"));
+            return Err(unsound(EquilibriumFault::LoadElsewhere));
         }
     }
     Ok(())

@@ -9,6 +9,7 @@
 
 use crate::contact::World;
 use crate::contact::geometry::{Body, Edge};
+use crate::error::EquilibriumFault;
 use crate::math::{Vec2, cross, perp, smaller};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Contact, Course};
@@ -124,7 +125,7 @@ pub(in crate::model::spans) fn clear(strand: &CableRun, course: &Course, world: 
             inside = inside.or_else(|| contact(c, course, world));
         }
         if let Some((s, at)) = inside {
-            return Err(Failure::Unsound { what: "the cable is inside an obstacle", s, at });
+            return Err(Failure::Unsound { what: EquilibriumFault::InsideObstacle, s, at });
         }
     }
     Ok(())

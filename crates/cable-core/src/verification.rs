@@ -135,15 +135,36 @@ pub struct Balance {
     pub scale_n: f64,
 }
 
+/// A law that was not asked of a cable, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NotChecked {
+    /// Balance and length of a cable that moves.
+    MovingBalance {
+        /// Name of the cable.
+        cable: String,
+    },
+    /// Balance and length of a cable that is broken.
+    BrokenBalance {
+        /// Name of the cable.
+        cable: String,
+    },
+    /// Contact of a cable with itself, which only a full check asks for.
+    SelfContact {
+        /// Name of the cable.
+        cable: String,
+    },
+}
+
 /// Findings of a check.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Verification {
     /// Broken laws, the worst first; empty = sound.
     pub findings: Vec<Finding>,
     /// Laws that were asked.
     pub checked: Vec<Law>,
     /// Laws that were not asked, and why.
-    pub not_checked: Vec<String>,
+    pub not_checked: Vec<NotChecked>,
     /// Forces on all cables.
     pub balance: Balance,
     /// Material beyond the way of the nodes, m: cable that lies in folds or layers, which a plane
