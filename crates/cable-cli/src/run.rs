@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
-use cable_core::record::{RunRequest, RunStop, WriteError};
+use cable_core::record::{RobotColumns, RunRequest, RunStop, WriteError};
 use cable_core::solution::{Solution, TensionPeak, TensionPeaks, Warning, WarningKind};
 use cable_core::summary::summaries;
 use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
@@ -231,8 +231,8 @@ pub fn run(a: RunArguments) -> Done {
     };
     let mut folder = RunFolder::create(&a.out, &scene, request, choice).map_err(Failure::File)?;
     // So that a run which is ended before its first instant has tables.
-    let with_robot = simulation.solution().robot.is_some();
-    folder.begin(&scene, with_robot).map_err(|e| Failure::Table(a.out.clone(), e))?;
+    let robot = RobotColumns::of(&simulation.solution());
+    folder.begin(&scene, robot).map_err(|e| Failure::Table(a.out.clone(), e))?;
     let shared = Shared(Arc::new(Mutex::new(Some(folder))));
     let printing = Arc::new(Mutex::new(()));
     let outputs = Outputs {

@@ -9,8 +9,8 @@ use atomic_write_file::AtomicWriteFile;
 
 use crate::error::SceneError;
 use crate::record::{
-    FileRecord, Fingerprint, LeftOut, MANIFEST_HEAD, Manifest, NodeChoice, Pages, ReadError, RunRequest, RunStatus,
-    RunStop, RunTables, RunWriter, WriteError, has_rows, read_run,
+    FileRecord, Fingerprint, LeftOut, MANIFEST_HEAD, Manifest, NodeChoice, Pages, ReadError, RobotColumns, RunRequest,
+    RunStatus, RunStop, RunTables, RunWriter, WriteError, has_rows, read_run,
 };
 use crate::scene::Scene;
 use crate::scene::file::MAX_TEXT_BYTES;
@@ -380,8 +380,8 @@ impl RunFolder {
     ///
     /// # Errors
     /// As [`Self::push`].
-    pub fn begin(&mut self, scene: &Scene, with_robot: bool) -> Result<(), WriteError> {
-        self.write(|writer| writer.begin(scene, with_robot))
+    pub fn begin(&mut self, scene: &Scene, robot: RobotColumns) -> Result<(), WriteError> {
+        self.write(|writer| writer.begin(scene, robot))
     }
 
     fn append(
@@ -730,7 +730,8 @@ impl SavedRun {
         self.manifest.as_ref().map(|m| m.status == RunStatus::Complete)
     }
 
-    /// Returns what its reader should know: that it is partial, and what was left out of its tables.
+    /// Returns what its reader should know: that it is partial, and what was left out of its
+    /// tables.
     #[must_use]
     pub fn remarks(&self) -> Vec<RunRemark> {
         let partial = (self.is_complete() == Some(false)).then(|| RunRemark::Partial {

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use cable_core::files::{FileError, RunEnd, RunFolder, RunFolderFault, SavedRun, load_run};
-use cable_core::record::{NodeChoice, RunRequest, RunStop};
+use cable_core::record::{NodeChoice, RobotColumns, RunRequest, RunStop};
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene, Simulation, Solution};
 
@@ -23,7 +23,7 @@ fn begin(folder: &Path, scene: &Scene) -> Result<RunFolder, FileError> {
 
 fn write(folder: &Path, (scene, solution): &(Scene, Solution), end: RunEnd) -> std::path::PathBuf {
     let mut run = begin(folder, scene).unwrap();
-    run.begin(scene, false).unwrap();
+    run.begin(scene, RobotColumns::LeftOut).unwrap();
     run.push_last(solution).unwrap();
     run.finish(end).unwrap()
 }

@@ -187,7 +187,8 @@ fn errors() -> Vec<Box<dyn Sentence>> {
     ]
 }
 
-/// A reason for a model of every form with a figure, what was not checked, and the faults of files, imports and keys.
+/// A reason for a model of every form with a figure, what was not checked, and the faults of files,
+/// imports and keys.
 fn others() -> Vec<Box<dyn Sentence>> {
     let name = |name: &str| name.to_owned();
     let model = Model::Spans;

@@ -34,7 +34,7 @@ pub(crate) use run::read_run;
 pub use run::{FileRecord, LeftOut, Manifest, NodeSummary, RunRequest, RunStatus, RunStop, RunTables};
 pub(crate) use tables::has_rows;
 pub use tables::{
-    Event, Extra, HistoryTable, NodeRow, ReadError, RowFault, RunWriter, SupportColumn, WriteError, WrittenNumber,
-    read_events, read_history, read_nodes,
+    Event, Extra, HistoryTable, NodeRow, ReadError, RobotColumns, RowFault, RunWriter, SupportColumn, WriteError,
+    WrittenNumber, read_events, read_history, read_nodes,
 };
 pub use whole::WholeRecords;

@@ -38,6 +38,23 @@ pub enum WriteError {
     },
 }
 
+/// The columns of `history.csv` on the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RobotColumns {
+    /// The scene has a robot that can move.
+    Written,
+    /// It has none.
+    LeftOut,
+}
+
+impl RobotColumns {
+    /// Those of a run that has this answer.
+    #[must_use]
+    pub fn of(solution: &Solution) -> Self {
+        if solution.robot.is_some() { Self::Written } else { Self::LeftOut }
+    }
+}
+
 /// A number of an answer that goes into a table.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WrittenNumber {
@@ -264,9 +281,9 @@ impl<W: Write> RunWriter<W> {
     ///
     /// # Errors
     /// When the place refuses.
-    pub fn begin(&mut self, scene: &Scene, with_robot: bool) -> Result<(), WriteError> {
+    pub fn begin(&mut self, scene: &Scene, robot: RobotColumns) -> Result<(), WriteError> {
         let supports = scene.cables.iter().map(|c| (c.name.as_str(), c.supports.iter().map(|s| s.name.as_str())));
-        let columns = history_columns(supports, scene.cables.len(), with_robot);
+        let columns = history_columns(supports, scene.cables.len(), robot);
         let mut rows = [HISTORY, NODES, EVENTS].map(Rows::new);
         self.headers(&mut rows, &columns)?;
         self.write(rows)?;
@@ -284,7 +301,7 @@ impl<W: Write> RunWriter<W> {
         check_finite(solution)?;
         let mut rows = [HISTORY, NODES, EVENTS].map(Rows::new);
         let supports = solution.cables.iter().map(|c| (c.name.as_str(), c.supports.iter().map(|s| s.name.as_str())));
-        let columns = history_columns(supports, solution.cables.len(), solution.robot.is_some());
+        let columns = history_columns(supports, solution.cables.len(), RobotColumns::of(solution));
         if self.columns.is_empty() {
             self.headers(&mut rows, &columns)?;
         } else if self.columns != columns {
@@ -373,7 +390,7 @@ impl Rows {
 fn history_columns<'a>(
     cables: impl Iterator<Item = (&'a str, impl Iterator<Item = &'a str>)>,
     count: usize,
-    with_robot: bool,
+    robot: RobotColumns,
 ) -> Vec<String> {
     let mut columns: Vec<String> = HISTORY_COLUMNS.map(String::from).to_vec();
     for (cable, supports) in cables {
@@ -384,7 +401,7 @@ fn history_columns<'a>(
         }
     }
     columns.extend(ENERGY_COLUMNS.into_iter().chain(PEAK_COLUMNS).map(String::from));
-    columns.extend(ROBOT_COLUMNS.map(String::from).into_iter().filter(|_| with_robot));
+    columns.extend(ROBOT_COLUMNS.map(String::from).into_iter().filter(|_| robot == RobotColumns::Written));
     columns
 }
 

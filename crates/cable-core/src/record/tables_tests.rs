@@ -173,7 +173,7 @@ fn a_run_cut_at_any_byte_is_read_up_to_its_last_whole_instant() {
     let mut scene = crate::scene::catalog::hanging_span();
     scene.cables[0].supports.truncate(1);
     scene.cables[0].supports[0].name = "a \"b\"".to_owned();
-    w.begin(&scene, false).unwrap();
+    w.begin(&scene, RobotColumns::LeftOut).unwrap();
     for s in &solutions {
         w.push(s).unwrap();
     }

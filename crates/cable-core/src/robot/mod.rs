@@ -357,10 +357,11 @@ impl Vehicle {
             }
         }
         let (near, edge) = found.unwrap_or((edges[1] + 1.0, None));
-        let (speed, tracks, rolling, slips) = if let Some(q) = edge {
+        let (speed, tracks, rolling, traction) = if let Some(q) = edge {
             let total = needed(q);
             let tracks = grip.share(q, total);
-            (q, tracks, total - tracks, q == 0.0 && grip.drives && grip.drive >= grip.hold)
+            let slips = q == 0.0 && grip.drives && grip.drive >= grip.hold;
+            (q, tracks, total - tracks, if slips { Traction::Slips } else { Traction::Holds })
         } else {
             let rolls = grip.rolls(near, Limit::Above);
             let reached =
@@ -369,14 +370,22 @@ impl Vehicle {
             let slid = reached(if tracks < 0.0 { -grip.hold } else { grip.hold }, 0.0);
             let driven = reached(grip.drive, grip.falls);
             if grip.is_driven(near, Limit::Above) && driven <= slid {
-                (driven, grip.tracks(driven, Limit::Above), rolls, false)
+                (driven, grip.tracks(driven, Limit::Above), rolls, Traction::Holds)
             } else {
-                (slid, if tracks < 0.0 { -grip.hold } else { grip.hold }, rolls, true)
+                (slid, if tracks < 0.0 { -grip.hold } else { grip.hold }, rolls, Traction::Slips)
             }
         };
-        let going = grip.going(v, speed, slips);
+        let going = grip.going(v, speed, traction);
         let [speed, tracks, rolling, asked] = [speed, tracks, rolling, grip.asked].map(|x| x * sense);
-        SpeedBalance { speed, tracks, rolling, asked, slips, going, ..SpeedBalance::default() }
+        SpeedBalance {
+            speed,
+            tracks,
+            rolling,
+            asked,
+            slips: traction == Traction::Slips,
+            going,
+            ..SpeedBalance::default()
+        }
     }
 
     /// Returns what tracks and rolling resistance can do in a step, in the `sense` in which it is
@@ -494,6 +503,13 @@ pub struct SpeedBalance {
     going: Going,
 }
 
+/// State of the tracks on the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Traction {
+    Holds,
+    Slips,
+}
+
 /// Tracks and rolling resistance in a step, as functions of the speed at its end. Below a speed of
 /// 0 the tracks give all their hold (brakes), up to the speed asked for the pull of the drive, and
 /// beyond that they brake with all their hold. Where that jumps it may be anything between.
@@ -558,11 +574,11 @@ impl TrackGrip {
     }
 
     /// Why it comes from one speed to another, m/s.
-    fn going(&self, from: f64, to: f64, slips: bool) -> Going {
+    fn going(&self, from: f64, to: f64, traction: Traction) -> Going {
         let against = if self.drives { -to } else { to.abs() };
-        match (self.drives, slips) {
-            (_, true) if against > STANDSTILL_M_PER_S => Going::Dragged,
-            (_, true) => Going::Slipping,
+        match (self.drives, traction) {
+            (_, Traction::Slips) if against > STANDSTILL_M_PER_S => Going::Dragged,
+            (_, Traction::Slips) => Going::Slipping,
             (false, _) if to.abs() < STANDSTILL_M_PER_S => Going::Standing,
             (true, _) if to < self.asked && to < STANDSTILL_M_PER_S => Going::Stalled,
             // While it gains speed with its full drive it is on its way.

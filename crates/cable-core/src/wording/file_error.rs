@@ -1,5 +1,5 @@
-//! These sentences say why files, run folders and tables are not read or written, and what the reader
-//! of a run should know.
+//! These sentences say why files, run folders and tables are not read or written, and what the
+//! reader of a run should know.
 
 use std::error::Error;
 

@@ -68,12 +68,32 @@ pub struct ReachMap {
     pub breaking_n: f64,
 }
 
-impl ReachMap {
-    /// From where to where the robot can go without passing a tension (N), and with `back` also
-    /// come back; None if not even at its start.
+/// A trip of the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trip {
+    /// To a place.
+    There,
+    /// To a place and back.
+    ThereAndBack,
+}
+
+impl ReachPlace {
+    /// The greatest tension on a trip to this place, N.
     #[must_use]
-    pub fn safe_m(&self, tension_n: f64, back: bool) -> Option<[f64; 2]> {
-        let fits = |p: &ReachPlace| (if back { p.there_and_back_n } else { p.there_n }) <= tension_n;
+    pub fn tension_n(&self, trip: Trip) -> f64 {
+        match trip {
+            Trip::There => self.there_n,
+            Trip::ThereAndBack => self.there_and_back_n,
+        }
+    }
+}
+
+impl ReachMap {
+    /// From where to where the robot can make a trip without passing a tension (N); None if not
+    /// even at its start.
+    #[must_use]
+    pub fn safe_m(&self, tension_n: f64, trip: Trip) -> Option<[f64; 2]> {
+        let fits = |p: &ReachPlace| p.tension_n(trip) <= tension_n;
         let start = self.places.iter().position(|p| p.at_m[0] >= self.start_x_m)?;
         self.places.get(start).filter(|p| fits(p))?;
         let right = self.places.iter().skip(start).take_while(|p| fits(p)).last()?;
@@ -322,10 +342,10 @@ mod tests {
         let first = map.places.first().unwrap();
         assert!(first.there_n < map.service_n && first.there_and_back_n >= first.there_n, "{first:?}");
         assert_eq!(map.places.last().unwrap().there_n, f64::INFINITY);
-        let [left, right] = map.safe_m(map.service_n, true).unwrap();
+        let [left, right] = map.safe_m(map.service_n, Trip::ThereAndBack).unwrap();
         assert!(left <= 10.0 && (10.0..20.0).contains(&right), "{left} {right}");
         // What may bear more reaches at least as far.
-        let [_, farther] = map.safe_m(map.breaking_n, true).unwrap();
+        let [_, farther] = map.safe_m(map.breaking_n, Trip::ThereAndBack).unwrap();
         assert!(farther >= right);
     }
 

@@ -91,7 +91,7 @@ pub(in crate::model::spans) fn solve(
                 Some(came) => passed(strand, course, corners, came, work)?,
                 None => false,
             }
-            || meet(strand, course, world, came.is_some())?;
+            || meet(strand, course, world, if came.is_some() { Sought::Rest } else { Sought::Step })?;
         if !changed {
             // What else holds the cable may press it on to its wheel again: it is off when nothing
             // else changes.
@@ -232,7 +232,7 @@ fn join(strand: &mut CableRun, course: &Course) -> bool {
 }
 
 /// P: meets the deepest obstacle of each span.
-fn meet(strand: &mut CableRun, course: &Course, world: &World, resting: bool) -> Result<bool, Failure> {
+fn meet(strand: &mut CableRun, course: &Course, world: &World, sought: Sought) -> Result<bool, Failure> {
     if world.is_empty() {
         return Ok(false);
     }
@@ -246,7 +246,7 @@ fn meet(strand: &mut CableRun, course: &Course, world: &World, resting: bool) ->
             continue;
         }
         if let Some(hit) = penetration::deepest(strand, course, world, k, deep) {
-            touch(strand, course, k, &hit, resting)?;
+            touch(strand, course, k, &hit, sought)?;
             any = true;
         }
     }
@@ -291,17 +291,24 @@ fn passed(
         obstacle: 0,
         feature: corner.feature,
     };
-    touch(strand, course, k, &Penetration { s, at: corner.at, tangent, gap, body: corner.body }, true)?;
+    touch(strand, course, k, &Penetration { s, at: corner.at, tangent, gap, body: corner.body }, Sought::Rest)?;
     Ok(true)
 }
 
 /// Points of a catenary among which the nearest to a corner is sought.
 const CORNER_SEARCH_POINTS: usize = 64;
 
+/// The equilibrium that is sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sought {
+    /// A rest: contacts found on the way have not rubbed.
+    Rest,
+    /// The end of a step in time.
+    Step,
+}
+
 /// Lays span k down where it hit.
-///
-/// `resting`: a rest is sought, and what is found on the way has not rubbed.
-fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, resting: bool) -> Result<(), Failure> {
+fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, sought: Sought) -> Result<(), Failure> {
     let no_seat = Failure::NoSeat { s: hit.s, at: hit.at };
     let back = hit.gap.normal.dot(&perp(hit.tangent)) < 0.0;
     let curve_index = 2 * hit.body + usize::from(back);
@@ -350,14 +357,14 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
         curve: curve_index,
         home,
         ends: Ends { p: [p, p], s: [hit.s, hit.s], t: [force, force] },
-        mode: if curve.friction > 0.0 && !resting { Mode::Hold } else { Mode::Slide(0.0) },
+        mode: if curve.friction > 0.0 && sought == Sought::Step { Mode::Hold } else { Mode::Slide(0.0) },
         history: TensionProfile::default(),
         wheel: None,
         flips: 0,
         held: None,
         next: Next::Span,
         load: None,
-        smooth: resting,
+        smooth: sought == Sought::Rest,
     };
     let track = course.track(&contact);
     let mut lies = [None, None];
@@ -387,7 +394,7 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
             strand.ties[side] = Tie::Lies(p);
         }
     }
-    if resting {
+    if sought == Sought::Rest {
         lead(strand, course, k);
     }
     Ok(())

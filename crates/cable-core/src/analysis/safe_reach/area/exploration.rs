@@ -401,12 +401,12 @@ impl Exploration<'_> {
             n.is_some_and(|n| !simulation.model().capabilities().nodes_catch || !caught(n))
         };
         let mut found_n = self.step(simulation, ends, 1);
-        for (parts, anew) in [(RETRY_PARTS, false), (1, true), (RETRY_PARTS, true)] {
+        for (parts, start) in [(RETRY_PARTS, Start::AsItIs), (1, Start::LaidAnew), (RETRY_PARTS, Start::LaidAnew)] {
             if good(simulation, found_n) {
                 break;
             }
             let mut other = before.clone();
-            if anew && other.resume(&at_rest(&before.solution())).is_err() {
+            if start == Start::LaidAnew && other.resume(&at_rest(&before.solution())).is_err() {
                 continue;
             }
             if let Some(n) = self.step(&mut other, ends, parts)
@@ -436,4 +436,13 @@ impl Exploration<'_> {
         }
         Some(most)
     }
+}
+
+/// The state from which a step is tried again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Start {
+    /// The state before it.
+    AsItIs,
+    /// That state with the cable at rest, laid anew.
+    LaidAnew,
 }

@@ -23,7 +23,7 @@ pub(in crate::model::spans) struct Pivot {
     p: f64,
     pub at: Place,
     /// b·t and b·n there, N/m.
-    load: (f64, f64),
+    load: [f64; 2],
     /// Start and end of the piece; beyond the ends of its chain it goes on.
     ends: [f64; 2],
 }
@@ -89,9 +89,18 @@ impl LocalLoad {
         if !self.turns || way == 0.0 {
             return self;
         }
-        let ((sin, cos), (bt, bn)) = (sin_cos(way), self.load);
-        Self { load: (bt * cos - bn * sin, bn * cos + bt * sin), ..self }
+        let ((sin, cos), [bt, bn]) = (sin_cos(way), self.load);
+        Self { load: [bt * cos - bn * sin, bn * cos + bt * sin], ..self }
     }
+}
+
+/// A tension that slides on with m.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Sliding {
+    /// Tension, N.
+    pub tension: f64,
+    /// The friction coefficient called upon, with its sign.
+    pub m: f64,
 }
 
 /// One piece of a track, from a point on it.
@@ -111,7 +120,11 @@ impl SegmentCursor<'_> {
     /// equal, and both integrations up to there; None where that is not before p₁, and both
     /// integrations up to p₁. On an edge both Θ are linear, round a sharp corner both T are
     /// exponential, else about.
-    pub fn crossing(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> (Option<f64>, [Step; 2]) {
+    pub fn crossing(
+        &self,
+        p1: f64,
+        [Sliding { tension: t, m }, Sliding { tension: u, m: n }]: [Sliding; 2],
+    ) -> (Option<f64>, [Step; 2]) {
         let law = self.law;
         let whole = p1 - self.p0;
         let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
@@ -121,7 +134,7 @@ impl SegmentCursor<'_> {
             // As if the load were that of its start all along.
             let held = |t: f64, m: f64| {
                 let g = self.from.stretch / (law.stretch(t) * (1.0 + m * m));
-                let (bt, bn) = self.from.load;
+                let [bt, bn] = self.from.load;
                 t - g * (2.0 * m * bt + (m * m - 1.0) * bn)
             };
             (held(u, n) / held(t, m)).ln() / (m - n)
@@ -135,7 +148,8 @@ impl SegmentCursor<'_> {
         }
         if part > 0.0
             && part < MEETING_SKIP_FRACTION
-            && let Some((at, ways)) = self.closing(about, whole, [(t, m), (u, n)])
+            && let Some((at, ways)) =
+                self.closing(about, whole, [Sliding { tension: t, m }, Sliding { tension: u, m: n }])
         {
             return (Some(at), ways);
         }
@@ -149,13 +163,18 @@ impl SegmentCursor<'_> {
         if end.abs() <= TENSION_ROUNDING * t.abs() {
             return (Some(p1), [a, b]);
         }
-        let (at, ways) = self.meeting(p1, [(t, m), (u, n)], end);
+        let (at, ways) = self.meeting(p1, [Sliding { tension: t, m }, Sliding { tension: u, m: n }], end);
         (Some(at), ways)
     }
 
     /// As [`Self::crossing`] round an arc, from about where: Newton's method, the last step from
     /// the derivatives alone.
-    fn closing(&self, about: f64, whole: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> Option<(f64, [Step; 2])> {
+    fn closing(
+        &self,
+        about: f64,
+        whole: f64,
+        [Sliding { tension: t, m }, Sliding { tension: u, m: n }]: [Sliding; 2],
+    ) -> Option<(f64, [Step; 2])> {
         let mut way = about;
         for _ in 0..FREE_SEARCH_LOOKS {
             let there = Way::new(&self.from, way);
@@ -179,7 +198,12 @@ impl SegmentCursor<'_> {
     }
 
     /// As [`Self::crossing`] round an arc; `end`: the difference at p₁.
-    fn meeting(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2], end: f64) -> (f64, [Step; 2]) {
+    fn meeting(
+        &self,
+        p1: f64,
+        [Sliding { tension: t, m }, Sliding { tension: u, m: n }]: [Sliding; 2],
+        end: f64,
+    ) -> (f64, [Step; 2]) {
         let sign = (t - u).signum();
         let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
         let last = Cell::new((f64::NAN, [Step::none(t); 2]));

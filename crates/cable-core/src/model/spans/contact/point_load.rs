@@ -304,7 +304,7 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
     let c = &strand.contacts[j];
     let e = c.ends;
     let p = walk(&course.track(c), e.p[side], (s - e.s[side]) * course.law.stretch(e.t[side]));
-    let load = lying(c, p, [s, s.next_up()], e.t[side], true);
+    let load = lying(c, p, [s, s.next_up()], e.t[side], FrictionPast::None);
     let left = if side == 0 { e.p[1] - p } else { p - e.p[0] };
     if left <= 0.0 {
         // Nothing else of it is left.
@@ -365,7 +365,7 @@ fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     let fresh = c.smooth || !knots.first().zip(knots.last()).is_some_and(|(a, b)| q >= a.p && q <= b.p);
     let (first, second) = c.history.split(&track, q);
     let after = s.next_up();
-    let mut load = lying(c, q, [s, after], tension, fresh);
+    let mut load = lying(c, q, [s, after], tension, FrictionPast::of(fresh));
     (load.next, load.smooth) = (Next::Joined, fresh);
     let mut rest = c.clone();
     (rest.ends.p[0], rest.ends.s[0], rest.ends.t[0], rest.history) = (q, after, tension, second);
@@ -390,7 +390,7 @@ fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
             continue;
         }
         let (p, s, tension) = (c.ends.p[side], c.ends.s[side], c.ends.t[side]);
-        let load = lying(c, p, [s; 2], tension, c.smooth);
+        let load = lying(c, p, [s; 2], tension, FrictionPast::of(c.smooth));
         let k = j + side;
         strand.contacts.insert(k, load);
         strand.contacts[j].next = Next::Joined;
@@ -400,8 +400,24 @@ fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     false
 }
 
+/// The past of a load on a boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FrictionPast {
+    /// Nothing has rubbed yet.
+    None,
+    /// Friction has held it.
+    Held,
+}
+
+impl FrictionPast {
+    fn of(smooth: bool) -> Self {
+        if smooth { Self::None } else { Self::Held }
+    }
+}
+
 /// A load on what a contact lies on.
-fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, fresh: bool) -> Contact {
+fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, past: FrictionPast) -> Contact {
+    let fresh = past == FrictionPast::None;
     Contact {
         ends: Ends { p: [p; 2], s, t: [tension; 2] },
         mode: if fresh { Mode::Slide(0.0) } else { Mode::Hold },

@@ -10,7 +10,7 @@
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
+use crate::model::spans::boundary::friction_memory::{Ends, Going, Knot, Mode, TensionProfile};
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
@@ -259,7 +259,7 @@ impl Run<'_> {
         // Other models' nodes have their material as their bars have it, not as the tension between
         // them strains it: what that is off goes to the span beyond, where there is one.
         if !at_end[usize::from(!back)] {
-            contact.history.measure(&track, back);
+            contact.history.measure(&track, if back { Going::Left } else { Going::Right });
             if let [first, .., last] = contact.history.knots() {
                 contact.ends.s = [first.s, last.s];
             }

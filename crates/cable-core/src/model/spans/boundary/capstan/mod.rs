@@ -51,7 +51,7 @@ pub(in crate::model::spans) struct LocalLoad {
     /// True on an arc.
     pub turns: bool,
     /// b·t and b·n, N/m.
-    pub load: (f64, f64),
+    pub load: [f64; 2],
 }
 
 /// Result of an integration along the boundary.
@@ -91,7 +91,7 @@ impl Law {
 
     /// A place as the law sees it.
     pub fn spot(&self, place: &Place) -> LocalLoad {
-        let load = (self.load.dot(&place.tangent), self.load.dot(&place.normal));
+        let load = [self.load.dot(&place.tangent), self.load.dot(&place.normal)];
         LocalLoad { stretch: place.stretch, turns: place.turn != 0.0, load }
     }
 
@@ -103,12 +103,12 @@ impl Law {
     /// As [`Self::slope`].
     pub fn slope_at(&self, spot: &LocalLoad, t: f64, m: f64) -> f64 {
         let turned = if spot.turns { m * t } else { 0.0 };
-        turned - spot.stretch * (spot.load.0 + m * spot.load.1) / self.stretch(t)
+        turned - spot.stretch * (spot.load[0] + m * spot.load[1]) / self.stretch(t)
     }
 
     /// dΘ/dp on an edge.
     pub fn edge_rate(&self, spot: &LocalLoad, m: f64) -> f64 {
-        -(spot.load.0 + m * spot.load.1) / self.thermal
+        -(spot.load[0] + m * spot.load[1]) / self.thermal
     }
 
     /// Normal force per unstretched metre times its stretch, per dp: N ds/dp, N (per metre of an
