@@ -12,6 +12,7 @@ use crate::model::spans::boundary::capstan::Law;
 use crate::model::spans::boundary::curve::{Curve, SUPPORT_CONTACT_DISTANCE_M};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Course, Tie};
+use crate::model::spans::settings::SpansSettings;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
@@ -56,6 +57,7 @@ pub(in crate::model::spans) struct Pulley {
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct Layout {
     pub problem: Arc<Problem>,
+    pub settings: Arc<SpansSettings>,
     /// The end of the scene's cable from which it counts.
     pub counted_from: CableEnd,
     loads: Vec<Load>,
@@ -112,7 +114,11 @@ impl Layout {
     ///
     /// # Errors
     /// `Unsupported` for what the model lacks.
-    pub fn new(problem: &Arc<Problem>, counted_from: CableEnd) -> Result<Self, SolveError> {
+    pub fn new(
+        problem: &Arc<Problem>,
+        counted_from: CableEnd,
+        settings: Arc<SpansSettings>,
+    ) -> Result<Self, SolveError> {
         let p = problem;
         if p.bending_stiffness > 0.0 {
             return Err(unsupported(Unsupported::BendingStiffness));
@@ -166,7 +172,7 @@ impl Layout {
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
         let corners = swept_corners::corners(&problem.world).into();
-        let mut layout = Self { problem: problem.clone(), counted_from, loads, corners, strands };
+        let mut layout = Self { problem: problem.clone(), settings, counted_from, loads, corners, strands };
         layout.face_wheels();
         Ok(layout)
     }
@@ -237,6 +243,7 @@ impl Layout {
             drag: 0.0,
             mobilised: self.problem.cable.friction_mobilised.way(),
             loads: loads.collect(),
+            settings: self.settings.clone(),
         };
         self.give(&mut course, instant);
         course

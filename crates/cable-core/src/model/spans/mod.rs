@@ -34,6 +34,7 @@ mod numerics;
 mod results;
 mod reversed;
 mod run;
+pub mod settings;
 mod slack;
 mod verify;
 
@@ -49,16 +50,13 @@ use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::Work;
 use crate::model::spans::results::Report;
 use crate::model::spans::reversed::Turned;
+use crate::model::spans::settings::SpansSettings;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
 use crate::solution::{CableSolution, Cost, Histories, ModelReason, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
-/// Supports move by at most this part of the cable in one solve. Larger: sliding that starts and
-/// reverses inside a step is missed, and what is laid down in a step is laid with the tension it
-/// began with. Smaller: more solves.
-const STEP: f64 = 0.01;
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
 
@@ -87,8 +85,20 @@ impl SpansModel {
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        Self::with_settings(problem, settings, Arc::default())
+    }
+
+    /// As [`Self::new`], with other tuned constants.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_settings(
+        problem: Arc<Problem>,
+        settings: Settings,
+        tuned: Arc<SpansSettings>,
+    ) -> Result<Self, SolveError> {
         let from = if reversed::is_led_up(&problem) { CableEnd::End } else { CableEnd::Start };
-        let layout = counted(&problem, from)?;
+        let layout = counted(&problem, from, tuned)?;
         let n = problem.supports.len();
         let mut points: Vec<Vec2> = problem.route.clone();
         if points.len() < 2 {
@@ -123,7 +133,7 @@ impl SpansModel {
     }
 
     /// The report of the present state.
-    fn look(&self) -> Report {
+    fn present_report(&self) -> Report {
         match &self.network {
             Some(network) => {
                 let report = results::report(&self.layout, network);
@@ -138,22 +148,22 @@ impl SpansModel {
         from.places.iter().zip(&to.places).map(|(a, b)| (b - a).norm()).fold(0.0, |m, d| if d > m { d } else { m })
     }
 
-    /// A trouble as an error: a loss of tension where the last state found, `stopped` or the
+    /// A failure as an error: a loss of tension where the last state found, `stopped` or the
     /// present one, shows one.
-    fn said(&self, stopped: Option<&CableEquilibrium>, trouble: Failure) -> SolveError {
+    fn solve_error(&self, stopped: Option<&CableEquilibrium>, failure: Failure) -> SolveError {
         if let Some(network) = stopped.or(self.network.as_ref())
             && let Some((loss, arc_length_m, at_m)) =
-                verify::tension_loss::lost(&network.strands, &network.course, &trouble)
+                verify::tension_loss::lost(&network.strands, &network.course, &failure)
         {
             let arc_length_m = if self.layout.is_reversed() { self.turned().s(arc_length_m) } else { arc_length_m };
             return SolveError::TensionLost { model: Model::Spans, loss, arc_length_m, at_m };
         }
-        self.in_words(trouble)
+        self.plain_error(failure)
     }
 
-    /// A trouble of the layout in the words everyone uses.
-    fn in_words(&self, trouble: Failure) -> SolveError {
-        said(&self.problem, if self.layout.is_reversed() { self.turned().trouble(trouble) } else { trouble })
+    /// A failure of the layout in the words everyone uses.
+    fn plain_error(&self, failure: Failure) -> SolveError {
+        error_of(&self.problem, if self.layout.is_reversed() { self.turned().failure(failure) } else { failure })
     }
 
     /// The map from the layout's direction along the cable to the scene's, where they differ.
@@ -169,10 +179,12 @@ impl SpansModel {
             Err(unfound) => {
                 let (mut there, mut dragged) = (BoundaryConditions::default(), self.dragged.clone());
                 dragged.reverse();
-                let other = counted(&self.problem, self.layout.counted_from.other()).ok().and_then(|other| {
-                    other.instant(&dragged, self.time_s, &mut there);
-                    Some((CableEquilibrium::rest(&other, &there, work).ok()?, other))
-                });
+                let other = counted(&self.problem, self.layout.counted_from.other(), self.layout.settings.clone())
+                    .ok()
+                    .and_then(|other| {
+                        other.instant(&dragged, self.time_s, &mut there);
+                        Some((CableEquilibrium::rest(&other, &there, work).ok()?, other))
+                    });
                 match (other, CableEquilibrium::heaped(&self.layout, instant)) {
                     (Some((found, other)), _) => {
                         (self.layout, self.dragged, *instant) = (other, dragged, there);
@@ -252,17 +264,17 @@ impl SpansModel {
 }
 
 /// The layout of a cable counted from its start, or from its end.
-fn counted(problem: &Arc<Problem>, from: CableEnd) -> Result<Layout, SolveError> {
+fn counted(problem: &Arc<Problem>, from: CableEnd, settings: Arc<SpansSettings>) -> Result<Layout, SolveError> {
     match from {
-        CableEnd::Start => Layout::new(problem, from),
-        CableEnd::End => Layout::new(&Arc::new(reversed::problem(problem)), from),
+        CableEnd::Start => Layout::new(problem, from, settings),
+        CableEnd::End => Layout::new(&Arc::new(reversed::problem(problem)), from, settings),
     }
 }
 
-/// A trouble in the words everyone uses.
-fn said(problem: &Problem, trouble: Failure) -> SolveError {
+/// A failure in the words everyone uses.
+fn error_of(problem: &Problem, failure: Failure) -> SolveError {
     let name = |k: usize| problem.supports.get(k).map_or("", |s| s.name.as_str());
-    match trouble {
+    match failure {
         Failure::Stalled { iterations, residual, s } => SolveError::NotConverged {
             model: Model::Spans,
             iterations,
@@ -324,9 +336,9 @@ impl Mechanics for SpansModel {
             let why = NoEquilibrium::TooLittleFriction { friction_ratio: part };
             return Err(SolveError::NoRestingPlace { why });
         }
-        let taken = found.map_err(|(trouble, stopped)| match slides && !self.rubs() {
+        let taken = found.map_err(|(failure, stopped)| match slides && !self.rubs() {
             true => SolveError::NoRestingPlace { why: NoEquilibrium::NoFriction },
-            false => self.said(stopped.as_deref(), trouble),
+            false => self.solve_error(stopped.as_deref(), failure),
         })?;
         let mut report = self.report_of(taken);
         if !stable {
@@ -343,7 +355,7 @@ impl Mechanics for SpansModel {
             report.warnings.push(self.warning(WarningCause::ManyEquilibria { shown, histories }));
         }
         if instant.hint > 0.0 {
-            report.warnings.extend(slack_without_weight(&self.problem, &self.look().nodes));
+            report.warnings.extend(slack_without_weight(&self.problem, &self.present_report().nodes));
         }
         Ok(report)
     }
@@ -368,7 +380,10 @@ impl Mechanics for SpansModel {
         let length = self.layout.problem.length;
         let [mut first, mut last, mut instant] = std::mem::take(&mut self.instants);
         self.layout.instant(&self.dragged, end, &mut last);
-        let pieces = (Self::travel(&network.instant, &last) / (STEP * length)).ceil().clamp(1.0, 1000.0);
+        let pieces = (Self::travel(&network.instant, &last)
+            / (self.layout.settings.continuation.max_move_fraction * length))
+            .ceil()
+            .clamp(1.0, 1000.0);
         let mut work = std::mem::take(&mut self.work);
         let mut sum = StepReport::default();
         first.clone_from(&network.instant);
@@ -402,7 +417,7 @@ impl Mechanics for SpansModel {
         self.network = Some(network);
         (self.work, self.instants) = (work, [first, last, instant]);
         match failed {
-            Some(trouble) => Err(self.said(None, trouble)),
+            Some(failure) => Err(self.solve_error(None, failure)),
             None => {
                 if ran > 0 {
                     sum.warnings.push(self.warning(WarningCause::SlidOn));
@@ -417,7 +432,7 @@ impl Mechanics for SpansModel {
     }
 
     fn state(&self) -> State {
-        State::of_nodes(&self.look().nodes, self.time_s)
+        State::of_nodes(&self.present_report().nodes, self.time_s)
     }
 
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
@@ -425,7 +440,7 @@ impl Mechanics for SpansModel {
             return Err(e);
         }
         self.time_s = state.time_s;
-        self.shown = self.look();
+        self.shown = self.present_report();
         self.network = None;
         Ok(())
     }
@@ -438,7 +453,7 @@ impl Mechanics for SpansModel {
         let nodes = nodes.as_ref().unwrap_or(&answer.nodes);
         let taken = CableEquilibrium::taken(&self.layout, &instant, nodes, &mut work);
         self.work = work;
-        self.network = Some(taken.map_err(|t| self.in_words(t))?);
+        self.network = Some(taken.map_err(|t| self.plain_error(t))?);
         self.time_s = time_s;
         Ok(())
     }
@@ -452,7 +467,7 @@ impl Mechanics for SpansModel {
     }
 
     fn solution(&self) -> CableSolution {
-        let Report { nodes, supports, contacts } = self.look();
+        let Report { nodes, supports, contacts } = self.present_report();
         let name = self.problem.cable.name.clone();
         let answer = CableSolution { name, nodes, supports, contacts, ..CableSolution::default() };
         answer.rounded(&self.problem)

@@ -117,9 +117,9 @@ impl Turned<'_> {
         }
     }
 
-    /// A trouble.
-    pub fn trouble(&self, trouble: Failure) -> Failure {
-        match trouble {
+    /// A failure.
+    pub fn failure(&self, failure: Failure) -> Failure {
+        match failure {
             Failure::Stalled { iterations, residual, s } => Failure::Stalled { iterations, residual, s: self.s(s) },
             Failure::Restless { s } => Failure::Restless { s: self.s(s) },
             Failure::Compressed { s, at, tension } => Failure::Compressed { s: self.s(s), at, tension },

@@ -6,12 +6,15 @@
 //! fixed in space: after S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic
 //! simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011) 39.
 
+use std::sync::Arc;
+
 use crate::catenary::{Catenary, Chain, PointForce};
 use crate::math::Vec2;
 use crate::model::spans::boundary::capstan::{Law, Track};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
 use crate::model::spans::boundary::friction_memory::{Ends, Held, Mode, TensionProfile};
 use crate::model::spans::boundary::loose::Loose;
+use crate::model::spans::settings::SpansSettings;
 
 /// Everything given at an instant.
 #[derive(Clone, Debug)]
@@ -28,6 +31,7 @@ pub(in crate::model::spans) struct Course {
     pub mobilised: f64,
     /// Dead loads inside the cable, in order, N.
     pub loads: Vec<PointForce>,
+    pub settings: Arc<SpansSettings>,
 }
 
 /// Condition at an end of a strand.
@@ -55,7 +59,7 @@ impl Tie {
 pub(in crate::model::spans) struct Contact {
     /// Index of the boundary.
     pub curve: usize,
-    pub home: ChainRange,
+    pub chain_range: ChainRange,
     pub ends: Ends,
     pub mode: Mode,
     /// The stick zone under the tensions it has, where that was computed.
@@ -201,7 +205,7 @@ impl Course {
         let curve = &self.curves[c.curve];
         Track {
             curve,
-            home: c.home,
+            chain_range: c.chain_range,
             law: self.law,
             friction: self.friction(c),
             drag: self.drag,

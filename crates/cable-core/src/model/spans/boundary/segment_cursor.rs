@@ -30,19 +30,19 @@ pub(in crate::model::spans) struct Pivot {
 
 impl Pivot {
     /// The piece at p.
-    pub fn new(curve: &Curve, home: ChainRange, law: &Law, p: f64) -> Self {
-        let i = curve.locate(p, home);
+    pub fn new(curve: &Curve, chain_range: ChainRange, law: &Law, p: f64) -> Self {
+        let i = curve.locate(p, chain_range);
         let origin = curve.origin(i);
         let at = curve.place_on(i, p - origin);
-        let first = if i > home.first { origin } else { f64::NEG_INFINITY };
-        let last = if i < home.last { curve.origin(i + 1) } else { f64::INFINITY };
+        let first = if i > chain_range.first { origin } else { f64::NEG_INFINITY };
+        let last = if i < chain_range.last { curve.origin(i + 1) } else { f64::INFINITY };
         Self { p, at, load: law.spot(&at).load, ends: [first, last] }
     }
 
     /// The places of both ends of a contact, and the piece of the first.
-    pub fn of_ends(curve: &Curve, home: ChainRange, law: &Law, [first, last]: [f64; 2]) -> ([Place; 2], Self) {
-        let pivot = Self::new(curve, home, law, first);
-        ([pivot.at, if pivot.holds(last) { pivot.place(last) } else { curve.place(last, home) }], pivot)
+    pub fn of_ends(curve: &Curve, chain_range: ChainRange, law: &Law, [first, last]: [f64; 2]) -> ([Place; 2], Self) {
+        let pivot = Self::new(curve, chain_range, law, first);
+        ([pivot.at, if pivot.holds(last) { pivot.place(last) } else { curve.place(last, chain_range) }], pivot)
     }
 
     /// True if p is on this piece.

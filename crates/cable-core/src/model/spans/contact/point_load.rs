@@ -33,9 +33,6 @@ const MATERIAL_ROUNDING: f64 = 1e-15;
 pub(in crate::model::spans) const LIFT_FRACTION: f64 = 1e-9;
 /// Equations must hold to this part of the forces; the solver stops at 1e-11.
 const BALANCE_TOLERANCE: f64 = 1e-7;
-/// A contact's end this near to a load, of the strand's length, may end there. Smaller: it is found
-/// after more halvings. Larger: loads in the air are set down for nothing.
-const CATCH_DISTANCE_FRACTION: f64 = 0.02;
 
 /// Forces on a load.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +54,7 @@ impl LoadBalance {
 }
 
 /// Forces on the load that is contact j.
-pub(in crate::model::spans) fn felt(strand: &CableRun, course: &Course, j: usize) -> LoadBalance {
+pub(in crate::model::spans) fn load_balance(strand: &CableRun, course: &Course, j: usize) -> LoadBalance {
     let c = &strand.contacts[j];
     let place = course.track(c).place(c.ends.p[0]);
     let own = load(strand, course, j);
@@ -69,7 +66,7 @@ pub(in crate::model::spans) fn felt(strand: &CableRun, course: &Course, j: usize
         } else if strand.is_joined(j, side) {
             let (tension, beside) = (strand.forces[j + side].x, &strand.contacts[j + 2 * side - 1]);
             size = larger(size, tension.abs());
-            if beside.home == c.home {
+            if beside.chain_range == c.chain_range {
                 along += tension * sign;
             } else {
                 fixed += course.track(beside).place(beside.ends.p[1 - side]).tangent * (tension * sign);
@@ -100,11 +97,11 @@ pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: 
     if friction <= 0.0 {
         return Mode::Slide(0.0);
     }
-    let felt = felt(strand, course, j);
+    let load_balance = load_balance(strand, course, j);
     match c.mode {
         Mode::Hold => {
-            let (along, press) = (felt.sum.dot(&felt.tangent), larger(felt.press(), 0.0));
-            let beyond = along.abs() > friction * press + CONE_ROUNDING * patience * felt.size;
+            let (along, press) = (load_balance.sum.dot(&load_balance.tangent), larger(load_balance.press(), 0.0));
+            let beyond = along.abs() > friction * press + CONE_ROUNDING * patience * load_balance.size;
             if beyond { Mode::Slide(friction * along.signum()) } else { Mode::Hold }
         }
         Mode::Slide(m) => {
@@ -121,7 +118,7 @@ pub(in crate::model::spans) fn fresh(strand: &CableRun, course: &Course) -> f64 
     let missing = |j: usize| {
         let c = &strand.contacts[j];
         if c.is_load() && c.smooth {
-            let f = felt(strand, course, j);
+            let f = load_balance(strand, course, j);
             return course.curves[c.curve].friction * larger(f.press(), 0.0) / larger(f.size, f64::MIN_POSITIVE);
         }
         let [t1, t2] = c.ends.t;
@@ -137,8 +134,9 @@ pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way
     let slides = |(j, c): (usize, &Contact)| {
         let m = way * course.friction(c);
         if c.is_load() {
-            let felt = felt(strand, course, j);
-            return felt.sum.dot(&(felt.tangent + felt.normal * m)).abs() <= near * felt.size;
+            let load_balance = load_balance(strand, course, j);
+            return load_balance.sum.dot(&(load_balance.tangent + load_balance.normal * m)).abs()
+                <= near * load_balance.size;
         }
         let [t1, t2] = c.ends.t;
         let reached = course.track(c).slide(c.ends.p[0], c.ends.p[1], t1, m).tension;
@@ -154,9 +152,9 @@ pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
 }
 
 /// Checks the load that is contact j against its laws.
-pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usize) -> Result<(), Failure> {
+pub(in crate::model::spans) fn verify(strand: &CableRun, course: &Course, j: usize) -> Result<(), Failure> {
     let c = &strand.contacts[j];
-    let f = felt(strand, course, j);
+    let f = load_balance(strand, course, j);
     let unsound =
         |what: EquilibriumFault| Failure::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
     let room = BALANCE_TOLERANCE * f.size;
@@ -184,7 +182,7 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usiz
 pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) -> Result<bool, Failure> {
     for j in 0..strand.contacts.len() {
         if strand.contacts[j].is_load() {
-            let f = felt(strand, course, j);
+            let f = load_balance(strand, course, j);
             if kink_load::press(course, &strand.contacts[j], &f) < -CONE_ROUNDING * f.size {
                 lift(strand, course, j);
                 return Ok(true);
@@ -242,7 +240,7 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
     for side in 0..2 {
         let Some(i) = (j + 2 * side).checked_sub(1).filter(|&i| i < strand.contacts.len()) else { continue };
         let c = &strand.contacts[i];
-        let same = c.curve == load.curve && c.home == load.home && c.wheel.is_none();
+        let same = c.curve == load.curve && c.chain_range == load.chain_range && c.wheel.is_none();
         let here = same || kink_load::follows(course, &load, c, side);
         if !here || strand.is_joined(j, side) || strand.in_pocket(j, side) {
             continue;
@@ -292,7 +290,7 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
                 let turned =
                     l.arc_length >= c.ends.s[1].min(c.ends.s[0]) && l.arc_length <= c.ends.s[0].max(c.ends.s[1]);
                 if (beside || turned)
-                    && off <= CATCH_DISTANCE_FRACTION * (strand.to - strand.from)
+                    && off <= course.settings.changes.catch_distance_fraction * (strand.to - strand.from)
                     && best.is_none_or(|b| off < b.0)
                 {
                     best = Some((off, j, side, l.arc_length));
@@ -327,7 +325,7 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
 
 /// So far (m, either way) along a boundary from p, to the end of its chain at most.
 fn walk(track: &Track<'_>, mut p: f64, way: f64) -> f64 {
-    let (first, last) = (track.curve.origin(track.home.first), track.curve.end(track.home.last));
+    let (first, last) = (track.curve.origin(track.chain_range.first), track.curve.end(track.chain_range.last));
     let end = if way > 0.0 { last } else { first };
     let mut left = way.abs();
     while p != end && left > 0.0 {

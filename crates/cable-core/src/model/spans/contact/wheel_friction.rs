@@ -70,7 +70,7 @@ impl WheelFriction {
         let law = Law::new(on.load, on.thermal, on.stiffness);
         Track {
             curve: &self.curve,
-            home: WHEEL_RANGE,
+            chain_range: WHEEL_RANGE,
             law,
             friction: self.curve.friction,
             drag: 0.0,

@@ -35,7 +35,7 @@ fn loaded(
     (c.length_m, c.friction) = (length, friction);
     c.supports = vec![Support::fixed("A", route_m[0]), Support::fixed("B", *route_m.last().unwrap())];
     c.route_m = route_m;
-    let layout = Layout::new(&problems(&scene).unwrap().remove(0), CableEnd::Start).unwrap();
+    let layout = Layout::new(&problems(&scene).unwrap().remove(0), CableEnd::Start, std::sync::Arc::default()).unwrap();
     let mut instant = BoundaryConditions::default();
     layout.instant(&[None, None], 0.0, &mut instant);
     let mut work = Work::default();
@@ -67,13 +67,13 @@ fn compare(strand: &CableRun, course: &Course, seed: usize) {
         moved
     };
     let residual = |x: &[f64]| {
-        let mut sheet = System::default();
-        assemble(&mut at(x), course, &mut sheet);
-        sheet.residual
+        let mut system = System::default();
+        assemble(&mut at(x), course, &mut system);
+        system.residual
     };
-    let mut sheet = System::default();
-    assemble(&mut at(&x), course, &mut sheet);
-    let (r, band) = (sheet.residual, sheet.band);
+    let mut system = System::default();
+    assemble(&mut at(&x), course, &mut system);
+    let (r, band) = (system.residual, system.band);
     let n = x.len();
     let largest: Vec<f64> =
         (0..n).map(|i| (0..n).map(|j| band.entry(i, j).abs() * size(j)).fold(0.0, f64::max)).collect();

@@ -139,7 +139,7 @@ fn contact(c: &Contact, course: &Course, world: &World) -> Option<(f64, Vec2)> {
         let border = track.next_border(p, c.ends.p[1]);
         let arc = track.turns(0.5 * (p + border));
         let q = if arc && border > p + TURN { p + TURN } else { border };
-        let piece = track.curve.piece(track.curve.locate(0.5 * (p + q), c.home));
+        let piece = track.curve.piece(track.curve.locate(0.5 * (p + q), c.chain_range));
         let point = |p: f64| {
             let place = track.place(p);
             (place.at, place.tangent)

@@ -33,7 +33,7 @@ const PANEL: f64 = 0.5;
 
 /// Returns an error unless the solution satisfies equilibrium. The caller keeps the stick zones
 /// that the contacts were solved with.
-pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Result<(), Failure> {
+pub(in crate::model::spans) fn verify(strand: &CableRun, course: &Course) -> Result<(), Failure> {
     let mut before = strand.from;
     let greatest = strand
         .contacts
@@ -136,12 +136,12 @@ fn contact(strand: &CableRun, course: &Course, j: usize, greatest: f64) -> Resul
     let c = &strand.contacts[j];
     let (track, e) = (course.track(c).seen_from(c.ends.p[0]), &c.ends);
     let unsound = |what: EquilibriumFault, p: f64, s: f64| Failure::Unsound { what, s, at: track.place(p).at };
-    let (first, last) = (track.curve.origin(c.home.first), track.curve.end(c.home.last));
+    let (first, last) = (track.curve.origin(c.chain_range.first), track.curve.end(c.chain_range.last));
     if !(track.curve.is_round() || e.p[0] >= first - CHAIN_END_TOLERANCE && e.p[1] <= last + CHAIN_END_TOLERANCE) {
         return Err(unsound(EquilibriumFault::ContactBeyondBoundary, e.p[0], e.s[0]));
     }
     if c.is_load() {
-        return point_load::sound(strand, course, j);
+        return point_load::verify(strand, course, j);
     }
     for side in 0..2 {
         if let Some(force) = strand.force_at_contact(course, j, side) {

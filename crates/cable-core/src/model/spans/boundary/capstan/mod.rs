@@ -162,7 +162,7 @@ impl Step {
 #[derive(Clone, Copy)]
 pub(in crate::model::spans) struct Track<'a> {
     pub curve: &'a Curve,
-    pub home: ChainRange,
+    pub chain_range: ChainRange,
     pub law: Law,
     /// μ.
     pub friction: f64,
@@ -178,14 +178,14 @@ pub(in crate::model::spans) struct Track<'a> {
 impl Track<'_> {
     /// The same, seen from p.
     pub fn seen_from(self, p: f64) -> Self {
-        Self { pivot: Some(Pivot::new(self.curve, self.home, &self.law, p)), ..self }
+        Self { pivot: Some(Pivot::new(self.curve, self.chain_range, &self.law, p)), ..self }
     }
 
     /// The point at p.
     pub fn place(&self, p: f64) -> Place {
         match &self.pivot {
             Some(pivot) if pivot.holds(p) => pivot.place(p),
-            _ => self.curve.place(p, self.home),
+            _ => self.curve.place(p, self.chain_range),
         }
     }
 
@@ -193,7 +193,7 @@ impl Track<'_> {
     pub fn turns(&self, p: f64) -> bool {
         match &self.pivot {
             Some(pivot) if pivot.holds(p) => pivot.turns(),
-            _ => self.curve.is_arc(self.curve.locate(p, self.home)),
+            _ => self.curve.is_arc(self.curve.locate(p, self.chain_range)),
         }
     }
 
@@ -202,7 +202,7 @@ impl Track<'_> {
         let from = match &self.pivot {
             Some(pivot) if pivot.reaches(p0) && pivot.reaches(p1) => pivot.spot(p0),
             _ => {
-                let i = self.curve.locate(0.5 * (p0 + p1), self.home);
+                let i = self.curve.locate(0.5 * (p0 + p1), self.chain_range);
                 self.law.spot(&self.curve.place_on(i, p0 - self.curve.origin(i)))
             }
         };
@@ -220,7 +220,7 @@ impl Track<'_> {
         {
             return self.law.along(&pivot.spot(p0), p1 - p0, t, m);
         }
-        let (mut i, last) = (self.curve.locate(p0, self.home), self.curve.locate(p1, self.home));
+        let (mut i, last) = (self.curve.locate(p0, self.chain_range), self.curve.locate(p1, self.chain_range));
         let (mut at, mut sum) = (p0, Step::none(t));
         loop {
             let origin = self.curve.origin(i);
@@ -299,7 +299,7 @@ impl Track<'_> {
     /// below it, T e^{−mψ} where b·t + m b·n = 0. If neither is below nothing there and at the
     /// ends, it is nowhere.
     pub fn loosest(&self, p: f64, q: f64, m: f64, mut each: impl FnMut(f64)) {
-        let middle = self.curve.locate(0.5 * (p + q), self.home);
+        let middle = self.curve.locate(0.5 * (p + q), self.chain_range);
         if !self.curve.is_arc(middle) {
             return;
         }
@@ -312,7 +312,7 @@ impl Track<'_> {
     /// Calls back with the places between p and q at which a round boundary faces the load: its
     /// bottoms.
     pub fn bottoms(&self, p: f64, q: f64, each: impl FnMut(f64)) {
-        self.facing(self.home.first, self.law.load, p, q, each);
+        self.facing(self.chain_range.first, self.law.load, p, q, each);
     }
 
     /// The places between p and q, on arc i, whose outward normal is along `out`.
@@ -326,7 +326,7 @@ impl Track<'_> {
 
     /// The middle of the length between two places.
     pub fn middle(&self, [first, last]: [f64; 2]) -> f64 {
-        let long = |a: f64, b: f64| self.curve.length(a, b, self.home);
+        let long = |a: f64, b: f64| self.curve.length(a, b, self.chain_range);
         let (mut low, mut high) = (first, last);
         // Down to rounding; a point, which has no length, is halved by its turn.
         for _ in 0..64 {
@@ -346,10 +346,10 @@ impl Track<'_> {
         if self.pivot.as_ref().is_some_and(|v| v.reaches(p) && v.reaches(to)) {
             return to;
         }
-        let mut i = self.curve.locate(p, self.home);
+        let mut i = self.curve.locate(p, self.chain_range);
         if to > p {
             // A border reached by rounding lies behind.
-            while i < self.home.last {
+            while i < self.chain_range.last {
                 let border = self.curve.origin(i + 1);
                 if border >= to {
                     return to;
@@ -360,7 +360,7 @@ impl Track<'_> {
                 i += 1;
             }
         } else {
-            while i > self.home.first {
+            while i > self.chain_range.first {
                 let border = self.curve.origin(i);
                 if border <= to {
                     return to;
