@@ -352,7 +352,7 @@ fn what_a_user_laid_into_an_own_folder_is_not_touched() {
             assert_eq!(contents(folder.path()), before, "{name} {what}");
         }
     }
-    // What lies beside the run's own files is left where it is.
+    // Files beside the run's own are left where they are.
     let out = folder.path().join("notes");
     assert_eq!(short_run(&scene, &out).output().unwrap().status.code(), Some(0));
     std::fs::write(out.join("notes.txt"), "mine").unwrap();

@@ -620,7 +620,7 @@ fn replace_if_begun(folder: &Path, manifest: Manifest) -> Result<Manifest, FileE
     }
     let target = folder.join(MANIFEST_NAME);
     fs::rename(from.join(MANIFEST_NAME), &target).map_err(|e| FileError::write(&target, &e))?;
-    // What is left of it is its lock.
+    // Only its lock is left of it.
     let _ = remove_files(&from, &[LOCK_NAME]).map(|()| fs::remove_dir(&from));
     sync_folder(folder);
     read_manifest(folder)

@@ -319,7 +319,7 @@ impl Simulation {
                 }
                 _ => error,
             };
-            // What is said to have no resting place is not sought one by another model.
+            // A cable that is said to have no resting place is not asked of another model.
             let last = matches!(error, SolveError::NoRestingPlace { .. } | SolveError::Unsupported { .. });
             let next = !last && self.switch_model(&error);
             first = Some(match first {

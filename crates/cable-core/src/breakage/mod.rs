@@ -441,7 +441,7 @@ impl BreakableCable {
     pub(crate) fn restore(&mut self, kept: &Self) {
         let mut own: Vec<Option<OwnedResources>> = self.pieces.iter_mut().map(|p| p.mechanics.lend()).collect();
         own.resize_with(kept.pieces.len(), || None);
-        // What broke since has nothing of the whole.
+        // Pieces of a break since then have nothing of the whole.
         let same = self.breaks.len() == kept.breaks.len();
         *self = kept.checkpoint();
         for (piece, own) in self.pieces.iter_mut().zip(own) {

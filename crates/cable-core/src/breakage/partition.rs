@@ -56,7 +56,7 @@ impl CablePart {
         if self.to - cut.at <= cut.near {
             return vec![self.detached(self.supports.len() - 1, problem, cut)];
         }
-        // What sits at the cut stays with the side that does not give way.
+        // A support or load at the cut stays with the side that does not give way.
         let before = |s: f64| s < cut.at - cut.near || (s <= cut.at + cut.near && cut.after);
         let last = self.supports.len() - 1;
         let (mut left, mut right) = (Vec::new(), Vec::new());

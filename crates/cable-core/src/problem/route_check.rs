@@ -31,7 +31,7 @@ pub(super) fn allowed_depth(problem: &Problem) -> f64 {
 pub(super) fn check_route(problem: &Problem) -> Result<(), SceneError> {
     let world = problem.world.geometry();
     let length: f64 = problem.route.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-    // What the scene draws no route for is laid past everything.
+    // A cable without a route in the scene is laid past everything.
     if problem.cable.route_m.is_empty() || world.is_empty() || !length.is_finite() {
         return Ok(());
     }

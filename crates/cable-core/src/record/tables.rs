@@ -313,8 +313,8 @@ impl<W: Write> RunWriter<W> {
             node_rows(nodes, solution, self.node_choice.columns)?;
         }
         for w in began(solution, &self.active) {
-            // What began later than its own instant did so by round-off: that instant's time is a
-            // multiple of an interval.
+            // A warning that began later than its own instant did so by round-off: that instant's
+            // time is a multiple of an interval.
             event_row(events, w.since_s.map_or(solution.time_s, |t| t.min(solution.time_s)), w)?;
         }
         self.write(rows)?;

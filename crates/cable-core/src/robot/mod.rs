@@ -300,7 +300,7 @@ impl Vehicle {
         work.weight_j += lifted;
         work.cable_j += cable;
         work.ground_j += (weight + pull) * way - lifted - cable;
-        // What a stop takes is none of those.
+        // The energy of a stop is none of those.
         work.impact_j += self.preset.mass_kg.value * (speed - balance.speed) / drive.h * way;
         self.tipping = (to.pitch - self.pose.pitch) / drive.h;
         (self.pose, self.speed, self.set) = (to, speed, balance.asked);

@@ -97,7 +97,7 @@ impl Search {
         let wanted = now.speed - now.off / if slope < -1.0 { slope } else { -1.0 };
         Some(match (self.low, self.high) {
             (Some(low), Some(high)) if !(low < wanted && wanted < high) => 0.5 * (low + high),
-            // What would throw it back stops it first.
+            // A force that would throw it back stops it first.
             (None, Some(high)) if wanted < 0.0 && 0.0 < high => 0.0,
             (Some(low), None) if wanted > 0.0 && 0.0 > low => 0.0,
             _ => wanted,

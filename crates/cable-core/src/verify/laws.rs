@@ -481,8 +481,8 @@ impl CheckedCable<'_> {
         let weight = self.cable.linear_density_kg_per_m * self.scene.environment.gravity_m_per_s2;
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
-        // What rubs at a node is of half of both pieces beside it, and at an end of the cable of
-        // the half there too.
+        // Friction at a node is of half of both pieces beside it, and at an end of the cable of the
+        // half there too.
         let [a, b] = piece.nodes.map(|k| nodes[k].arc_length_m);
         let next = nodes[(piece.nodes[1] + 1).min(last)].arc_length_m;
         let half = if piece.nodes[0] == 0 { 0.5 * (b - a) } else { 0.0 };

@@ -20,7 +20,7 @@ impl CheckedCable<'_> {
         found.ask(Law::Stability);
         let nodes = &self.answer.nodes;
         let same = 1e-9 * self.cable.length_m;
-        // What holds a node, and whether it may turn there.
+        // The support that holds a node, and whether it may turn there.
         let mut holds = vec![None; nodes.len()];
         for hold in self.holds.iter().filter(|h| !matches!(h.role, Role::Load | Role::Released)) {
             let node = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - same);
@@ -101,7 +101,7 @@ fn conditions(bars: &[CompressedBar], ends: [bool; 2]) -> usize {
             begun = true;
         }
         if bar.held {
-            // What is free before it ends here.
+            // A free stretch before it ends here.
             count += if begun && k > 0 && !bars[k - 1].held { 2 } else { 0 };
             begun = true;
         }

@@ -89,8 +89,8 @@ impl Bends {
             for (k, n) in piece.iter().enumerate() {
                 let turn = |k: Option<usize>| k.and_then(|k| turns.get(k)).copied().unwrap_or(0.0);
                 let (own, curvature) = (turn(Some(k)), n.curvature_per_m.abs());
-                // What leads a node costs a search: it is asked where the answer can change what
-                // was found so far.
+                // A search for the body that leads a node is dear: it is made where the answer can
+                // change what was found so far.
                 let presses = led && curvature * n.tension_n > this.pressure.map_or(0.0, |p| p.pressure_n_per_m);
                 if own.abs() < MIN_TURN && !(curvature > sharpest) && !presses && problem.bending_stiffness == 0.0 {
                     continue;

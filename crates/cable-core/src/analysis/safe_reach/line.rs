@@ -317,7 +317,7 @@ impl Traverse<'_> {
             let x = from + (to - from) * (k as f64 / parts);
             left_m = simulation.lead_robot(x, robot::STEP_S, Inertia::Dynamic).map_err(|_| Obstruction::NoAnswer)?;
         }
-        // What it threw over has come down.
+        // The cable that was thrown over has come down.
         let rests =
             simulation.lead_robot(to, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?.or(left_m);
         if rests.is_some_and(|m| m > MAX_SHORTFALL_M) { Err(Obstruction::Jammed) } else { Ok(()) }
@@ -344,7 +344,7 @@ mod tests {
         assert_eq!(map.places.last().unwrap().there_n, f64::INFINITY);
         let [left, right] = map.safe_m(map.service_n, Trip::ThereAndBack).unwrap();
         assert!(left <= 10.0 && (10.0..20.0).contains(&right), "{left} {right}");
-        // What may bear more reaches at least as far.
+        // A robot that may bear more reaches at least as far.
         let [_, farther] = map.safe_m(map.breaking_n, Trip::ThereAndBack).unwrap();
         assert!(farther >= right);
     }

@@ -94,7 +94,7 @@ impl CatenaryModel {
             nodes: Vec::new(),
             reactions: Vec::new(),
         };
-        // What nothing holds has no route to show; `settle` says so.
+        // A cable that nothing holds has no route to show; `settle` says so.
         if let Ok(layout) = Layout::new(&model.problem, &model.dragged, 0.0) {
             model.nodes = straight(&model.problem, &layout, &layout.spread(&model.problem));
         } else {

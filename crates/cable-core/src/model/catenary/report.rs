@@ -113,7 +113,7 @@ impl<'a> Nodes<'a> {
         let [before, after, here] = [ends[0], ends[1], middle].map(|p| p.force.norm());
         let tension = (0.5 * (before + after) - here).abs();
         let scale = if here > self.least_tension { here } else { self.least_tension };
-        // What is off falls to a quarter with the node in the middle, which is known already.
+        // The error falls to a quarter with the node in the middle, which is known already.
         let rough = off > 4.0 * self.flat || tension > 4.0 * TENSION_FLATNESS * scale;
         let deeper = depth + 1 < LEAST_DEPTH || rough && depth + 1 < MOST_DEPTH;
         if deeper {

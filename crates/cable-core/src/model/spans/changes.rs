@@ -77,8 +77,8 @@ pub(in crate::model::spans) fn solve(
             }
             || meet(strand, course, world, if came.is_some() { Sought::Rest } else { Sought::Step })?;
         if !changed {
-            // What else holds the cable may press it on to its wheel again: it is off when nothing
-            // else changes.
+            // Other contacts may press the cable on to its wheel again: it is off when nothing else
+            // changes.
             return lifted(strand, course).map_or(Ok(sum), |support| Err(Failure::OffWheel { support }));
         }
     }

@@ -102,7 +102,7 @@ impl CableEquilibrium {
             (instant, Some(layout.settings.continuation.first_tension_weights)),
             (&smooth, Some(layout.settings.continuation.second_tension_weights)),
         ];
-        // What is not held at both ends would run to where it needs no friction.
+        // A cable that is not held at both ends would run to where it needs no friction.
         let held = start == SearchStart::AlsoWithoutFriction
             && layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
         let resolution =
@@ -275,7 +275,7 @@ impl CableEquilibrium {
         }
         self.instant = begin.clone();
         let mut taken = self.step_from(layout, &begin, &came, work)?;
-        // What was met on the way rubs from now on.
+        // Contacts that were met on the way rub from now on.
         let mut met = false;
         for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts).filter(|c| c.smooth) {
             c.smooth = false;
@@ -417,7 +417,7 @@ impl CableEquilibrium {
             }
         }
         if found.is_err() {
-            // What has hardly any tension left may have lost it: the least, the two least …
+            // Spans with hardly any tension left may have lost it: the least, the two least …
             let mut loose = Vec::new();
             slack_pocket::candidates(start, &self.course, &mut loose);
             for n in 1..=loose.len().min(layout.settings.continuation.max_pockets) {
@@ -442,7 +442,7 @@ impl CableEquilibrium {
                 c.ends.p[1] = c.ends.p[0];
             }
             c.history.commit(&track, &c.ends, c.mode, c.held, &mut work.past);
-            // What came down in this step rubs from now on.
+            // Contacts that came down in this step rub from now on.
             if c.smooth && came.is_none() {
                 c.smooth = false;
                 c.mode = if self.course.curves[c.curve].friction > 0.0 { Mode::Hold } else { c.mode };
@@ -611,7 +611,7 @@ impl CableEquilibrium {
             let next = if done + 1.000_001 * step >= 1.0 { 1.0 } else { done + step };
             at.between(from, to, next);
             let failure = match self.step(layout, at, work) {
-                // What comes down has no friction in the step in which it does: that shall be a
+                // A contact has no friction in the step in which it comes down: that shall be a
                 // short one.
                 Ok(t) if moves && t.fresh > tuned.missing_friction_fraction && step > tuned.landing_step_fraction => {
                     self.undo(layout, work);

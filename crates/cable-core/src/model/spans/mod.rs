@@ -313,7 +313,7 @@ impl Mechanics for SpansModel {
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
-        // What lies loose remembers nothing.
+        // A cable that lies loose remembers nothing.
         self.network = self.network.take().filter(|n| n.loose().is_none());
         let found = match &mut self.network {
             Some(network) => {

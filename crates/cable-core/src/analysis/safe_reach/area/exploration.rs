@@ -344,7 +344,7 @@ impl Exploration<'_> {
         let (way, mut gone, mut before) = (to - from, 0.0, f64::NEG_INFINITY);
         while !self.world.is_empty() && gone < way.norm() {
             let Some(gap) = self.world.signed_gap(from + way * (gone / way.norm()), f64::INFINITY) else { return true };
-            // What the start touches, or is a little inside of, it may leave.
+            // The end may leave an obstacle that it touches at the start, or is a little inside of.
             if !(gap.gap_m >= 0.0 || gap.gap_m > before) {
                 return false;
             }

@@ -43,7 +43,7 @@ fn without_anything_to_touch_each_place_is_what_a_cable_laid_there_pulls() {
             let mut scene = free();
             scene.cables[0].supports.last_mut().unwrap().at_m = Some(at);
             let laid = Simulation::new(scene, Model::Catenary).unwrap().settle().unwrap().max_tension().tension_n;
-            // What is guessed lies between four places that agree to 2 % of the service tension.
+            // A guessed tension lies between four places that agree to 2 % of the service tension.
             let allowed = if found.guessed[k] { 0.02 * found.service_n } else { 1e-6 * laid };
             assert!((there_n - laid).abs() < allowed, "{at:?}: {there_n} for {laid} N");
             compared += 1;

@@ -160,7 +160,7 @@ impl Curve {
                     Form::Arc { center, radius, from: -turned(from, -self.sense * p.extent) }
                 }
             };
-            // What was the kink after a piece is the kink before it now.
+            // The kink after a piece is the kink before it now.
             let kink_before = self.pieces.get(n - k).or(self.pieces.first()).is_some_and(|next| next.kink_before);
             Piece { form, kink_before, ..p }
         };

@@ -257,7 +257,8 @@ pub(in crate::model::spans) fn next_mode(
             for side in (0..2).filter(|&side| pinned[side]) {
                 let (old_t, old_s) = history.at(track, e.p[side]);
                 if (e.s[side] - old_s).abs() <= END_MOVE_TOLERANCE * (e.s[0].abs() + e.s[1].abs()) {
-                    // What does not move is drawn the more the more the rest slides away from it.
+                    // A point that does not move is drawn the more the more the rest slides away
+                    // from it.
                     let drawn = (e.t[side] - old_t) * m * if side == 0 { 1.0 } else { -1.0 };
                     let rounding = cone * friction * larger(e.t[0].abs(), e.t[1].abs());
                     return if drawn < -rounding { Mode::Hold } else { mode };

@@ -247,7 +247,7 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
         }
         let (k, first) = (j + side, if side == 0 { i } else { j });
         if c.is_load() {
-            // What lies between two loads of one chain lies, too.
+            // Cable between two loads of one chain lies, too.
             let [a, b] = [first, first + 1].map(|k| strand.contacts[k].ends);
             if !same || !(b.p[0] > a.p[0]) {
                 return Err(Failure::LoadLies { s: load.ends.s[side] });
@@ -343,7 +343,7 @@ fn walk(track: &Track<'_>, mut p: f64, way: f64) -> f64 {
 /// Sets a load within contact j down where it lies.
 fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     let c = &strand.contacts[j];
-    // What is at an end of the strand draws that end.
+    // A load at an end of the strand draws that end.
     let [from, to] = [larger(c.ends.s[0], strand.from), smaller(c.ends.s[1], strand.to)];
     let Some(s) = course.loads.iter().find(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0) else {
         return false;
@@ -359,7 +359,8 @@ fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     });
     let tension = c.history.at(&track, q).0;
     let knots = c.history.knots();
-    // What had been laid before stays; where it is only now coming to lie nothing has rubbed yet.
+    // Cable that had been laid before stays; where it is only now coming to lie nothing has rubbed
+    // yet.
     let fresh = c.smooth || !knots.first().zip(knots.last()).is_some_and(|(a, b)| q >= a.p && q <= b.p);
     let (first, second) = c.history.split(&track, q);
     let after = s.next_up();

@@ -225,7 +225,7 @@ fn roofs_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: &mut Vec<
         }
         Form::Arc { center, radius, from } => {
             let center = frame.split(center + curve.shift);
-            // How far along it the cable would rise plumb.
+            // Distance along it at which the cable would rise plumb.
             let rises = -curve.sense * cross(from, frame.up).atan2(from.dot(&frame.up));
             let turn = std::f64::consts::TAU;
             let turns: &[f64] = if given.extent.is_finite() { &[-1.0, 0.0, 1.0] } else { &[0.0] };
@@ -317,7 +317,7 @@ impl Draining<'_> {
         self.hang(u, height);
         self.height = height;
         let mut u = on;
-        // What does not hold there slides on down, to the first that does.
+        // Cable that does not hold there slides on down, to the first place that holds it.
         for _ in 0..MOST_DOWN {
             let here = &self.roofs.all[roof];
             let slope = here.slope(u);

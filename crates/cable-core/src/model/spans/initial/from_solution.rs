@@ -240,8 +240,8 @@ impl Run<'_> {
         }
         knots.push(knot(1));
         let track = course.track(&contact);
-        // What is beyond the cone goes to where the tension is known without friction: away from an
-        // end that lies, to one that is not held.
+        // A difference beyond the cone goes to where the tension is known without friction: away
+        // from an end that lies, to one that is not held.
         let lies = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
         let at_end = [self.first == 0, self.last + 1 == stations.len()];
         let free = strand.ties.map(|t| matches!(t, Tie::Hangs(_) | Tie::Loose(_)));
@@ -259,7 +259,7 @@ impl Run<'_> {
                 contact.ends.s = [first.s, last.s];
             }
         }
-        // What the cone has changed at an end that lies is its tension.
+        // The cone changes only the tension at an end that lies.
         if let (Some(k), Tie::Lies(_)) = (contact.history.knots().last(), strand.ties[1]) {
             contact.ends.t[1] = k.tension;
         }
@@ -298,7 +298,7 @@ impl Run<'_> {
                     strand.ties[side] = Tie::Loose(force);
                     let place = self.curve.place(p, self.chain_range);
                     let along = force.dot(&place.tangent);
-                    // What is pressed down rubs by itself.
+                    // An end that is pressed down rubs by itself.
                     let pressed = self.curve.friction > 0.0 && force.dot(&place.normal) < -LIFT_FRACTION * force.norm();
                     return Some((
                         p,

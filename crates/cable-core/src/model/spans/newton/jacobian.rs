@@ -103,7 +103,7 @@ pub(super) fn assemble(strand: &mut CableRun, course: &Course, system: &mut Syst
 /// As [`assemble`], where nothing but the mode of contact j has changed since.
 pub(super) fn renew(strand: &mut CableRun, course: &Course, j: usize, system: &mut System) {
     if strand.contacts[j].is_load() {
-        // What is joined to it is held or let go with it.
+        // A contact that is joined to it is held or let go with it.
         return assemble(strand, course, system);
     }
     for row in 6 * j + 2..6 * j + 6 {

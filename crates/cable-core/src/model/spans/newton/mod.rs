@@ -277,7 +277,7 @@ fn required_mode(strand: &CableRun, course: &Course, system: &System, j: usize, 
     if c.is_load() {
         return point_load::next_mode(strand, course, j, patience);
     }
-    // What holds within its cone goes on so, and what is smooth slides.
+    // A contact that holds within its cone goes on so, and a smooth one slides.
     if matches!((c.mode, c.held), (Mode::Hold, Some(Held::Between(_) | Held::Meet(_)))) && course.friction(c) > 0.0 {
         return c.mode;
     }
@@ -288,7 +288,7 @@ fn required_mode(strand: &CableRun, course: &Course, system: &System, j: usize, 
 /// True if every contact is in the mode that its state asks for; the system is that of the state.
 fn modes_agree(strand: &CableRun, course: &Course, system: &System) -> bool {
     let tuned = &course.settings.newton;
-    // What is rounding grows with the stiffness as the residual does.
+    // Rounding grows with the stiffness as the residual does.
     let patience = tuned.cycle_rounding_factor * tolerance(strand, course) / tuned.residual;
     (0..strand.contacts.len()).all(|j| required_mode(strand, course, system, j, patience) == strand.contacts[j].mode)
 }

@@ -122,7 +122,7 @@ fn span(strand: &CableRun, course: &Course, spots: &[ContactPlaces], k: usize) -
     let held = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
     let before = k.checked_sub(1).and_then(|j| spots.get(j)).map_or_else(|| held(&strand.ties[0]), |s| Some(s.0[1].at));
     let after = spots.get(k).map_or_else(|| held(&strand.ties[1]), |s| Some(s.0[0].at));
-    // What hangs keeps its force.
+    // A span that hangs keeps its force.
     let ends = before.zip(after).map(|(a, b)| [a, b]);
     let tension = forces.map(|f| f.norm());
     LinearSpan { ends, force: strand.forces[k], material: [from, to], tension, ..LinearSpan::default() }
@@ -178,7 +178,7 @@ fn link(strand: &CableRun, course: &Course, spots: &[ContactPlaces], j: usize) -
         let way = track.slide(e.p[0], e.p[1], e.t[0], m);
         (way.tension, way.by_tension)
     }));
-    // What is smooth always slides.
+    // A smooth contact always slides.
     out.side = if friction > 0.0 { 0 } else { 1 };
     out
 }

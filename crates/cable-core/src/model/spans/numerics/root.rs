@@ -40,7 +40,7 @@ pub(in crate::model::spans) fn crossing(
         }
         let next = x - value / slope;
         let inside = (next - x0) * (next - x1) < 0.0;
-        // What does not halve is not near enough for Newton.
+        // A step that does not halve the value is not near enough for Newton.
         let step = if inside && value.abs() < 0.5 * before { next } else { 0.5 * (x0 + x1) };
         before = value.abs();
         if (step - x).abs() <= rounding {

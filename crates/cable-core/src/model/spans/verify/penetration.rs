@@ -204,7 +204,7 @@ fn search(arc: &Arc<'_>, body: &Body, low: Vec2, high: Vec2, tolerance: f64, mut
         if let Some(s) = arc.along(e.tangent) {
             let d = arc.point(s) - e.p;
             let (x, height) = (d.dot(&e.tangent), d.dot(&perp(e.tangent)));
-            // What is deep is nearest to an edge, or to the kink beside it, that it does not lie
+            // A deep point is nearest to an edge, or to the kink beside it, that it does not lie
             // straight below.
             let aside = larger(body.offset, -height);
             if height < body.offset - tolerance && x > -aside && x < e.length() + aside {

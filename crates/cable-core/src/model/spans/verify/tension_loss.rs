@@ -19,7 +19,7 @@ pub(in crate::model::spans) fn lost(
         return None;
     }
     let b = course.law.load;
-    // What weighs nothing hangs in no bight.
+    // A cable without weight hangs in no bight.
     if b.norm() == 0.0 {
         return None;
     }
