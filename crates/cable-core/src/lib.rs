@@ -21,10 +21,10 @@
 //! | time | s |
 //!
 //! Dependencies between the modules point one way, without a loop:
-//! `math, model_id, units → verification → error → solution → wording → scene → contact, catenary,
+//! `math, model_id, units → verification → error → solution → scene → contact, catenary,
 //! energy → problem → state → model → breakage, warnings, verify
-//! → simulation → timeline, analysis, summary, conformance`, and `record → files → any_error`
-//! beside them.
+//! → simulation → timeline, analysis, summary, conformance`, and
+//! `record → files → wording → any_error` beside them, before `simulation`.
 
 pub mod analysis;
 mod any_error;
