@@ -1,12 +1,13 @@
-//! What the tuned constants of `spans` move: each is halved and doubled over the scenes of the catalogue and random ones, and
+//! What the tuned constants of `spans` and `catenary` move: each is halved and doubled over the scenes of the catalogue and random ones, and
 //! compared with the answers by the constants as they are.
 //!
 //! `cargo run --release -p cable-benches --bin tuned-settings-spans` prints a table; `-- 50` takes so many random scenes, and
 //! `-- 50 newton.max_turn drag` only settings whose name holds one of the words.
 
-use std::error::Error;
 use std::sync::Arc;
 
+use cable_core::model::catenary::CatenaryModel;
+use cable_core::model::catenary::settings::CatenarySettings;
 use cable_core::model::spans::SpansModel;
 use cable_core::model::spans::settings::SpansSettings;
 use cable_core::model::{Inertia, Mechanics, Settings};
@@ -59,42 +60,69 @@ impl Scale for [f64; 3] {
     }
 }
 
-/// A setting: its name, and the function that scales it.
-type Tuned = (&'static str, fn(&mut SpansSettings, f64));
+/// A model with its tuned constants.
+#[derive(Clone, Copy)]
+enum Model {
+    Spans(SpansSettings),
+    Catenary(CatenarySettings),
+}
+
+impl Model {
+    fn build(self, problem: &Arc<Problem>) -> Option<Box<dyn Mechanics>> {
+        let problem = problem.clone();
+        Some(match self {
+            Self::Spans(tuned) => {
+                Box::new(SpansModel::with_settings(problem, Settings::default(), Arc::new(tuned)).ok()?)
+            }
+            Self::Catenary(tuned) => Box::new(CatenaryModel::with_settings(problem, tuned).ok()?),
+        })
+    }
+}
+
+/// A setting: its name, and its model with the setting scaled.
+type Tuned = (&'static str, fn(f64) -> Model);
 
 macro_rules! tuned {
-    ($($group:ident { $($field:ident $(. $inner:ident)?),+ $(,)? })+) => {
+    ($($model:ident $settings:ident { $($($part:ident).+),+ $(,)? })+) => {
         vec![$($((
-            concat!(stringify!($group), ".", stringify!($field) $(, ".", stringify!($inner))?),
-            (|s: &mut SpansSettings, factor| s.$group.$field$(.$inner)?.scale(factor)) as fn(&mut SpansSettings, f64),
+            stringify!($($part).+),
+            (|factor| {
+                let mut settings = $settings::default();
+                settings.$($part).+.scale(factor);
+                Model::$model(settings)
+            }) as fn(f64) -> Model,
         )),+),+]
     };
 }
 
 fn tuned() -> Vec<Tuned> {
     tuned! {
-        newton {
-            max_iterations, max_stalled, max_halvings, residual, refined_residual_factor, stalled_residual_factor, max_turn,
-            kept_material_fraction, mode_residual, mode_stalled_iterations, cycle_rounding_factor, max_mode_changes,
-            slip.extra_rounds, slip.newton_rounds, slip.round_tolerance, slip.accepted_tension_change,
-            slip.max_tension_factor, slip.max_followed_angle,
+        Spans SpansSettings {
+            newton.max_iterations, newton.max_stalled, newton.max_halvings, newton.residual,
+            newton.refined_residual_factor, newton.stalled_residual_factor, newton.max_turn,
+            newton.kept_material_fraction, newton.mode_residual, newton.mode_stalled_iterations,
+            newton.cycle_rounding_factor, newton.max_mode_changes, newton.slip.extra_rounds,
+            newton.slip.newton_rounds, newton.slip.round_tolerance, newton.slip.accepted_tension_change,
+            newton.slip.max_tension_factor, newton.slip.max_followed_angle, continuation.max_move_fraction,
+            continuation.max_halvings, continuation.first_step, continuation.grown_step,
+            continuation.runaway_step_fraction, continuation.drag_factor, continuation.rest_drag_fraction,
+            continuation.max_drag_steps, continuation.max_drag_raises, continuation.missing_friction_fraction,
+            continuation.landing_step_fraction, continuation.max_pockets, continuation.first_tension_weights,
+            continuation.second_tension_weights, continuation.first_load_fraction,
+            continuation.adopted_cone_fractions, continuation.first_missing_part, continuation.max_missing_part,
+            continuation.mobilised_fraction, initial.lying_end_radii, initial.falling_end_radii,
+            initial.route_contact_radii, initial.laid_tension_weights, initial.route_excess_fraction,
+            initial.post_approach_radii, initial.wheel_route_radii, initial.end_fit_rounds,
+            initial.max_extended_corners, initial.contact_spacing_fraction, initial.adopted_contact_distance_m,
+            changes.max_changes, changes.max_load_releases, changes.shed_length_fraction,
+            changes.catch_distance_fraction, changes.depth_fraction, changes.max_depth_m, changes.release_overlap,
+            changes.corner_search_points, changes.lying_fraction, changes.pocket_tension_fraction,
+            changes.kink_span_fraction, verify.fold_force_fraction, verify.tunnelling_points, verify.unchecked_move,
         }
-        continuation {
-            max_move_fraction, max_halvings, first_step, grown_step, runaway_step_fraction, drag_factor, rest_drag_fraction,
-            max_drag_steps, max_drag_raises, missing_friction_fraction, landing_step_fraction, max_pockets,
-            first_tension_weights, second_tension_weights, first_load_fraction, adopted_cone_fractions, first_missing_part,
-            max_missing_part, mobilised_fraction,
+        Catenary CatenarySettings {
+            max_move_fraction, max_step_halvings, max_iterations, max_halvings, max_wheel_rounds,
+            kept_stretch_fraction, joint_mode_rounds, max_friction_rises, least_touch_gain,
         }
-        initial {
-            lying_end_radii, falling_end_radii, route_contact_radii, laid_tension_weights, route_excess_fraction,
-            post_approach_radii, wheel_route_radii, end_fit_rounds, max_extended_corners, contact_spacing_fraction,
-            adopted_contact_distance_m,
-        }
-        changes {
-            max_changes, max_load_releases, shed_length_fraction, catch_distance_fraction, depth_fraction, max_depth_m,
-            release_overlap, corner_search_points, lying_fraction, pocket_tension_fraction, kink_span_fraction,
-        }
-        verify { fold_force_fraction, tunnelling_points, unchecked_move }
     }
 }
 
@@ -161,11 +189,9 @@ struct Answers {
     iterations: usize,
 }
 
-fn answers(case: &Case, tuned: &Arc<SpansSettings>) -> Answers {
+fn answers(case: &Case, model: Model) -> Answers {
     let mut out = Answers { tension_n: Vec::new(), iterations: 0 };
-    let Ok(mut model) = SpansModel::with_settings(case.problem.clone(), Settings::default(), tuned.clone()) else {
-        return out;
-    };
+    let Some(mut model) = model.build(&case.problem) else { return out };
     let start = case.problem.supports.last().and_then(|s| s.at);
     for k in 0..=INSTANTS {
         let done = if k == 0 { model.settle() } else { model.advance(INTERVAL_S, Inertia::QuasiStatic) };
@@ -182,28 +208,32 @@ fn answers(case: &Case, tuned: &Arc<SpansSettings>) -> Answers {
     out
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() {
     let mut arguments: Vec<String> = std::env::args().skip(1).collect();
     let random = arguments.first().and_then(|a| a.parse().ok());
     if random.is_some() {
         arguments.remove(0);
     }
     let cases = cases(random.unwrap_or(RANDOM_SCENES));
-    let usual: Vec<Answers> = cases.iter().map(|c| answers(c, &Arc::default())).collect();
-    let instants: usize = usual.iter().map(|a| a.tension_n.len()).sum();
-    let work: usize = usual.iter().map(|a| a.iterations).sum();
-    println!("{} cables, {instants} instants answered, {work} iterations", cases.len());
+    let models = [Model::Spans(SpansSettings::default()), Model::Catenary(CatenarySettings::default())];
+    let usual = models.map(|model| cases.iter().map(|c| answers(c, model)).collect::<Vec<_>>());
+    for (name, usual) in ["spans", "catenary"].into_iter().zip(&usual) {
+        let instants: usize = usual.iter().map(|a| a.tension_n.len()).sum();
+        let work: usize = usual.iter().map(|a| a.iterations).sum();
+        println!("{name}: {} cables, {instants} instants answered, {work} iterations", cases.len());
+    }
     println!("| setting | factor | instants answered | cables changed | greatest change of tension | iterations |");
     println!("|---|---|---|---|---|---|");
-    for (name, scale) in tuned().into_iter().filter(|(name, _)| asked(&arguments, name)) {
+    for (name, scaled) in tuned().into_iter().filter(|(name, _)| asked(&arguments, name)) {
         for factor in [0.5, 2.0] {
-            let mut settings = SpansSettings::default();
-            scale(&mut settings, factor);
-            let row = compared(&cases, &usual, &Arc::new(settings));
-            println!("| {name} | {factor} | {row} |");
+            let model = scaled(factor);
+            let (prefix, usual) = match model {
+                Model::Spans(_) => ("", &usual[0]),
+                Model::Catenary(_) => ("catenary.", &usual[1]),
+            };
+            println!("| {prefix}{name} | {factor} | {} |", compared(&cases, usual, model));
         }
     }
-    Ok(())
 }
 
 fn asked(words: &[String], name: &str) -> bool {
@@ -211,10 +241,10 @@ fn asked(words: &[String], name: &str) -> bool {
 }
 
 /// What changes, as the cells of a row.
-fn compared(cases: &[Case], usual: &[Answers], settings: &Arc<SpansSettings>) -> String {
+fn compared(cases: &[Case], usual: &[Answers], model: Model) -> String {
     let (mut answered, mut changed, mut greatest, mut work) = (0i64, 0, 0.0, 0i64);
     for (case, usual) in cases.iter().zip(usual) {
-        let now = answers(case, settings);
+        let now = answers(case, model);
         answered += difference(now.tension_n.len(), usual.tension_n.len());
         work += difference(now.iterations, usual.iterations);
         let change = now.tension_n.iter().zip(&usual.tension_n).map(|(a, b)| (a - b).abs() / b.max(f64::MIN_POSITIVE));

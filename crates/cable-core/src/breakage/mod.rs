@@ -531,7 +531,7 @@ impl Piece {
         sum: &mut StepReport,
     ) -> Result<StepOutcome, SolveError> {
         match (inertia, breaking_n) {
-            (Inertia::Dynamic, breaking_n) => self.advance_dynamic(dt_s, breaking_n.unwrap_or(f64::INFINITY), sum),
+            (Inertia::Dynamic, breaking_n) => self.advance_dynamic(dt_s, breaking_n, sum),
             (Inertia::QuasiStatic, Some(breaking_n)) => self.advance_quasi_static(dt_s, breaking_n, sum),
             (Inertia::QuasiStatic, None) => {
                 self.gauge.forget();
@@ -544,7 +544,12 @@ impl Piece {
 
     /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which
     /// that happens is taken again in parts, to have the cable where it breaks.
-    fn advance_dynamic(&mut self, dt_s: f64, breaking_n: f64, sum: &mut StepReport) -> Result<StepOutcome, SolveError> {
+    fn advance_dynamic(
+        &mut self,
+        dt_s: f64,
+        breaking_n: Option<f64>,
+        sum: &mut StepReport,
+    ) -> Result<StepOutcome, SolveError> {
         let looks = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
         if looks > 1.0 && self.unwatched_steps == 0 {
             let before = (self.mechanics.boxed_clone(), self.gauge.clone());
@@ -562,7 +567,7 @@ impl Piece {
         for _ in 0..looks as usize {
             let state = self.mechanics.state();
             let step_s = if left_s < 1.5 * h { left_s } else { h };
-            let breaking_n = if self.unwatched_steps > 0 { f64::INFINITY } else { breaking_n };
+            let breaking_n = breaking_n.filter(|_| self.unwatched_steps == 0);
             let done = self.gauged_step(step_s, breaking_n);
             self.refresh_answer();
             self.accumulate_momentum();
@@ -584,9 +589,10 @@ impl Piece {
         Ok(StepOutcome::Intact)
     }
 
-    /// A step with inertia in which a mean of so much is looked for, N.
-    fn gauged_step(&mut self, dt_s: f64, breaking_n: f64) -> Result<StepReport, SolveError> {
-        let limit = Limit { tension_n: breaking_n, from_s: self.unwatched_until_s, within_m: self.may_break_within() };
+    /// A step with inertia in which a mean of so much is looked for, N; None: the cable cannot break.
+    fn gauged_step(&mut self, dt_s: f64, breaking_n: Option<f64>) -> Result<StepReport, SolveError> {
+        let tension_n = breaking_n.unwrap_or(f64::INFINITY);
+        let limit = Limit { tension_n, from_s: self.unwatched_until_s, within_m: self.may_break_within() };
         self.gauge.watch(limit);
         self.mechanics.advance_gauged(dt_s, Inertia::Dynamic, &mut self.gauge)
     }

@@ -7,6 +7,7 @@ use crate::catenary::PointForce;
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, perp};
 use crate::model::Model;
+use crate::model::catenary::settings::CatenarySettings;
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::{PulleySide, SupportKind};
 
@@ -43,6 +44,7 @@ pub(super) struct Layout {
     pub free: [bool; 2],
     /// Dead force on a dangling start and end, N.
     pub end_force: [Vec2; 2],
+    pub settings: CatenarySettings,
 }
 
 /// Weight of a weightless cable, in parts of its loads. Smaller: slack parts beside loaded ones
@@ -111,6 +113,7 @@ impl Layout {
             end_force: [0.0, p.length]
                 .map(|end| loads.iter().filter(|l| l.arc_length == end).fold(Vec2::zeros(), |sum, l| sum + l.force)),
             loads,
+            settings: CatenarySettings::default(),
         };
         if layout.anchors.is_empty() {
             return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });

@@ -258,6 +258,7 @@ impl Slide<'_> {
     /// rad, and a wheel the cable would leave.
     pub fn turned(&self, s: &Stretches, m: impl Fn(usize) -> f64) -> (Vec<Arc>, f64, Option<usize>) {
         let (mut worst, mut lifted) = (0.0f64, None);
+        let least = self.layout.settings.least_touch_gain;
         let mut out = Vec::with_capacity(self.arcs.len());
         for (k, (a, arc)) in self.layout.anchors.iter().zip(self.arcs).enumerate() {
             let (Some(fb), Some(fa), true) = (Self::forces(s, k).0, Self::forces(s, k).1, a.radius > 0.0) else {
@@ -273,7 +274,7 @@ impl Slide<'_> {
                 let t = force.norm();
                 let lambda = self.problem.thermal_stretch * (1.0 + t / self.problem.axial_stiffness);
                 let gain = 1.0 - a.facing * cross(force, self.layout.weight) / (t * t * lambda) * a.radius;
-                (off.abs(), off / if gain > LEAST_GAIN { gain } else { LEAST_GAIN })
+                (off.abs(), off / if gain > least { gain } else { least })
             };
             let ((off1, step1), (off2, step2)) = (step(fb, arc.arrive), step(fa, leave));
             for off in [off1, off2] {
@@ -294,8 +295,3 @@ impl Slide<'_> {
         (out, worst, lifted)
     }
 }
-
-/// Least divisor by which a step of the touch point is divided: where cable and wheel bend almost
-/// alike the touch point is ill-conditioned. Smaller: the touch point jumps to and fro. Larger:
-/// more rounds.
-const LEAST_GAIN: f64 = 0.2;

@@ -20,7 +20,7 @@ pub(in crate::model::spans) mod stability;
 #[cfg(test)]
 mod tests;
 
-use crate::math::{Vec2, larger};
+use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::friction_memory::{Held, Mode, TensionProfile};
 use crate::model::spans::boundary_conditions::BoundaryConditions;
@@ -336,10 +336,11 @@ fn step(strand: &mut CableRun, course: &Course, work: &mut Work) -> bool {
 }
 
 fn search(strand: &mut CableRun, course: &Course, before: f64, work: &mut Work) -> bool {
-    let (mut alpha, mut first) = (max_step(strand, course, &work.saved, &work.rhs), f64::INFINITY);
+    // Part of the step at which the first contact comes to the end of its piece of boundary.
+    let (mut alpha, mut first) = (max_step(strand, course, &work.saved, &work.rhs), None);
     for round in 0..course.settings.newton.max_halvings {
         if round > 1 {
-            alpha = if first < alpha { first } else { 0.5 * alpha };
+            alpha = first.filter(|first| *first < alpha).unwrap_or(0.5 * alpha);
         }
         work.best.clear();
         work.best.extend(work.saved.iter().zip(&work.rhs).map(|(x, d)| x + alpha * d));
@@ -348,11 +349,11 @@ fn search(strand: &mut CableRun, course: &Course, before: f64, work: &mut Work) 
             // does.
             borders(strand, course, &work.saved, &work.rhs, |index, part| {
                 if part > 0.0 && part < alpha {
-                    first = if part < first { part } else { first };
+                    first = Some(first.map_or(part, |first| smaller(part, first)));
                     work.best[index] = work.saved[index] + part * work.rhs[index];
                 }
             });
-            if first == f64::INFINITY {
+            if first.is_none() {
                 continue;
             }
         }
