@@ -89,6 +89,15 @@ impl Figures {
         rounded.parse::<f64>().map_or(rounded, |rounded| format!("{rounded}"))
     }
 
+    /// The end of a range, without the unit; a power of ten where it is small or large.
+    fn bound(self, quantity: Quantity, value: f64) -> String {
+        let text = self.bare(quantity, value);
+        match text.parse::<f64>() {
+            Ok(shown) if shown != 0.0 && !(1e-3..1e6).contains(&shown.abs()) => format!("{shown:e}"),
+            _ => text,
+        }
+    }
+
     fn with_unit(self, quantity: Quantity, number: String) -> String {
         match quantity.symbol(self.0) {
             "" => number,

@@ -26,8 +26,8 @@ impl Sentence for SceneFault {
             Self::Range { value, allowed: [low, high], quantity } => format!(
                 "{} is outside the allowed range {} to {}",
                 f.bare(*quantity, *value),
-                limit(f, *quantity, *low),
-                f.with_unit(*quantity, limit(f, *quantity, *high))
+                f.bound(*quantity, *low),
+                f.with_unit(*quantity, f.bound(*quantity, *high))
             ),
             Self::Version { value } => {
                 format!("{value} is outside the allowed range 1, the only version this program reads")
@@ -114,15 +114,6 @@ impl Sentence for SceneFault {
                 way = f.length(*way_m, 4)
             ),
         }
-    }
-}
-
-/// The end of a range; a power of ten where it is small or large.
-fn limit(f: Figures, quantity: Quantity, value: f64) -> String {
-    let text = f.bare(quantity, value);
-    match text.parse::<f64>() {
-        Ok(shown) if shown != 0.0 && !(1e-3..1e6).contains(&shown.abs()) => format!("{shown:e}"),
-        _ => text,
     }
 }
 

@@ -98,9 +98,10 @@ impl Sentence for SolveError {
             }
             Self::Setting { name, value, allowed: [low, high], quantity } => {
                 let value = f.given(*quantity, *value);
+                let [low, most] = [*low, *high].map(|end| f.bound(*quantity, end));
                 let allowed = match high.is_finite() {
-                    true => format!("lie in {} to {}", f.bare(*quantity, *low), f.given(*quantity, *high)),
-                    false => format!("be {} or more, and finite", f.given(*quantity, *low)),
+                    true => format!("lie in {low} to {}", f.with_unit(*quantity, most)),
+                    false => format!("be {} or more, and finite", f.with_unit(*quantity, low)),
                 };
                 format!("the setting {name} = {value} cannot be worked by: it must {allowed}")
             }

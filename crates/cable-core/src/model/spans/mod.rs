@@ -18,6 +18,7 @@
 //! | `slack` | cable that lies without tension |
 //! | `verify` | checks of an answer that do not use the solver |
 //! | `results`, `failure` | the answer; why there is none |
+//! | `settings` | the tuned constants |
 //!
 //! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that
 //! let go. A cable that loses its tension is said to have lost it, with the place.

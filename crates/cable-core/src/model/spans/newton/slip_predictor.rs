@@ -80,7 +80,7 @@ pub(in crate::model::spans) struct SlipPredictor {
 }
 
 /// Gives each contact the mode that the step will ask for, and contacts and spans their place, as
-/// far as that can be foreseen.
+/// far as that can be predicted.
 pub(in crate::model::spans) fn predict_slip(strand: &mut CableRun, course: &Course, memory: &mut SlipPredictor) {
     if course.drag > 0.0 || strand.contacts.is_empty() {
         return;
