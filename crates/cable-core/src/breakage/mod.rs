@@ -589,7 +589,8 @@ impl Piece {
         Ok(StepOutcome::Intact)
     }
 
-    /// A step with inertia in which a mean of so much is looked for, N; None: the cable cannot break.
+    /// A step with inertia in which a mean of so much is looked for, N; None: the cable cannot
+    /// break.
     fn gauged_step(&mut self, dt_s: f64, breaking_n: Option<f64>) -> Result<StepReport, SolveError> {
         let tension_n = breaking_n.unwrap_or(f64::INFINITY);
         let limit = Limit { tension_n, from_s: self.unwatched_until_s, within_m: self.may_break_within() };
