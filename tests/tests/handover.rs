@@ -176,7 +176,7 @@ fn auto_hands_a_cable_that_goes_slack_to_fem_and_takes_it_back() {
             let a = sim.solution();
             assert!((a.time_s - 0.05 * f64::from(k + 1)).abs() < 1e-9);
             let s = &a.cables[0].supports[1];
-            out.push((a.model, Vec2::new(s.reaction_x_n, s.reaction_y_n), a.reason.clone()));
+            out.push((a.model, Vec2::new(s.reaction_x_n, s.reaction_y_n), a.reason.to_string()));
         }
         out
     };

@@ -1,8 +1,8 @@
-//! The JSON object of an answer: SI units in the key names, never a number that is not finite.
+//! This file makes the JSON object of an answer: SI units in the key names, never a number that is not finite.
 
 use cable_core::solution::{
-    Bend, CableSolution, ContactReport, ContactSample, ContactState, Node, Pressure, Solution, SupportReaction,
-    TensionPeaks, Warning,
+    Bend, CableSolution, ContactReport, ContactSample, ContactState, ModelReason, Node, Pressure, Solution,
+    SupportReaction, TensionPeaks, Warning,
 };
 use cable_core::summary::{CableSummary, Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::timeline::RunPeaks;
@@ -10,13 +10,13 @@ use cable_core::verify::Verification;
 use cable_core::{ErrorEstimates, UnitSystem};
 use serde::Serialize;
 
-/// What `solve --json` prints, and `run --json` for each time.
+/// The output of `solve --json`, and of `run --json` for each time.
 #[derive(Debug, Serialize)]
 pub struct Answer<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_s: Option<f64>,
     pub model: &'static str,
-    pub reason: &'a str,
+    pub reason: &'a ModelReason,
     pub converged: bool,
     pub residual_n: f64,
     pub iterations: usize,
@@ -30,20 +30,21 @@ pub struct Answer<'a> {
     /// The greatest tensions of all inner steps since the line before, one a cable in motion.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub peaks: Vec<OfCable<'a, TensionPeaks>>,
-    /// What is known of the greatest tensions of the run so far, one a cable in motion.
+    /// The greatest tensions of the run so far and their errors, one a cable in motion.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub run_peaks: Vec<OfCable<'a, RunPeaksEntry>>,
     /// The sharpest bend of all cables; null where all are nearly straight.
     pub tightest_bend: Option<OfCable<'a, Bend>>,
-    /// Where a cable is pressed hardest against what leads it; null where nothing leads one round.
+    /// The place at which a cable is pressed hardest against what leads it; null where nothing
+    /// leads one round.
     pub sidewall_pressure: Option<OfCable<'a, Pressure>>,
-    /// What is read first, one a cable.
+    /// The figures that are read first, one a cable.
     pub summary: Vec<Summary<'a>>,
     pub supports: Vec<Support<'a>>,
     pub nodes: Vec<NodeEntry<'a>>,
     pub contacts: Vec<Contact<'a>>,
     pub warnings: Vec<WarningEntry<'a>>,
-    /// What the laws say of the answer.
+    /// The verification of the answer.
     pub verification: Option<&'a Verification>,
     /// The answers of other models and meshes, with `--compare`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -73,8 +74,8 @@ pub struct RunPeaksEntry {
     /// From, to; null where nothing is known of them.
     pub greatest_tension_range_n: Option<[f64; 2]>,
     pub held_tension_range_n: Option<[f64; 2]>,
-    /// Whether coarser runs part from this one so far that another mesh, step or start has another greatest tension; null where that is
-    /// not known.
+    /// True if coarser runs part from this one so far that another mesh, step or start has another
+    /// greatest tension; null where that is not known.
     pub depends_on_small_differences: Option<bool>,
 }
 
@@ -114,19 +115,20 @@ pub struct Summary<'a> {
     pub figures: &'a CableSummary,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub end_stiffness: Option<Vec<&'a EndStiffness>>,
-    /// What neglecting its bending stiffness changed.
+    /// The changes that its neglected bending stiffness would make.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub neglected_bending: Option<&'a NeglectedBending>,
 }
 
-/// What is read first of a solution.
+/// The figures of a solution that are read first.
 #[derive(Debug, Default)]
 pub struct Figures {
     /// One a cable.
     pub cables: Vec<CableSummary>,
     /// Of all held ends, where it was asked for.
     pub stiffness: Option<Vec<EndStiffness>>,
-    /// What neglecting bending stiffness changed, of the cables of which that is known.
+    /// The changes that neglected bending stiffness would make, of the cables of which they are
+    /// known.
     pub bending: Vec<NeglectedBending>,
     /// The greatest tensions of a run so far, one a cable.
     pub run_peaks: Vec<RunPeaksEntry>,
@@ -185,13 +187,13 @@ pub struct Contact<'a> {
     samples: &'a [ContactSample],
 }
 
-/// What `--json` prints where there is no answer.
+/// The output of `--json` where there is no answer.
 #[derive(Debug, Serialize)]
-pub struct NoAnswer<'a> {
+pub struct NoAnswer {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_s: Option<f64>,
     pub model: &'static str,
-    pub reason: &'a str,
+    pub reason: String,
     pub converged: bool,
     pub error: String,
 }

@@ -1,4 +1,4 @@
-//! Arguments of the program.
+//! This file declares the arguments of the program.
 
 use std::path::PathBuf;
 
@@ -47,8 +47,8 @@ pub struct Common {
     /// Relative accuracy asked of the tension
     #[arg(long, default_value_t = 1e-3, value_parser = tolerance)]
     pub tolerance: f64,
-    /// How much friction acts on every cable at rest: least-sliding, or all of it against a cable drawn towards-start or towards-end
-    /// [default: what the scene says]
+    /// Friction that acts on every cable at rest: least-sliding, or all of it against a cable drawn
+    /// towards-start or towards-end [default: what the scene says]
     #[arg(long, value_parser = mobilised)]
     pub mobilised: Option<FrictionMobilised>,
     /// Print JSON objects (one a line) instead of text
@@ -84,7 +84,7 @@ earlier run, which is kept until the new run is complete; until then that is in 
 pub struct RunArguments {
     #[command(flatten)]
     pub common: Common,
-    /// How long: 10s, 250ms, 2min
+    /// Duration: 10s, 250ms, 2min
     #[arg(long = "for", value_parser = duration_s)]
     pub duration_s: f64,
     /// Time between steps; outputs do not change it [default: 1/240 s, without inertia 1/60 s]
@@ -96,13 +96,14 @@ pub struct RunArguments {
     /// Without inertia: supports move infinitely slowly, friction remembers
     #[arg(long)]
     pub quasi_static: bool,
-    /// Where errors of forces are above --tolerance, take elements and steps half as long, at most so often: each time takes four times as long
+    /// Number of refinements: where errors of forces are above --tolerance, take elements and steps
+    /// half as long, at most so often; each time takes four times as long
     #[arg(long, value_name = "TIMES", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6), conflicts_with = "no_errors")]
     pub refine: u32,
     /// Leave out the two coarser runs beside one with inertia, which say its errors for a third of its cost
     #[arg(long)]
     pub no_errors: bool,
-    /// How mass-spring steps: auto, explicit or preview
+    /// Stepping of mass-spring: auto, explicit or preview
     #[arg(long, default_value = "auto", value_parser = stepping)]
     pub stepping: Stepping,
     /// Time between outputs to nodes.csv, which is by far the largest table, or "never" [default: as --every]
@@ -128,7 +129,7 @@ impl RunArguments {
         self.every.unwrap_or((1.0_f64 / 60.0).min(part))
     }
 
-    /// What goes into nodes.csv.
+    /// The content of nodes.csv.
     pub fn node_choice(&self) -> Result<NodeChoice, String> {
         let interval = self.nodes_every.unwrap_or(NodeInterval::EveryOutput);
         match interval {

@@ -1,4 +1,4 @@
-//! The headless program `cable`: where a cable rests, what happens to it over time, whether a scene is sound.
+//! The headless program `cable` finds where a cable rests and how it moves, and checks scenes.
 //!
 //! Exit codes: 0 answered, 1 no solution or not converged, 2 bad input, 74 could not write; 130 and 143 where SIGINT or SIGTERM ended a run.
 
@@ -35,5 +35,5 @@ fn main() -> ExitCode {
     }
 }
 
-/// What every command ends in.
+/// The result of every command.
 type Done = Result<(), Failure>;

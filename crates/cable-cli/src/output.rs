@@ -1,4 +1,4 @@
-//! Where words go, and what a failure exits with.
+//! This file writes the program's output and says with which code each failure exits.
 
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::path::PathBuf;

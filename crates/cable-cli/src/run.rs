@@ -1,4 +1,4 @@
-//! `cable run`: settles, then steps, and writes what it sees at every output time.
+//! `cable run` settles a scene, then steps it, and writes an answer at every output time.
 //!
 //! A thread of its own solves and writes; the first thread waits for it and for signals, so that one which arrives in the midst of a
 //! long step, or while a reader of standard output is slow, ends the run at once with what was written.
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use cable_core::files::{RunEnd, RunFolder};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
-use cable_core::record::{RunRequest, WriteError};
+use cable_core::record::{RobotColumns, RunRequest, RunStop, WriteError};
 use cable_core::solution::{Solution, TensionPeak, TensionPeaks, Warning, WarningKind};
 use cable_core::summary::summaries;
 use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
@@ -51,13 +51,13 @@ impl Shared {
         Some(guard.take()?.finish(end).map_err(Failure::File))
     }
 
-    /// Where it lies for now.
+    /// Its place for now.
     fn place(&self) -> Option<PathBuf> {
         self.lock().as_ref().map(|folder| folder.place().to_owned())
     }
 }
 
-/// Where the answers of a run go.
+/// Destinations of the answers of a run.
 struct Outputs {
     arguments: RunArguments,
     scene: Scene,
@@ -74,7 +74,7 @@ struct Outputs {
     run_peaks: Vec<RunPeaksEntry>,
 }
 
-/// What is said of a whole run.
+/// Totals of a whole run.
 struct Reached {
     /// Of the cable that is pulled hardest.
     peaks: RunPeaks,
@@ -231,8 +231,8 @@ pub fn run(a: RunArguments) -> Done {
     };
     let mut folder = RunFolder::create(&a.out, &scene, request, choice).map_err(Failure::File)?;
     // So that a run which is ended before its first instant has tables.
-    let with_robot = simulation.solution().robot.is_some();
-    folder.begin(&scene, with_robot).map_err(|e| Failure::Table(a.out.clone(), e))?;
+    let robot = RobotColumns::of(&simulation.solution());
+    folder.begin(&scene, robot).map_err(|e| Failure::Table(a.out.clone(), e))?;
     let shared = Shared(Arc::new(Mutex::new(Some(folder))));
     let printing = Arc::new(Mutex::new(()));
     let outputs = Outputs {
@@ -262,14 +262,14 @@ pub fn run(a: RunArguments) -> Done {
                 if let Some(signal) = signals.arrived() {
                     let place = shared.place();
                     // The tables are readable and marked as partial already, whether this can be noted or not.
-                    let _ = shared.finish(RunEnd::Partial(format!("interrupted by {}", signal.name())));
+                    let _ = shared.finish(RunEnd::Partial(RunStop::Interrupted { signal: signal.name().to_owned() }));
                     wait_for_line(&printing);
                     return Err(Failure::Interrupted(signal, place));
                 }
             }
             Err(RecvTimeoutError::Disconnected) => match solver.join() {
                 Err(panic) => {
-                    let _ = shared.finish(RunEnd::Partial("the solver panicked".to_owned()));
+                    let _ = shared.finish(RunEnd::Partial(RunStop::Panicked));
                     std::panic::resume_unwind(panic)
                 }
                 Ok(()) => return Err(Failure::Ended),
@@ -295,7 +295,7 @@ fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began:
     outputs.progress.end();
     let end = match &walked {
         Ok(()) => RunEnd::Complete,
-        Err(failure) => RunEnd::Partial(failure.to_string()),
+        Err(failure) => RunEnd::Partial(RunStop::Failed { message: failure.to_string() }),
     };
     let finished = outputs.folder.finish(end);
     // Why the run stopped matters more than a folder that could not be closed after it.
@@ -376,7 +376,7 @@ fn stopped(outputs: &mut Outputs, simulation: &Simulation, error: SolveError) ->
     let reached_s = simulation.time_s();
     if outputs.arguments.common.json
         && let Err(e) =
-            no_answer(&mut outputs.printer, simulation.model(), simulation.reason(), Some(reached_s), &error)
+            no_answer(&mut outputs.printer, simulation.model(), Some(simulation.reason()), Some(reached_s), &error)
     {
         return e;
     }

@@ -1,4 +1,4 @@
-//! Signals that ask a run to end: noted, not obeyed at once, so that it ends in order.
+//! Signals that ask a run to end are noted and not obeyed at once, so that it ends in order.
 
 use std::io;
 use std::sync::Arc;
@@ -43,7 +43,8 @@ impl Signal {
     }
 }
 
-/// Whether one has arrived. A second one ends the program at once, for when the disk does not answer.
+/// The signal that has arrived, if any. A second one ends the program at once, for when the disk
+/// does not answer.
 pub struct Signals(Arc<AtomicUsize>);
 
 impl Signals {

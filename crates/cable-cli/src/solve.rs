@@ -1,4 +1,4 @@
-//! `cable solve`, `cable check` and `cable schema`.
+//! This file holds the commands `cable solve`, `cable check` and `cable schema`.
 
 use std::io::IsTerminal;
 use std::path::Path;
@@ -6,6 +6,7 @@ use std::sync::mpsc::{RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
 use cable_core::model::Settings;
+use cable_core::solution::ModelReason;
 use cable_core::summary::{Setting, answer_with, end_stiffness, neglected_bending, settle_with_bending, summaries};
 use cable_core::{Model, Scene, Solution, SolveError, files};
 
@@ -35,7 +36,14 @@ pub fn settings(a: &Common) -> Settings {
 }
 
 /// Says, in JSON, that there is no answer; hands back the failure.
-pub fn no_answer(to: &mut Printer, model: Model, reason: &str, time_s: Option<f64>, error: &SolveError) -> Done {
+pub fn no_answer(
+    to: &mut Printer,
+    model: Model,
+    reason: Option<&ModelReason>,
+    time_s: Option<f64>,
+    error: &SolveError,
+) -> Done {
+    let reason = reason.map_or_else(|| "no answer".to_owned(), ToString::to_string);
     let error = error.to_string();
     to.json(&NoAnswer { time_s, model: model.name(), reason, converged: false, error })?;
     to.flush()
@@ -70,7 +78,7 @@ pub fn solve(arguments: &SolveArguments) -> Done {
         }
         Err(e) => {
             if let (true, cable_core::Error::Solve(e)) = (a.json, &e) {
-                no_answer(&mut out, a.model, "no answer", None, e)?;
+                no_answer(&mut out, a.model, None, None, e)?;
             }
             Err(Failure::from_core(&a.scene, e))
         }
@@ -159,7 +167,7 @@ fn check_run(path: &Path) -> Done {
         run.tables.events.len(),
     ))?;
     for remark in run.remarks() {
-        out.line(&remark)?;
+        out.line(&format!("{remark}."))?;
     }
     out.flush()
 }

@@ -1,4 +1,4 @@
-//! What is read first of an answer, as text.
+//! This file writes as text the figures of an answer that are read first.
 
 use std::fmt::Write as _;
 
@@ -116,7 +116,8 @@ fn percent(ratio: f64) -> String {
     format!("{:.4} %", 100.0 * ratio)
 }
 
-/// What a cable would be like with the bending stiffness that was left out; `most` is the greatest tension without it, N.
+/// The text on the changes that the neglected bending stiffness would make; `most` is the greatest
+/// tension without it, N.
 fn neglected(b: &NeglectedBending, most: f64) -> String {
     let range = match b.range_n_m2 {
         [Some(low), Some(high)] => format!(" ({low} to {high})"),
@@ -124,7 +125,10 @@ fn neglected(b: &NeglectedBending, most: f64) -> String {
     };
     let with = format!("with {}{range} N·m², likely of its preset,", b.bending_stiffness_n_m2);
     let Some(tension) = b.greatest_tension_n else {
-        return format!("{with} no answer was found: {}", b.unknown.as_deref().unwrap_or("not sought"));
+        return format!(
+            "{with} no answer was found: {}",
+            b.unknown.as_ref().map_or_else(|| "not sought".to_owned(), ToString::to_string)
+        );
     };
     let more = if most > 0.0 { format!(" ({:+.2} %)", 100.0 * (tension / most - 1.0)) } else { String::new() };
     let change = |what: &str, of: Option<f64>, unit: &str| {

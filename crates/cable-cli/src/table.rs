@@ -1,4 +1,4 @@
-//! An answer as text.
+//! This file writes an answer as text.
 
 use std::cmp::Ordering;
 use std::fmt::Write as _;
@@ -84,7 +84,7 @@ pub fn table(s: &Solution, figures: &Figures) -> String {
     t
 }
 
-/// What is known of the errors of a cable's figures.
+/// Appends the error estimates of a cable's figures.
 fn errors(t: &mut String, c: &cable_core::solution::CableSolution) {
     let Some(part) = c.error_estimate else {
         let _ = writeln!(t, "Estimated error   not known for `{}`", c.name);

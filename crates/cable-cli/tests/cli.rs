@@ -297,7 +297,8 @@ fn solve_tells_the_tightest_bend_and_the_highest_pressure() {
     }
 }
 
-/// What is read first is in JSON and text, and the tightest bend is the greatest curvature of the nodes.
+/// The figures that are read first are in JSON and text, and the tightest bend is the greatest
+/// curvature of the nodes.
 #[test]
 fn solve_compares_models_and_meshes() {
     let folder = tempfile::tempdir().unwrap();
@@ -361,7 +362,8 @@ fn solve_tells_what_is_read_first() {
         assert!(said.contains(line), "{line}\n{said}");
     }
     assert!(!said.contains("End stiffness"), "only when asked for");
-    // What is likely of the cable and was left out is told, unless nobody wants to wait for it.
+    // The bending stiffness that is likely of the cable and was left out is told, unless nobody
+    // wants to wait for it.
     assert!(said.contains("Bending neglected with 1.4 (0.1 to 20) N·m², likely of its preset"), "{said}");
     assert_eq!(s["neglected_bending"]["bending_stiffness_n_m2"], 1.4);
     assert!((s["neglected_bending"]["greatest_tension_n"].as_f64().unwrap() - 93.02).abs() < 0.01);

@@ -67,7 +67,8 @@ fn signal(child: &Child, name: &str) {
     assert!(done.success());
 }
 
-/// What another program makes of a table: every line ends, every record has a field for each column, every number is one. Rows.
+/// Reads a table as another program would: every line ends, every record has a field for each
+/// column, every number is one; returns the number of rows.
 fn foreign_rows(path: &Path) -> Result<usize, String> {
     let bytes = std::fs::read(path).map_err(|e| e.to_string())?;
     if bytes.last().is_some_and(|b| *b != b'\n') {
@@ -91,7 +92,8 @@ fn foreign_rows(path: &Path) -> Result<usize, String> {
     Ok(rows)
 }
 
-/// What another program, or this one, cannot read of a folder; a run that was killed before it came to its tables has none.
+/// Files of a folder that another program, or this one, cannot read; a run that was killed before
+/// it came to its tables has none.
 fn unreadable(folder: &Path) -> Vec<String> {
     let there = TABLES.iter().filter(|name| folder.join(name).exists());
     let mut out: Vec<String> =
@@ -153,10 +155,10 @@ fn interrupted(count: u32, name: &str) -> (usize, usize) {
         let faults = unreadable(&out);
         let run = files::load_run(&out, 4 << 30).unwrap();
         assert_eq!(run.is_complete(), Some(false), "{name} {k} is not marked as partial");
-        assert!(run.remarks().iter().any(|r| r.contains("partial")), "{:?}", run.remarks());
+        assert!(run.remarks().iter().any(|r| r.to_string().contains("partial")), "{:?}", run.remarks());
         if let Some(code) = code {
             assert_eq!(run.remarks().len(), 1, "what ends in order leaves nothing out: {:?}", run.remarks());
-            assert!(run.remarks()[0].contains(&format!("SIG{name}")), "{code}: {:?}", run.remarks());
+            assert!(run.remarks()[0].to_string().contains(&format!("SIG{name}")), "{code}: {:?}", run.remarks());
             assert!(said(&o).contains(&format!("SIG{name}")), "{}", said(&o));
         }
         if !faults.is_empty() {
@@ -350,7 +352,7 @@ fn what_a_user_laid_into_an_own_folder_is_not_touched() {
             assert_eq!(contents(folder.path()), before, "{name} {what}");
         }
     }
-    // What lies beside the run's own files is left where it is.
+    // Files beside the run's own are left where they are.
     let out = folder.path().join("notes");
     assert_eq!(short_run(&scene, &out).output().unwrap().status.code(), Some(0));
     std::fs::write(out.join("notes.txt"), "mine").unwrap();

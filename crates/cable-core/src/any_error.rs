@@ -6,7 +6,7 @@ use thiserror::Error;
 use crate::error::{SceneError, SolveError};
 use crate::files::FileError;
 use crate::units::UnitSystem;
-use crate::wording::Sentence;
+use crate::wording::{Sentence, serialize_in_si};
 
 /// Anything the three-line user can meet.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -22,12 +22,14 @@ pub enum Error {
     File(#[from] FileError),
 }
 
+serialize_in_si!(Error);
+
 impl Sentence for Error {
     fn sentence(&self, units: UnitSystem) -> String {
         match self {
             Self::Scene(e) => e.sentence(units),
             Self::Solve(e) => e.sentence(units),
-            Self::File(e) => e.to_string(),
+            Self::File(e) => e.sentence(units),
         }
     }
 }

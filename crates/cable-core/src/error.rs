@@ -1,29 +1,31 @@
-//! The errors of a scene and of a solve, by operation, with the numbers in them;
+//! The errors of a scene and of a solve are data, by operation, with their numbers;
 //! [`crate::wording`] makes the sentences.
 
+mod equilibrium_fault;
 mod no_equilibrium;
+mod shape_fault;
 mod span;
 mod unsupported;
 
-use thiserror::Error;
-
 use crate::math::Vec2;
 use crate::model_id::Model;
-use crate::solution::verification::Finding;
 use crate::units::Quantity;
+use crate::verification::Finding;
 
+pub use self::equilibrium_fault::EquilibriumFault;
 pub use self::no_equilibrium::{FailureCause, NoEquilibrium};
+pub use self::shape_fault::ShapeFault;
 pub use self::span::SpanError;
 pub use self::unsupported::{Unsupported, UnsupportedReach};
 
 /// Why a scene is refused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneError {
-    /// Where in the scene, for example `cables[0].length_m`.
+    /// Place in the scene, for example `cables[0].length_m`.
     pub path: String,
     /// The fault.
     pub fault: SceneFault,
-    /// Where in the text, when it came from a text.
+    /// Place in the text, when it came from a text.
     pub at: Option<TextPosition>,
 }
 
@@ -39,10 +41,29 @@ pub struct TextPosition {
 /// The fault with a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SceneFault {
-    /// Not TOML, or a wrong type.
+    /// Not TOML.
     Syntax {
         /// The parser's own words.
         message: String,
+    },
+    /// Bytes that are not UTF-8.
+    NotUtf8 {
+        /// The encoding that they look like.
+        encoding: Option<&'static str>,
+    },
+    /// A value of a wrong type.
+    Type {
+        /// What was found, in the reader's words.
+        found: String,
+        /// What is needed, in the reader's words.
+        needed: String,
+    },
+    /// A list with a wrong number of elements.
+    Elements {
+        /// Their number.
+        count: usize,
+        /// What is needed, in the reader's words.
+        needed: String,
     },
     /// A number out of range or not finite.
     Range {
@@ -63,11 +84,8 @@ pub enum SceneFault {
         /// The nearest known key.
         nearest: Option<String>,
     },
-    /// A key that must be there, or must not.
-    Shape {
-        /// What must be there or must not, and why; it holds no figure with a unit.
-        what: String,
-    },
+    /// A key, a name or a line that must be there, or must not.
+    Shape(ShapeFault),
     /// More elements than a scene may have.
     TooMany {
         /// Their number.
@@ -79,7 +97,7 @@ pub enum SceneFault {
     TooFewPoints {
         /// Their number.
         count: usize,
-        /// How many it needs.
+        /// The number it needs.
         least: usize,
     },
     /// A series with another number of values than of times.
@@ -126,9 +144,9 @@ pub enum SceneFault {
     },
     /// A motion that does not start where its support is.
     MotionStartsElsewhere {
-        /// Where the motion starts, m.
+        /// Start of the motion, m.
         motion_m: [f64; 2],
-        /// Where the support is, m.
+        /// Place of the support, m.
         support_m: [f64; 2],
     },
     /// An outline whose edges cross or touch.
@@ -140,7 +158,7 @@ pub enum SceneFault {
     },
     /// A name that nothing has.
     UnknownName {
-        /// What was looked for (cable, preset …).
+        /// Kind of the thing that was looked for (cable, preset …).
         what: &'static str,
         /// The name as given.
         name: String,
@@ -151,7 +169,7 @@ pub enum SceneFault {
     RouteInside {
         /// The obstacle.
         obstacle: String,
-        /// How deep inside it, m.
+        /// Depth inside it, m.
         depth_m: f64,
         /// Place, m.
         x_m: f64,
@@ -164,7 +182,7 @@ pub enum SceneFault {
         name: Box<str>,
         /// The obstacle.
         obstacle: Box<str>,
-        /// How deep the point is below the obstacle's surface, m.
+        /// Depth of the point below the obstacle's surface, m.
         depth_m: f64,
         /// The nearest place where the cable's centre line touches nothing, m.
         clear_m: Option<[f64; 2]>,
@@ -198,17 +216,14 @@ pub enum SceneFault {
     },
 }
 
-/// How a cable loses its tension.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+/// The way in which a cable loses its tension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TensionLoss {
     /// A free span hangs in one line and folds.
-    #[error("a span folds")]
     Fold,
     /// A free span has hardly any tension left.
-    #[error("a span goes slack")]
     Span,
-    /// What lies on an obstacle would have to push.
-    #[error("what lies goes slack")]
+    /// A cable that lies on an obstacle would have to push.
     Lay,
 }
 
@@ -219,9 +234,28 @@ pub struct Place {
     pub arc_length_m: f64,
     /// Its place, m.
     pub at_m: Vec2,
-    /// The nearest support or obstacle by kind and name, and its distance, m; none where there is
-    /// nothing.
-    pub near: Option<(String, f64)>,
+    /// The nearest support or obstacle; none where there is nothing.
+    pub near: Option<Near>,
+}
+
+/// The thing nearest to a place.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Near {
+    /// Its kind.
+    pub kind: NearKind,
+    /// Its name.
+    pub name: String,
+    /// Its distance, m; 0 where it touches.
+    pub distance_m: f64,
+}
+
+/// The kind of a thing near a place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NearKind {
+    /// A support.
+    Support,
+    /// An obstacle.
+    Obstacle,
 }
 
 /// Why a model has no answer.
@@ -235,7 +269,7 @@ pub enum SolveError {
         iterations: usize,
         /// Largest unbalanced force, N; NaN where none is known.
         residual_n: f64,
-        /// Where it acts.
+        /// Its place.
         place: Box<Place>,
     },
     /// The budget of work was spent before there was an answer.
@@ -248,7 +282,7 @@ pub enum SolveError {
         segments: usize,
         /// Largest unbalanced force, N.
         residual_n: f64,
-        /// Where it acts.
+        /// Its place.
         place: Box<Place>,
     },
     /// The only equilibrium found carries compression, which a cable cannot.
@@ -257,7 +291,7 @@ pub enum SolveError {
         model: Model,
         /// Its tension, N (negative).
         tension_n: f64,
-        /// Where.
+        /// Its place.
         place: Box<Place>,
     },
     /// The state found is not a stable equilibrium.
@@ -278,26 +312,26 @@ pub enum SolveError {
     },
     /// Nothing can hold the loads.
     NoRestingPlace {
-        /// What pulls it away.
+        /// The force that pulls it away.
         why: NoEquilibrium,
     },
     /// Two models were asked, and neither has an answer or a reason that is one for every model.
     Neither {
-        /// What says more of the scene.
+        /// The error that says more of the scene.
         told: Box<Self>,
-        /// What the other model said.
+        /// The other model's error.
         other: Box<Self>,
     },
     /// The model cannot answer this kind of scene.
     Unsupported {
         /// The model.
         model: Model,
-        /// What it lacks.
+        /// The missing capability.
         feature: Unsupported,
     },
     /// A number blew up.
     NonFinite {
-        /// Which quantity.
+        /// Name of the quantity.
         quantity: &'static str,
         /// Place on the cable, m.
         arc_length_m: f64,
@@ -326,19 +360,21 @@ pub enum SolveError {
     },
     /// A setting that no model can work by.
     Setting {
-        /// Which.
+        /// Its name.
         name: &'static str,
         /// Its value.
         value: f64,
-        /// The allowed range.
-        allowed: &'static str,
+        /// The least and the greatest that is allowed; infinite where there is no greatest.
+        allowed: [f64; 2],
+        /// The quantity.
+        quantity: Quantity,
     },
     /// A time step that cannot be taken.
     TimeStep {
         /// The step asked for, s.
         dt_s: f64,
-        /// The allowed range.
-        allowed: &'static str,
+        /// The longest step, s; infinite where there is none. It must be more than 0 s.
+        longest_s: f64,
     },
     /// The step was halved down to its floor and still failed.
     StepFailed {
@@ -350,7 +386,7 @@ pub enum SolveError {
         dt_s: f64,
         /// Largest unbalanced force, N; NaN where none is known.
         residual_n: f64,
-        /// Where it acts.
+        /// Its place.
         place: Box<Place>,
         /// Why the last try failed.
         cause: FailureCause,
@@ -392,7 +428,7 @@ mod tests {
                 Box::new(Place {
                     arc_length_m: bad,
                     at_m: Vec2::new(bad, 1.0),
-                    near: Some(("support `a`".to_owned(), bad)),
+                    near: Some(Near { kind: NearKind::Support, name: "a".to_owned(), distance_m: bad }),
                 })
             };
             let all = [

@@ -6,12 +6,11 @@ use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 use atomic_write_file::AtomicWriteFile;
-use thiserror::Error;
 
 use crate::error::SceneError;
 use crate::record::{
-    FileRecord, Fingerprint, MANIFEST_HEAD, Manifest, NodeChoice, Pages, RunRequest, RunStatus, RunTables, RunWriter,
-    WriteError, has_rows, read_run,
+    FileRecord, Fingerprint, LeftOut, MANIFEST_HEAD, Manifest, NodeChoice, Pages, ReadError, RobotColumns, RunRequest,
+    RunStatus, RunStop, RunTables, RunWriter, WriteError, has_rows, read_run,
 };
 use crate::scene::Scene;
 use crate::scene::file::MAX_TEXT_BYTES;
@@ -19,10 +18,9 @@ use crate::solution::Solution;
 
 /// Why a file could not be read or written. The data in memory is untouched, and so is the old
 /// file.
-#[derive(Clone, Debug, PartialEq, Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum FileError {
     /// It cannot be opened or read.
-    #[error("cannot read {path}: {reason}")]
     Read {
         /// The file.
         path: String,
@@ -32,37 +30,32 @@ pub enum FileError {
         reason: String,
     },
     /// It is a folder or a device.
-    #[error("cannot read {path}: it is not a file")]
     NotAFile {
-        /// What it is called.
+        /// Its name.
         path: String,
     },
     /// It is larger than what is asked for can be.
-    #[error("cannot read {path}: it has more than the {limit_bytes} bytes allowed")]
     TooLarge {
         /// The file.
         path: String,
         /// The limit, bytes.
         limit_bytes: u64,
     },
-    /// What it holds is not a scene that can be solved.
-    #[error("{path}: {fault}")]
+    /// Its content is not a scene that can be solved.
     Scene {
         /// The file.
         path: String,
         /// The fault.
         fault: Box<SceneError>,
     },
-    /// What it holds is not a table of a run.
-    #[error("{path}: {fault}")]
+    /// Its content is not a table of a run.
     Table {
         /// The folder.
         path: String,
         /// The fault, and in which table.
-        fault: String,
+        fault: Box<ReadError>,
     },
     /// No run may be written there.
-    #[error("no run is written into {path}: {fault}")]
     RunFolder {
         /// The folder.
         path: String,
@@ -70,7 +63,6 @@ pub enum FileError {
         fault: RunFolderFault,
     },
     /// It cannot be written.
-    #[error("cannot write {path}: {reason}")]
     Write {
         /// The file.
         path: String,
@@ -82,43 +74,32 @@ pub enum FileError {
 }
 
 /// Why a folder takes no run. Nothing in it was touched.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RunFolderFault {
     /// It is no run's.
-    #[error(
-        "it holds `{found}`, and no run of this program; choose a folder that is new or empty, or that of an earlier run"
-    )]
     Foreign {
         /// One of the things in it.
         found: String,
     },
     /// A symbolic link, which might lead anywhere.
-    #[error("it is a symbolic link, which is not followed; name the folder itself")]
     Link,
     /// A file, a device, a pipe.
-    #[error("it is not a folder")]
     NotAFolder,
     /// In the place of a file of the run there is something else.
-    #[error("`{name}` in it is a link, a folder or a device, not a file")]
     NotAFile {
-        /// What it is called.
+        /// Its name.
         name: String,
     },
     /// A file of the run is not as the run wrote it.
-    #[error(
-        "`{name}` in it was changed since its run wrote it, and would be lost; move it away, or choose another folder"
-    )]
     Changed {
         /// The file.
         name: String,
     },
     /// A run is being written there.
-    #[error("another run is being written there")]
     InUse,
     /// There are as many unfinished runs in it as have numbers.
-    #[error("it holds {count} unfinished runs; remove those that are not needed")]
     Full {
-        /// How many.
+        /// Their number.
         count: usize,
     },
 }
@@ -232,7 +213,7 @@ pub fn create_folder(path: impl AsRef<Path>) -> Result<(), FileError> {
     fs::create_dir_all(path).map_err(|e| FileError::write(path, &e))
 }
 
-/// What a run folder says about itself.
+/// Name of the file in which a run folder describes itself.
 const MANIFEST_NAME: &str = "run.toml";
 /// The scene of a run.
 const SCENE_NAME: &str = "scene.toml";
@@ -257,7 +238,7 @@ struct TableFile {
     pages: Pages,
 }
 
-/// What a [`TableFile`] held at some moment.
+/// The content of a [`TableFile`] at some moment.
 #[derive(Clone)]
 struct Mark {
     bytes: u64,
@@ -304,13 +285,13 @@ impl Write for TableFile {
     }
 }
 
-/// How a run ended.
+/// The end of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RunEnd {
     /// With everything that was asked.
     Complete,
     /// Before, for a reason.
-    Partial(String),
+    Partial(RunStop),
 }
 
 /// A run folder that is being written. What it holds is readable at any moment, and marked as
@@ -323,7 +304,7 @@ pub enum RunEnd {
 /// ends.
 pub struct RunFolder {
     folder: PathBuf,
-    /// Where the files are written: the folder, or `unfinished-N` in it.
+    /// The folder into which the files are written: the run's, or `unfinished-N` in it.
     place: PathBuf,
     manifest: Manifest,
     node_choice: NodeChoice,
@@ -399,8 +380,8 @@ impl RunFolder {
     ///
     /// # Errors
     /// As [`Self::push`].
-    pub fn begin(&mut self, scene: &Scene, with_robot: bool) -> Result<(), WriteError> {
-        self.write(|writer| writer.begin(scene, with_robot))
+    pub fn begin(&mut self, scene: &Scene, robot: RobotColumns) -> Result<(), WriteError> {
+        self.write(|writer| writer.begin(scene, robot))
     }
 
     fn append(
@@ -639,7 +620,7 @@ fn replace_if_begun(folder: &Path, manifest: Manifest) -> Result<Manifest, FileE
     }
     let target = folder.join(MANIFEST_NAME);
     fs::rename(from.join(MANIFEST_NAME), &target).map_err(|e| FileError::write(&target, &e))?;
-    // What is left of it is its lock.
+    // Only its lock is left of it.
     let _ = remove_files(&from, &[LOCK_NAME]).map(|()| fs::remove_dir(&from));
     sync_folder(folder);
     read_manifest(folder)
@@ -717,12 +698,26 @@ fn sync_folder(folder: &Path) {
     let _ = fs::File::open(folder).and_then(|folder| folder.sync_all());
 }
 
+/// What the reader of a run should know.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RunRemark {
+    /// It did not come to its end.
+    Partial {
+        /// Time of its last instant, s; None: it has none.
+        reached_s: Option<f64>,
+        /// Why it stopped, if it said so: else it was cut off, or is still being written.
+        stop: Option<RunStop>,
+    },
+    /// Part of a table was not read.
+    LeftOut(LeftOut),
+}
+
 /// A run as it lies in a folder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SavedRun {
     /// Its scene.
     pub scene: Scene,
-    /// What it says about itself; None for a run of a version before there was such a file.
+    /// Its manifest; None for a run of a version before there was such a file.
     pub manifest: Option<Manifest>,
     /// Its tables.
     pub tables: RunTables,
@@ -735,23 +730,15 @@ impl SavedRun {
         self.manifest.as_ref().map(|m| m.status == RunStatus::Complete)
     }
 
-    /// Returns what its reader should know, a sentence each: that it is partial, and what was left
-    /// out of its tables.
+    /// Returns what its reader should know: that it is partial, and what was left out of its
+    /// tables.
     #[must_use]
-    pub fn remarks(&self) -> Vec<String> {
-        let mut out = Vec::new();
-        if self.is_complete() == Some(false) {
-            let ended = self
-                .manifest
-                .as_ref()
-                .and_then(|m| m.ended.as_deref())
-                .unwrap_or("it was cut off, or is still being written");
-            let reached =
-                self.tables.history.time_s.last().map_or_else(|| "no instant".to_owned(), |t| format!("{t} s"));
-            out.push(format!("The run is partial, to {reached}: {ended}."));
-        }
-        out.extend(self.tables.left_out.iter().map(|left| format!("{left}.")));
-        out
+    pub fn remarks(&self) -> Vec<RunRemark> {
+        let partial = (self.is_complete() == Some(false)).then(|| RunRemark::Partial {
+            reached_s: self.tables.history.time_s.last().copied(),
+            stop: self.manifest.as_ref().and_then(|m| m.ended.clone()),
+        });
+        partial.into_iter().chain(self.tables.left_out.iter().cloned().map(RunRemark::LeftOut)).collect()
     }
 }
 
@@ -779,7 +766,7 @@ pub fn load_run(folder: impl AsRef<Path>, limit_bytes: u64) -> Result<SavedRun, 
     let [history, nodes, events] = TABLE_NAMES;
     let (history, nodes, events) = (read(history)?, read(nodes)?, read(events)?);
     let tables = read_run(history.as_slice(), nodes.as_slice(), events.as_slice())
-        .map_err(|fault| FileError::Table { path: folder.display().to_string(), fault: fault.to_string() })?;
+        .map_err(|fault| FileError::Table { path: folder.display().to_string(), fault: Box::new(fault) })?;
     Ok(SavedRun { scene, manifest, tables })
 }
 

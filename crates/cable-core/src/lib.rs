@@ -1,4 +1,4 @@
-//! 2D cable mechanics: where a cable goes, how hard it pulls, where it rubs.
+//! This library computes where a 2D cable goes, how hard it pulls and where it rubs.
 //!
 //! ```
 //! use cable_core::{Model, Scene, Simulation};
@@ -21,10 +21,10 @@
 //! | time | s |
 //!
 //! Dependencies between the modules point one way, without a loop:
-//! `math, model_id, units → solution → error → wording → scene → contact, catenary,
+//! `math, model_id, units → verification → error → solution → scene → contact, catenary,
 //! energy → problem → state → model → breakage, warnings, verify
-//! → simulation → timeline, analysis, summary, conformance`, and `record → files → any_error`
-//! beside them.
+//! → simulation → timeline, analysis, summary, conformance`, and
+//! `record → files → wording → any_error` beside them, before `simulation`.
 
 pub mod analysis;
 mod any_error;
@@ -49,6 +49,7 @@ pub mod state;
 pub mod summary;
 pub mod timeline;
 pub mod units;
+pub mod verification;
 pub mod verify;
 mod warnings;
 pub mod wording;

@@ -147,7 +147,7 @@ pub fn smaller(a: f64, b: f64) -> f64 {
     if b >= a || a.is_nan() { a } else { b }
 }
 
-/// Where a rigid body is and how it is turned.
+/// Position and rotation of a rigid body.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RigidPose {
     /// Its own origin, m.

@@ -1,7 +1,7 @@
-//! The names of the models: a user asks for one of them, answers and errors tell which one they
+//! The models have names: a user asks for one of them, answers and errors tell which one they
 //! come from.
 //!
-//! What each of them can do, and how it is built, stands in [`crate::model::registry`].
+//! The capabilities and the constructor of each stand in [`crate::model::registry`].
 
 use serde::{Deserialize, Serialize};
 

@@ -18,8 +18,8 @@ use crate::robot::Vehicle;
 use crate::scene::Scene;
 use crate::solution::ErrorEstimates;
 use crate::solution::{
-    CableSolution, Cost, Energy, Histories, MaxTension, Node, ShownEquilibrium, Solution, Warning, WarningCause,
-    WarningKind,
+    CableSolution, Cost, Energy, Histories, MaxTension, ModelReason, Node, ShownEquilibrium, Solution, Warning,
+    WarningCause, WarningKind,
 };
 use crate::state::State;
 use crate::verify::{Depth, Verification, Verifier};
@@ -46,20 +46,20 @@ const MIN_ELEMENTS: usize = 4;
 #[derive(Clone)]
 pub struct Simulation {
     scene: Scene,
-    /// What the user asked for.
+    /// The model that the user asked for.
     requested: Model,
     /// As it was built: `Auto` where two models may take turns.
     source: ModelSource,
     /// The one in use: of several cables the one that takes on most.
     model: Model,
-    reason: String,
+    reason: ModelReason,
     settings: Settings,
     cables: Vec<BreakableCable>,
     start: Option<Vec<BreakableCable>>,
     vehicle: Option<Vehicle>,
     /// The answers of the cables at the present instant.
     answers: Vec<CableSolution>,
-    /// Where the cables were when the run began.
+    /// Positions of the cables when the run began.
     initial_places: Vec<AlongCable>,
     warning_monitor: WarningMonitor,
     energy: Energy,
@@ -69,7 +69,7 @@ pub struct Simulation {
     verification: Verification,
 }
 
-/// What an instant that is read is part of.
+/// The series of instants that an instant belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Instant {
     /// The cables rest, and a run begins here.
@@ -104,7 +104,7 @@ impl Simulation {
     pub fn for_question(scene: Scene, model: Model, settings: Settings, question: Question) -> Result<Self, Error> {
         let problems = problems(&scene)?;
         if model != Model::Auto {
-            let reason = "asked for".to_owned();
+            let reason = ModelReason::Requested;
             return Self::from_source(scene, &problems, settings, model, ModelSource::Registered(model), reason);
         }
         let (chosen, reason) = auto::choose_for_all(&problems, question);
@@ -112,7 +112,7 @@ impl Simulation {
         let built = Self::from_source(scene.clone(), &problems, settings, chosen, source, reason);
         let mut this = match built {
             Err(Error::Solve(SolveError::Unsupported { feature, .. })) if chosen != Model::MOST_CAPABLE => {
-                let reason = format!("{chosen} cannot answer this scene: {feature}");
+                let reason = ModelReason::NoAnswer(Box::new(SolveError::Unsupported { model: chosen, feature }));
                 let source = ModelSource::Registered(Model::MOST_CAPABLE);
                 Self::from_source(scene, &problems, settings, Model::MOST_CAPABLE, source, reason)?
             }
@@ -140,7 +140,7 @@ impl Simulation {
             return Self::with_settings(scene, model, settings);
         }
         let problems = problems(&scene)?;
-        Self::from_source(scene, &problems, settings, source.model(), source, "asked for".to_owned())
+        Self::from_source(scene, &problems, settings, source.model(), source, ModelReason::Requested)
     }
 
     /// Builds every cable by one source, said to be that model for that reason.
@@ -150,7 +150,7 @@ impl Simulation {
         settings: Settings,
         model: Model,
         source: ModelSource,
-        reason: String,
+        reason: ModelReason,
     ) -> Result<Self, Error> {
         let cables = problems.iter().map(|p| BreakableCable::new(source.clone(), p.clone(), settings));
         let cables = cables.collect::<Result<Vec<_>, SolveError>>()?;
@@ -246,14 +246,14 @@ impl Simulation {
         self.settings
     }
 
-    /// What is known of the errors of the present answers.
+    /// Sets the error estimates of the present answers.
     pub(crate) fn set_error_estimates(&mut self, errors: impl Iterator<Item = ErrorEstimates>) {
         for (answer, errors) in self.answers.iter_mut().zip(errors) {
             (answer.error_estimate, answer.errors) = (errors.relative(answer), errors);
         }
     }
 
-    /// What else is to be said of the present instant.
+    /// Sets further warnings of the present instant.
     pub(crate) fn set_break_warnings(&mut self, warnings: Vec<Warning>) {
         self.warnings.retain(|w| w.kind != WarningKind::MayBreak);
         self.warnings.extend(warnings);
@@ -273,7 +273,7 @@ impl Simulation {
 
     /// Why that model.
     #[must_use]
-    pub fn reason(&self) -> &str {
+    pub fn reason(&self) -> &ModelReason {
         self.cables.iter().find_map(BreakableCable::reason).unwrap_or(&self.reason)
     }
 
@@ -319,9 +319,9 @@ impl Simulation {
                 }
                 _ => error,
             };
-            // What is said to have no resting place is not sought one by another model.
+            // A cable that is said to have no resting place is not asked of another model.
             let last = matches!(error, SolveError::NoRestingPlace { .. } | SolveError::Unsupported { .. });
-            let next = !last && self.switch_model(&error.to_string());
+            let next = !last && self.switch_model(&error);
             first = Some(match first {
                 Some(before) => SolveError::clearer(before, error),
                 None => error,
@@ -346,7 +346,7 @@ impl Simulation {
 
     /// Gives the scene to the next model, where the user left the choice; returns whether there was
     /// one.
-    fn switch_model(&mut self, why: &str) -> bool {
+    fn switch_model(&mut self, why: &SolveError) -> bool {
         if self.requested != Model::Auto {
             return false;
         }
@@ -360,7 +360,7 @@ impl Simulation {
         let source = ModelSource::Registered(Model::MOST_CAPABLE);
         let others = self.cables.iter().map(|c| c.rebuilt(source.clone()));
         let Ok(next) = others.collect::<Result<Vec<_>, SolveError>>() else { return false };
-        self.reason = format!("{} gave no sound answer: {why}", self.model);
+        self.reason = ModelReason::Unsound(Box::new(why.clone()));
         (self.cables, self.source, self.model) = (next, source, Model::MOST_CAPABLE);
         self.set_robot_pose();
         true
@@ -445,12 +445,12 @@ impl Simulation {
     }
 
     fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
-        let (longest, allowed) = match inertia {
-            Inertia::Dynamic => (MAX_STEP_S, "more than 0 and at most 1000 s"),
-            Inertia::QuasiStatic => (MAX_QUASI_STATIC_STEP_S, "more than 0 and at most 1e6 s"),
+        let longest_s = match inertia {
+            Inertia::Dynamic => MAX_STEP_S,
+            Inertia::QuasiStatic => MAX_QUASI_STATIC_STEP_S,
         };
-        if !(dt_s > 0.0 && dt_s <= longest) {
-            return Err(SolveError::TimeStep { dt_s, allowed });
+        if !(dt_s > 0.0 && dt_s <= longest_s) {
+            return Err(SolveError::TimeStep { dt_s, longest_s });
         }
         self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
         let velocities: Vec<_> = self.answers.iter().map(|a| AlongCable::velocities(&a.nodes)).collect();
@@ -469,7 +469,7 @@ impl Simulation {
             return Ok(());
         }
         let Err(error) = self.check_sound() else { return Ok(()) };
-        if !self.switch_model(&error.to_string()) {
+        if !self.switch_model(&error) {
             return Err(error);
         }
         self.settle_until_sound()
@@ -489,7 +489,7 @@ impl Simulation {
     /// `TimeStep` for a frame that is zero, negative or not a number; otherwise as [`Self::step`].
     pub fn advance_frame(&mut self, dt_s: f64) -> Result<f64, SolveError> {
         if !(dt_s > 0.0) {
-            return Err(SolveError::TimeStep { dt_s, allowed: "above 0 s" });
+            return Err(SolveError::TimeStep { dt_s, longest_s: f64::INFINITY });
         }
         let taken = if dt_s > MAX_FRAME_S { MAX_FRAME_S } else { dt_s };
         self.step(taken)?;
@@ -598,7 +598,7 @@ impl Simulation {
         Solution {
             time_s: self.time_s(),
             model: self.model,
-            reason: self.reason().to_owned(),
+            reason: self.reason().clone(),
             cables: self.answers.clone(),
             warnings,
             cost: self.cost,

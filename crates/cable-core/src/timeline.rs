@@ -63,7 +63,7 @@ pub struct TensionRanges {
 }
 
 impl TensionRanges {
-    /// Whether the runs beside this one part from it so far that its greatest tension depends on
+    /// True if the runs beside this one part from it so far that its greatest tension depends on
     /// small differences, of mesh and step and so of how it began: the ends of a range are more
     /// than [`RESOLVED_RATIO`] times apart.
     #[must_use]
@@ -75,9 +75,9 @@ impl TensionRanges {
 /// The greatest tensions of a cable in a run so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RunPeaks {
-    /// What they are, where and when.
+    /// The peaks, with place and time.
     pub peaks: TensionPeaks,
-    /// What is known of them; None where nothing is.
+    /// Their ranges; None where nothing is known.
     pub ranges: Option<TensionRanges>,
 }
 
@@ -125,7 +125,7 @@ impl Timeline {
         self.step.seconds()
     }
 
-    /// What is known of the run so far.
+    /// The peaks of the run so far and their ranges.
     #[must_use]
     pub fn monitor(&self) -> &RunMonitor {
         &self.monitor

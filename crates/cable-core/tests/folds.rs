@@ -278,7 +278,7 @@ fn ask(s: &Scene) -> (Told, f64) {
     let told = match found {
         Err(e) => Told::Refused(e.to_string()),
         Ok(answer) => match faults(s, &answer) {
-            faults if faults.is_empty() => Told::Right(answer.model, answer.reason.clone()),
+            faults if faults.is_empty() => Told::Right(answer.model, answer.reason.to_string()),
             faults => Told::Wrong(answer.model, faults),
         },
     };

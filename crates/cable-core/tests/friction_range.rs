@@ -26,7 +26,7 @@ fn find(ask: &FrictionQuery) -> FrictionRange {
 fn a_hand_that_draws_pulls_by_the_capstan_law_of_each_friction() {
     let ask = ask(Model::Spans, 2.0);
     let found = find(&ask);
-    assert_eq!(found.ended, None);
+    assert_eq!(found.failure, None);
     let cable = &ask.scene.cables[0];
     let weight = cable.linear_density_kg_per_m * ask.scene.environment.gravity_m_per_s2;
     let radius = 0.5 + 0.5 * cable.diameter_m;
@@ -87,7 +87,7 @@ fn what_a_hand_did_is_repeated() {
         one.step_quasi_static(1.0 / 60.0).unwrap();
     }
     let found = find(&ask);
-    assert_eq!(found.ended, None);
+    assert_eq!(found.failure, None);
     assert!((found.most_n[1] - one.largest_n([0])).abs() < 1e-6 * still, "{:?} {}", found.most_n, one.largest_n([0]));
     let pulled = found.over_time.iter().map(|b| b.high_n).fold(0.0, f64::max);
     let [low, _, high] = found.most_n;

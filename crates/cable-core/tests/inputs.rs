@@ -407,7 +407,7 @@ fn what_a_first_model_says_is_told_at_the_scale_of_the_scene() {
     let slope = Shape::Terrain { points_m: vec![[-6_275.499_125, -3_115.937_886_4], [12_550.998_25, 6_231.875_772_8]] };
     scene.obstacles = vec![Obstacle { name: "slope".into(), shape: slope, friction: Some(0.0) }];
     let said = match Simulation::new(scene, Model::Auto).unwrap().settle() {
-        Ok(answer) => answer.reason,
+        Ok(answer) => answer.reason.to_string(),
         Err(error) => error.to_string(),
     };
     println!("{said}");

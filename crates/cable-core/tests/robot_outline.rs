@@ -7,7 +7,7 @@ use cable_core::contact::outline::Outline;
 use cable_core::record::Fingerprint;
 use cable_core::robot::{Going, RobotReport};
 use cable_core::scene::{Shape, catalog};
-use cable_core::solution::{ContactReport, WarningKind};
+use cable_core::solution::{ContactReport, ModelReason, WarningKind};
 use cable_core::verify::Law;
 use cable_core::{Model, Obstacle, Scene, Simulation, SolveError, Vec2};
 
@@ -144,7 +144,7 @@ fn lying_over_the_robot_the_forces_balance() {
     over.cables[0].supports[0].at_m = Some([18.0, 3.0]);
     let mut s = start(over);
     assert_eq!(s.model(), Model::Fem);
-    assert!(s.reason().contains("robot"), "{}", s.reason());
+    assert_eq!(s.reason(), &ModelReason::TouchesRobot);
     drive(&mut s, 0.0, 6.0);
     let (answer, r) = (s.solution(), robot(&s));
     let cable = &answer.cables[0];

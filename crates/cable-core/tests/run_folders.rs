@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use cable_core::files::{FileError, RunEnd, RunFolder, RunFolderFault, SavedRun, load_run};
-use cable_core::record::{NodeChoice, RunRequest};
+use cable_core::record::{NodeChoice, RobotColumns, RunRequest, RunStop};
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene, Simulation, Solution};
 
@@ -23,7 +23,7 @@ fn begin(folder: &Path, scene: &Scene) -> Result<RunFolder, FileError> {
 
 fn write(folder: &Path, (scene, solution): &(Scene, Solution), end: RunEnd) -> std::path::PathBuf {
     let mut run = begin(folder, scene).unwrap();
-    run.begin(scene, false).unwrap();
+    run.begin(scene, RobotColumns::LeftOut).unwrap();
     run.push_last(solution).unwrap();
     run.finish(end).unwrap()
 }
@@ -49,12 +49,12 @@ fn a_run_is_replaced_by_a_complete_one_only() {
     assert_eq!(write(&out, &first, RunEnd::Complete), out);
     assert_eq!(names(&out), WHOLE);
     for k in 1..=3 {
-        let place = write(&out, &second, RunEnd::Partial("a test".to_owned()));
+        let place = write(&out, &second, RunEnd::Partial(RunStop::Failed { message: "a test".to_owned() }));
         assert_eq!(place, out.join(format!("unfinished-{k}")), "none of them is lost");
         assert_eq!((read(&out).scene, read(&out).is_complete()), (first.0.clone(), Some(true)));
         let partial = read(&place);
         assert_eq!((&partial.scene, partial.is_complete()), (&second.0, Some(false)));
-        assert!(partial.remarks()[0].contains("a test"), "{:?}", partial.remarks());
+        assert!(partial.remarks()[0].to_string().contains("a test"), "{:?}", partial.remarks());
     }
     // One of them holds something that no run wrote.
     std::fs::write(out.join("unfinished-2/scene.toml"), "mine").unwrap();
@@ -76,7 +76,7 @@ fn a_replacement_that_stops_anywhere_is_gone_on_with() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("run");
         write(&out, &first, RunEnd::Complete);
-        let from = write(&out, &second, RunEnd::Partial("replaced".to_owned()));
+        let from = write(&out, &second, RunEnd::Partial(RunStop::Failed { message: "replaced".to_owned() }));
         let edit = |path: &Path, from: &str, to: &str| {
             let text = std::fs::read_to_string(path).unwrap();
             assert!(text.contains(from), "{text}");

@@ -1,18 +1,22 @@
 //! The sentences of warnings, errors and verdicts, in SI and in US units.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
-use cable_core::Model;
 use cable_core::error::{
-    FailureCause, NoEquilibrium, Place, SceneError, SceneFault, SolveError, SpanError, TensionLoss, TextPosition,
-    Unsupported,
+    EquilibriumFault, FailureCause, Near, NearKind, NoEquilibrium, Place, SceneError, SceneFault, ShapeFault,
+    SolveError, SpanError, TensionLoss, TextPosition, Unsupported,
 };
+use cable_core::files::{RunFolderFault, RunRemark};
 use cable_core::math::Vec2;
-use cable_core::solution::verification::{Finding, Law, Verification};
+use cable_core::record::{LeftOut, ReadError, RowFault, RunStop, WriteError, WrittenNumber};
+use cable_core::scene::import::{ImportChange, ImportFault};
 use cable_core::solution::{
-    EndMove, Histories, MeanTension, ShownEquilibrium, SlideReason, Warning, WarningCause, WarningKind,
+    EndMove, Histories, LikelyBending, MeanTension, ModelReason, ShownEquilibrium, SlideReason, TakenStiffness,
+    Warning, WarningCause, WarningKind,
 };
 use cable_core::units::{Quantity, UnitSystem};
+use cable_core::verification::{Finding, Law, NotChecked, Verification};
 use cable_core::wording::Sentence;
+use cable_core::{FileError, Model};
 
 /// A warning of every cause.
 fn warnings() -> Vec<Warning> {
@@ -106,7 +110,13 @@ fn warnings() -> Vec<Warning> {
 fn errors() -> Vec<Box<dyn Sentence>> {
     let at_m = Vec2::new(1.0, -2.0);
     let model = Model::Fem;
-    let place = || Box::new(Place { arc_length_m: 3.2, at_m, near: Some(("support `a`".to_owned(), 0.5)) });
+    let place = || {
+        Box::new(Place {
+            arc_length_m: 3.2,
+            at_m,
+            near: Some(Near { kind: NearKind::Support, name: "a".to_owned(), distance_m: 0.5 }),
+        })
+    };
     let name = |name: &str| name.to_owned();
     let allowed = |low, high, quantity| SceneFault::Range { value: -3.048, allowed: [low, high], quantity };
     let finding = Finding {
@@ -178,12 +188,82 @@ fn errors() -> Vec<Box<dyn Sentence>> {
     ]
 }
 
+/// A reason for a model of every form with a figure, what was not checked, and the faults of files,
+/// imports and keys.
+fn others() -> Vec<Box<dyn Sentence>> {
+    let name = |name: &str| name.to_owned();
+    let model = Model::Spans;
+    let refusal = || {
+        let feature = Unsupported::Obstacle { arc_length_m: 3.2 };
+        Box::new(SolveError::Unsupported { model, feature })
+    };
+    let taken = || vec![TakenStiffness { cable: name("main"), bending_stiffness_n_m2: 1.4 }];
+    let bending = |bending| ModelReason::Bending { reason: Box::new(ModelReason::SupportsOnly), bending };
+    let fault = SceneFault::BeyondEnd { arc_length_m: 12.0, length_m: 10.0 };
+    let scene = Box::new(SceneError { path: name("loads[0]"), fault, at: None });
+    let unverified = |finding| {
+        let feature = Unsupported::Unverified { finding, arc_length_m: 3.2, at_m: Vec2::new(1.0, -2.0) };
+        SolveError::Unsupported { model, feature }
+    };
+    vec![
+        Box::new(ModelReason::Requested),
+        Box::new(ModelReason::NoAnswer(refusal())),
+        Box::new(bending(LikelyBending::Taken(taken()))),
+        Box::new(bending(LikelyBending::TakenWhereItMatters(taken()))),
+        Box::new(bending(LikelyBending::NoAnswer(refusal()))),
+        Box::new(NotChecked::MovingBalance { cable: name("main") }),
+        Box::new(NotChecked::SelfContact { cable: name("main") }),
+        Box::new(unverified(EquilibriumFault::LoadOutOfKink)),
+        Box::new(SolveError::TimeStep { dt_s: -1.0, longest_s: f64::INFINITY }),
+        Box::new(SolveError::TimeStep { dt_s: 2e3, longest_s: 1e3 }),
+        Box::new(SolveError::Setting {
+            name: "hand stiffness",
+            value: 0.0,
+            allowed: [1e-3, 1e9],
+            quantity: Quantity::ForcePerLength,
+        }),
+        Box::new(SolveError::Setting {
+            name: "tolerance",
+            value: 0.0,
+            allowed: [1e-14, f64::INFINITY],
+            quantity: Quantity::Number,
+        }),
+        Box::new(SceneFault::Type { found: name("a string"), needed: name("a number") }),
+        Box::new(SceneFault::Shape(ShapeFault::UnknownWord {
+            word: name("pully"),
+            known: &["fixed", "pulley", "free"],
+            nearest: Some(name("pulley")),
+        })),
+        Box::new(SceneFault::Shape(ShapeFault::MissingForKind { kind: "clamped" })),
+        Box::new(FileError::Scene { path: name("a.toml"), fault: scene }),
+        Box::new(FileError::Table {
+            path: name("run"),
+            fault: Box::new(ReadError::Row {
+                table: "nodes.csv",
+                line: 3,
+                fault: RowFault::NotANumber { column: name("x_m"), text: name("one") },
+            }),
+        }),
+        Box::new(FileError::RunFolder { path: name("run"), fault: RunFolderFault::Full { count: 100 } }),
+        Box::new(WriteError::NonFinite {
+            table: "nodes.csv",
+            number: Box::new(WrittenNumber::Node { column: "x_m", node: 4, cable: name("main") }),
+            time_s: 1.5,
+        }),
+        Box::new(RunRemark::Partial { reached_s: Some(1.5), stop: None }),
+        Box::new(RunRemark::Partial { reached_s: None, stop: Some(RunStop::Interrupted { signal: name("SIGTERM") }) }),
+        Box::new(RunRemark::LeftOut(LeftOut::IncompleteLine { table: "nodes.csv", bytes: 17 })),
+        Box::new(ImportChange::PointsMerged { count: 2 }),
+        Box::new(ImportFault::Row { line: 3, text: name("1 2 3") }),
+    ]
+}
+
 /// Every sentence as it stands in `sentences.txt`, in SI and in US units. After a change of words
 /// `UPDATE_SENTENCES=1 cargo test` writes it anew.
 #[test]
 fn sentences_are_those_on_file_in_both_systems() {
     let told: Vec<Box<dyn Sentence>> =
-        warnings().into_iter().map(|w| Box::new(w) as Box<dyn Sentence>).chain(errors()).collect();
+        warnings().into_iter().map(|w| Box::new(w) as Box<dyn Sentence>).chain(errors()).chain(others()).collect();
     let both = |of: &dyn Sentence| [UnitSystem::Si, UnitSystem::Us].map(|units| of.sentence(units) + "\n").concat();
     let found = told.iter().map(|of| both(&**of)).collect::<Vec<_>>().join("\n");
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/sentences.txt");
@@ -212,7 +292,7 @@ fn every_kind_of_warning_has_a_sentence_and_is_read_back_from_its_data() {
 #[test]
 fn no_sentence_mixes_the_systems() {
     let told: Vec<Box<dyn Sentence>> =
-        warnings().into_iter().map(|w| Box::new(w) as Box<dyn Sentence>).chain(errors()).collect();
+        warnings().into_iter().map(|w| Box::new(w) as Box<dyn Sentence>).chain(errors()).chain(others()).collect();
     for of in told {
         for (units, foreign) in [
             (UnitSystem::Us, ["N", "m", "N/m", "J", "m/s", "kg/m"].as_slice()),

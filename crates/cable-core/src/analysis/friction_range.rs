@@ -10,6 +10,7 @@
 use std::ops::ControlFlow;
 
 use crate::any_error::Error;
+use crate::error::SolveError;
 use crate::math::{Point, vec2};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
@@ -35,7 +36,7 @@ pub struct TensionRange {
     pub high_n: f64,
 }
 
-/// What less and more friction does.
+/// The effect of less and of more friction.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FrictionRange {
     /// Of each cable: along it, at the end of the time asked for.
@@ -44,8 +45,17 @@ pub struct FrictionRange {
     pub over_time: Vec<TensionRange>,
     /// Largest tension at the end with the least, the likely and the most friction, N.
     pub most_n: [f64; 3],
-    /// Up to when all three could be followed, s, and why no further.
-    pub ended: Option<(f64, String)>,
+    /// The failure before whose time all three could be followed.
+    pub failure: Option<FrictionFailure>,
+}
+
+/// The failure of a run with less or more friction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrictionFailure {
+    /// End of the step that failed, s.
+    pub time_s: f64,
+    /// The error.
+    pub error: SolveError,
 }
 
 /// The question: which scene, by what, and for how long.
@@ -59,22 +69,22 @@ pub struct FrictionQuery {
     pub settings: Settings,
     /// Least and greatest friction over that of the scene.
     pub factors: [f64; 2],
-    /// How long time runs, s; 0 asks for the resting place.
+    /// Duration of the motion, s; 0 asks for the resting place.
     pub span_s: f64,
-    /// What a hand did meanwhile, in order of time; what it did at 0 s is how the scene begins.
+    /// Actions of a hand meanwhile, in order of time; those at 0 s are how the scene begins.
     pub hands: Vec<Action>,
 }
 
-/// What a hand did.
+/// An action of a hand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Action {
     /// When, s.
     pub time_s: f64,
-    /// What.
+    /// Its kind.
     pub what: ActionKind,
 }
 
-/// What a hand moves.
+/// A thing that a hand moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ActionKind {
     /// A support is then at a place.
@@ -167,8 +177,8 @@ pub fn friction_range(
             let dt_s = end - run.time_s();
             if slow { run.step_quasi_static(dt_s) } else { run.step(dt_s) }
         });
-        if let Err(why) = stepped {
-            out.ended = Some((end, why.to_string()));
+        if let Err(error) = stepped {
+            out.failure = Some(FrictionFailure { time_s: end, error });
             break;
         }
         answers = runs.iter().map(Simulation::solution).collect();

@@ -22,7 +22,7 @@ use crate::solution::{CableSolution, Node, Solution};
 /// Places nearer than this share of the cable's length are the same.
 const PLACE_TOLERANCE: f64 = 1e-9;
 
-/// Which end of the cable (of the piece of it that holds the place) the sum begins at.
+/// The end of the cable (of the piece of it that holds the place) at which the sum begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StartEnd {
     /// The one with less tension.
@@ -34,7 +34,7 @@ pub enum StartEnd {
     End,
 }
 
-/// What adds to a tension or takes from it.
+/// A cause that adds to a tension or takes from it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cause {
     /// Tension at the end the sum begins at.
@@ -56,9 +56,9 @@ pub enum Cause {
 /// One term of the sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contribution {
-    /// What it is of.
+    /// Its cause.
     pub cause: Cause,
-    /// What it adds, N; below 0 it takes away.
+    /// The tension it adds, N; below 0 it takes away.
     pub tension_n: f64,
     /// Tension beyond over tension before, on the way from the end: the wrap's factor e^{±μφ} for a
     /// contact. None where there is no such place, or no tension before it.
@@ -69,11 +69,11 @@ pub struct Contribution {
 /// and rest follow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TensionBudget {
-    /// Where, m of arc length.
+    /// Its place, m of arc length.
     pub arc_length_m: f64,
     /// Tension there, N: the sum of the contributions.
     pub tension_n: f64,
-    /// Where the sum begins, m of arc length.
+    /// The place at which the sum begins, m of arc length.
     pub from_m: f64,
     /// The contributions.
     pub contributions: Vec<Contribution>,
@@ -82,9 +82,9 @@ pub struct TensionBudget {
 /// Something that changes the tension at a place.
 struct LocalSource {
     cause: Cause,
-    /// Where it begins and ends, m.
+    /// Its start and end, m.
     extent: [f64; 2],
-    /// How much it is known to change the tension, N.
+    /// The change of tension that is known, N.
     jump: f64,
     /// Tensions before and after it along growing arc length, N, where the answer has them.
     sides: Option<[f64; 2]>,
@@ -93,7 +93,7 @@ struct LocalSource {
     passed: Option<[f64; 2]>,
 }
 
-/// What is spread along a cable.
+/// A load spread along a cable.
 struct DistributedLoad {
     weight: Vec2,
     wind: Vec2,

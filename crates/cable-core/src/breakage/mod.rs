@@ -32,7 +32,7 @@ use crate::model::input_filter::default_hand_stiffness;
 use crate::model::{Inertia, Mechanics, Model, ModelSource, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost, MomentumAccount, TensionPeak, TensionPeaks};
+use crate::solution::{CableSolution, Cost, ModelReason, MomentumAccount, TensionPeak, TensionPeaks};
 use crate::state::State;
 
 /// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the
@@ -94,9 +94,9 @@ pub(crate) struct BreakableCable {
     pieces: Vec<Piece>,
     breaks: Vec<Break>,
     dragged: Vec<Option<Vec2>>,
-    /// Which of them a hand holds by a spring.
+    /// True for those that a hand holds by a spring.
     pulled: Vec<bool>,
-    /// Where the outline of the robot was led.
+    /// Pose to which the outline of the robot was led.
     robot_pose: Option<RigidPose>,
     /// The greatest tensions since they were last forgotten, in motion.
     peaks: Option<TensionPeaks>,
@@ -121,13 +121,13 @@ struct Piece {
     account: Option<MomentumAccount>,
 }
 
-/// Where a piece breaks.
+/// The break of a piece.
 struct BreakPoint {
     /// When, s.
     time_s: f64,
-    /// Where the piece then is.
+    /// The state of the piece then.
     state: State,
-    /// Where on it.
+    /// The place on it.
     at: rupture::Rupture,
 }
 
@@ -140,7 +140,7 @@ enum Grasp {
     Spring,
 }
 
-/// What became of a piece in a step.
+/// The outcome of a step of a piece.
 enum StepOutcome {
     Intact,
     Broke(Box<BreakPoint>),
@@ -194,7 +194,7 @@ impl BreakableCable {
     }
 
     /// Why it is that model, where that changed on the way.
-    pub fn reason(&self) -> Option<&str> {
+    pub fn reason(&self) -> Option<&ModelReason> {
         self.pieces.iter().find_map(|p| p.mechanics.reason())
     }
 
@@ -405,7 +405,7 @@ impl BreakableCable {
 
     /// Gives the whole cable to the next model: see
     /// [`Mechanics::fall_back`](crate::model::Mechanics::fall_back).
-    pub(crate) fn fall_back(&mut self, why: &str) -> bool {
+    pub(crate) fn fall_back(&mut self, why: &SolveError) -> bool {
         match self.pieces.as_mut_slice() {
             [whole] if self.breaks.is_empty() => whole.mechanics.fall_back(why),
             _ => false,
@@ -441,7 +441,7 @@ impl BreakableCable {
     pub(crate) fn restore(&mut self, kept: &Self) {
         let mut own: Vec<Option<OwnedResources>> = self.pieces.iter_mut().map(|p| p.mechanics.lend()).collect();
         own.resize_with(kept.pieces.len(), || None);
-        // What broke since has nothing of the whole.
+        // Pieces of a break since then have nothing of the whole.
         let same = self.breaks.len() == kept.breaks.len();
         *self = kept.checkpoint();
         for (piece, own) in self.pieces.iter_mut().zip(own) {
@@ -531,7 +531,7 @@ impl Piece {
         sum: &mut StepReport,
     ) -> Result<StepOutcome, SolveError> {
         match (inertia, breaking_n) {
-            (Inertia::Dynamic, breaking_n) => self.advance_dynamic(dt_s, breaking_n.unwrap_or(f64::INFINITY), sum),
+            (Inertia::Dynamic, breaking_n) => self.advance_dynamic(dt_s, breaking_n, sum),
             (Inertia::QuasiStatic, Some(breaking_n)) => self.advance_quasi_static(dt_s, breaking_n, sum),
             (Inertia::QuasiStatic, None) => {
                 self.gauge.forget();
@@ -544,7 +544,12 @@ impl Piece {
 
     /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which
     /// that happens is taken again in parts, to have the cable where it breaks.
-    fn advance_dynamic(&mut self, dt_s: f64, breaking_n: f64, sum: &mut StepReport) -> Result<StepOutcome, SolveError> {
+    fn advance_dynamic(
+        &mut self,
+        dt_s: f64,
+        breaking_n: Option<f64>,
+        sum: &mut StepReport,
+    ) -> Result<StepOutcome, SolveError> {
         let looks = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
         if looks > 1.0 && self.unwatched_steps == 0 {
             let before = (self.mechanics.boxed_clone(), self.gauge.clone());
@@ -562,7 +567,7 @@ impl Piece {
         for _ in 0..looks as usize {
             let state = self.mechanics.state();
             let step_s = if left_s < 1.5 * h { left_s } else { h };
-            let breaking_n = if self.unwatched_steps > 0 { f64::INFINITY } else { breaking_n };
+            let breaking_n = breaking_n.filter(|_| self.unwatched_steps == 0);
             let done = self.gauged_step(step_s, breaking_n);
             self.refresh_answer();
             self.accumulate_momentum();
@@ -584,9 +589,11 @@ impl Piece {
         Ok(StepOutcome::Intact)
     }
 
-    /// A step with inertia in which a mean of so much is looked for, N.
-    fn gauged_step(&mut self, dt_s: f64, breaking_n: f64) -> Result<StepReport, SolveError> {
-        let limit = Limit { tension_n: breaking_n, from_s: self.unwatched_until_s, within_m: self.may_break_within() };
+    /// A step with inertia in which a mean of so much is looked for, N; None: the cable cannot
+    /// break.
+    fn gauged_step(&mut self, dt_s: f64, breaking_n: Option<f64>) -> Result<StepReport, SolveError> {
+        let tension_n = breaking_n.unwrap_or(f64::INFINITY);
+        let limit = Limit { tension_n, from_s: self.unwatched_until_s, within_m: self.may_break_within() };
         self.gauge.watch(limit);
         self.mechanics.advance_gauged(dt_s, Inertia::Dynamic, &mut self.gauge)
     }

@@ -22,13 +22,13 @@ pub(super) struct CablePart {
 /// A place to cut at, and what is known of the cable there.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cut<'a> {
-    /// Where, m on the whole cable.
+    /// Its place, m on the whole cable.
     pub at: f64,
     /// Supports and loads as near as this (m) sit at the cut.
     pub near: f64,
     /// The cable gives way on the side of greater arc length of what sits at the cut.
     pub after: bool,
-    /// Where each support of the scene sits now, m on the whole cable.
+    /// Present place of each support of the scene, m on the whole cable.
     pub support_arc_lengths: &'a [f64],
 }
 
@@ -56,7 +56,7 @@ impl CablePart {
         if self.to - cut.at <= cut.near {
             return vec![self.detached(self.supports.len() - 1, problem, cut)];
         }
-        // What sits at the cut stays with the side that does not give way.
+        // A support or load at the cut stays with the side that does not give way.
         let before = |s: f64| s < cut.at - cut.near || (s <= cut.at + cut.near && cut.after);
         let last = self.supports.len() - 1;
         let (mut left, mut right) = (Vec::new(), Vec::new());

@@ -8,7 +8,7 @@ use crate::math::Vec2;
 use crate::solution::Node;
 use crate::state::State;
 
-/// Where, and when within the step.
+/// Place of a rupture, and its time within the step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rupture {
     /// Index of the node of the later instant.

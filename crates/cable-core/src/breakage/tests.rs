@@ -173,8 +173,8 @@ fn struck(held_s: f64) -> Scene {
     scene
 }
 
-/// What lasts shorter than the breaking time does not break, however high it is, and is told
-/// whichever instants are looked at.
+/// A tension that lasts shorter than the breaking time does not break, however high it is, and is
+/// told whichever instants are looked at.
 #[test]
 fn a_jerk_between_two_looks_is_told_and_breaks_what_it_holds() {
     for step_s in [1.0 / 60.0, 1.0 / 30.0, 1.0 / 240.0] {
@@ -244,7 +244,7 @@ fn a_mass_on_a_cable_breaks_it_into_two_pieces_that_go_on() {
         let length: f64 = strand.pieces.iter().map(|p| p.part.length()).sum();
         assert!((length - 10.0).abs() < 1e-12);
         assert_eq!(strand.pieces.iter().filter(|p| p.part.supports.contains(&Some(1))).count(), 1);
-        // What is free falls: the next frames change its momentum by its weight.
+        // A free piece falls: the next frames change its momentum by its weight.
         assert_eq!(answer.cables[0].supports.len(), 3);
         assert_eq!(answer.cables[0].pieces().map(<[_]>::len).sum::<usize>(), answer.cables[0].nodes.len());
     }

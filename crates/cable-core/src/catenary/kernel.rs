@@ -63,7 +63,7 @@ fn tension(h: f64, v: f64) -> f64 {
     if t < MIN_FORCE { MIN_FORCE } else { t }
 }
 
-/// What a piece is with a force at its start.
+/// A piece and its derivatives under a force at its start.
 struct Pulled {
     va: f64,
     vb: f64,
@@ -187,7 +187,7 @@ const CLOSURE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
 /// Closure accepted when round-off lets it get no better (stiff, nearly taut spans).
 const ACCEPTED_CLOSURE: f64 = 1e-11;
 
-/// Where Newton ended.
+/// The end of a Newton iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Minimum {
     /// Force at the start, frame of the load.
@@ -202,7 +202,7 @@ pub(super) struct Minimum {
     pub converged: bool,
 }
 
-/// Whether a horizontal force is known to be positive.
+/// Knowledge of the sign of a horizontal force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum HorizontalForce {
     /// It may have either sign.

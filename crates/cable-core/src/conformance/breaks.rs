@@ -1,4 +1,4 @@
-//! Laws of cables that break.
+//! These laws hold for cables that break.
 
 use super::measure::{FRAME_S, span};
 use crate::any_error::Error;

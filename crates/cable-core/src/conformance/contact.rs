@@ -1,4 +1,4 @@
-//! Laws of a cable that lies on a smooth pipe.
+//! These laws hold for a cable that lies on a smooth pipe.
 
 use super::measure::{reactions_n, settle, span, weight_n};
 use crate::any_error::Error;

@@ -1,4 +1,4 @@
-//! Laws of cables that lie on something rough.
+//! These laws hold for cables that lie on something rough.
 
 use super::contact::{PIPE_AT, draped};
 use super::measure::{dead_load, settle, span, weight_n};

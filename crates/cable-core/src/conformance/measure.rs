@@ -1,4 +1,4 @@
-//! Scenes and measures that several laws share.
+//! This file holds scenes and measures that several laws share.
 
 use crate::any_error::Error;
 use crate::model_id::Model;

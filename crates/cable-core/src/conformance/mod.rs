@@ -29,11 +29,11 @@ use crate::model_id::Model;
 /// One property of a model, and how well it holds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// What was tested.
+    /// Name of the check.
     pub name: &'static str,
-    /// How far from true, relative.
+    /// Error, relative.
     pub error: f64,
-    /// How far is allowed.
+    /// Allowed error.
     pub tolerance: f64,
 }
 
@@ -66,7 +66,7 @@ impl Ability {
     }
 }
 
-/// How exactly a law holds.
+/// Exactness with which a law holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Tolerance {
     /// To the bit.

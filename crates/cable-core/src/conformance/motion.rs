@@ -1,4 +1,4 @@
-//! Laws of cables whose masses accelerate.
+//! These laws hold for cables whose masses accelerate.
 
 use super::measure::{FRAME_S, base, difference, weight_n};
 use crate::any_error::Error;

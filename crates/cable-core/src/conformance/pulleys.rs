@@ -1,4 +1,4 @@
-//! Laws of cables that slide over pulleys.
+//! These laws hold for cables that slide over pulleys.
 
 use super::measure::{FRAME_S, base, dead_load, reactions_n, settle, span, weight_n};
 use crate::any_error::Error;

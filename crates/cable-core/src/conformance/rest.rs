@@ -1,4 +1,4 @@
-//! Laws of a cable that hangs at rest and touches nothing.
+//! These laws hold for a cable that hangs at rest and touches nothing.
 
 use super::measure::{base, dead_load, difference, reactions_n, settle, span, weight_n};
 use crate::any_error::Error;

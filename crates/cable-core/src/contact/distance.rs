@@ -38,7 +38,7 @@ pub(crate) fn between_segments(a: Vec2, b: Vec2, p: Vec2, q: Vec2) -> Vec2 {
     let mut least = way.norm_squared();
     for other in [from_segment(b, p, q), -from_segment(p, a, b), -from_segment(q, a, b)] {
         let square = other.norm_squared();
-        // What is not a number stays.
+        // NaN stays.
         if !(square >= least) && !least.is_nan() {
             (way, least) = (other, square);
         }

@@ -27,7 +27,7 @@ pub fn at(y: f64, limit_force: f64, epsilon: f64) -> (f64, f64, f64) {
     }
 }
 
-/// Which branch of the law a contact is taken to be on, wherever it slides to while that is being
+/// Branch of the law on which a contact is taken to be, wherever it slides to while that is being
 /// found out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Branch {

@@ -309,15 +309,19 @@ impl Geometry {
     pub fn new(obstacles: &[Obstacle], cable_friction: f64, cable_radius: f64) -> Self {
         let mut bodies: Vec<Body> = Vec::with_capacity(obstacles.len());
         for (obstacle, o) in obstacles.iter().enumerate() {
-            let (points, closed, solid, center, grow) = match &o.shape {
-                Shape::Terrain { points_m } => (left_to_right(clean(points_m, LineEnds::Open)), false, true, None, 0.0),
-                Shape::Polygon { points_m } => (clockwise(clean(points_m, LineEnds::Joined)), true, true, None, 0.0),
-                Shape::Polyline { points_m, thickness_m } => {
-                    (clean(points_m, LineEnds::Open), false, false, None, thickness_m / 2.0)
+            let (points, ends, center, grow) = match &o.shape {
+                Shape::Terrain { points_m } => {
+                    (left_to_right(clean(points_m, LineEnds::Open)), LineEnds::Open, None, 0.0)
                 }
-                Shape::Circle { center_m, radius_m } => (Vec::new(), false, true, Some(vec2(*center_m)), *radius_m),
+                Shape::Polygon { points_m } => {
+                    (clockwise(clean(points_m, LineEnds::Joined)), LineEnds::Joined, None, 0.0)
+                }
+                Shape::Polyline { points_m, thickness_m } => {
+                    (clean(points_m, LineEnds::Open), LineEnds::Open, None, thickness_m / 2.0)
+                }
+                Shape::Circle { center_m, radius_m } => (Vec::new(), LineEnds::Open, Some(vec2(*center_m)), *radius_m),
             };
-            let edges = edges_of(&points, closed);
+            let edges = edges_of(&points, ends);
             if edges.is_empty() && center.is_none() {
                 continue;
             }
@@ -335,8 +339,8 @@ impl Geometry {
                 edges: Arc::new(edges),
                 center,
                 first,
-                solid,
-                closed,
+                solid: !matches!(o.shape, Shape::Polyline { .. }),
+                closed: ends == LineEnds::Joined,
                 bvh,
             });
         }
@@ -465,7 +469,8 @@ fn clockwise(mut points: Vec<Vec2>) -> Vec<Vec2> {
     points
 }
 
-fn edges_of(points: &[Vec2], closed: bool) -> Vec<Edge> {
+fn edges_of(points: &[Vec2], ends: LineEnds) -> Vec<Edge> {
+    let closed = ends == LineEnds::Joined;
     let n = points.len();
     if n < 2 || (closed && n < 3) {
         return Vec::new();

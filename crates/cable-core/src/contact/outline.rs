@@ -10,11 +10,11 @@ use crate::math::{RigidPose, Vec2, cross, larger};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     corners: Vec<Vec2>,
-    /// Where it is at the start.
+    /// Pose at the start.
     pub placement: RigidPose,
     /// Coulomb friction coefficient with the cable.
     pub friction: f64,
-    /// Where the cable hangs on it, in its own axes, m.
+    /// Point at which the cable hangs on it, in its own axes, m.
     pub hitch: Vec2,
     /// Name of what it belongs to.
     pub name: String,

@@ -17,14 +17,14 @@ use super::Gap;
 use super::geometry::{Body, Geometry, Part};
 use crate::math::Vec2;
 
-/// What is passed over because it is too far is this many times too far: no rounding decides what
+/// A pair is passed over as too far only if it is this many times too far: no rounding decides what
 /// touches.
 const CULLING_MARGIN: f64 = 1.0 + 1e-9;
 
 /// A contact pair with its sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
-    /// Where and how far; `fraction` lies strictly inside (0, 1) for a corner against a segment.
+    /// Gap between the two; `fraction` lies strictly inside (0, 1) for a corner against a segment.
     pub gap: Gap,
     /// +1 or −1.
     pub weight: f64,

@@ -27,7 +27,7 @@ pub struct SelfPair {
     pub node: usize,
     /// First node of the segment.
     pub segment: usize,
-    /// Where on the segment the nearest point is, 0 to 1.
+    /// Place of the nearest point on the segment, 0 to 1.
     pub fraction: f64,
     /// Unit vector from the segment to the node.
     pub normal: Vec2,

@@ -15,7 +15,7 @@ pub(crate) struct SelfCrossing {
     pub first: usize,
     /// Index of a later one.
     pub second: usize,
-    /// Where on each, from 0 up to but not 1: a crossing at a joint is found once.
+    /// Place on each, from 0 up to but not 1: a crossing at a joint is found once.
     pub fractions: [f64; 2],
     /// Sine of the angle between them.
     pub sine: f64,
@@ -28,7 +28,7 @@ type BoundingBox = [Vec2; 2];
 /// `joined(k)` says whether segment k is one (a break of the line is none).
 pub(crate) fn crossings(points: &[Vec2], joined: impl Fn(usize) -> bool) -> Vec<SelfCrossing> {
     let segments = points.len().saturating_sub(1);
-    // What goes on and on in one direction does not come back.
+    // A line that goes on and on in one direction does not come back.
     let goes_on = |way: fn(&[Vec2]) -> f64| points.windows(2).all(|w| way(w) > 0.0);
     if goes_on(|w| w[1].x - w[0].x) || goes_on(|w| w[0].x - w[1].x) {
         return Vec::new();

@@ -100,13 +100,13 @@ impl Geometry {
 pub struct Sweep {
     /// Its ends at the start, m.
     pub from: [Vec2; 2],
-    /// How far they go, m.
+    /// Their displacements, m.
     pub go: [Vec2; 2],
     /// Corners of the box that holds it all the way, m.
     pub low: Vec2,
     /// See `low`.
     pub high: Vec2,
-    /// What is farther from the box than this keeps its part of the gap by itself, m.
+    /// Distance from the box beyond which a thing keeps its part of the gap by itself, m.
     pub margin: f64,
     speed: f64,
     keep: f64,
@@ -238,7 +238,8 @@ pub(super) fn advance(
             }
         }
         if next < limit {
-            let beside = beside_line(moving, feature, floor, [t, limit]);
+            let [a, b] = moving.map(|(at, go)| MovingPoint { at, go });
+            let beside = beside_line([a, b], feature, floor, [t, limit]);
             next = if beside > next { beside } else { next };
         }
         if next >= limit {
@@ -257,6 +258,15 @@ pub(super) fn advance(
     t
 }
 
+/// A point that moves evenly.
+#[derive(Clone, Copy, Debug)]
+struct MovingPoint {
+    /// Position at the start, m.
+    at: Vec2,
+    /// Displacement by the end, m.
+    go: Vec2,
+}
+
 /// Until when (from `t` on, at most `limit`) the line through two moving points keeps a feature on
 /// one side, at least `least` (m) away.
 ///
@@ -267,7 +277,8 @@ pub(super) fn advance(
 /// ```
 /// which is quadratic. A segment that turns about a corner it is near to is free by the root of its
 /// gap here, by a part of it above.
-fn beside_line([(a, da), (b, db)]: [(Vec2, Vec2); 2], feature: [Vec2; 2], least: f64, [t, limit]: [f64; 2]) -> f64 {
+fn beside_line([a, b]: [MovingPoint; 2], feature: [Vec2; 2], least: f64, [t, limit]: [f64; 2]) -> f64 {
+    let (MovingPoint { at: a, go: da }, MovingPoint { at: b, go: db }) = (a, b);
     let from = a + da * t;
     let (e, turn, left) = (b + db * t - from, db - da, limit - t);
     let length = e.norm();

@@ -33,8 +33,8 @@ pub fn corners(world: &World) -> Vec<Corner> {
 /// A corner that lies between the old shape and the new one, the farthest from the new one.
 /// `corners`: in order of x; `turns`: memory.
 ///
-/// How often the closed way goes round a corner is how often it passes above it to the right, less
-/// to the left.
+/// The winding number of the closed way round a corner is the number of its passes above it to the
+/// right, less those to the left.
 pub fn through(corners: &[Corner], old: &[Vec2], new: &[Vec2], turns: &mut Vec<i32>) -> Option<Corner> {
     let (low, high) = old.iter().chain(new).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
         (if p.x < low { p.x } else { low }, if p.x > high { p.x } else { high })

@@ -10,7 +10,7 @@ pub mod bending;
 
 use crate::math::{Mat2, Vec2};
 
-/// How the Hessian treats its indefinite part.
+/// Treatment of the Hessian's indefinite part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Curvature {
     /// As it is: needed to judge stability and for quadratic convergence.

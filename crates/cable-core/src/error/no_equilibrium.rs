@@ -1,4 +1,5 @@
-//! The reasons for which a cable has no equilibrium, and those for which a step fails.
+//! This file lists the reasons for which a cable has no equilibrium, and those for which a step
+//! fails.
 
 use super::span::SpanError;
 use crate::math::Vec2;

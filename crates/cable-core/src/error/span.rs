@@ -1,4 +1,4 @@
-//! The reasons for which a free span has no shape.
+//! This file lists the reasons for which a free span has no shape.
 
 /// Why a span has no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,9 @@
-//! The features of a scene, or of a question about it, that a model lacks.
+//! This file lists the features of a scene, or of a question about it, that a model lacks.
 
-use thiserror::Error;
-
+use super::equilibrium_fault::EquilibriumFault;
 use crate::math::Vec2;
 
-/// What a model lacks.
+/// A capability that a model lacks.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Unsupported {
@@ -62,7 +61,7 @@ pub enum Unsupported {
     },
     /// The cable would jump over a corner.
     CornerPassed {
-        /// Where the corner is, m.
+        /// Position of the corner, m.
         at_m: Vec2,
     },
     /// A support is inside an obstacle.
@@ -77,13 +76,13 @@ pub enum Unsupported {
     },
     /// A part of the cable without tension is drawn along.
     LooseCableDrawn {
-        /// Where that part begins, m.
+        /// Start of that part, m.
         arc_length_m: f64,
     },
-    /// What the model found does not pass its own verification.
+    /// The answer of the model does not pass its own verification.
     Unverified {
         /// The fault.
-        finding: &'static str,
+        finding: EquilibriumFault,
         /// Place on the cable, m.
         arc_length_m: f64,
         /// Its place, m.
@@ -135,34 +134,25 @@ impl Unsupported {
 }
 
 /// Why a question about the safe reach has no answer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum UnsupportedReach {
     /// No cable has the index asked for.
-    #[error("a cable that is not there")]
     NoSuchCable,
     /// The support asked for has no place to start from.
-    #[error("a support without a place")]
     SupportWithoutPlace,
     /// The grid has no places.
-    #[error("a grid without places")]
     EmptyGrid,
     /// The grid has more places than are computed.
-    #[error("a grid of so many places")]
     GridTooLarge,
     /// A cable hangs on a robot that the scene does not have.
-    #[error("a cable on a robot that is not there")]
     HitchWithoutRobot,
     /// The scene has no robot.
-    #[error("a scene without a robot")]
     NoRobot,
     /// No preset describes the robot.
-    #[error("a robot of no known kind")]
     UnknownRobot,
     /// No cable hangs on the robot.
-    #[error("a robot that no cable hangs on")]
     RobotWithoutCable,
     /// The cable is broken in the answer to start from.
-    #[error("a cable that has broken")]
     BrokenCable,
 }

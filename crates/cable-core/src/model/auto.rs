@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::{Inertia, Model};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
+use crate::solution::ModelReason;
 
 /// What is asked of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,38 +22,37 @@ fn runs_free(problem: &Problem) -> bool {
     problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) && !problem.supports.iter().any(held)
 }
 
-/// The model for a question, and the reason in one sentence.
+/// The model for a question, and the reason.
 #[must_use]
-pub fn choose(problem: &Problem, question: Question) -> (Model, String) {
+pub fn choose(problem: &Problem, question: Question) -> (Model, ModelReason) {
     if question == Question::History(Inertia::Dynamic) {
-        (Model::Fem, "masses move".to_owned())
+        (Model::Fem, ModelReason::Inertia)
     } else if !problem.cable.friction_mobilised.is_default() {
-        (Model::Spans, "friction is fully mobilised towards one end".to_owned())
+        (Model::Spans, ModelReason::MobilisedFriction)
     } else if problem.bending_stiffness > 0.0 {
-        (Model::Fem, "the cable has bending stiffness".to_owned())
+        (Model::Fem, ModelReason::BendingStiffness)
     } else if problem.cable.self_contact {
-        (Model::Fem, "the cable can touch itself".to_owned())
+        (Model::Fem, ModelReason::SelfContact)
     } else if problem.floor_friction.is_some() {
-        (Model::Fem, "in plan view the floor rubs everywhere".to_owned())
+        (Model::Fem, ModelReason::FloorFriction)
     } else if !problem.world.is_empty() || problem.outline.is_some() {
-        (Model::Spans, "a taut cable among obstacles: contacts as intervals have no discretisation error".to_owned())
+        (Model::Spans, ModelReason::Obstacles)
     } else if runs_free(problem) {
-        (Model::Spans, "an end hangs over pulleys: contacts as intervals find where it stops running".to_owned())
+        (Model::Spans, ModelReason::EndOverPulleys)
     } else if problem.supports.iter().any(|s| s.wheel_radius > 0.0 && s.friction > 0.0) {
         // `catenary` keeps the friction of a whole wheel as one number: it finds some motions
         // slowly and some not at all.
-        (Model::Spans, "the cable rubs on wheels: contacts as intervals have no discretisation error".to_owned())
+        (Model::Spans, ModelReason::WheelFriction)
     } else {
-        (Model::Catenary, "supports only: the elastic catenary has no discretisation error".to_owned())
+        (Model::Catenary, ModelReason::SupportsOnly)
     }
 }
 
-/// The model for all cables of a scene, the one that takes on most of those chosen, and the reason
-/// in one sentence.
+/// The model for all cables of a scene, the one that takes on most of those chosen, and the reason.
 #[must_use]
-pub(crate) fn choose_for_all(problems: &[Arc<Problem>], question: Question) -> (Model, String) {
+pub(crate) fn choose_for_all(problems: &[Arc<Problem>], question: Question) -> (Model, ModelReason) {
     let chosen = problems.iter().map(|p| choose(p, question));
-    chosen.max_by_key(|(model, _)| model.rank()).unwrap_or((Model::Catenary, String::new()))
+    chosen.max_by_key(|(model, _)| model.rank()).unwrap_or((Model::Catenary, ModelReason::SupportsOnly))
 }
 
 /// Returns what is built where a model was chosen: `spans` and `fem` take turns.

@@ -8,7 +8,7 @@ use crate::error::SolveError;
 use crate::math::{RigidPose, Vec2};
 use crate::model_id::Model;
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Cost, Warning};
+use crate::solution::{CableSolution, Cost, ModelReason, Warning};
 use crate::state::State;
 
 /// Whether inertia takes part in a step.
@@ -56,7 +56,7 @@ pub trait Mechanics: Send {
     fn model(&self) -> Model;
 
     /// Why it is this model, where that changed on the way.
-    fn reason(&self) -> Option<&str> {
+    fn reason(&self) -> Option<&ModelReason> {
         None
     }
 
@@ -146,7 +146,7 @@ pub trait Mechanics: Send {
     /// Gives the cable to the next model, where there is one behind this one, because of what the
     /// laws say of its answer; the next [`Self::settle`] is that model's. Returns whether there was
     /// one.
-    fn fall_back(&mut self, _why: &str) -> bool {
+    fn fall_back(&mut self, _why: &SolveError) -> bool {
         false
     }
 

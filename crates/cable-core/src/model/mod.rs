@@ -15,7 +15,7 @@
 
 mod arc_nodes;
 pub mod auto;
-pub(crate) mod catenary;
+pub mod catenary;
 pub mod fem;
 pub mod gauge;
 pub(crate) mod initial_equilibrium;

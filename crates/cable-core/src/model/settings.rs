@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::input_filter;
 use crate::error::SolveError;
+use crate::units::Quantity;
 
 /// How finely and how exactly a model works.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,28 +80,37 @@ impl Settings {
     /// `Setting`, with the value and what is allowed.
     pub fn validate(&self) -> Result<(), SolveError> {
         if !(self.tolerance >= MIN_TOLERANCE && self.tolerance.is_finite()) {
-            let (name, allowed) = ("tolerance", "1e-14 or more, and finite");
-            return Err(SolveError::Setting { name, value: self.tolerance, allowed });
+            let allowed = [MIN_TOLERANCE, f64::INFINITY];
+            return Err(refused("tolerance", self.tolerance, allowed, Quantity::Number));
         }
         if let Some(value) = self.inner_step_s.filter(|step| !INNER_STEP_RANGE_S.contains(step)) {
-            return Err(SolveError::Setting { name: "inner_step_s", value, allowed: "1e-9 to 1 s" });
+            return Err(refused("inner_step_s", value, ends(&INNER_STEP_RANGE_S), Quantity::Time));
         }
         if !(MIN_HAND_SPEED..=input_filter::MAX_SPEED).contains(&self.hand_speed_m_per_s) {
-            let (name, allowed) = ("hand speed", "0.01 to 20 m/s");
-            return Err(SolveError::Setting { name, value: self.hand_speed_m_per_s, allowed });
+            let allowed = [MIN_HAND_SPEED, input_filter::MAX_SPEED];
+            return Err(refused("hand speed", self.hand_speed_m_per_s, allowed, Quantity::Speed));
         }
         if let Some(value) = self.hand_stiffness_n_per_m.filter(|k| !input_filter::HAND_STIFFNESSES.contains(k)) {
-            return Err(SolveError::Setting { name: "hand stiffness", value, allowed: "0.001 to 1e9 N/m" });
+            let allowed = ends(&input_filter::HAND_STIFFNESSES);
+            return Err(refused("hand stiffness", value, allowed, Quantity::ForcePerLength));
         }
         match self.segments {
             Some(n) if !(SEGMENT_RANGE.0..=SEGMENT_RANGE.1).contains(&n) => {
-                let (name, allowed) = ("segments", "1 to 100000");
                 #[expect(clippy::cast_precision_loss, reason = "only shown")]
-                Err(SolveError::Setting { name, value: n as f64, allowed })
+                let [value, least, most] = [n, SEGMENT_RANGE.0, SEGMENT_RANGE.1].map(|n| n as f64);
+                Err(refused("segments", value, [least, most], Quantity::Number))
             }
             _ => Ok(()),
         }
     }
+}
+
+fn refused(name: &'static str, value: f64, allowed: [f64; 2], quantity: Quantity) -> SolveError {
+    SolveError::Setting { name, value, allowed, quantity }
+}
+
+fn ends(range: &std::ops::RangeInclusive<f64>) -> [f64; 2] {
+    [*range.start(), *range.end()]
 }
 
 /// How mass-spring takes dynamic steps.

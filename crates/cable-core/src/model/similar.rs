@@ -12,7 +12,7 @@ use crate::error::{Place, SolveError};
 use crate::math::Vec2;
 use crate::problem::Problem;
 use crate::scene::scaled::Similarity;
-use crate::solution::{CableSolution, Warning};
+use crate::solution::{CableSolution, ModelReason, Warning};
 use crate::state::State;
 
 /// Longest time of the copy taken in one step, s: every model takes that.
@@ -24,7 +24,7 @@ pub struct Similar {
     by: Similarity,
     inner: Box<dyn Mechanics>,
     /// What the inner model says of itself, at this scale.
-    reason: Option<String>,
+    reason: Option<ModelReason>,
     refusal: Option<SolveError>,
 }
 
@@ -40,23 +40,17 @@ impl Similar {
     /// Takes down why the inner model is the one it is, and why another has no answer.
     fn listen(&mut self) {
         self.refusal = self.inner.refusal().cloned().map(|e| self.error(e));
-        let inner = self.inner.reason().map(str::to_owned).map(|text| self.told(text));
-        self.reason = inner.map(|text| self.refusal.as_ref().map_or(text, ToString::to_string));
+        self.reason = self.inner.reason().cloned().map(|reason| match reason {
+            ModelReason::NoAnswer(error) => ModelReason::NoAnswer(Box::new(self.error(*error))),
+            // Asked of the scene itself: see `fall_back`.
+            other => other,
+        });
     }
 
     /// The same with another inner model.
     fn around(&self, inner: Box<dyn Mechanics>) -> Box<dyn Mechanics> {
         let (problem, reason, refusal) = (self.problem.clone(), self.reason.clone(), self.refusal.clone());
         Box::new(Self { problem, by: self.by, inner, reason, refusal })
-    }
-
-    /// Text that was written at the copy's scale: where it may name lengths it says so.
-    fn told(&self, text: String) -> String {
-        let lengths = text.contains(" m") && text.bytes().any(|b| b.is_ascii_digit());
-        match lengths && self.by.length != 1.0 {
-            true => format!("{text} (in a copy of the scene {} times as large)", self.by.length),
-            false => text,
-        }
     }
 
     fn at_back(&self, at: Vec2) -> Vec2 {
@@ -96,7 +90,9 @@ impl Similar {
                 arc_length_m: arc_length_m / l,
                 at_m: self.at_back(at_m),
             },
-            SolveError::TimeStep { dt_s, allowed } => SolveError::TimeStep { dt_s: dt_s / t, allowed },
+            SolveError::TimeStep { dt_s, longest_s } => {
+                SolveError::TimeStep { dt_s: dt_s / t, longest_s: longest_s / t }
+            }
             SolveError::StepFailed { model, time_s, dt_s, residual_n, place, cause } => SolveError::StepFailed {
                 model,
                 time_s: time_s / t,
@@ -207,8 +203,8 @@ impl Mechanics for Similar {
         self.inner.model()
     }
 
-    fn reason(&self) -> Option<&str> {
-        self.reason.as_deref()
+    fn reason(&self) -> Option<&ModelReason> {
+        self.reason.as_ref()
     }
 
     fn refusal(&self) -> Option<&SolveError> {
@@ -287,7 +283,7 @@ impl Mechanics for Similar {
         self.inner.pull_support(support, self.by.place(hand_m));
     }
 
-    fn fall_back(&mut self, why: &str) -> bool {
+    fn fall_back(&mut self, why: &SolveError) -> bool {
         let fell = self.inner.fall_back(why);
         self.listen();
         fell

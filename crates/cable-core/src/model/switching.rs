@@ -17,7 +17,7 @@ use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::Vec2;
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Node};
+use crate::solution::{CableSolution, ModelReason, Node};
 use crate::state::State;
 
 /// Greatest move of the cable when it is handed back, m, or part of its length, whichever is more:
@@ -29,10 +29,6 @@ const MAX_TENSION_CHANGE: f64 = 1e-2;
 const FIRST_INTERVAL: usize = 1;
 /// … up to this.
 const MAX_INTERVAL: usize = 8;
-/// Why it is then the other model.
-const REASON_BURIED: &str = "the cable was not found clear of the ground without a mesh";
-/// Why it is then that model.
-const REASON_TOUCHES_ROBOT: &str = "the cable touches the robot, which moves";
 
 /// Two models of one cable, one at a time.
 #[derive(Clone, Debug)]
@@ -50,7 +46,7 @@ pub struct SwitchingModel {
     pulled: Vec<bool>,
     /// Where the outline of the robot was led.
     robot_pose: Option<RigidPose>,
-    reason: Option<String>,
+    reason: Option<ModelReason>,
     /// Why `spans` has no rest, where `fem` found one.
     refusal: Option<SolveError>,
     /// Answers until the next offer, and after that.
@@ -80,13 +76,13 @@ impl SwitchingModel {
         })
     }
 
-    /// `fem`, which holds the present state from now on.
-    fn fem(&mut self, why: String) -> Result<&mut FemModel, SolveError> {
+    /// `fem`, which holds the present state from now on; `why` counts where it did not before.
+    fn fem(&mut self, why: Option<ModelReason>) -> Result<&mut FemModel, SolveError> {
         let fem = match self.fem.take() {
             Some(fem) => fem,
             None => {
                 let fem = self.handed_over()?;
-                self.reason = Some(why);
+                self.reason = why;
                 self.interval[0] = self.interval[1];
                 fem
             }
@@ -203,8 +199,8 @@ impl Mechanics for SwitchingModel {
         if self.fem.is_some() { Model::Fem } else { Model::Spans }
     }
 
-    fn reason(&self) -> Option<&str> {
-        self.reason.as_deref().or_else(|| self.fem.is_none().then(|| self.spans.reason()).flatten())
+    fn reason(&self) -> Option<&ModelReason> {
+        self.reason.as_ref().or_else(|| self.fem.is_none().then(|| self.spans.reason()).flatten())
     }
 
     fn refusal(&self) -> Option<&SolveError> {
@@ -212,19 +208,21 @@ impl Mechanics for SwitchingModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let (mut why, mut slides, mut refused) = (String::new(), None, None);
+        let (mut why, mut slides, mut refused) = (None, None, None);
         self.refusal = None;
         if self.fem.is_none() {
             match self.spans.settle() {
-                Ok(_) if self.meets_robot(&self.spans.solution()) => REASON_TOUCHES_ROBOT.clone_into(&mut why),
-                Ok(_) if is_buried(&self.problem, &self.spans.solution()) => REASON_BURIED.clone_into(&mut why),
+                Ok(_) if self.meets_robot(&self.spans.solution()) => why = Some(ModelReason::TouchesRobot),
+                Ok(_) if is_buried(&self.problem, &self.spans.solution()) => {
+                    why = Some(ModelReason::BuriedWithoutMesh);
+                }
                 Ok(report) => {
                     self.adopted = None;
                     return Ok(report);
                 }
                 Err(error) if !self.problem.cable.friction_mobilised.is_default() => return Err(error),
                 Err(error) => {
-                    why = error.to_string();
+                    why = Some(ModelReason::NoAnswer(Box::new(error.clone())));
                     slides = Some(error.clone()).filter(|e| matches!(e, SolveError::NoRestingPlace { .. }));
                     refused = Some(error);
                 }
@@ -271,18 +269,18 @@ impl Mechanics for SwitchingModel {
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
-            return Err(SolveError::TimeStep { dt_s, allowed: "more than 0 s" });
+            return Err(SolveError::TimeStep { dt_s, longest_s: f64::INFINITY });
         }
         if inertia == Inertia::Dynamic {
-            return self.fem("masses move".to_owned())?.advance_gauged(dt_s, inertia, gauge);
+            return self.fem(Some(ModelReason::Inertia))?.advance_gauged(dt_s, inertia, gauge);
         }
         let end_s = self.time_s() + dt_s;
-        let mut why = String::new();
+        let mut why = None;
         if self.fem.is_none() {
             let before = self.robot_pose.map(|_| self.spans.clone());
             match self.spans.advance(dt_s, inertia) {
                 Ok(_) if self.meets_robot(&self.spans.solution()) => {
-                    REASON_TOUCHES_ROBOT.clone_into(&mut why);
+                    why = Some(ModelReason::TouchesRobot);
                     self.spans = before.unwrap_or_else(|| self.spans.clone());
                 }
                 Ok(report) => {
@@ -290,7 +288,7 @@ impl Mechanics for SwitchingModel {
                     return Ok(report);
                 }
                 Err(error @ SolveError::TimeStep { .. }) => return Err(error),
-                Err(error) => why = error.to_string(),
+                Err(error) => why = Some(ModelReason::NoAnswer(Box::new(error))),
             }
         }
         let fem = self.fem(why)?;
@@ -316,7 +314,7 @@ impl Mechanics for SwitchingModel {
         self.fem = None;
         self.reason = None;
         if moves {
-            self.fem("masses move".to_owned())?;
+            self.fem(Some(ModelReason::Inertia))?;
         }
         Ok(())
     }
@@ -326,8 +324,8 @@ impl Mechanics for SwitchingModel {
         self.fem = None;
         self.reason = None;
         let taken = match self.meets_robot(answer) {
-            true => Err(REASON_TOUCHES_ROBOT.to_owned()),
-            false => self.spans.warm_start(answer, time_s).map_err(|e| e.to_string()),
+            true => Err(ModelReason::TouchesRobot),
+            false => self.spans.warm_start(answer, time_s).map_err(|e| ModelReason::NoAnswer(Box::new(e))),
         };
         if let Err(why) = taken {
             let mut fem = self.new_fem()?;
@@ -366,14 +364,14 @@ impl Mechanics for SwitchingModel {
         }
     }
 
-    fn fall_back(&mut self, why: &str) -> bool {
+    fn fall_back(&mut self, why: &SolveError) -> bool {
         // Refused as it is, the answer is no place to go on from: the cable is laid anew where it
         // was, or where it was put.
         self.fem.is_none() && {
             let time_s = self.spans.time_s();
             let fresh = if time_s > 0.0 { self.handed_over() } else { self.new_fem_with_hands() };
             self.fem = fresh.ok();
-            self.reason = self.fem.is_some().then(|| format!("the answer of spans is not sound: {why}"));
+            self.reason = self.fem.is_some().then(|| ModelReason::Unsound(Box::new(why.clone())));
             self.fem.is_some()
         }
     }

@@ -2,7 +2,7 @@
 //! is near.
 
 use super::Problem;
-use crate::error::Place;
+use crate::error::{Near, NearKind, Place};
 use crate::math::Vec2;
 
 impl Problem {
@@ -14,16 +14,17 @@ impl Problem {
         let supports = self.supports.iter().filter_map(|s| {
             let (place, _) = s.place_at(time_s)?;
             let away = (at - place).norm() - s.wheel_radius;
-            Some((format!("support `{}`", s.name), if away > 0.0 { away } else { 0.0 }))
+            let distance_m = if away > 0.0 { away } else { 0.0 };
+            Some(Near { kind: NearKind::Support, name: s.name.clone(), distance_m })
         });
         let ground = self.world.signed_gap(at, f64::INFINITY).filter(|_| finite);
         let obstacle = ground.map(|g| {
-            let name = self.world.obstacle_name(g.obstacle);
-            (format!("obstacle `{name}`"), if g.gap_m > 0.0 { g.gap_m } else { 0.0 })
+            let distance_m = if g.gap_m > 0.0 { g.gap_m } else { 0.0 };
+            Near { kind: NearKind::Obstacle, name: self.world.obstacle_name(g.obstacle).to_owned(), distance_m }
         });
         let near = if finite {
-            supports.chain(obstacle).fold(None, |best: Option<(String, f64)>, n| match best {
-                Some(b) if b.1 <= n.1 => Some(b),
+            supports.chain(obstacle).fold(None, |best: Option<Near>, n| match best {
+                Some(b) if b.distance_m <= n.distance_m => Some(b),
                 _ => Some(n),
             })
         } else {

@@ -61,17 +61,16 @@ pub struct Problem {
     pub supports: Vec<SupportPoint>,
     /// Point loads in order along the cable (those of load supports are in `supports`).
     pub loads: Vec<PointLoad>,
-    /// What it can touch and stays where it is.
+    /// Obstacles that it can touch and that stay where they are.
     pub world: Arc<World>,
-    /// What it can touch and moves: the robot.
+    /// The moving obstacle that it can touch: the robot.
     pub outline: Option<Arc<Outline>>,
     /// Plan view: friction coefficient with the floor and normal force per metre, N/m.
     pub floor_friction: Option<(f64, f64)>,
     /// The way it is first laid, m (empty: straight from support to support, lifted over what is in
     /// the way).
     pub route: Vec<Vec2>,
-    /// What of the scene was put elsewhere than it says: supports on a surface, routes below the
-    /// ground.
+    /// Notes on places that differ from the scene: supports on a surface, routes below the ground.
     pub notes: Vec<Warning>,
     /// The same cable at the scale solvers are made for, where this one is much shorter, longer or
     /// farther away.
@@ -87,13 +86,13 @@ const TIME_TOLERANCE_S: f64 = 1e-9;
 pub struct SupportPoint {
     /// Its name.
     pub name: String,
-    /// What it does.
+    /// Its kind.
     pub kind: SupportKind,
     /// Place on the cable, m; 0 and length at the ends; None = slides (pulley).
     pub arc_length: Option<f64>,
     /// Position at t = 0, m (a pulley's centre); None for load and free.
     pub at: Option<Vec2>,
-    /// How it moves.
+    /// Its motion.
     pub motion: Option<Motion>,
     /// Clamp direction of growing arc length, rad.
     pub angle: Option<f64>,

@@ -5,9 +5,9 @@ use super::Problem;
 use crate::error::{SceneError, SceneFault};
 use crate::scene::read::path::Path;
 
-/// How deep a route may cut into a beam besides the cable's diameter, m: drawn along a surface by a
-/// few points it cuts corners off. Smaller: such routes are refused. Larger: more of those that
-/// lead through something are not noticed.
+/// Greatest depth to which a route may cut into a beam besides the cable's diameter, m: drawn along
+/// a surface by a few points it cuts corners off. Smaller: such routes are refused. Larger: more of
+/// those that lead through something are not noticed.
 const MAX_CUT: f64 = 0.05;
 /// The same of small scenes, of the cable's length: where a metre of cable is drawn, routes cut a
 /// centimetre.
@@ -31,7 +31,7 @@ pub(super) fn allowed_depth(problem: &Problem) -> f64 {
 pub(super) fn check_route(problem: &Problem) -> Result<(), SceneError> {
     let world = problem.world.geometry();
     let length: f64 = problem.route.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-    // What the scene draws no route for is laid past everything.
+    // A cable without a route in the scene is laid past everything.
     if problem.cable.route_m.is_empty() || world.is_empty() || !length.is_finite() {
         return Ok(());
     }

@@ -13,8 +13,8 @@ use crate::scene::SupportKind;
 use crate::scene::read::path::Path;
 use crate::solution::{Warning, WarningCause};
 
-/// How far inside a surface a point that was meant to be on it may be, of the radius: rounding of
-/// coordinates and slopes.
+/// Depth inside a surface at which a point may be that was meant to be on it, of the radius:
+/// rounding of coordinates and slopes.
 const ON_SURFACE_FRACTION: f64 = 1e-3;
 /// The same in parts of the coordinates, for cables much thinner than their scene.
 const COORDINATE_ROUNDING: f64 = 1e-9;

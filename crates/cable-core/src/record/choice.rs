@@ -1,8 +1,6 @@
 //! A choice says which nodes of a run go into `nodes.csv`, by far the largest table, and with which
 //! of their figures.
 
-use thiserror::Error;
-
 use crate::solution::Node;
 
 /// Figures of a node, in the order of the table's columns.
@@ -51,8 +49,7 @@ pub(super) fn node_of(values: [f64; NodeColumns::COUNT]) -> Node {
 pub struct NodeColumns([bool; Self::COUNT]);
 
 /// A column that `nodes.csv` does not know.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("nodes.csv has no column `{name}`: its columns are {}", NodeColumns::NAMES.join(", "))]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownColumn {
     /// As it was asked for.
     pub name: String,
@@ -118,12 +115,12 @@ pub enum NodeInterval {
     Never,
 }
 
-/// What goes into `nodes.csv`; all of it unless something else is chosen.
+/// The content of `nodes.csv`; all of it unless something else is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NodeChoice {
-    /// Which columns.
+    /// Its columns.
     pub columns: NodeColumns,
-    /// How often.
+    /// Its interval.
     pub interval: NodeInterval,
 }
 

@@ -97,7 +97,6 @@ fn size_of_solution(s: &Solution) -> usize {
             + c.contacts.iter().map(|k| size_of::<ContactReport>() + k.obstacle.len()).sum::<usize>()
     };
     size_of::<Solution>()
-        + s.reason.len()
         + s.cables.iter().map(cable).sum::<usize>()
         + s.warnings.iter().map(|w| size_of::<Warning>() + w.cable.len()).sum::<usize>()
 }
@@ -106,14 +105,14 @@ fn size_of_solution(s: &Solution) -> usize {
 mod tests {
     use super::*;
     use crate::model::Model;
-    use crate::solution::{Cost, Energy};
+    use crate::solution::{Cost, Energy, ModelReason};
 
     fn at(time_s: f64) -> Solution {
         let cable = CableSolution { nodes: vec![Node::default(); 100], ..CableSolution::default() };
         Solution {
             time_s,
             model: Model::Fem,
-            reason: String::new(),
+            reason: ModelReason::Requested,
             cables: vec![cable],
             warnings: Vec::new(),
             cost: Cost::default(),

@@ -31,10 +31,10 @@ pub use history::History;
 pub(crate) use page::Pages;
 pub(crate) use run::MANIFEST_HEAD;
 pub(crate) use run::read_run;
-pub use run::{FileRecord, LeftOut, Manifest, NodeSummary, RunRequest, RunStatus, RunTables};
+pub use run::{FileRecord, LeftOut, Manifest, NodeSummary, RunRequest, RunStatus, RunStop, RunTables};
 pub(crate) use tables::has_rows;
 pub use tables::{
-    Event, Extra, HistoryTable, NodeRow, ReadError, RunWriter, SupportColumn, WriteError, read_events, read_history,
-    read_nodes,
+    Event, Extra, HistoryTable, NodeRow, ReadError, RobotColumns, RowFault, RunWriter, SupportColumn, WriteError,
+    WrittenNumber, read_events, read_history, read_nodes,
 };
 pub use whole::WholeRecords;

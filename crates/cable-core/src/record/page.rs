@@ -14,7 +14,7 @@ const PAGE_BYTES: usize = 4096;
 /// Most bytes of a number and the comma after it: `-2.2250738585072014e-308,`.
 const MAX_NUMBER_BYTES: usize = 25;
 
-/// How the rows of a table lie on its pages.
+/// Layout of the rows of a table on its pages.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pages {
     /// Length of the table, bytes.

@@ -1,6 +1,5 @@
 //! A run is read as a whole: what its folder says about itself, and its three tables together.
 
-use std::fmt;
 use std::io::Read;
 
 use serde::{Deserialize, Serialize};
@@ -11,7 +10,7 @@ use super::tables::{EVENTS, HISTORY, HistoryTable, NODES, NodeRow, ReadError, re
 use super::whole::WholeRecords;
 use crate::record::Event;
 
-/// How far a run came.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RunStatus {
@@ -24,7 +23,48 @@ pub enum RunStatus {
     Replacing,
 }
 
-/// What was asked of a run.
+/// Why a run ended before its end. `run.toml` holds it as a sentence.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub enum RunStop {
+    /// A signal interrupted it.
+    Interrupted {
+        /// Name of the signal.
+        signal: String,
+    },
+    /// The solver panicked.
+    Panicked,
+    /// It failed.
+    Failed {
+        /// The sentence that the program said about it.
+        message: String,
+    },
+}
+
+const INTERRUPTED: &str = "interrupted by ";
+const PANICKED: &str = "the solver panicked";
+
+impl From<RunStop> for String {
+    fn from(stop: RunStop) -> Self {
+        match stop {
+            RunStop::Interrupted { signal } => format!("{INTERRUPTED}{signal}"),
+            RunStop::Panicked => PANICKED.to_owned(),
+            RunStop::Failed { message } => message,
+        }
+    }
+}
+
+impl From<String> for RunStop {
+    fn from(text: String) -> Self {
+        match text.strip_prefix(INTERRUPTED).filter(|signal| !signal.contains(' ')) {
+            Some(signal) => Self::Interrupted { signal: signal.to_owned() },
+            None if text == PANICKED => Self::Panicked,
+            None => Self::Failed { message: text },
+        }
+    }
+}
+
+/// The request for a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RunRequest {
     /// The program and its version.
@@ -35,7 +75,7 @@ pub struct RunRequest {
     /// Without inertia.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quasi_static: Option<bool>,
-    /// How long, s.
+    /// Duration, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duration_s: Option<f64>,
     /// Time between outputs, s.
@@ -46,7 +86,7 @@ pub struct RunRequest {
     pub step_s: Option<f64>,
 }
 
-/// What is written of the nodes.
+/// The part of the nodes that is written.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NodeSummary {
     /// Time between their outputs, s; none where they are written at each output, or never.
@@ -91,20 +131,20 @@ impl FileRecord {
 pub struct Manifest {
     /// Of this format.
     pub version: u32,
-    /// How far it came.
+    /// Its progress.
     pub status: RunStatus,
     /// Why a partial run ended, where it ended with a word.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ended: Option<String>,
+    pub ended: Option<RunStop>,
     /// Time of its last instant, s, where it ended with a word.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reached_s: Option<f64>,
     /// The folder in this one that holds what is being put in its place.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub successor: Option<String>,
-    /// What was asked.
+    /// The request.
     pub request: RunRequest,
-    /// What is written of the nodes.
+    /// The part of the nodes that is written.
     pub nodes: NodeSummary,
     /// Its files; those of the tables once it ended with a word.
     #[serde(default)]
@@ -164,7 +204,7 @@ pub struct RunTables {
     pub nodes: Vec<NodeRow>,
     /// A row per event.
     pub events: Vec<Event>,
-    /// What was in the tables and is not here.
+    /// Content of the tables that is not here.
     pub left_out: Vec<LeftOut>,
 }
 
@@ -173,31 +213,18 @@ pub struct RunTables {
 pub enum LeftOut {
     /// The last line has no end.
     IncompleteLine {
-        /// Which table.
+        /// The table.
         table: &'static str,
         /// Its length, bytes.
         bytes: usize,
     },
     /// Rows of an instant that has no row in `history.csv`.
     BeyondHistory {
-        /// Which table.
+        /// The table.
         table: &'static str,
-        /// How many.
+        /// Their number.
         rows: usize,
     },
-}
-
-impl fmt::Display for LeftOut {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::IncompleteLine { table, bytes } => {
-                write!(f, "{table} ends within a line, of which {bytes} bytes were left out")
-            }
-            Self::BeyondHistory { table, rows } => {
-                write!(f, "{table} has {rows} rows later than the end of {HISTORY}, which were left out")
-            }
-        }
-    }
 }
 
 /// Reads the tables of a run together, wherever they were cut off. Of tables that are still written
@@ -232,4 +259,21 @@ pub(crate) fn read_run(history: impl Read, nodes: impl Read, events: impl Read) 
     beyond(EVENTS, count - out.events.len());
     out.left_out = left_out;
     Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stop_is_read_back_from_its_sentence() {
+        let failed = "interrupted by a wish, or so".to_owned();
+        for stop in [
+            RunStop::Interrupted { signal: "SIGINT".to_owned() },
+            RunStop::Panicked,
+            RunStop::Failed { message: failed },
+        ] {
+            assert_eq!(RunStop::from(String::from(stop.clone())), stop);
+        }
+    }
 }

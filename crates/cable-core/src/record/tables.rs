@@ -3,7 +3,6 @@
 use std::io::{Read, Write};
 
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 use super::choice::{NodeChoice, NodeColumns, NodeInterval, node_of, node_values};
 use super::whole::WholeRecords;
@@ -11,57 +10,136 @@ use crate::scene::Scene;
 use crate::solution::{Solution, Warning, WarningCause, WarningKind};
 
 /// Why a table was not written: the path or device is named by the caller, who knows it.
-#[derive(Debug, Error)]
+#[derive(Debug)]
 pub enum WriteError {
     /// The row could not be written, or not flushed.
-    #[error("{table}: {source}")]
     Io {
-        /// Which table.
+        /// The table.
         table: &'static str,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The answer has other supports, or another robot, than the table; nothing of this time was
     /// written.
-    #[error("{table}: the answer at {time_s} s has other columns than the table")]
     Columns {
-        /// Which table.
+        /// The table.
         table: &'static str,
         /// Time, s.
         time_s: f64,
     },
     /// A number is not finite; nothing of this time was written.
-    #[error("{table}: {column} is not finite at {time_s} s")]
     NonFinite {
-        /// Which table.
+        /// The table.
         table: &'static str,
-        /// Which column.
-        column: String,
+        /// The number.
+        number: Box<WrittenNumber>,
         /// Time, s.
         time_s: f64,
     },
 }
 
+/// The columns of `history.csv` on the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RobotColumns {
+    /// The scene has a robot that can move.
+    Written,
+    /// It has none.
+    LeftOut,
+}
+
+impl RobotColumns {
+    /// Those of a run that has this answer.
+    #[must_use]
+    pub fn of(solution: &Solution) -> Self {
+        if solution.robot.is_some() { Self::Written } else { Self::LeftOut }
+    }
+}
+
+/// A number of an answer that goes into a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum WrittenNumber {
+    /// A column of `history.csv`.
+    Column(&'static str),
+    /// A column of a node.
+    Node {
+        /// The column.
+        column: &'static str,
+        /// The node's index.
+        node: usize,
+        /// Name of its cable.
+        cable: String,
+    },
+    /// The reaction of a support.
+    Reaction {
+        /// Name of the support.
+        support: String,
+    },
+    /// A number of a warning.
+    Warning(Warning),
+}
+
 /// Why a table was not read.
-#[derive(Debug, Error)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum ReadError {
     /// It is not the table it should be.
-    #[error("{table}, line {line}: {what}")]
     Row {
-        /// Which table.
+        /// The table.
         table: &'static str,
         /// Line, from 1.
         line: u64,
         /// The fault.
-        what: String,
+        fault: RowFault,
     },
     /// More rows than a run may have.
-    #[error("{table} has more than {limit} rows")]
     TooLong {
-        /// Which table.
+        /// The table.
         table: &'static str,
         /// The most rows read.
         limit: usize,
+    },
+}
+
+/// The fault of a row, or of the header.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RowFault {
+    /// It is no row of a table of comma-separated values.
+    Unreadable {
+        /// The reader's own words.
+        message: String,
+    },
+    /// A column is missing.
+    MissingColumn {
+        /// The column.
+        column: String,
+    },
+    /// A field holds no finite number.
+    NotANumber {
+        /// The column.
+        column: String,
+        /// The text of the field.
+        text: String,
+    },
+    /// Another column stands in the place of one.
+    OtherColumn {
+        /// Its number, from 1.
+        number: usize,
+        /// The column that must stand there.
+        expected: String,
+    },
+    /// A column that the table does not know.
+    UnknownColumn {
+        /// Its name.
+        column: String,
+    },
+    /// A kind of event that is not known.
+    UnknownKind {
+        /// Its name.
+        kind: String,
+    },
+    /// A column that is not a support's reaction stands where one must.
+    NotAReaction {
+        /// Its number, from 1.
+        number: usize,
     },
 }
 
@@ -110,7 +188,7 @@ pub struct HistoryTable {
     pub time_s: Vec<f64>,
     /// Greatest tension at each time, N.
     pub max_tension_n: Vec<f64>,
-    /// Where it was, m.
+    /// Its place, m.
     pub max_tension_arc_length_m: Vec<f64>,
     /// Reactions of each support.
     pub supports: Vec<SupportColumn>,
@@ -203,9 +281,9 @@ impl<W: Write> RunWriter<W> {
     ///
     /// # Errors
     /// When the place refuses.
-    pub fn begin(&mut self, scene: &Scene, with_robot: bool) -> Result<(), WriteError> {
+    pub fn begin(&mut self, scene: &Scene, robot: RobotColumns) -> Result<(), WriteError> {
         let supports = scene.cables.iter().map(|c| (c.name.as_str(), c.supports.iter().map(|s| s.name.as_str())));
-        let columns = history_columns(supports, scene.cables.len(), with_robot);
+        let columns = history_columns(supports, scene.cables.len(), robot);
         let mut rows = [HISTORY, NODES, EVENTS].map(Rows::new);
         self.headers(&mut rows, &columns)?;
         self.write(rows)?;
@@ -223,7 +301,7 @@ impl<W: Write> RunWriter<W> {
         check_finite(solution)?;
         let mut rows = [HISTORY, NODES, EVENTS].map(Rows::new);
         let supports = solution.cables.iter().map(|c| (c.name.as_str(), c.supports.iter().map(|s| s.name.as_str())));
-        let columns = history_columns(supports, solution.cables.len(), solution.robot.is_some());
+        let columns = history_columns(supports, solution.cables.len(), RobotColumns::of(solution));
         if self.columns.is_empty() {
             self.headers(&mut rows, &columns)?;
         } else if self.columns != columns {
@@ -235,8 +313,8 @@ impl<W: Write> RunWriter<W> {
             node_rows(nodes, solution, self.node_choice.columns)?;
         }
         for w in began(solution, &self.active) {
-            // What began later than its own instant did so by round-off: that instant's time is a
-            // multiple of an interval.
+            // A warning that began later than its own instant did so by round-off: that instant's
+            // time is a multiple of an interval.
             event_row(events, w.since_s.map_or(solution.time_s, |t| t.min(solution.time_s)), w)?;
         }
         self.write(rows)?;
@@ -312,7 +390,7 @@ impl Rows {
 fn history_columns<'a>(
     cables: impl Iterator<Item = (&'a str, impl Iterator<Item = &'a str>)>,
     count: usize,
-    with_robot: bool,
+    robot: RobotColumns,
 ) -> Vec<String> {
     let mut columns: Vec<String> = HISTORY_COLUMNS.map(String::from).to_vec();
     for (cable, supports) in cables {
@@ -323,7 +401,7 @@ fn history_columns<'a>(
         }
     }
     columns.extend(ENERGY_COLUMNS.into_iter().chain(PEAK_COLUMNS).map(String::from));
-    columns.extend(ROBOT_COLUMNS.map(String::from).into_iter().filter(|_| with_robot));
+    columns.extend(ROBOT_COLUMNS.map(String::from).into_iter().filter(|_| robot == RobotColumns::Written));
     columns
 }
 
@@ -414,28 +492,29 @@ fn io_error(table: &'static str, e: csv::Error) -> WriteError {
 }
 
 fn check_finite(s: &Solution) -> Result<(), WriteError> {
-    let bad = |table, column: String| WriteError::NonFinite { table, column, time_s: s.time_s };
+    let bad = |table, number| WriteError::NonFinite { table, number: Box::new(number), time_s: s.time_s };
     for c in &s.cables {
         for (i, n) in c.nodes.iter().enumerate() {
             if let Some(k) = node_values(n).iter().position(|v| !v.is_finite()) {
-                return Err(bad(NODES, format!("{} of node {i} of cable `{}`", NodeColumns::NAMES[k], c.name)));
+                let column = NodeColumns::NAMES.get(k).copied().unwrap_or_default();
+                return Err(bad(NODES, WrittenNumber::Node { column, node: i, cable: c.name.clone() }));
             }
         }
         for r in &c.supports {
             if !(r.reaction_x_n.is_finite() && r.reaction_y_n.is_finite()) {
-                return Err(bad(HISTORY, format!("the reaction of support `{}`", r.name)));
+                return Err(bad(HISTORY, WrittenNumber::Reaction { support: r.name.clone() }));
             }
         }
     }
     if let Some((column, _)) = extras(s).find(|(_, value)| !value.is_finite()) {
-        return Err(bad(HISTORY, column.to_owned()));
+        return Err(bad(HISTORY, WrittenNumber::Column(column)));
     }
     for w in &s.warnings {
         if ![w.arc_length_m, w.value, w.limit].iter().all(|v| v.is_finite()) {
-            return Err(bad(EVENTS, format!("a number of the warning `{w}`")));
+            return Err(bad(EVENTS, WrittenNumber::Warning(w.clone())));
         }
     }
-    if s.time_s.is_finite() { Ok(()) } else { Err(bad(HISTORY, "time_s".to_owned())) }
+    if s.time_s.is_finite() { Ok(()) } else { Err(bad(HISTORY, WrittenNumber::Column("time_s"))) }
 }
 
 /// A table that was cut off ends with its last whole record.
@@ -448,16 +527,21 @@ pub(crate) fn has_rows(from: impl Read) -> bool {
     reader(from).records().next().is_some()
 }
 
-fn row_error(table: &'static str, line: u64, what: impl ToString) -> ReadError {
-    ReadError::Row { table, line, what: what.to_string() }
+fn row_error(table: &'static str, line: u64, fault: RowFault) -> ReadError {
+    ReadError::Row { table, line, fault }
+}
+
+fn unreadable(table: &'static str, line: u64, error: &csv::Error) -> ReadError {
+    row_error(table, line, RowFault::Unreadable { message: error.to_string() })
 }
 
 fn parse(table: &'static str, record: &csv::StringRecord, k: usize, column: &str) -> Result<f64, ReadError> {
     let line = record.position().map_or(1, csv::Position::line);
-    let text = record.get(k).ok_or_else(|| row_error(table, line, format!("column {column} is missing")))?;
+    let column = || column.to_owned();
+    let text = record.get(k).ok_or_else(|| row_error(table, line, RowFault::MissingColumn { column: column() }))?;
     match text.trim().parse::<f64>() {
         Ok(v) if v.is_finite() => Ok(v),
-        _ => Err(row_error(table, line, format!("{column} is `{text}`, not a finite number"))),
+        _ => Err(row_error(table, line, RowFault::NotANumber { column: column(), text: text.to_owned() })),
     }
 }
 
@@ -474,7 +558,7 @@ fn rows<R: Read>(
             Ok(false) => return Ok(()),
             Ok(true) if count >= MAX_ROWS => return Err(ReadError::TooLong { table, limit: MAX_ROWS }),
             Ok(true) => f(&record)?,
-            Err(e) => return Err(row_error(table, line, e)),
+            Err(e) => return Err(unreadable(table, line, &e)),
         }
     }
     Ok(())
@@ -487,13 +571,15 @@ fn expect_columns<R: Read>(
     from: &mut csv::Reader<R>,
     expected: &[&str],
 ) -> Result<bool, ReadError> {
-    let found = from.headers().map_err(|e| row_error(table, 1, e))?;
+    let found = from.headers().map_err(|e| unreadable(table, 1, &e))?;
     if found.is_empty() {
         return Ok(false);
     }
     match expected.iter().enumerate().find(|(k, name)| found.get(*k) != Some(**name)) {
         None => Ok(true),
-        Some((k, name)) => Err(row_error(table, 1, format!("column {} must be `{name}`", k + 1))),
+        Some((k, name)) => {
+            Err(row_error(table, 1, RowFault::OtherColumn { number: k + 1, expected: (*name).to_owned() }))
+        }
     }
 }
 
@@ -508,11 +594,11 @@ pub fn read_nodes(from: impl Read) -> Result<Vec<NodeRow>, ReadError> {
     if !expect_columns(NODES, &mut from, &["time_s", "cable"])? {
         return Ok(out);
     }
-    let header = from.headers().map_err(|e| row_error(NODES, 1, e))?;
+    let header = from.headers().map_err(|e| unreadable(NODES, 1, &e))?;
     let place = |name| header.iter().position(|c| c == name);
     let places = NodeColumns::NAMES.map(place);
     if let Some(name) = header.iter().skip(2).find(|c| !NodeColumns::NAMES.contains(c)) {
-        return Err(row_error(NODES, 1, format!("unknown column `{name}`")));
+        return Err(row_error(NODES, 1, RowFault::UnknownColumn { column: name.to_owned() }));
     }
     rows(NODES, &mut from, |r| {
         let mut v = [f64::NAN; NodeColumns::COUNT];
@@ -543,10 +629,9 @@ pub fn read_events(from: impl Read) -> Result<Vec<Event>, ReadError> {
     }
     rows(EVENTS, &mut from, |r| {
         let line = r.position().map_or(1, csv::Position::line);
-        let kind = r
-            .get(1)
-            .and_then(WarningKind::from_name)
-            .ok_or_else(|| row_error(EVENTS, line, format!("unknown kind `{}`", r.get(1).unwrap_or_default())))?;
+        let name = r.get(1).unwrap_or_default();
+        let kind = WarningKind::from_name(name)
+            .ok_or_else(|| row_error(EVENTS, line, RowFault::UnknownKind { kind: name.to_owned() }))?;
         let cause =
             r.get(7).and_then(|text| serde_json::from_str(text).ok()).filter(|c: &WarningCause| c.kind() == kind);
         let message = r.get(6).unwrap_or_default().to_owned();
@@ -574,7 +659,7 @@ pub fn read_history(from: impl Read) -> Result<HistoryTable, ReadError> {
     if !expect_columns(HISTORY, &mut from, &HISTORY_COLUMNS)? {
         return Ok(table);
     }
-    let header = from.headers().map_err(|e| row_error(HISTORY, 1, e))?.clone();
+    let header = from.headers().map_err(|e| unreadable(HISTORY, 1, &e))?.clone();
     // Reactions come in pairs of columns: x, y of each support. Then the extras, which older tables
     // lack.
     let mut k = 3;
@@ -591,7 +676,7 @@ pub fn read_history(from: impl Read) -> Result<HistoryTable, ReadError> {
             (Some(x), Some(y)) if x == y && table.extras.is_empty() => {
                 table.supports.push(SupportColumn { name: x.to_owned(), ..SupportColumn::default() });
             }
-            _ => return Err(row_error(HISTORY, 1, format!("column {} is not a support's reaction", k + 1))),
+            _ => return Err(row_error(HISTORY, 1, RowFault::NotAReaction { number: k + 1 })),
         }
         k += 2;
     }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::model::Model;
-use crate::solution::{CableSolution, Cost, Energy, Node, SupportReaction};
+use crate::solution::{CableSolution, Cost, Energy, ModelReason, Node, SupportReaction};
 use proptest::prelude::*;
 
 fn solution(time_s: f64, values: [f64; NodeColumns::COUNT], name: &str) -> Solution {
@@ -35,7 +35,7 @@ fn solution(time_s: f64, values: [f64; NodeColumns::COUNT], name: &str) -> Solut
     Solution {
         time_s,
         model: Model::Fem,
-        reason: String::new(),
+        reason: ModelReason::Requested,
         cables: vec![CableSolution {
             name: name.to_owned(),
             nodes: vec![node],
@@ -173,7 +173,7 @@ fn a_run_cut_at_any_byte_is_read_up_to_its_last_whole_instant() {
     let mut scene = crate::scene::catalog::hanging_span();
     scene.cables[0].supports.truncate(1);
     scene.cables[0].supports[0].name = "a \"b\"".to_owned();
-    w.begin(&scene, false).unwrap();
+    w.begin(&scene, RobotColumns::LeftOut).unwrap();
     for s in &solutions {
         w.push(s).unwrap();
     }

@@ -25,9 +25,9 @@ pub struct WholeRecords<R> {
     from: R,
     /// Bytes read; whole records of them are passed on.
     bytes: Vec<u8>,
-    /// How many of `bytes` have been passed on.
+    /// Number of `bytes` that have been passed on.
     passed: usize,
-    /// How many of `bytes` are whole records.
+    /// Number of `bytes` that are whole records.
     whole: usize,
     /// Within quotes, where a line end is part of a text.
     quoted: bool,

@@ -26,7 +26,7 @@
 //! CISM 302, 1988): all of them fall as v' grows, m v'/h grows, so there is one v'. What the cable
 //! does to the outline is that of the end of the step.
 //!
-//! What the ground does where it tips the vehicle over a corner takes nothing from its speed: on
+//! The work of the ground where it tips the vehicle over a corner takes nothing from its speed: on
 //! such ground its weight and the hitch do work that is not along the way, and
 //! [`RobotWork::ground_j`] is that.
 //!
@@ -102,7 +102,7 @@ pub struct Vehicle {
     rate: Vec2,
     /// Speed that the governor asked for in the last step, m/s.
     set: f64,
-    /// How fast it tips, rad/s.
+    /// Tipping speed, rad/s.
     tipping: f64,
     report: RobotReport,
 }
@@ -300,7 +300,7 @@ impl Vehicle {
         work.weight_j += lifted;
         work.cable_j += cable;
         work.ground_j += (weight + pull) * way - lifted - cable;
-        // What a stop takes is none of those.
+        // The energy of a stop is none of those.
         work.impact_j += self.preset.mass_kg.value * (speed - balance.speed) / drive.h * way;
         self.tipping = (to.pitch - self.pose.pitch) / drive.h;
         (self.pose, self.speed, self.set) = (to, speed, balance.asked);
@@ -357,10 +357,11 @@ impl Vehicle {
             }
         }
         let (near, edge) = found.unwrap_or((edges[1] + 1.0, None));
-        let (speed, tracks, rolling, slips) = if let Some(q) = edge {
+        let (speed, tracks, rolling, traction) = if let Some(q) = edge {
             let total = needed(q);
             let tracks = grip.share(q, total);
-            (q, tracks, total - tracks, q == 0.0 && grip.drives && grip.drive >= grip.hold)
+            let slips = q == 0.0 && grip.drives && grip.drive >= grip.hold;
+            (q, tracks, total - tracks, if slips { Traction::Slips } else { Traction::Holds })
         } else {
             let rolls = grip.rolls(near, Limit::Above);
             let reached =
@@ -369,14 +370,22 @@ impl Vehicle {
             let slid = reached(if tracks < 0.0 { -grip.hold } else { grip.hold }, 0.0);
             let driven = reached(grip.drive, grip.falls);
             if grip.is_driven(near, Limit::Above) && driven <= slid {
-                (driven, grip.tracks(driven, Limit::Above), rolls, false)
+                (driven, grip.tracks(driven, Limit::Above), rolls, Traction::Holds)
             } else {
-                (slid, if tracks < 0.0 { -grip.hold } else { grip.hold }, rolls, true)
+                (slid, if tracks < 0.0 { -grip.hold } else { grip.hold }, rolls, Traction::Slips)
             }
         };
-        let going = grip.going(v, speed, slips);
+        let going = grip.going(v, speed, traction);
         let [speed, tracks, rolling, asked] = [speed, tracks, rolling, grip.asked].map(|x| x * sense);
-        SpeedBalance { speed, tracks, rolling, asked, slips, going, ..SpeedBalance::default() }
+        SpeedBalance {
+            speed,
+            tracks,
+            rolling,
+            asked,
+            slips: traction == Traction::Slips,
+            going,
+            ..SpeedBalance::default()
+        }
     }
 
     /// Returns what tracks and rolling resistance can do in a step, in the `sense` in which it is
@@ -463,7 +472,7 @@ pub struct Pulls {
     pub outline: Vec2,
 }
 
-/// What a step is to do.
+/// The task of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Drive {
     /// Speed asked for, m/s.
@@ -472,7 +481,7 @@ pub struct Drive {
     h: f64,
 }
 
-/// How the forces of a step balance; along the ground to the right.
+/// The balance of forces of a step; along the ground to the right.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SpeedBalance {
     /// Speed at the end, m/s.
@@ -492,6 +501,13 @@ pub struct SpeedBalance {
     /// True if the tracks slip.
     slips: bool,
     going: Going,
+}
+
+/// State of the tracks on the ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Traction {
+    Holds,
+    Slips,
 }
 
 /// Tracks and rolling resistance in a step, as functions of the speed at its end. Below a speed of
@@ -558,11 +574,11 @@ impl TrackGrip {
     }
 
     /// Why it comes from one speed to another, m/s.
-    fn going(&self, from: f64, to: f64, slips: bool) -> Going {
+    fn going(&self, from: f64, to: f64, traction: Traction) -> Going {
         let against = if self.drives { -to } else { to.abs() };
-        match (self.drives, slips) {
-            (_, true) if against > STANDSTILL_M_PER_S => Going::Dragged,
-            (_, true) => Going::Slipping,
+        match (self.drives, traction) {
+            (_, Traction::Slips) if against > STANDSTILL_M_PER_S => Going::Dragged,
+            (_, Traction::Slips) => Going::Slipping,
             (false, _) if to.abs() < STANDSTILL_M_PER_S => Going::Standing,
             (true, _) if to < self.asked && to < STANDSTILL_M_PER_S => Going::Stalled,
             // While it gains speed with its full drive it is on its way.
@@ -572,7 +588,7 @@ impl TrackGrip {
     }
 }
 
-/// What the ground does to it, N.
+/// The force of the ground on it, N.
 #[derive(Clone, Copy, Debug)]
 struct Forces {
     normal: f64,

@@ -58,8 +58,7 @@ pub struct Cable {
     /// Coulomb friction with what does not say otherwise.
     #[serde(default)]
     pub friction: f64,
-    /// Which of the many balances that friction allows is asked for; left out, that of the least
-    /// sliding.
+    /// Selection among the many balances that friction allows; left out, that of the least sliding.
     #[serde(default, skip_serializing_if = "FrictionMobilised::is_default")]
     pub friction_mobilised: FrictionMobilised,
     /// Elements; left out, the model chooses.
@@ -87,11 +86,11 @@ fn default_breaking_time_s() -> f64 {
     BREAKING_TIME_S
 }
 
-/// How much of the friction is called upon where the cable rests.
+/// Part of the friction that is mobilised where the cable rests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FrictionMobilised {
-    /// What the cable laid along its way needs.
+    /// The friction that the cable laid along its way needs.
     #[default]
     LeastSliding,
     /// All of it, against a cable that is drawn towards its start.
@@ -127,7 +126,7 @@ impl FrictionMobilised {
         Self::ALL.into_iter().find(|c| c.name() == name)
     }
 
-    /// Which way the cable is drawn: 1 towards its end, −1 towards its start, 0 neither.
+    /// Direction in which the cable is drawn: 1 towards its end, −1 towards its start, 0 neither.
     #[must_use]
     pub fn way(self) -> f64 {
         match self {

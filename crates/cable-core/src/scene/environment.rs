@@ -1,11 +1,11 @@
-//! The environment of a scene: how its plane lies, gravity, wind and temperature.
+//! The environment of a scene is the orientation of its plane, gravity, wind and temperature.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::math::Point;
 
-/// How the plane of the scene lies.
+/// Orientation of the plane of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum View {

@@ -10,14 +10,14 @@ pub struct Ground {
     columns: Columns,
 }
 
-/// Which stretches lie over which part of x, so that one place asks a few of them and not a
+/// Lists of the stretches over each part of x, so that one place asks a few of them and not a
 /// million.
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Columns {
     /// Left end, m, and how wide each is, m.
     left: f64,
     width: f64,
-    /// Where the list of each column begins in `items`; one more at the end.
+    /// Start of the list of each column in `items`; one more at the end.
     starts: Vec<usize>,
     /// Indices of stretches.
     items: Vec<usize>,
@@ -90,7 +90,7 @@ impl Columns {
     }
 }
 
-/// How a track rests.
+/// Resting pose of a track.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stand {
     /// Height of its middle, m.

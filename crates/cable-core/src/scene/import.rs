@@ -4,7 +4,6 @@
 //! something else stands between them a comma is a decimal mark: `1,5;2,25`. Lines without numbers
 //! before the first point are headings.
 
-use crate::error::SceneFault;
 use crate::math::Point;
 
 /// Most points of an import: as many as a scene may have.
@@ -24,26 +23,86 @@ pub struct Line {
     pub closed: bool,
 }
 
-/// What was read and what was done to it.
+/// The scene that was read and the changes made to it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Import {
     /// The lines, those of the ground from left to right.
     pub lines: Vec<Line>,
-    /// What was left out, merged or turned, in words.
-    pub report: Vec<String>,
+    /// The changes.
+    pub changes: Vec<ImportChange>,
 }
 
-fn fault(what: impl Into<String>) -> SceneFault {
-    SceneFault::Shape { what: what.into() }
+/// A change that an import makes to what it reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImportChange {
+    /// Heading lines of a table are left out.
+    HeadingsLeftOut {
+        /// Their number.
+        count: usize,
+    },
+    /// Points in the place of the one before are left out.
+    PointsMerged {
+        /// Their number.
+        count: usize,
+    },
+    /// Ground that ran to the left is turned, since it is solid below.
+    GroundTurned,
+    /// Transforms of an SVG are left out.
+    TransformsLeftOut,
+    /// The y axis of an SVG, which points downwards, is turned upwards.
+    AxisTurned,
+}
+
+/// Why a text is not imported.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ImportFault {
+    /// The unit has no length.
+    Unit,
+    /// There is no line in it.
+    NoLine,
+    /// It has more points than a scene may have.
+    TooManyPoints {
+        /// The most that there may be.
+        most: usize,
+    },
+    /// A row of a table is not two numbers.
+    Row {
+        /// Line, from 1.
+        line: usize,
+        /// Its beginning.
+        text: String,
+    },
+    /// A line has too few points.
+    TooFewPoints {
+        /// Their number.
+        count: usize,
+        /// The number it needs.
+        least: usize,
+    },
+    /// A number of a list is not finite.
+    Number {
+        /// Its beginning.
+        text: String,
+    },
+    /// An attribute is not a list of numbers.
+    List {
+        /// Its beginning.
+        text: String,
+    },
+    /// A command of a path that is not read.
+    PathCommand {
+        /// The command.
+        command: char,
+    },
 }
 
 /// Reads a table or an SVG; `metres_per_unit` is the length of its unit.
 ///
 /// # Errors
 /// What cannot be read, with its line.
-pub fn read(text: &str, metres_per_unit: f64) -> Result<Import, SceneFault> {
+pub fn read(text: &str, metres_per_unit: f64) -> Result<Import, ImportFault> {
     if !(metres_per_unit > 0.0 && metres_per_unit.is_finite()) {
-        return Err(fault("a unit is longer than 0 m"));
+        return Err(ImportFault::Unit);
     }
     let text = text.trim_start_matches('\u{feff}');
     let mut import = Import::default();
@@ -53,17 +112,15 @@ pub fn read(text: &str, metres_per_unit: f64) -> Result<Import, SceneFault> {
         table(text, &mut import)?;
     }
     for line in &mut import.lines {
-        tidy(line, metres_per_unit, &mut import.report)?;
+        tidy(line, metres_per_unit, &mut import.changes)?;
     }
     if import.lines.is_empty() {
-        return Err(fault(
-            "there is no line in it: a table needs two numbers a line, an SVG a path, polyline or polygon",
-        ));
+        return Err(ImportFault::NoLine);
     }
     Ok(import)
 }
 
-fn table(text: &str, import: &mut Import) -> Result<(), SceneFault> {
+fn table(text: &str, import: &mut Import) -> Result<(), ImportFault> {
     let mut line = Line::default();
     let mut headings = 0;
     for (k, row) in text.lines().enumerate() {
@@ -73,13 +130,13 @@ fn table(text: &str, import: &mut Import) -> Result<(), SceneFault> {
         }
         match pair(row) {
             Some(p) if line.points_m.len() < MAX_POINTS => line.points_m.push(p),
-            Some(_) => return Err(fault(format!("more than {MAX_POINTS} points"))),
+            Some(_) => return Err(ImportFault::TooManyPoints { most: MAX_POINTS }),
             None if line.points_m.is_empty() => headings += 1,
-            None => return Err(fault(format!("line {}: `{}` is not two finite numbers", k + 1, short(row)))),
+            None => return Err(ImportFault::Row { line: k + 1, text: short(row) }),
         }
     }
     if headings > 0 {
-        import.report.push(format!("{headings} heading line(s) left out"));
+        import.changes.push(ImportChange::HeadingsLeftOut { count: headings });
     }
     if !line.points_m.is_empty() {
         import.lines.push(line);
@@ -123,7 +180,7 @@ fn pair(row: &str) -> Option<Point> {
 }
 
 /// Scales, merges points that are one, and turns ground that runs to the left.
-fn tidy(line: &mut Line, metres_per_unit: f64, report: &mut Vec<String>) -> Result<(), SceneFault> {
+fn tidy(line: &mut Line, metres_per_unit: f64, changes: &mut Vec<ImportChange>) -> Result<(), ImportFault> {
     let before = line.points_m.len();
     for p in &mut line.points_m {
         *p = p.map(|v| v * metres_per_unit);
@@ -136,17 +193,17 @@ fn tidy(line: &mut Line, metres_per_unit: f64, report: &mut Vec<String>) -> Resu
     }
     let merged = before - line.points_m.len();
     if merged > 0 {
-        report.push(format!("{merged} point(s) merged with the one before"));
+        changes.push(ImportChange::PointsMerged { count: merged });
     }
     let least = if line.closed { 3 } else { 2 };
     if line.points_m.len() < least {
-        return Err(fault(format!("a line of {} point(s): it needs {least}", line.points_m.len())));
+        return Err(ImportFault::TooFewPoints { count: line.points_m.len(), least });
     }
     if let (false, [first, .., last]) = (line.closed, line.points_m.as_slice())
         && last[0] < first[0]
     {
         line.points_m.reverse();
-        report.push("ground that ran to the left turned: it is solid below".to_owned());
+        changes.push(ImportChange::GroundTurned);
     }
     Ok(())
 }
@@ -171,9 +228,9 @@ fn attributes<'a>(text: &'a str, element: &str, attribute: &str) -> Vec<&'a str>
     found
 }
 
-fn svg(text: &str, import: &mut Import) -> Result<(), SceneFault> {
+fn svg(text: &str, import: &mut Import) -> Result<(), ImportFault> {
     if text.contains(" transform=") {
-        import.report.push("transforms are not applied: flatten them first if lines lie wrong".to_owned());
+        import.changes.push(ImportChange::TransformsLeftOut);
     }
     for (element, closed) in [("polyline", false), ("polygon", true)] {
         for points in attributes(text, element, "points") {
@@ -186,22 +243,22 @@ fn svg(text: &str, import: &mut Import) -> Result<(), SceneFault> {
         path(d, &mut import.lines)?;
     }
     if import.lines.iter().map(|l| l.points_m.len()).sum::<usize>() > MAX_POINTS {
-        return Err(fault(format!("more than {MAX_POINTS} points")));
+        return Err(ImportFault::TooManyPoints { most: MAX_POINTS });
     }
-    import.report.push("y turned upwards (SVG has it downwards)".to_owned());
+    import.changes.push(ImportChange::AxisTurned);
     Ok(())
 }
 
 /// The numbers of a list, with or without commas.
-fn numbers(text: &str) -> Result<Vec<f64>, SceneFault> {
+fn numbers(text: &str) -> Result<Vec<f64>, ImportFault> {
     let mut out = Vec::new();
     let mut start = None;
     let bytes = text.as_bytes();
-    let mut take = |from: usize, to: usize| -> Result<(), SceneFault> {
+    let mut take = |from: usize, to: usize| -> Result<(), ImportFault> {
         let word = text.get(from..to).unwrap_or_default();
         match word.parse::<f64>() {
             Ok(v) if v.is_finite() => out.push(v),
-            _ => return Err(fault(format!("`{}` is not a finite number", short(word)))),
+            _ => return Err(ImportFault::Number { text: short(word) }),
         }
         Ok(())
     };
@@ -216,7 +273,7 @@ fn numbers(text: &str) -> Result<Vec<f64>, SceneFault> {
         if start.is_none() && (part || sign) {
             start = Some(k);
         } else if !part && !sign && !matches!(b, b' ' | b',' | b'\n' | b'\t' | b'\r') {
-            return Err(fault(format!("`{}` is not a list of numbers", short(text))));
+            return Err(ImportFault::List { text: short(text) });
         }
     }
     if let Some(from) = start {
@@ -226,7 +283,7 @@ fn numbers(text: &str) -> Result<Vec<f64>, SceneFault> {
 }
 
 /// The subpaths of the data of a path (SVG 1.1, chapter 8.3), y upwards.
-fn path(d: &str, lines: &mut Vec<Line>) -> Result<(), SceneFault> {
+fn path(d: &str, lines: &mut Vec<Line>) -> Result<(), ImportFault> {
     let mut at = [0.0; 2];
     let mut line = Line::default();
     let mut rest = d.trim();
@@ -272,9 +329,7 @@ fn path(d: &str, lines: &mut Vec<Line>) -> Result<(), SceneFault> {
                 finish(&mut line, lines);
             }
             other => {
-                return Err(fault(format!(
-                    "path command `{other}` is not read: turn arcs and smooth curves into lines first"
-                )));
+                return Err(ImportFault::PathCommand { command: other });
             }
         }
     }
@@ -335,7 +390,8 @@ mod tests {
     fn what_is_done_to_it_is_reported() {
         let import = read("x,y\n3,1\n2,1\n2,1\n0,0\n", 0.5).unwrap();
         assert_eq!(import.lines[0].points_m, [[0.0, 0.0], [1.0, 0.5], [1.5, 0.5]]);
-        assert_eq!(import.report.len(), 3, "{:?}", import.report);
+        let (headings, points) = (ImportChange::HeadingsLeftOut { count: 1 }, ImportChange::PointsMerged { count: 1 });
+        assert_eq!(import.changes, [headings, points, ImportChange::GroundTurned]);
     }
 
     #[test]

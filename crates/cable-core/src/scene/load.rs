@@ -11,7 +11,7 @@ use crate::math::Point;
 pub struct Load {
     /// Name of the cable.
     pub cable: String,
-    /// Where on it, m of unstretched length from its start.
+    /// Place on it, m of unstretched length from its start.
     pub arc_length_m: f64,
     /// Force, N.
     #[serde(default, skip_serializing_if = "Option::is_none")]

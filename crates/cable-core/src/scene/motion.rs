@@ -28,7 +28,7 @@ const KNOT_VELOCITY_LIMIT: f64 = 1.25;
 pub struct Motion {
     /// Times of the knots, s, strictly increasing.
     pub times_s: Vec<f64>,
-    /// Where it is at each time, m.
+    /// Position at each time, m.
     pub points_m: Vec<Point>,
 }
 

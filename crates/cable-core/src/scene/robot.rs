@@ -14,10 +14,10 @@ use crate::math::{Point, RigidPose, Vec2, vec2};
 pub struct Robot {
     /// Preset its numbers come from.
     pub preset: String,
-    /// Where its tracks' middle touches the ground, m. In a side view it stands on the highest
-    /// terrain at this x; the height counts where there is none.
+    /// Point at which its tracks' middle touches the ground, m. In a side view it stands on the
+    /// highest terrain at this x; the height counts where there is none.
     pub at_m: Point,
-    /// Which way it looks.
+    /// Its heading.
     #[serde(default)]
     pub heading: Heading,
     /// Coulomb friction between tracks and ground; left out: [`TRACK_FRICTION`].
@@ -29,7 +29,7 @@ pub struct Robot {
     /// Begins its path anew after the last leg.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub repeat: bool,
-    /// What it does by itself, in order.
+    /// Its driving program, in order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub path: Vec<RobotTask>,
 }
@@ -43,7 +43,7 @@ pub const TRACK_FRICTION: f64 = 0.45;
 /// 2008; remembered, to be taken as estimated).
 pub const ROLLING_RESISTANCE: f64 = 0.06;
 
-/// Which way a robot looks.
+/// Direction in which a robot looks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Heading {
@@ -61,14 +61,14 @@ pub enum Heading {
 pub enum RobotTask {
     /// Drive until the tracks' middle is at x.
     Drive {
-        /// Where to, m.
+        /// Goal, m.
         to_x_m: f64,
-        /// How fast, m/s.
+        /// Speed, m/s.
         speed_m_per_s: f64,
     },
     /// Stand still.
     Wait {
-        /// How long, s.
+        /// Duration, s.
         wait_s: f64,
     },
 }
@@ -111,14 +111,14 @@ impl Robot {
     }
 }
 
-/// Where a vehicle is and how it leans.
+/// Position and lean of a vehicle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
     /// Middle of its tracks on the ground, m.
     pub at_m: Point,
     /// Slope it stands on, rad, positive where it climbs to the right.
     pub pitch: f64,
-    /// Which way it looks.
+    /// Its heading.
     pub heading: Heading,
 }
 
@@ -140,14 +140,14 @@ impl Pose {
     }
 }
 
-/// How far in front of its hitch the outline of a robot begins that a cable meets, m: the arm that
-/// the cable hangs on. Less: the cable bends round the edge of its own robot at the first element;
-/// more: it hangs through what is drawn.
+/// Distance in front of its hitch at which the outline of a robot begins that a cable meets, m: the
+/// arm that the cable hangs on. Less: the cable bends round the edge of its own robot at the first
+/// element; more: it hangs through what is drawn.
 const HITCH_ROOM_M: f64 = 0.1;
 
-/// How far below its tracks the outline of a robot reaches, m. Less: a cable gets under an end of
-/// it that lifts, and is squeezed there; more: what lies in a ditch that it bridges is pushed
-/// along.
+/// Depth below its tracks to which the outline of a robot reaches, m. Less: a cable gets under an
+/// end of it that lifts, and is squeezed there; more: what lies in a ditch that it bridges is
+/// pushed along.
 const BELOW_GROUND_M: f64 = 0.2;
 
 impl Pose {

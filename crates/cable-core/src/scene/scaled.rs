@@ -15,7 +15,7 @@ pub struct Similarity {
     pub length: f64,
     /// √λ: time of the copy over that of the scene.
     pub time: f64,
-    /// What is at (0, 0) in the copy, m of the scene.
+    /// The point of the scene that is at (0, 0) in the copy, m.
     pub origin: Vec2,
 }
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::Motion;
 use crate::math::{Point, vec2};
 
-/// What a support does.
+/// Kind of a support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum SupportKind {
@@ -42,9 +42,9 @@ pub enum PulleySide {
 pub struct Support {
     /// Unique in its cable.
     pub name: String,
-    /// What it does.
+    /// Its kind.
     pub kind: SupportKind,
-    /// Where it is, m (fixed, clamped; a pulley's centre).
+    /// Its position, m (fixed, clamped; a pulley's centre).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at_m: Option<Point>,
     /// Place on the cable it sits, m (fixed, clamped or load between the ends).

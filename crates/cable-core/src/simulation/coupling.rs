@@ -46,7 +46,7 @@ struct CoupledStep<'a> {
     hitches: &'a [(usize, usize)],
 }
 
-/// What became of a trial.
+/// Outcome of a trial.
 enum TrialOutcome {
     /// The robot at the end of the step.
     Ends(Box<Vehicle>),
@@ -61,11 +61,11 @@ enum TrialOutcome {
 struct Trial {
     /// Speed at its end, m/s.
     speed: f64,
-    /// How much faster it comes out, m/s.
+    /// Excess of the speed that comes out, m/s.
     off: f64,
 }
 
-/// What is known of the speed that is sought.
+/// Knowledge of the speed that is sought.
 #[derive(Clone, Copy, Debug)]
 struct Search {
     left: usize,
@@ -97,7 +97,7 @@ impl Search {
         let wanted = now.speed - now.off / if slope < -1.0 { slope } else { -1.0 };
         Some(match (self.low, self.high) {
             (Some(low), Some(high)) if !(low < wanted && wanted < high) => 0.5 * (low + high),
-            // What would throw it back stops it first.
+            // A force that would throw it back stops it first.
             (None, Some(high)) if wanted < 0.0 && 0.0 < high => 0.0,
             (Some(low), None) if wanted > 0.0 && 0.0 > low => 0.0,
             _ => wanted,

@@ -1,5 +1,4 @@
-//! The estimated errors of an answer's figures, and how they are read off a better answer to the
-//! same question.
+//! The errors of an answer's figures are estimated from a better answer to the same question.
 
 use serde::{Deserialize, Serialize};
 

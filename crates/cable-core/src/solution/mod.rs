@@ -1,49 +1,49 @@
-//! The answer to a question about a scene: plain data, whichever model gave it.
+//! A solution is the answer to a question about a scene: plain data, whichever model gave it.
 //!
 //! | room | data |
 //! |---|---|
 //! | `mod.rs` | [`Solution`], [`CableSolution`]: nodes, supports, contacts, warnings |
 //! | `error_estimates.rs` | [`ErrorEstimates`]: how wrong each figure is |
 //! | `robot_report.rs` | [`robot_report::RobotReport`]: the vehicle at the same instant |
-//! | `verification.rs` | [`verification::Verification`]: the verdict of the laws of mechanics |
+//! | `model_reason.rs` | [`ModelReason`]: why that model answered |
 //! | `warning.rs` | [`Warning`]: what a user should know, as data |
 
 pub mod error_estimates;
+mod model_reason;
 pub mod robot_report;
-pub mod verification;
 mod warning;
 
 use serde::{Deserialize, Serialize};
 
 use crate::math::{Vec2, larger};
 use crate::model_id::Model;
+use crate::verification::Verification;
 
 pub use self::error_estimates::ErrorEstimates;
+pub use self::model_reason::{LikelyBending, ModelReason, TakenStiffness};
 use self::robot_report::RobotReport;
-use self::verification::Verification;
 pub use self::warning::{EndMove, Histories, MeanTension, ShownEquilibrium, SlideReason};
 pub use self::warning::{Warning, WarningCause, WarningKind};
 
 /// The answer of a model at an instant, all cables of the scene.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Solution {
     /// Time, s.
     pub time_s: f64,
     /// The model that gave it.
     pub model: Model,
     /// Why that model.
-    pub reason: String,
+    pub reason: ModelReason,
     /// One a cable, in the scene's order.
     pub cables: Vec<CableSolution>,
-    /// What the user should know.
+    /// Warnings for the user.
     pub warnings: Vec<Warning>,
-    /// What the last solve or step took.
+    /// Cost of the last solve or step.
     pub cost: Cost,
     /// Energy of all cables.
     #[serde(default)]
     pub energy: Energy,
-    /// What the laws say of it; None where nobody asked (a model's own answer, a run read from
-    /// files).
+    /// Its verification; None where nobody asked (a model's own answer, a run read from files).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub verification: Option<Verification>,
     /// The robot, where the scene has one that can move.
@@ -91,7 +91,7 @@ pub struct CableSolution {
     /// it: what is warned of.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub judged_bend: Option<JudgedBend>,
-    /// Where it is pressed hardest against what leads it.
+    /// The place at which it is pressed hardest against what leads it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sidewall_pressure: Option<Pressure>,
     /// Index of the first node of each further piece, where the cable has broken; empty while it is
@@ -100,7 +100,7 @@ pub struct CableSolution {
     /// its end.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub breaks: Vec<usize>,
-    /// What the answer took into account.
+    /// The effects that the answer took into account.
     #[serde(default)]
     pub assumptions: Assumptions,
     /// The greatest tensions of the last step, whose inner steps pull harder than its end; None at
@@ -113,9 +113,9 @@ pub struct CableSolution {
     pub momentum: Option<MomentumAccount>,
 }
 
-/// What became of a cable's momentum in a step: what it had, and what each kind of force gave it,
-/// added up over the inner steps from the very forces that moved it there. Before and impulses add
-/// up to after.
+/// Balance of a cable's momentum in a step: what it had, and what each kind of force gave it, added
+/// up over the inner steps from the very forces that moved it there. Before and impulses add up to
+/// after.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MomentumAccount {
     /// The time it is of, s.
@@ -210,8 +210,8 @@ pub struct TensionPeak {
     pub time_s: f64,
 }
 
-/// What an answer took into account of its cable. What it left out is an error of the model, not an
-/// unbalanced force.
+/// The effects of its cable that an answer took into account. What it left out is an error of the
+/// model, not an unbalanced force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Assumptions {
     /// Bending stiffness EI, N·m²; 0 = perfectly flexible.
@@ -258,7 +258,7 @@ pub struct Bend {
 /// A bend as the cable has it with its bending stiffness.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct JudgedBend {
-    /// Where and how sharp.
+    /// Place and curvature.
     #[serde(flatten)]
     pub bend: Bend,
     /// The bending stiffness by which corners are judged, N·m²: the cable's own, of one taken as
@@ -306,7 +306,7 @@ pub struct Node {
     /// a stiff one has shear as well.
     #[serde(default)]
     pub force_n: [f64; 2],
-    /// How far its material is from where it was when the run began, m.
+    /// Distance of its material from where it was when the run began, m.
     #[serde(default)]
     pub displacement_m: [f64; 2],
     /// Mean acceleration of its material over the last step with inertia, m/s²; 0 at rest and
@@ -329,7 +329,7 @@ impl Node {
     }
 }
 
-/// What the cable does to a support.
+/// The action of the cable on a support.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SupportReaction {
     /// The support's name.
@@ -378,7 +378,7 @@ impl HandReport {
     }
 }
 
-/// Whether a contact holds or slides.
+/// State of a contact: it holds or slides.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ContactState {
@@ -478,7 +478,7 @@ impl ContactReport {
     }
 }
 
-/// What a solve or step took. The core has no clock: wall time is the caller's to measure.
+/// Cost of a solve or step. The core has no clock: wall time is the caller's to measure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Cost {
     /// Newton iterations, or explicit sub-steps.

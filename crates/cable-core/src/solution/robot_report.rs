@@ -1,9 +1,9 @@
-//! The report of the tracked vehicle in an answer: where it is, what pulls at it, and why it is as
-//! fast as it is.
+//! The robot report describes the tracked vehicle in an answer: where it is, what pulls at it, and
+//! why it is as fast as it is.
 
 use serde::{Deserialize, Serialize};
 
-/// What its motion is.
+/// State of its motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Going {
@@ -14,9 +14,9 @@ pub enum Going {
     Driving,
     /// Slower than commanded: what it pulls costs it speed.
     Slowed,
-    /// What it would have to pull is more than its drive can.
+    /// It would have to pull more than its drive can.
     Stalled,
-    /// What it would have to pull is more than its tracks can hold on the ground.
+    /// It would have to pull more than its tracks can hold on the ground.
     Slipping,
     /// The cable draws it over the ground against its will.
     Dragged,
@@ -59,7 +59,7 @@ pub struct RobotWork {
     pub cable_j: f64,
     /// Of the ground where it tips the vehicle over corners: that takes nothing from its speed.
     pub ground_j: f64,
-    /// What is lost where the ground or a cable squeezed against a wall stops it.
+    /// Energy lost where the ground or a cable squeezed against a wall stops it.
     pub impact_j: f64,
 }
 
@@ -71,7 +71,7 @@ impl RobotWork {
     }
 }
 
-/// How it is at an instant.
+/// Its state at an instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct RobotReport {
     /// Middle of its tracks on the ground, m.
@@ -100,7 +100,7 @@ pub struct RobotReport {
     /// Force of the cable on its outline, N.
     #[serde(default)]
     pub push_y_n: f64,
-    /// What the forces on it have done since it began.
+    /// Work of the forces on it since it began.
     #[serde(default)]
     pub work: RobotWork,
     /// Why it is as fast as it is.

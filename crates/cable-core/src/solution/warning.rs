@@ -405,7 +405,7 @@ pub struct MeanTension {
     pub time_s: f64,
 }
 
-/// Which of many equilibria is shown.
+/// Selection of the equilibrium that is shown among many.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]

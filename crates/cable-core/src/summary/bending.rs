@@ -11,7 +11,7 @@
 //! `repro`) whose cable has such a preset, four have no sound answer with it, and the tank takes
 //! 1.5 s instead of 0.1 s.
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use crate::any_error::Error;
 use crate::math::larger;
@@ -19,11 +19,12 @@ use crate::model::{Model, Settings};
 use crate::scene::Scene;
 use crate::scene::preset::cable_preset;
 use crate::simulation::Simulation;
-use crate::solution::ErrorEstimates;
-use crate::solution::{CableSolution, Solution, WarningKind};
+use crate::solution::{
+    CableSolution, ErrorEstimates, LikelyBending, ModelReason, Solution, TakenStiffness, WarningKind,
+};
 
-/// What an answer at rest without bending stiffness left out, for one cable.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// Effects that an answer at rest without bending stiffness left out, for one cable.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct NeglectedBending {
     /// Name of the cable.
     pub cable: String,
@@ -33,10 +34,10 @@ pub struct NeglectedBending {
     pub range_n_m2: [Option<f64>; 2],
     /// The greatest tension with the likely stiffness, N; None where no answer was found.
     pub greatest_tension_n: Option<f64>,
-    /// What each figure changes by with it, no less than the answer with it is known to.
+    /// Change of each figure with it, no less than the error of the answer with it.
     pub changes: ErrorEstimates,
     /// Why there is no answer with it.
-    pub unknown: Option<String>,
+    pub unknown: Option<Error>,
 }
 
 /// Returns what it changes that cables were taken as perfectly flexible, of those whose preset says
@@ -73,7 +74,7 @@ pub fn neglected_bending(scene: &Scene, answer: &Solution, settings: Settings) -
                     of.changes = ErrorEstimates::between(flexible, stiff).with(&known, larger);
                 }
             }
-            Err(error) => of.unknown = Some(error.to_string()),
+            Err(error) => of.unknown = Some(error.clone()),
         }
         of
     };
@@ -84,33 +85,32 @@ fn greatest(of: &CableSolution) -> f64 {
     of.nodes.iter().map(|n| n.tension_n).fold(0.0, larger)
 }
 
-/// Which bending stiffness cables have that are perfectly flexible in the scene.
+/// Bending stiffness of the cables that are perfectly flexible in the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Bending {
     /// None, as the scene says.
     #[default]
     AsWritten,
-    /// What their presets are likely to have.
+    /// The bending stiffness that their presets are likely to have.
     Likely,
     /// That, of cables which without it are bent tighter than they stand, curl up, or cross
     /// themselves.
     WhereItMatters,
 }
 
-/// The scene with the likely bending stiffness of some cables that are flexible in it, and what is
-/// then to be said; None where nothing is known of any of them.
-fn with_likely(scene: &Scene, counts: impl Fn(&str) -> bool) -> Option<(Scene, String)> {
+/// The scene with the likely bending stiffness of some cables that are flexible in it, and that
+/// stiffness; None where nothing is known of any of them.
+fn with_likely(scene: &Scene, counts: impl Fn(&str) -> bool) -> Option<(Scene, Vec<TakenStiffness>)> {
     let mut stiff = scene.clone();
-    let mut said = Vec::new();
+    let mut taken = Vec::new();
     for cable in stiff.cables.iter_mut().filter(|c| c.bending_stiffness_n_m2 == 0.0 && counts(&c.name)) {
         let likely = cable.likely_bending_stiffness_n_m2();
         if likely > 0.0 {
             cable.bending_stiffness_n_m2 = likely;
-            said.push(format!("`{}` with {likely} N m²", cable.name));
+            taken.push(TakenStiffness { cable: cable.name.clone(), bending_stiffness_n_m2: likely });
         }
     }
-    let said = format!("the bending stiffness that is likely of its preset was taken: {}", said.join(", "));
-    (stiff != *scene).then_some((stiff, said))
+    (!taken.is_empty()).then_some((stiff, taken))
 }
 
 /// Returns whether a flexible line is not where a cable could be.
@@ -133,29 +133,23 @@ pub fn settle_with_bending(
     let settle = |scene: &Scene| -> Result<Solution, Error> {
         Ok(Simulation::with_settings(scene.clone(), model, settings)?.settle()?)
     };
-    let told = |mut answer: Solution, said: &str| {
-        answer.reason = format!("{}; {said}", answer.reason);
-        answer
+    let told = |answer: Solution, bending: LikelyBending| {
+        let reason = ModelReason::Bending { reason: Box::new(answer.reason), bending };
+        Solution { reason, ..answer }
     };
     if bending == Bending::Likely
-        && let Some((stiff, said)) = with_likely(scene, |_| true)
+        && let Some((stiff, taken)) = with_likely(scene, |_| true)
     {
-        return settle(&stiff).map(|answer| (stiff, told(answer, &said)));
+        return settle(&stiff).map(|answer| (stiff, told(answer, LikelyBending::Taken(taken))));
     }
     let flexible = settle(scene)?;
     let tight = |name: &str| flexible.warnings.iter().any(|w| matters(w.kind) && w.cable == name);
     match with_likely(scene, tight).filter(|_| bending == Bending::WhereItMatters) {
         None => Ok((scene.clone(), flexible)),
-        Some((stiff, said)) => Ok(match settle(&stiff) {
-            Ok(answer) => {
-                let said = format!("without bending stiffness it is bent too tightly or crosses itself, so {said}");
-                (stiff, told(answer, &said))
-            }
-            Err(error) => {
-                let said =
-                    format!("with the bending stiffness that is likely of its preset there is no answer: {error}");
-                (scene.clone(), told(flexible, &said))
-            }
-        }),
+        Some((stiff, taken)) => match settle(&stiff) {
+            Ok(answer) => Ok((stiff, told(answer, LikelyBending::TakenWhereItMatters(taken)))),
+            Err(Error::Solve(error)) => Ok((scene.clone(), told(flexible, LikelyBending::NoAnswer(Box::new(error))))),
+            Err(other) => Err(other),
+        },
     }
 }

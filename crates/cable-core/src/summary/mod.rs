@@ -54,7 +54,7 @@ pub struct CableSummary {
     pub lying_m: f64,
     /// The rest of it, m: what hangs, stands or runs over wheels.
     pub suspended_m: f64,
-    /// Where it comes down on something or leaves it, in order of arc length.
+    /// Places at which it comes down on something or leaves it, in order of arc length.
     pub touchdowns: Vec<Touchdown>,
     /// Greatest depth below the straight line between neighbouring supports (in a plan view:
     /// distance from it); None where no two supports stand apart.
@@ -68,18 +68,18 @@ pub struct CableSummary {
     /// The sharpest bend where something leads it, as its bending stiffness lets it; None = nothing
     /// leads it round anything.
     pub judged_bend: Option<JudgedBend>,
-    /// Where it is pressed hardest against what leads it round.
+    /// Place at which it is pressed hardest against what leads it round.
     pub sidewall_pressure: Option<Pressure>,
-    /// How much of each limit is used.
+    /// Used part of each limit.
     pub utilisation: Utilisation,
-    /// How much of the friction of its contacts is called upon; None where nothing rubs.
+    /// Mobilised part of the friction of its contacts; None where nothing rubs.
     pub friction: Option<FrictionUse>,
-    /// Whether all forces on it add up to nothing; None in a plan view with a floor that rubs,
-    /// whose force no answer holds.
+    /// Sum of all forces on it; None in a plan view with a floor that rubs, whose force no answer
+    /// holds.
     pub balance: Option<ForceBalance>,
 }
 
-/// What happens at an end.
+/// State at an end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EndForce {
     /// The support's name.
@@ -119,7 +119,7 @@ impl CablePlace {
 pub struct TensionAt {
     /// Tension, N.
     pub tension_n: f64,
-    /// Where.
+    /// Its place.
     #[serde(flatten)]
     pub at: CablePlace,
 }
@@ -129,12 +129,12 @@ pub struct TensionAt {
 pub struct Sag {
     /// Depth, m.
     pub sag_m: f64,
-    /// Where.
+    /// Its place.
     #[serde(flatten)]
     pub at: CablePlace,
 }
 
-/// Which side of a touchdown lies.
+/// Side of a touchdown that lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TouchKind {
@@ -146,16 +146,16 @@ pub enum TouchKind {
     Point,
 }
 
-/// Where the cable comes down on something.
+/// A place at which the cable comes down on something.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Touchdown {
-    /// What it touches.
+    /// Name of the obstacle it touches.
     pub obstacle: String,
-    /// Which side lies.
+    /// The side that lies.
     pub touch: TouchKind,
     /// Tension there, N.
     pub tension_n: f64,
-    /// Where.
+    /// Its place.
     #[serde(flatten)]
     pub at: CablePlace,
 }
@@ -183,7 +183,7 @@ pub struct FrictionUse {
     pub available_n: f64,
     /// The greatest share that one contact uses of its own: 1 = it is about to slide or slides.
     pub greatest_ratio: f64,
-    /// Which one.
+    /// Name of the obstacle.
     pub obstacle: String,
     /// Its middle, m.
     pub arc_length_m: f64,

@@ -39,7 +39,7 @@ pub struct EndStiffness {
     /// moved: the first row is of the force to the right by moves to the right and up, the second
     /// that of the force upwards.
     pub stiffness_n_per_m: [[f64; 2]; 2],
-    /// How far it was moved for it, m.
+    /// Distance by which it was moved for it, m.
     pub moved_m: f64,
 }
 

@@ -14,7 +14,7 @@ use crate::model::Inertia;
 use crate::simulation::Simulation;
 use crate::solution::ErrorEstimates;
 
-/// How many times as long elements and steps are.
+/// Factors by which elements and steps are longer.
 const COARSENING: [u64; 2] = [2, 3];
 /// Steps after which all runs are at one instant.
 const COMMON_STEPS: u64 = 6;
@@ -61,7 +61,7 @@ pub(super) struct CoarseRuns {
     /// When the present window began, s.
     window_began_s: f64,
     own: Vec<RecentPeaks>,
-    /// What is known from the windows before, a cable.
+    /// Ranges of the windows before, a cable.
     before: Vec<TensionRanges>,
 }
 
@@ -91,7 +91,7 @@ impl RecentPeaks {
 #[derive(Debug)]
 struct CoarseRun {
     simulation: Simulation,
-    /// How many steps of the fine run are one of it.
+    /// Number of steps of the fine run that make one of it.
     times: u64,
     /// Difference of each cable from the fine run, as each of [`MEMORIES_S`] remembers it.
     differences: Vec<[ErrorEstimates; 2]>,
@@ -172,7 +172,7 @@ impl CoarseRuns {
         [larger(before[0], here[0]), larger(before[1], here[1])]
     }
 
-    /// What is known of the errors of each cable.
+    /// Error estimates of each cable.
     pub fn errors(&self) -> impl Iterator<Item = ErrorEstimates> {
         let cables = self.runs.first().map_or(0, |run| run.differences.len());
         (0..cables).map(|k| {

@@ -90,7 +90,7 @@ impl RunMonitor {
     }
 }
 
-/// Whether a cable breaks where what is known of its tensions leaves that open.
+/// True if a cable breaks, or if what is known of its tensions leaves that open.
 fn may_break(cable: &Cable, answer: &CableSolution, run: &RunPeaks) -> Option<Warning> {
     let (TensionRanges { held_n: [from, to], .. }, breaking_n) = (run.ranges?, cable.breaking_tension_n);
     let (broke, held, over_s) = (!answer.breaks.is_empty(), run.peaks.held, run.peaks.over_s);

@@ -13,7 +13,7 @@ use super::tolerance::{
     LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE, MIN_STRAIN, MOMENT, MOMENTUM, NORMAL_TOLERANCE, REACH_DIAMETERS, REACH_M,
     REPORTED_BALANCE, TURN,
 };
-use super::{Balance, Depth, Finding, Law, Verification};
+use super::{Balance, Depth, Finding, Law, NotChecked, Verification};
 use crate::math::{Vec2, cross, larger, smaller, vec2};
 use crate::scene::{Cable, Scene, View};
 use crate::solution::{CableSolution, ContactReport, Node, SupportReaction};
@@ -24,7 +24,7 @@ pub(super) struct CheckedCable<'a> {
     scene: &'a Scene,
     pub cable: &'a Cable,
     pub answer: &'a CableSolution,
-    /// What its supports do to it.
+    /// The actions of its supports on it.
     pub holds: Vec<SupportHold<'a>>,
     /// Centre, radius of the centre line and friction of the wheels that lead the cable now.
     pub wheels: Vec<(Vec2, f64, f64)>,
@@ -59,8 +59,8 @@ struct CheckedBar<'a> {
     forces: [f64; 2],
 }
 
-/// How far the way of a piece is from what it should be, how far it may, and its material beyond
-/// its way, m.
+/// Difference of a piece's way from what it should be, its tolerance, and the material beyond its
+/// way, m.
 #[derive(Clone, Copy, Debug)]
 struct Lengths {
     value: f64,
@@ -73,7 +73,7 @@ struct Lengths {
 struct CheckedPiece {
     /// First and last node.
     nodes: [usize; 2],
-    /// What obstacles must do to it, N.
+    /// The force that obstacles must exert on it, N.
     contact: Vec2,
 }
 
@@ -92,8 +92,11 @@ pub(super) fn check(found: &mut Verification, mut subject: CheckedCable<'_>, dep
     subject.penetration(found, &near);
     subject.reported_contacts(found);
     if answer.assumptions.inertia || !answer.breaks.is_empty() {
-        let why = if answer.breaks.is_empty() { "it moves" } else { "it is broken" };
-        found.not_checked.push(format!("balance and length of `{}`: {why}", cable.name));
+        let cable = cable.name.clone();
+        found.not_checked.push(match answer.breaks.is_empty() {
+            true => NotChecked::MovingBalance { cable },
+            false => NotChecked::BrokenBalance { cable },
+        });
         subject.momentum(found);
     } else {
         subject.supports(found);
@@ -109,7 +112,7 @@ pub(super) fn check(found: &mut Verification, mut subject: CheckedCable<'_>, dep
     if cable.self_contact && depth == Depth::Full {
         subject.self_contact(found);
     } else if cable.self_contact {
-        found.not_checked.push(format!("contact of `{}` with itself", cable.name));
+        found.not_checked.push(NotChecked::SelfContact { cable: cable.name.clone() });
     }
 }
 
@@ -422,7 +425,7 @@ impl CheckedCable<'_> {
         touches.then(|| self.floor_excess(piece, outside_cone(piece.contact, rays)))
     }
 
-    /// What is reported of contacts and wheels adds up to what the cable asks for.
+    /// Checks that the reported forces of contacts and wheels add up to those the cable needs.
     fn sums(&self, found: &mut Verification, mut sums: Balance, [contacts, wheels]: [Vec2; 2]) {
         let limit = BALANCE_FRACTION * self.scale;
         let known_here = |c: &&ContactReport| self.surroundings.find(&c.obstacle).is_some();
@@ -477,8 +480,8 @@ impl CheckedCable<'_> {
         let weight = self.cable.linear_density_kg_per_m * self.scene.environment.gravity_m_per_s2;
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
-        // What rubs at a node is of half of both pieces beside it, and at an end of the cable of
-        // the half there too.
+        // Friction at a node is of half of both pieces beside it, and at an end of the cable of the
+        // half there too.
         let [a, b] = piece.nodes.map(|k| nodes[k].arc_length_m);
         let next = nodes[(piece.nodes[1] + 1).min(last)].arc_length_m;
         let half = if piece.nodes[0] == 0 { 0.5 * (b - a) } else { 0.0 };

@@ -32,14 +32,14 @@ use serde::{Deserialize, Serialize};
 use self::surroundings::Obstacles;
 use crate::scene::Scene;
 use crate::solution::robot_report::RobotReport;
-pub use crate::solution::verification::{Balance, Finding, Law, Verification};
 use crate::solution::{CableSolution, Solution};
+pub use crate::verification::{Balance, Finding, Law, NotChecked, Verification};
 
-/// How much is asked.
+/// Extent of the check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Depth {
-    /// What every answer is asked: obstacles that are within the box of a bar.
+    /// The check of every answer: obstacles that are within the box of a bar.
     #[default]
     Always,
     /// On request: the cable against itself as well. Time grows with the square of the number of

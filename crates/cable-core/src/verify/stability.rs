@@ -15,12 +15,12 @@ use crate::math::larger;
 use crate::scene::SupportKind;
 
 impl CheckedCable<'_> {
-    /// Whether what pushes stays.
+    /// Checks the stability of stretches in compression.
     pub fn stability(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Stability);
         let nodes = &self.answer.nodes;
         let same = 1e-9 * self.cable.length_m;
-        // What holds a node, and whether it may turn there.
+        // The support that holds a node, and whether it may turn there.
         let mut holds = vec![None; nodes.len()];
         for hold in self.holds.iter().filter(|h| !matches!(h.role, Role::Load | Role::Released)) {
             let node = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - same);
@@ -66,7 +66,7 @@ pub(super) struct CompressedBar {
     pub held: bool,
     /// True if the node before it is a support that lets it turn.
     pub pinned: bool,
-    /// Whether the node before it and the one after it are clamped.
+    /// True if the node before it is clamped, and the one after it.
     pub clamped: [bool; 2],
 }
 
@@ -101,7 +101,7 @@ fn conditions(bars: &[CompressedBar], ends: [bool; 2]) -> usize {
             begun = true;
         }
         if bar.held {
-            // What is free before it ends here.
+            // A free stretch before it ends here.
             count += if begun && k > 0 && !bars[k - 1].held { 2 } else { 0 };
             begun = true;
         }

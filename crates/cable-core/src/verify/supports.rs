@@ -8,7 +8,7 @@ use crate::math::{Vec2, larger, smaller};
 use crate::scene::{Cable, Scene, Support, SupportKind, View};
 use crate::solution::{CableSolution, Node, SupportReaction};
 
-/// What a support does to the cable now.
+/// Present action of a support on the cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
     /// It holds a point of the cable in its place.

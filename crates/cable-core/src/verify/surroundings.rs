@@ -65,7 +65,7 @@ impl Edges {
     }
 }
 
-/// What is near each bar of a cable.
+/// The obstacles near each bar of a cable.
 #[derive(Debug)]
 pub(super) struct Neighbours {
     /// The first of `all` that belongs to each bar, and their number at the end.
@@ -120,7 +120,7 @@ struct SolidBody {
     kind: Kind,
 }
 
-/// Where an obstacle is solid.
+/// The solid side of an obstacle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// Below a line that runs from left to right.
@@ -176,7 +176,7 @@ impl Obstacles {
     }
 }
 
-/// What is there at an instant.
+/// The obstacles at an instant.
 #[derive(Debug)]
 pub(super) struct Surroundings<'a> {
     bodies: &'a [SolidBody],

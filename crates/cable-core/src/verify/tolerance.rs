@@ -63,11 +63,12 @@ pub(crate) const NORMAL_TOLERANCE: f64 = 1e-6;
 /// has no other scale.
 pub(crate) const MIN_STRAIN: f64 = 1e-7;
 
-/// What contacts and supports as they are reported, and tensions at nodes where something touches,
-/// may leave of the whole, of the greatest force. `fem` lags the normal forces that friction uses
-/// by a round, and its contacts at corners are read off bars beside them: up to 1.8e-3 was seen.
-/// That every piece is balanced by what touches it is asked to [`BALANCE_FRACTION`]. Smaller: slow
-/// draws under beams by `fem` are refused; larger: a report that leaves a contact out passes.
+/// Part of the greatest force that contacts and supports as they are reported, and tensions at
+/// nodes where something touches, may leave of the whole. `fem` lags the normal forces that
+/// friction uses by a round, and its contacts at corners are read off bars beside them: up to
+/// 1.8e-3 was seen. That every piece is balanced by what touches it is asked to
+/// [`BALANCE_FRACTION`]. Smaller: slow draws under beams by `fem` are refused; larger: a report
+/// that leaves a contact out passes.
 pub(crate) const REPORTED_BALANCE: f64 = 2e-3;
 
 /// Distance along a bar that touches by which its ends may be elsewhere, of the diameter: a sagging

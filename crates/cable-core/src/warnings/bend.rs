@@ -5,10 +5,10 @@
 //! corner its own radius (the corner's turn per element says only how fine a mesh is). Pressure on
 //! the round is q = T/R per metre.
 //!
-//! What bends a cable at a sharp corner is judged by its bending stiffness EI, known or estimated,
+//! The bend of a cable at a sharp corner is judged by its bending stiffness EI, known or estimated,
 //! also where the answer is that of a flexible line. Weightless beside the corner, with φ the angle
-//! to the direction in which it leaves far away and T the tension there, moments balance by EI
-//! φ'' = T sin φ. Times φ' and integrated from far away, where φ = φ' = 0:
+//! to the direction in which it leaves far away and T the tension there, moments balance by EI φ''
+//! = T sin φ. Times φ' and integrated from far away, where φ = φ' = 0:
 //!
 //! ```text
 //! EI φ'²/2 = T (1 − cos φ)    so    κ = φ' = 2 √(T/EI) sin(φ/2)
@@ -49,7 +49,7 @@ const MIN_TURN: f64 = 0.01;
 /// round cable bent to less than its own width flattens.
 const KINK_DIAMETERS: f64 = 1.0;
 
-/// What leads the cable at a node.
+/// The body that leads the cable at a node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Guide {
     /// Nothing.
@@ -89,8 +89,8 @@ impl Bends {
             for (k, n) in piece.iter().enumerate() {
                 let turn = |k: Option<usize>| k.and_then(|k| turns.get(k)).copied().unwrap_or(0.0);
                 let (own, curvature) = (turn(Some(k)), n.curvature_per_m.abs());
-                // What leads a node costs a search: it is asked where the answer can change what
-                // was found so far.
+                // A search for the body that leads a node is dear: it is made where the answer can
+                // change what was found so far.
                 let presses = led && curvature * n.tension_n > this.pressure.map_or(0.0, |p| p.pressure_n_per_m);
                 if own.abs() < MIN_TURN && !(curvature > sharpest) && !presses && problem.bending_stiffness == 0.0 {
                     continue;

@@ -33,15 +33,15 @@ const GROWTH_LIMIT: f64 = 0.25;
 /// cables may grow unseen.
 const MIN_GROWTH_FRACTION: f64 = 3e-4;
 
-/// What is least is the greatest of so long a time, s, and of [`RECENT_INSTANTS`] instants.
-/// Shorter: a velocity that an integrator swings beyond its own for a few steps after an impact and
-/// back is growth; longer: growth is told later.
+/// Length of the moving window, s, whose greatest energy may become the least of the motion; it
+/// holds [`RECENT_INSTANTS`] instants at least. Shorter: a velocity that an integrator swings
+/// beyond its own for a few steps after an impact and back is growth; longer: growth is told later.
 const RECENT_S: f64 = 0.05;
 
 /// See [`RECENT_S`].
 const RECENT_INSTANTS: usize = 3;
 
-/// What one cable had, and what it has been given since.
+/// Energy that one cable had, and that it has been given since.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EnergyGrowth {
     before: Option<Snapshot>,
@@ -49,7 +49,8 @@ pub(super) struct EnergyGrowth {
     work_j: f64,
     /// When, s, and energy less work, J, lately.
     recent: VecDeque<[f64; 2]>,
-    least: EnergyMinimum,
+    /// None until an instant is taken in.
+    least: Option<EnergyMinimum>,
 }
 
 /// The least energy less work of a motion.
@@ -65,16 +66,39 @@ struct EnergyMinimum {
     ranges: [[f64; 2]; 4],
 }
 
-/// What is known of a cable at an instant.
+/// Observation of a support at an instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum SupportState {
+    /// It holds the cable.
+    Holds {
+        /// Position, m.
+        at: Vec2,
+        /// Its own speed, m/s.
+        speed: f64,
+        /// Size of the force with which it pulls, N.
+        force: f64,
+    },
+    /// It is a load, or has let go.
+    Free {
+        /// Position, m.
+        at: Vec2,
+    },
+}
+
+impl SupportState {
+    fn holds(&self) -> bool {
+        matches!(self, Self::Holds { .. })
+    }
+}
+
+/// Observation of a cable at an instant.
 #[derive(Clone, Debug)]
 struct Snapshot {
     time_s: f64,
     energy_j: f64,
     breaks: usize,
-    /// Of each support: place, m; its own speed, m/s; size of what it pulls with, N; whether it
-    /// holds.
-    supports: Vec<(Vec2, f64, f64, bool)>,
-    /// Where each load is, those at supports first, m.
+    supports: Vec<SupportState>,
+    /// Position of each load, those at supports first, m.
     loads: Vec<Vec2>,
     /// Force times way of wind and current if it were from the origin: the place integrated over
     /// the cable, m².
@@ -93,16 +117,14 @@ impl EnergyGrowth {
         let Some(now) = &self.before else { return };
         // Without inertia, and where a support let go or the cable broke, it begins anew.
         let goes_on = |b: &Snapshot| {
-            let holds = |m: &Snapshot| m.supports.iter().filter(|s| s.3).count();
+            let holds = |m: &Snapshot| m.supports.iter().filter(|s| s.holds()).count();
             observed.answer.peaks.is_some() && b.time_s < time_s && b.breaks == now.breaks && holds(b) == holds(now)
         };
         match before.filter(goes_on) {
             Some(before) => self.work_j += work(observed, &before, now),
-            None => {
-                (self.work_j, self.least) = (0.0, EnergyMinimum { energy_j: f64::INFINITY, ..EnergyMinimum::default() })
-            }
+            None => (self.work_j, self.least) = (0.0, None),
         }
-        if self.least.energy_j == f64::INFINITY {
+        if self.least.is_none() {
             self.recent.clear();
         }
         let left_j = now.energy_j - self.work_j;
@@ -111,31 +133,33 @@ impl EnergyGrowth {
             self.recent.pop_front();
         }
         let lately = self.recent.iter().fold(f64::NEG_INFINITY, |most, [_, e]| larger(most, *e));
-        if lately < self.least.energy_j {
-            self.least = EnergyMinimum { energy_j: lately, time_s, work_j: self.work_j, ranges: forms.map(|e| [e; 2]) };
+        let Some(least) = self.least.as_mut().filter(|least| !(lately < least.energy_j)) else {
+            let ranges = forms.map(|e| [e; 2]);
+            self.least = Some(EnergyMinimum { energy_j: lately, time_s, work_j: self.work_j, ranges });
             return;
-        }
-        for (range, e) in self.least.ranges.iter_mut().zip(forms) {
+        };
+        for (range, e) in least.ranges.iter_mut().zip(forms) {
             *range = [if e < range[0] { e } else { range[0] }, larger(range[1], e)];
         }
-        let grown = left_j - self.least.energy_j;
-        let [kinetic, rest @ ..] = self.least.ranges;
+        let grown = left_j - least.energy_j;
+        let [kinetic, rest @ ..] = least.ranges;
         let moved = kinetic[1] + rest.iter().map(|[least, most]| most - least).sum::<f64>();
         let problem = observed.problem;
         let limit = GROWTH_LIMIT * moved + MIN_GROWTH_FRACTION * problem.force_scale() * problem.length;
         if grown > limit || grown.is_nan() {
-            out.push(self.warning(observed, grown, limit));
+            let since = *least;
+            out.push(self.warning(observed, &since, [grown, limit]));
         }
     }
 
-    fn warning(&self, observed: &Observed<'_>, grown: f64, limit: f64) -> Warning {
+    fn warning(&self, observed: &Observed<'_>, since: &EnergyMinimum, [grown, limit]: [f64; 2]) -> Warning {
         let (name, nodes) = (&observed.problem.cable.name, &observed.answer.nodes);
         let speed = |k: usize| nodes.get(k).map_or(0.0, |n| n.vx_m_per_s.hypot(n.vy_m_per_s));
         let fastest = (0..nodes.len()).max_by(|a, b| speed(*a).total_cmp(&speed(*b))).unwrap_or(0);
         let at = nodes.get(fastest).copied().unwrap_or_default();
         let cause = WarningCause::EnergyFromNowhere {
-            from_s: self.least.time_s,
-            work_j: self.work_j - self.least.work_j,
+            from_s: since.time_s,
+            work_j: self.work_j - since.work_j,
             speed_m_per_s: speed(fastest),
         };
         Warning::new(cause, name, at.arc_length_m, [grown, limit]).at([at.x_m, at.y_m])
@@ -159,11 +183,12 @@ impl Snapshot {
                 let led = s.place_at(time_s).map_or(0.0, |(_, v)| v.norm());
                 let own = if r.hand.is_some() { v.norm() } else { led };
                 let hand = r.hand.map_or(0.0, |h| h.force_n());
-                supports.push((at, own, larger(hand, r.reaction_x_n.hypot(r.reaction_y_n)), true));
+                let force = larger(hand, r.reaction_x_n.hypot(r.reaction_y_n));
+                supports.push(SupportState::Holds { at, speed: own, force });
             } else {
                 kinetic_j += 0.5 * s.mass * v.norm_squared();
                 gravity_j -= s.mass * gravity.dot(&at);
-                supports.push((at, 0.0, 0.0, false));
+                supports.push(SupportState::Free { at });
                 loads.push(at);
             }
         }
@@ -209,14 +234,15 @@ fn work(observed: &Observed<'_>, before: &Snapshot, now: &Snapshot) -> f64 {
     let greatest = super::tension::greatest(answer);
     let mut sum = 0.0;
     for (s, (a, b)) in problem.supports.iter().zip(before.supports.iter().zip(&now.supports)) {
-        if !(a.3 && b.3) {
+        use SupportState::Holds;
+        let (Holds { at: from_at, speed: u, force: f }, Holds { at: to_at, speed: v, force: g }) = (a, b) else {
             continue;
-        }
-        let way = larger((b.0 - a.0).norm(), larger(a.1, b.1) * dt);
+        };
+        let way = larger((to_at - from_at).norm(), larger(*u, *v) * dt);
         let sides = if s.kind == SupportKind::Pulley { 2.0 } else { 1.0 };
-        sum += larger(sides * greatest, larger(a.2, b.2)) * way;
+        sum += larger(sides * greatest, larger(*f, *g)) * way;
     }
-    let free = problem.supports.iter().zip(&now.supports).filter(|(_, s)| !s.3).map(|(s, _)| &s.force);
+    let free = problem.supports.iter().zip(&now.supports).filter(|(_, s)| !s.holds()).map(|(s, _)| &s.force);
     let forces = free.chain(problem.loads.iter().map(|l| &l.force));
     for (force, (a, b)) in forces.zip(before.loads.iter().zip(&now.loads)) {
         sum += given([force.at(from), force.at(to)], b - a);

@@ -55,7 +55,7 @@ pub(crate) struct Observed<'a> {
     pub breaks: &'a [Break],
 }
 
-/// What was seen of all cables of a scene, over time.
+/// History of all cables of a scene.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct WarningMonitor {
     active: Vec<ActiveWarning>,
@@ -68,20 +68,20 @@ pub(crate) struct WarningMonitor {
 #[derive(Clone, Debug)]
 struct ActiveWarning {
     cable: usize,
-    /// Which of its kind on its cable.
+    /// Its number among those of its kind on its cable.
     number: usize,
     last_seen_s: f64,
     warning: Warning,
 }
 
 impl WarningMonitor {
-    /// What is to be said of an answer at rest: the past does not count.
+    /// Updates the warnings of an answer at rest: the past does not count.
     pub fn at_rest(&mut self, observed: &[Observed<'_>], time_s: f64) {
         *self = Self::default();
         self.update(observed, time_s, None);
     }
 
-    /// What is to be said at an instant of a motion.
+    /// Updates the warnings at an instant of a motion.
     pub fn moving(&mut self, observed: &[Observed<'_>], time_s: f64) {
         if self.last_s.is_some_and(|last| time_s < last) {
             *self = Self::default();

@@ -19,8 +19,8 @@ const MIN_STICKING_S: f64 = 0.3;
 /// Greatest ratio counted: beyond it the slack side has no tension left to measure.
 const MAX_RATIO: f64 = 1e3;
 
-/// How far (in diameters) the middle of a contact that holds may move along the cable and still be
-/// the same.
+/// Distance (in diameters) by which the middle of a contact that holds may move along the cable and
+/// still be the same.
 const MATCH_DIAMETERS: f64 = 10.0;
 
 /// The contacts of a cable that hold, and since when.

@@ -43,7 +43,7 @@ pub(super) fn greatest(answer: &CableSolution) -> f64 {
     answer.nodes.iter().map(|n| n.tension_n).fold(before, |a, b| if b > a { b } else { a })
 }
 
-/// What a cable in motion is pulled with.
+/// Warns of jerks of a cable in motion.
 fn jerk(cable: &Cable, answer: &CableSolution, peaks: &TensionPeaks, out: &mut Vec<Warning>) {
     let (service_n, breaking_n, over_s) = (cable.service_tension_n, cable.breaking_tension_n, peaks.over_s);
     let TensionPeaks { greatest, held, .. } = *peaks;

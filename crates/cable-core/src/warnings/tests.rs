@@ -425,7 +425,7 @@ fn a_contact_that_holds_against_a_growing_pull_is_a_snag() {
     assert!(run(ContactState::Slip, |_| 80.0, |t| 100.0 + 150.0 * t).is_none());
     assert!(run(ContactState::Stick, |t| 80.0 + 120.0 * t, |t| 100.0 + 150.0 * t).is_none());
     assert!(run(ContactState::Stick, |t| 80.0 - 39.0 * t, |_| 100.0).is_none(), "the slack side empties");
-    // What holds for less than 0.3 s is a landing.
+    // A contact that holds for less than 0.3 s is a landing.
     let w = run(ContactState::Stick, |_| 80.0, |t| if t < 0.05 { 100.0 } else { 200.0 }).unwrap();
     assert!((w.since_s.unwrap() - 0.3).abs() < 0.04, "{w:?}");
     // 28 cm from one look to the next is the same contact; farther, another one each time.
@@ -482,8 +482,8 @@ fn degenerate_lines_have_no_crossings() {
     assert!(crossings(&spiral, |_| true).is_empty());
 }
 
-/// What is named in the catalogue at rest: slack on floors, the corners in which the cables between
-/// the posts and behind the robot were laid, and nothing else.
+/// Warnings of the catalogue at rest: slack on floors, the corners in which the cables between the
+/// posts and behind the robot were laid, and nothing else.
 const NAMED: [(&str, &[WarningKind]); 7] = [
     ("tank", &[WarningKind::Kink]),
     ("slack-to-floor", &[]),
@@ -612,7 +612,7 @@ fn a_model_that_gains_speed_from_nowhere_is_told() {
     }
 }
 
-/// What supports, loads and wind give is not from nowhere.
+/// Energy from supports, loads and wind is accounted for.
 #[test]
 fn work_is_not_energy_from_nowhere() {
     let mut s = scene();

@@ -6,10 +6,16 @@
 //! | `warning.rs` | warnings |
 //! | `scene_error.rs` | why a scene is refused |
 //! | `solve_error.rs` | why a model has no answer |
+//! | `model_reason.rs` | why a model was taken |
+//! | `file_error.rs` | why a file is not read or written |
+//! | `import.rs` | what an import changed, and why it is refused |
 //! | `verification.rs` | verdicts of the laws of mechanics |
 //!
 //! `Display` writes the sentence in SI units. Names stand between backticks.
 
+mod file_error;
+mod import;
+mod model_reason;
 mod scene_error;
 mod solve_error;
 mod verification;
@@ -34,6 +40,18 @@ macro_rules! display_in_si {
     )+};
 }
 pub(crate) use display_in_si;
+
+/// Serialises data as its sentence in SI units: files and JSON hold the words.
+macro_rules! serialize_in_si {
+    ($($data:ty),+) => {$(
+        impl serde::Serialize for $data {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.serialize_str(&crate::wording::Sentence::sentence(self, crate::units::UnitSystem::Si))
+            }
+        }
+    )+};
+}
+pub(crate) use serialize_in_si;
 
 /// Figures in a system of units: a number in SI units, its unit behind it.
 #[derive(Clone, Copy)]
@@ -69,6 +87,15 @@ impl Figures {
         }
         let rounded = format!("{converted:.4e}");
         rounded.parse::<f64>().map_or(rounded, |rounded| format!("{rounded}"))
+    }
+
+    /// The end of a range, without the unit; a power of ten where it is small or large.
+    fn bound(self, quantity: Quantity, value: f64) -> String {
+        let text = self.bare(quantity, value);
+        match text.parse::<f64>() {
+            Ok(shown) if shown != 0.0 && !(1e-3..1e6).contains(&shown.abs()) => format!("{shown:e}"),
+            _ => text,
+        }
     }
 
     fn with_unit(self, quantity: Quantity, number: String) -> String {

@@ -1,7 +1,7 @@
-//! Why a scene is refused: the place in its file, the fault, and what mends it.
+//! These sentences say why a scene is refused: the place in its file, the fault, and what mends it.
 
 use super::{Figures, Sentence, display_in_si};
-use crate::error::{SceneError, SceneFault};
+use crate::error::{SceneError, SceneFault, ShapeFault};
 use crate::units::{Quantity, UnitSystem};
 
 display_in_si!(SceneError, SceneFault);
@@ -26,14 +26,20 @@ impl Sentence for SceneFault {
             Self::Range { value, allowed: [low, high], quantity } => format!(
                 "{} is outside the allowed range {} to {}",
                 f.bare(*quantity, *value),
-                limit(f, *quantity, *low),
-                f.with_unit(*quantity, limit(f, *quantity, *high))
+                f.bound(*quantity, *low),
+                f.with_unit(*quantity, f.bound(*quantity, *high))
             ),
             Self::Version { value } => {
                 format!("{value} is outside the allowed range 1, the only version this program reads")
             }
             Self::UnknownKey { nearest } => format!("unknown key{}", hint(nearest.as_deref())),
-            Self::Shape { what } => what.clone(),
+            Self::NotUtf8 { encoding } => {
+                let hint = encoding.map(|name| format!(", it looks like {name}: save it as UTF-8"));
+                format!("this is not UTF-8 text{}", hint.unwrap_or_default())
+            }
+            Self::Type { found, needed } => format!("{found} where {needed} is needed"),
+            Self::Elements { count, needed } => format!("{count} elements where {needed} is needed"),
+            Self::Shape(fault) => fault.sentence(units),
             Self::TooMany { count, most } => format!("{count} are more than the {most} allowed"),
             Self::TooFewPoints { count, least } => {
                 format!("{count} points where at least {least} are needed")
@@ -111,15 +117,64 @@ impl Sentence for SceneFault {
     }
 }
 
-/// The end of a range; a power of ten where it is small or large.
-fn limit(f: Figures, quantity: Quantity, value: f64) -> String {
-    let text = f.bare(quantity, value);
-    match text.parse::<f64>() {
-        Ok(shown) if shown != 0.0 && !(1e-3..1e6).contains(&shown.abs()) => format!("{shown:e}"),
-        _ => text,
+fn hint(nearest: Option<&str>) -> String {
+    nearest.map(|n| format!(", did you mean `{n}`?")).unwrap_or_default()
+}
+
+impl Sentence for ShapeFault {
+    fn sentence(&self, _: UnitSystem) -> String {
+        let text = match self {
+            Self::Refused { message } => return message.clone(),
+            Self::Missing => "is missing",
+            Self::MissingForKind { kind } => return format!("is missing: a {kind} support needs it"),
+            Self::NotForKind { kind } => return format!("does not belong to a {kind} support"),
+            Self::UnknownWord { word, known, nearest } => {
+                return format!("`{word}` is not one of {}{}", alternatives(known), hint(nearest.as_deref()));
+            }
+            Self::LongText { bytes, most } => {
+                return format!("the text has {bytes} bytes, more than the {most} a scene may have");
+            }
+            Self::EmptyText => "the text is empty: a scene begins with `version = 1`",
+            Self::EmptyName => "a name must not be empty",
+            Self::LongName { most } => return format!("a name has at most {most} bytes"),
+            Self::TakenName { name } => return format!("`{name}` is already taken: names are unique"),
+            Self::NoCable => "a scene needs at least one cable",
+            Self::TooFewSupports => {
+                "a cable needs two supports, its start and its end (kind = \"free\" for a loose end)"
+            }
+            Self::HitchWithoutRobot => "hangs on the robot, but the scene has no [robot]",
+            Self::PulleyAtEnd => "a pulley cannot hold an end of the cable: it slides through",
+            Self::FreeWithin => "only an end of the cable can be free",
+            Self::ArcLengthAtEnd => "leave it out: the first and last support sit at the ends",
+            Self::MissingArcLength => "is missing: where on the cable does it sit?",
+            Self::ShortRoute => "a route needs two points or more",
+            Self::TwoForces => "give either force_n, or times_s and forces_n",
+            Self::NoForce => "is missing: give force_n, or times_s and forces_n",
+            Self::NoTime => "needs at least one time",
+            Self::TerrainLeftwards => {
+                "terrain goes from left to right, solid below: its last point must lie right of its first"
+            }
+            Self::PolygonClosedTwice => "repeats the first point: a polygon closes by itself",
+            Self::PolygonWithoutArea => "a polygon needs an area: these points lie on a line or cross it back",
+            Self::RepeatedPoint => "is the same point as the one before it: leave one out",
+            Self::Tangled => {
+                "so many edges lie side by side that crossings cannot be ruled out in a second: give it fewer or shorter ones"
+            }
+        };
+        text.to_owned()
     }
 }
 
-fn hint(nearest: Option<&str>) -> String {
-    nearest.map(|n| format!(", did you mean `{n}`?")).unwrap_or_default()
+/// The words of a list, the last after an "or".
+fn alternatives(words: &[&str]) -> String {
+    let mut text = String::new();
+    for (i, word) in words.iter().enumerate() {
+        text.push_str(match i {
+            0 => "",
+            _ if i + 1 == words.len() => " or ",
+            _ => ", ",
+        });
+        text += &format!("`{word}`");
+    }
+    text
 }

@@ -1,15 +1,18 @@
-//! Why a model has no answer. Every sentence says where, in lengths and names, and what can be
-//! done; none holds a number that is not finite.
+//! These sentences say why a model has no answer. Every one says where, in lengths and names, and
+//! what can be done; none holds a number that is not finite.
 
 use super::{Figures, Sentence, display_in_si};
-use crate::error::{FailureCause, NoEquilibrium, Place, SolveError, SpanError, Unsupported};
+use crate::error::{
+    EquilibriumFault, FailureCause, Near, NearKind, NoEquilibrium, Place, SolveError, SpanError, TensionLoss,
+    Unsupported, UnsupportedReach,
+};
 use crate::units::{Quantity, UnitSystem};
 
 /// A force that no cable bears, N: left over it says that a search ran away, not how much is
 /// missing.
 const MAX_CREDIBLE_FORCE_N: f64 = 1e9;
 
-display_in_si!(SolveError, NoEquilibrium, FailureCause, Unsupported, SpanError, Place);
+display_in_si!(SolveError, NoEquilibrium, FailureCause, Unsupported, SpanError, Place, TensionLoss);
 
 impl std::error::Error for SolveError {}
 impl std::error::Error for NoEquilibrium {}
@@ -27,12 +30,15 @@ impl Sentence for Place {
         if self.at_m.iter().all(|c| c.is_finite()) {
             text += &format!(", at ({}, {})", f.distance(self.at_m.x), f.distance(self.at_m.y));
         }
-        match &self.near {
-            Some((name, distance)) if distance.is_finite() && *distance > 0.0 => {
-                text + &format!(", {} from {name}", f.distance(*distance))
-            }
-            Some((name, _)) => text + ", at " + name,
-            None => text,
+        let Some(Near { kind, name, distance_m }) = &self.near else { return text };
+        let kind = match kind {
+            NearKind::Support => "support",
+            NearKind::Obstacle => "obstacle",
+        };
+        if distance_m.is_finite() && *distance_m > 0.0 {
+            text + &format!(", {} from {kind} `{name}`", f.distance(*distance_m))
+        } else {
+            text + &format!(", at {kind} `{name}`")
         }
     }
 }
@@ -66,7 +72,8 @@ impl Sentence for SolveError {
                 "{model} found only a shape that does not stay (it would snap to another): lay the cable on the side where it shall rest (route_m)"
             ),
             Self::TensionLost { model, loss, arc_length_m, at_m } => format!(
-                "{model} follows a taut cable only: {loss} {} along it, at {}",
+                "{model} follows a taut cable only: {} {} along it, at {}",
+                loss.sentence(units),
                 f.length(*arc_length_m, 3),
                 f.point((*at_m).into(), 3)
             ),
@@ -89,11 +96,18 @@ impl Sentence for SolveError {
             Self::Unsound { model, finding } => {
                 format!("the answer of {model} is not sound: {}", finding.sentence(units))
             }
-            Self::Setting { name, value, allowed } => {
-                format!("the setting {name} = {value} cannot be worked by: it must lie in {allowed}")
+            Self::Setting { name, value, allowed: [low, high], quantity } => {
+                let value = f.given(*quantity, *value);
+                let [low, most] = [*low, *high].map(|end| f.bound(*quantity, end));
+                let allowed = match high.is_finite() {
+                    true => format!("lie in {low} to {}", f.with_unit(*quantity, most)),
+                    false => format!("be {} or more, and finite", f.with_unit(*quantity, low)),
+                };
+                format!("the setting {name} = {value} cannot be worked by: it must {allowed}")
             }
-            Self::TimeStep { dt_s, allowed } => {
-                format!("a time step of {dt_s} s cannot be taken: it must lie in {allowed}")
+            Self::TimeStep { dt_s, longest_s } => {
+                let most = if longest_s.is_finite() { format!(" and at most {longest_s} s") } else { String::new() };
+                format!("a time step of {dt_s} s cannot be taken: it must be more than 0 s{most}")
             }
             Self::StepFailed { model, time_s, dt_s, residual_n, place, cause } => format!(
                 "{model} stopped at {time_s:.6} s: the step was halved to {dt_s:.3e} s and still failed: {} {} ({})",
@@ -252,7 +266,7 @@ impl Sentence for Unsupported {
             }
             Self::Unverified { finding, arc_length_m, at_m } => {
                 let (along, at) = (f.length(*arc_length_m, 3), f.point((*at_m).into(), 3));
-                return format!("{finding} {along} along it at {at}");
+                return format!("{} {along} along it at {at}", finding.sentence(units));
             }
             Self::EmptyState => "a state of no nodes",
             Self::StateOfOtherLength => "a state of a cable of another length",
@@ -265,7 +279,60 @@ impl Sentence for Unsupported {
                     f.given(Quantity::Speed, *limit_m_per_s)
                 );
             }
-            Self::Reach(why) => return why.to_string(),
+            Self::Reach(why) => return why.sentence(units),
+        };
+        text.to_owned()
+    }
+}
+
+impl Sentence for UnsupportedReach {
+    fn sentence(&self, _: UnitSystem) -> String {
+        let text = match self {
+            Self::NoSuchCable => "a cable that is not there",
+            Self::SupportWithoutPlace => "a support without a place",
+            Self::EmptyGrid => "a grid without places",
+            Self::GridTooLarge => "a grid of so many places",
+            Self::HitchWithoutRobot => "a cable on a robot that is not there",
+            Self::NoRobot => "a scene without a robot",
+            Self::UnknownRobot => "a robot of no known kind",
+            Self::RobotWithoutCable => "a robot that no cable hangs on",
+            Self::BrokenCable => "a cable that has broken",
+        };
+        text.to_owned()
+    }
+}
+
+impl Sentence for TensionLoss {
+    fn sentence(&self, _: UnitSystem) -> String {
+        let text = match self {
+            Self::Fold => "a span folds",
+            Self::Span => "a span goes slack",
+            Self::Lay => "what lies goes slack",
+        };
+        text.to_owned()
+    }
+}
+
+impl Sentence for EquilibriumFault {
+    fn sentence(&self, _: UnitSystem) -> String {
+        let text = match self {
+            Self::MaterialOrder => "material out of order",
+            Self::MaterialAtContactEnd => "material is lost at an end of a contact",
+            Self::MaterialAlongContact => "material is lost along a contact",
+            Self::Unbalanced => "supports and contacts do not hold the weight and the loads",
+            Self::SpanOpen => "a span does not close",
+            Self::SpanNotTangent => "a span is not tangent to what it leaves",
+            Self::ContactBeyondBoundary => "a contact goes on beyond what it lies on",
+            Self::ContactPulls => "a contact pulls",
+            Self::FrictionBeyondCone => "friction beyond its cone",
+            Self::SlackUnderTension => "slack has tension",
+            Self::LooseCableSlides => "what lies loose slides",
+            Self::EndTension => "an end is not what draws it",
+            Self::LoadHeldDown => "a load is held down",
+            Self::LoadOutOfKink => "a load is out of its kink",
+            Self::LoadSlides => "a load slides against more than its friction",
+            Self::LoadElsewhere => "a load is not where the cable beside it ends",
+            Self::InsideObstacle => "the cable is inside an obstacle",
         };
         text.to_owned()
     }

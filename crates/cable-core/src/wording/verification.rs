@@ -1,10 +1,11 @@
 //! A verdict names the broken law, by how much it is broken, and where.
 
-use super::{Figures, Sentence, display_in_si};
-use crate::solution::verification::{Finding, Verification};
+use super::{Figures, Sentence, display_in_si, serialize_in_si};
 use crate::units::{Quantity, UnitSystem};
+use crate::verification::{Finding, NotChecked, Verification};
 
-display_in_si!(Finding);
+display_in_si!(Finding, NotChecked);
+serialize_in_si!(NotChecked);
 
 impl Sentence for Finding {
     fn sentence(&self, units: UnitSystem) -> String {
@@ -25,6 +26,16 @@ impl Sentence for Finding {
     }
 }
 
+impl Sentence for NotChecked {
+    fn sentence(&self, _: UnitSystem) -> String {
+        match self {
+            Self::MovingBalance { cable } => format!("balance and length of `{cable}`: it moves"),
+            Self::BrokenBalance { cable } => format!("balance and length of `{cable}`: it is broken"),
+            Self::SelfContact { cable } => format!("contact of `{cable}` with itself"),
+        }
+    }
+}
+
 impl Sentence for Verification {
     /// The verdict in a line: sound or not, the balance, and what was not asked.
     fn sentence(&self, units: UnitSystem) -> String {
@@ -36,7 +47,7 @@ impl Sentence for Verification {
         };
         for what in &self.not_checked {
             line.push_str("; not checked: ");
-            line.push_str(what);
+            line.push_str(&what.sentence(units));
         }
         line
     }

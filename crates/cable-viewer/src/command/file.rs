@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use cable_core::Scene;
 use cable_core::files::{RunEnd, RunFolder};
-use cable_core::record::{NodeChoice, RunRequest};
+use cable_core::record::{NodeChoice, RunRequest, RunStop};
 use cable_core::scene::catalog;
 
 use crate::command::effects::{Effects, submit_new_scene};
@@ -278,7 +278,7 @@ fn save_run(state: &AppState, path: &Path) -> Result<(), String> {
             let why = e.to_string();
             // The tables are readable and marked as partial already, whether this can be noted or
             // not.
-            let _ = folder.finish(RunEnd::Partial(why.clone()));
+            let _ = folder.finish(RunEnd::Partial(RunStop::Failed { message: why.clone() }));
             return Err(why);
         }
     }

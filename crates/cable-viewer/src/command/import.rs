@@ -5,6 +5,8 @@ use std::path::Path;
 use cable_core::scene::{Obstacle, Shape, import};
 use cable_core::{Scene, files};
 
+use crate::units::sentence::sentence;
+
 /// Largest file, bytes: a million points with room to spare.
 const MAX_BYTES: u64 = 64 << 20;
 
@@ -40,7 +42,7 @@ pub fn add(scene: &Scene, path: Option<&Path>, text: &str, unit_m: f64) -> Resul
         report.push(format!("“{name}”: {count} points"));
         scene.obstacles.push(Obstacle { name, shape, friction: None });
     }
-    report.extend(read.report);
+    report.extend(read.changes.iter().map(sentence));
     // What is already wrong with the scene is not the import's fault.
     if let Err(fault) = scene.validate()
         && fault.path.starts_with("obstacles")

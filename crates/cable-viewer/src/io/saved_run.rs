@@ -5,8 +5,12 @@ use std::path::Path;
 use cable_core::record::{Event, HistoryTable, NodeRow, RunTables};
 use cable_core::robot::RobotReport;
 use cable_core::scene::SupportKind;
-use cable_core::solution::{CableSolution, Cost, Energy, SupportReaction, TensionPeak, TensionPeaks, Warning};
+use cable_core::solution::{
+    CableSolution, Cost, Energy, ModelReason, SupportReaction, TensionPeak, TensionPeaks, Warning,
+};
 use cable_core::{Model, Scene, Solution, files};
+
+use crate::units::sentence::sentence;
 
 /// Largest table read, bytes: half an hour of 200 nodes at 60 answers a second is 3 GB; such a run
 /// is for other programs.
@@ -30,7 +34,7 @@ pub struct SavedRun {
 /// In words: what is missing or broken, and where.
 pub fn read_run(folder: &Path) -> Result<SavedRun, String> {
     let run = files::load_run(folder, MAX_BYTES).map_err(|e| e.to_string())?;
-    let mut remarks = run.remarks();
+    let mut remarks: Vec<String> = run.remarks().iter().map(|r| format!("{}.", sentence(r))).collect();
     let RunTables { history, mut nodes, events, .. } = run.tables;
     if history.time_s.is_empty() {
         return Err(format!("it holds no instant. {}", remarks.join(" ")).trim_end().to_owned());
@@ -107,7 +111,7 @@ fn answers(scene: &Scene, history: &HistoryTable, nodes: Vec<NodeRow>, events: &
         out.push(Solution {
             time_s,
             model: Model::Auto,
-            reason: "read from a run".to_owned(),
+            reason: ModelReason::Recorded,
             robot: robot(scene, history, k, &cables),
             verification: None,
             cables,

@@ -4,6 +4,7 @@ use egui::{Button, Slider, SliderClamping, Ui};
 
 use crate::command::{Command, PlaybackCommand};
 use crate::state::{AppState, Freshness, Playback};
+use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
 use crate::units::{format, labels};
 use crate::widgets::field;
@@ -98,7 +99,7 @@ fn real_time(ui: &mut Ui, state: &AppState) {
 /// How the solver is doing, beside the transport.
 fn status(ui: &mut Ui, state: &AppState) {
     if let Some(solution) = &state.live.snapshot.solution {
-        ui.label(format!("{} model", labels::model(solution.model))).on_hover_text(&solution.reason);
+        ui.label(format!("{} model", labels::model(solution.model))).on_hover_text(sentence(&solution.reason));
         ui.separator();
     }
     let solved = format!("Solved in {:.2} ms", state.live.snapshot.solve_wall_s * 1e3);

@@ -9,6 +9,7 @@ use crate::command::{Command, PlaybackCommand};
 use crate::panels::quality;
 use crate::state::{AppState, WorkerStatus};
 use crate::units::format;
+use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
 use crate::widgets::property::{Provenance, Quantity, row};
 use crate::worker;
@@ -83,7 +84,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
     let answer = state.live.snapshot.solution.as_deref();
     if let Some(answer) = answer {
-        let why = if state.solver.model == Model::Auto { format!(": {}", answer.reason) } else { String::new() };
+        let why =
+            if state.solver.model == Model::Auto { format!(": {}", sentence(&answer.reason)) } else { String::new() };
         ui.label(format!("Solved with {}{why}", model_name(answer.model)));
     }
     if worker::engine::is_quasi_static(state.solver.model) {

@@ -158,7 +158,7 @@ fn began(w: &Warning, now_s: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use cable_core::Model;
-    use cable_core::solution::{CableSolution, Cost, Energy, Node, WarningCause};
+    use cable_core::solution::{CableSolution, Cost, Energy, ModelReason, Node, WarningCause};
 
     use super::*;
 
@@ -168,7 +168,7 @@ mod tests {
         Solution {
             time_s,
             model: Model::Fem,
-            reason: String::new(),
+            reason: ModelReason::Requested,
             cables: vec![cable],
             warnings: if warned { vec![warning] } else { Vec::new() },
             cost: Cost::default(),

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use cable_core::robot::{Going, RobotReport};
 use cable_core::scene::{Obstacle, Shape, Support, catalog};
 use cable_core::solution::{
-    CableSolution, ContactReport, ContactState, Cost, Energy, Node, Solution, SupportReaction, Warning, WarningCause,
-    WarningKind,
+    CableSolution, ContactReport, ContactState, Cost, Energy, ModelReason, Node, Solution, SupportReaction, Warning,
+    WarningCause, WarningKind,
 };
 use cable_core::{Load, Model, Scene};
 use cable_viewer::command::effects::Effects;
@@ -112,7 +112,7 @@ fn answer(scene: &Scene) -> Solution {
     Solution {
         time_s: 9.983,
         model: Model::Fem,
-        reason: "the scene has obstacles the cable can touch".to_owned(),
+        reason: ModelReason::Obstacles,
         cables: vec![CableSolution {
             name: cable.name.clone(),
             nodes,

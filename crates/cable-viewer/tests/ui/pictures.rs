@@ -3,7 +3,7 @@
 
 use cable_core::error::{SceneError, SceneFault};
 use cable_core::scene::catalog;
-use cable_core::solution::{CableSolution, ContactReport, ContactState, Cost, Node};
+use cable_core::solution::{CableSolution, ContactReport, ContactState, Cost, ModelReason, Node};
 use cable_core::{Model, Solution};
 use cable_viewer::app::screenshot;
 use cable_viewer::canvas;
@@ -16,7 +16,7 @@ use egui_kittest::Harness;
 
 /// A reason why a scene has no answer.
 fn refusal(text: &str) -> NoAnswer {
-    let fault = SceneFault::Shape { what: text.to_owned() };
+    let fault = SceneFault::Syntax { message: text.to_owned() };
     NoAnswer::Error(SceneError { path: String::new(), fault, at: None }.into())
 }
 
@@ -140,7 +140,7 @@ fn contacts_dark() {
     state.live.snapshot.solution = Some(std::sync::Arc::new(Solution {
         time_s: 0.0,
         model: Model::Fem,
-        reason: String::new(),
+        reason: ModelReason::Requested,
         cables: vec![cable],
         warnings: Vec::new(),
         cost: Cost::default(),

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use cable_core::analysis::safe_reach::line::ReachMap;
+use cable_core::analysis::safe_reach::line::{ReachMap, Trip};
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
@@ -74,7 +74,7 @@ fn safe_reach_of_a_robot_is_found_beside_the_window_and_can_be_ended() {
     let Maps::Line(map) = maps else { panic!("{maps:?}") };
     let map: &ReachMap = &map;
     assert_eq!(map.places.len(), PLACES);
-    assert!(map.safe_m(map.service_n, true).is_some());
+    assert!(map.safe_m(map.service_n, Trip::ThereAndBack).is_some());
 }
 
 /// A search that nobody waits for any more ends, and takes no more of the machine.

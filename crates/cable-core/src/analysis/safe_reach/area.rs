@@ -32,16 +32,16 @@ const SLACK_ELEMENT_M: f64 = 0.4;
 /// Most places that are looked at: more is a slip of the unit.
 const MAX_PLACES: usize = 100_000;
 
-/// How much farther than its length a cable is tried, of its length: more than any cable stretches
-/// before it breaks.
+/// Greatest distance at which a cable is tried, of its length: more than any cable stretches before
+/// it breaks.
 const REACH_FACTOR: f64 = 1.1;
 
-/// What is asked.
+/// The question.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReachQuery {
     /// The scene.
     pub scene: Scene,
-    /// How its cables lie now; None: as the scene lays them.
+    /// The present state of its cables; None: as the scene lays them.
     pub now: Option<Arc<Solution>>,
     /// Mesh and accuracy.
     pub settings: Settings,
@@ -58,7 +58,7 @@ pub struct ReachQuery {
     pub back: bool,
 }
 
-/// What there is to know of every place.
+/// The results at every place.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Area {
     /// The middle of the first place, m.
@@ -74,7 +74,7 @@ pub struct Area {
     /// Of each place: its tension is taken from four round it that agree, or, while the map is not
     /// done, from the nearest of a coarser grid.
     pub guessed: Vec<bool>,
-    /// Where the end starts, m.
+    /// Position at which the end starts, m.
     pub start_m: Point,
     /// Service tension of the cable, N.
     pub service_n: f64,

@@ -23,12 +23,12 @@ use crate::solution::Solution;
 /// shorter: more answers.
 const STEP_M: f64 = 0.05;
 
-/// What the cable may leave of a step, m: a robot that it holds back by a hair has not been
-/// stopped.
+/// Distance that the cable may leave of a step, m: a robot that it holds back by a hair has not
+/// been stopped.
 const MAX_SHORTFALL_M: f64 = 1e-3;
 
-/// Where a heap of slack cable has no rest to be pushed to it is thrown over: such a step is taken
-/// with inertia, at this speed, m/s. Faster: its swing shows in the tension; slower: longer.
+/// Speed of a step that is taken with inertia because a heap of slack cable has no rest to be
+/// pushed to and is thrown over, m/s. Faster: its swing shows in the tension; slower: longer.
 const PUSH_SPEED_M_PER_S: f64 = 0.3;
 
 /// Every how manieth way back is looked at, one after the other. Begun with less: longer until the
@@ -42,7 +42,7 @@ const AGREEMENT_FRACTION: f64 = 0.02;
 /// A place of the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachPlace {
-    /// Where the tracks' middle is, m.
+    /// Position of the tracks' middle, m.
     pub at_m: Point,
     /// Largest tension with the robot there, N; infinite where the cable does not reach, not a
     /// number where no answer was found.
@@ -55,12 +55,12 @@ pub struct ReachPlace {
     pub jammed: bool,
 }
 
-/// What there is to know of every place.
+/// The results at every place.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReachMap {
     /// In order of x.
     pub places: Vec<ReachPlace>,
-    /// Where the robot started, m.
+    /// Position at which the robot started, m.
     pub start_x_m: f64,
     /// Service tension, N: the least of all cables that hang on it.
     pub service_n: f64,
@@ -68,12 +68,32 @@ pub struct ReachMap {
     pub breaking_n: f64,
 }
 
-impl ReachMap {
-    /// From where to where the robot can go without passing a tension (N), and with `back` also
-    /// come back; None if not even at its start.
+/// A trip of the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trip {
+    /// To a place.
+    There,
+    /// To a place and back.
+    ThereAndBack,
+}
+
+impl ReachPlace {
+    /// The greatest tension on a trip to this place, N.
     #[must_use]
-    pub fn safe_m(&self, tension_n: f64, back: bool) -> Option<[f64; 2]> {
-        let fits = |p: &ReachPlace| (if back { p.there_and_back_n } else { p.there_n }) <= tension_n;
+    pub fn tension_n(&self, trip: Trip) -> f64 {
+        match trip {
+            Trip::There => self.there_n,
+            Trip::ThereAndBack => self.there_and_back_n,
+        }
+    }
+}
+
+impl ReachMap {
+    /// From where to where the robot can make a trip without passing a tension (N); None if not
+    /// even at its start.
+    #[must_use]
+    pub fn safe_m(&self, tension_n: f64, trip: Trip) -> Option<[f64; 2]> {
+        let fits = |p: &ReachPlace| p.tension_n(trip) <= tension_n;
         let start = self.places.iter().position(|p| p.at_m[0] >= self.start_x_m)?;
         self.places.get(start).filter(|p| fits(p))?;
         let right = self.places.iter().skip(start).take_while(|p| fits(p)).last()?;
@@ -162,9 +182,9 @@ enum Obstruction {
 
 /// A place on one side of the start, and robot and cable there.
 struct VisitedPlace {
-    /// Where its tracks' middle is, m.
+    /// Position of its tracks' middle, m.
     at_m: Point,
-    /// Which place it was led to, m.
+    /// Place to which it was led, m.
     x_m: f64,
     /// There, if it got there.
     simulation: Option<Simulation>,
@@ -182,13 +202,13 @@ fn value(found: Result<f64, Obstruction>) -> f64 {
     }
 }
 
-/// How the robot is moved.
+/// The motion of the robot.
 struct Traverse<'a> {
     cables: &'a [usize],
     limit_n: f64,
 }
 
-/// What is heard of the map, and how much farther it went, m.
+/// A function that receives the progress of a map, and how much farther it went, m.
 type LineProgress<'a> = &'a mut dyn FnMut(&ReachMap, f64) -> ControlFlow<()>;
 
 impl Traverse<'_> {
@@ -297,7 +317,7 @@ impl Traverse<'_> {
             let x = from + (to - from) * (k as f64 / parts);
             left_m = simulation.lead_robot(x, robot::STEP_S, Inertia::Dynamic).map_err(|_| Obstruction::NoAnswer)?;
         }
-        // What it threw over has come down.
+        // The cable that was thrown over has come down.
         let rests =
             simulation.lead_robot(to, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?.or(left_m);
         if rests.is_some_and(|m| m > MAX_SHORTFALL_M) { Err(Obstruction::Jammed) } else { Ok(()) }
@@ -322,10 +342,10 @@ mod tests {
         let first = map.places.first().unwrap();
         assert!(first.there_n < map.service_n && first.there_and_back_n >= first.there_n, "{first:?}");
         assert_eq!(map.places.last().unwrap().there_n, f64::INFINITY);
-        let [left, right] = map.safe_m(map.service_n, true).unwrap();
+        let [left, right] = map.safe_m(map.service_n, Trip::ThereAndBack).unwrap();
         assert!(left <= 10.0 && (10.0..20.0).contains(&right), "{left} {right}");
-        // What may bear more reaches at least as far.
-        let [_, farther] = map.safe_m(map.breaking_n, true).unwrap();
+        // A robot that may bear more reaches at least as far.
+        let [_, farther] = map.safe_m(map.breaking_n, Trip::ThereAndBack).unwrap();
         assert!(farther >= right);
     }
 

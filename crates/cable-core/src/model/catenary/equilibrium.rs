@@ -3,7 +3,7 @@
 
 use super::layout::{Anchor, Layout, angle_near, angle_of, unsupported};
 use super::slide::{Arc, Mode, Slide, Stretches};
-use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
+use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
 use crate::problem::Problem;
@@ -21,7 +21,7 @@ pub(super) struct Equilibrium {
     pub residual: f64,
 }
 
-/// Where a solve starts and what friction remembers.
+/// Initial unknowns of a solve and the slip that friction remembers.
 pub(super) struct Start<'a> {
     /// Material points friction holds, m.
     pub held: &'a [f64],
@@ -31,31 +31,18 @@ pub(super) struct Start<'a> {
     pub arcs: Vec<Arc>,
 }
 
-/// Newton iterations at most for one set of modes; 60 pulleys from a cold start took 25.
-const MAX_ITERATIONS: usize = 200;
-/// Halvings of one step at most.
-const MAX_HALVINGS: usize = 40;
-/// Rounds of wheel geometry at most; κR = 0.5 takes 12.
-const MAX_ROUNDS: usize = 60;
 /// Balance wanted at a pulley, relative to its tension.
 const PULLEY_BALANCE_TOLERANCE: f64 = 1e-13;
 /// Balance accepted where round-off allows no better.
 const BALANCE_ACCEPTED: f64 = 1e-9;
 /// Wheel angles wanted, rad.
 const ANGLE: f64 = 1e-12;
-/// A step keeps this part of every stretch. Smaller: stretches shrink to nothing in a bad step.
-const KEPT_STRETCH_FRACTION: f64 = 0.2;
 /// A dangling end shorter than this part of the cable has run off its pulley.
 const RUN_OFF_LENGTH_FRACTION: f64 = 1e-6;
 /// Below this part of the energy a predicted decrease is round-off.
 const ENERGY_NOISE: f64 = 1e-9;
 /// A pulley slips when friction is exceeded by this much (in ln T). Smaller: chatter of round-off.
 const CONE_TOLERANCE: f64 = 1e-10;
-/// Rises of friction from none to what it is, failed ones included: as many halve the rise to 1e-6.
-/// One has done for every scene tried (400 random dead loads over a rubbing wheel, EA 3e4 to 1e9).
-const MAX_RISES: usize = 20;
-/// Sets of modes changed together; after that one pulley at a time, which cannot cycle so easily.
-const JOINT_MODE_ROUNDS: usize = 12;
 
 /// Direction of the straight line that touches two anchors one after the other, rad. With t along
 /// it, n = perp t and the touch points c + f R n: (c₂ − c₁)·n = f₁R₁ − f₂R₂. None where they are in
@@ -98,7 +85,7 @@ pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Eq
     let wheels = layout.anchors.iter().any(|a| a.radius > 0.0);
     let mut iterations = 0;
     let (mut lifted, mut near) = (None, None);
-    for _ in 0..MAX_ROUNDS {
+    for _ in 0..layout.settings.max_wheel_rounds {
         let slide = Slide { problem: p, layout, arcs: &arcs };
         let found = contact(&slide, held, sigma, near, modes)?;
         iterations += found.iterations;
@@ -134,7 +121,11 @@ fn not_converged(p: &Problem, layout: &Layout, anchor: usize, iterations: usize,
     let place = layout.anchors.get(anchor).map(|a| Place {
         arc_length_m: a.held.unwrap_or(f64::NAN),
         at_m: a.at,
-        near: p.supports.get(a.support).map(|s| (format!("support `{}`", s.name), 0.0)),
+        near: p.supports.get(a.support).map(|s| Near {
+            kind: NearKind::Support,
+            name: s.name.clone(),
+            distance_m: 0.0,
+        }),
     });
     let place = Box::new(place.unwrap_or_default());
     SolveError::NotConverged { model: Model::Catenary, iterations, residual_n, place }
@@ -149,8 +140,8 @@ fn contact(
     mut modes: Vec<Mode>,
 ) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
-    let mut iterations = 0;
-    for round in 0..4 * JOINT_MODE_ROUNDS + 4 * layout.anchors.len() {
+    let (mut iterations, joint) = (0, layout.settings.joint_mode_rounds);
+    for round in 0..4 * joint + 4 * layout.anchors.len() {
         let found = match newton(slide, sigma.clone(), near.as_ref(), &modes) {
             Ok(e) => e,
             // Another branch of the slip law drew it away: come from the smooth pulley's rest, the
@@ -161,7 +152,7 @@ fn contact(
         sigma = found.sigma;
         let mut changed = false;
         for (k, a) in layout.anchors.iter().enumerate() {
-            if a.held.is_some() || a.friction <= 0.0 || (changed && round >= JOINT_MODE_ROUNDS) {
+            if a.held.is_some() || a.friction <= 0.0 || (changed && round >= joint) {
                 continue;
             }
             let (Some(b), Some(f)) = Slide::forces(&found.stretches, k) else { continue };
@@ -195,7 +186,7 @@ fn from_smooth(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equ
     };
     let mut found = newton(slide, sigma, None, &with(0.0))?;
     let (mut reached, mut rise, mut iterations) = (0.0f64, 1.0f64, found.iterations);
-    for _ in 0..MAX_RISES {
+    for _ in 0..slide.layout.settings.max_friction_rises {
         let next = if reached + rise < 1.0 { reached + rise } else { 1.0 };
         match newton(slide, found.sigma.clone(), Some(&found.stretches), &with(next)) {
             Ok(e) => {
@@ -282,14 +273,14 @@ fn stable(j: &[Row]) -> bool {
 
 /// Largest part of a step that keeps some of every stretch.
 fn room(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
-    let mut alpha = 1.0f64;
+    let (mut alpha, kept) = (1.0f64, slide.layout.settings.kept_stretch_fraction);
     for (i, stretch) in s.all.iter().enumerate() {
         let Some(stretch) = stretch else { continue };
         let from = if i == 0 { 0.0 } else { p[i - 1] };
         let to = if i == slide.arcs.len() { 0.0 } else { p[i] };
         let (length, change) = (stretch.to - stretch.from, to - from);
-        if change < 0.0 && alpha * -change > (1.0 - KEPT_STRETCH_FRACTION) * length {
-            alpha = (1.0 - KEPT_STRETCH_FRACTION) * length / -change;
+        if change < 0.0 && alpha * -change > (1.0 - kept) * length {
+            alpha = (1.0 - kept) * length / -change;
         }
     }
     alpha
@@ -308,7 +299,7 @@ fn newton(
     let lost = |iterations| not_converged(slide.problem, layout, 0, iterations, f64::NAN);
     let mut s = slide.stretches(&sigma, near).ok_or_else(|| lost(0))?;
     let mut iterations = s.iterations;
-    for _ in 0..MAX_ITERATIONS {
+    for _ in 0..layout.settings.max_iterations {
         let (r, j, worst, newtons) = rows(slide, &s, modes, smooth).ok_or_else(|| lost(iterations))?;
         let end = move |sigma, s, residual| Equilibrium {
             sigma,
@@ -328,7 +319,7 @@ fn newton(
         let (energy, norm) = (s.energy, size(&r));
         let mut alpha = room(slide, &s, &p);
         let mut next = None;
-        for _ in 0..MAX_HALVINGS {
+        for _ in 0..layout.settings.max_halvings {
             let trial: Vec<f64> = sigma.iter().zip(&p).map(|(a, b)| a + alpha * b).collect();
             if let Some(t) = slide.stretches(&trial, Some(&s)) {
                 iterations += t.iterations;

@@ -7,6 +7,7 @@ use crate::catenary::PointForce;
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, perp};
 use crate::model::Model;
+use crate::model::catenary::settings::CatenarySettings;
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::{PulleySide, SupportKind};
 
@@ -15,7 +16,7 @@ use crate::scene::{PulleySide, SupportKind};
 pub(super) struct Anchor {
     /// Index of the support.
     pub support: usize,
-    /// Where it is (a wheel's centre), m.
+    /// Position (of a wheel, its centre), m.
     pub at: Vec2,
     /// Material point held, m; None = slides.
     pub held: Option<f64>,
@@ -39,10 +40,11 @@ pub(super) struct Layout {
     /// Forces up to this come of the hint of weight that a weightless cable is given, N; 0 for one
     /// that has weight.
     pub hint: f64,
-    /// Whether the start and the end dangle.
+    /// True for an end (start, end) that is free.
     pub free: [bool; 2],
     /// Dead force on a dangling start and end, N.
     pub end_force: [Vec2; 2],
+    pub settings: CatenarySettings,
 }
 
 /// Weight of a weightless cable, in parts of its loads. Smaller: slack parts beside loaded ones
@@ -111,6 +113,7 @@ impl Layout {
             end_force: [0.0, p.length]
                 .map(|end| loads.iter().filter(|l| l.arc_length == end).fold(Vec2::zeros(), |sum, l| sum + l.force)),
             loads,
+            settings: CatenarySettings::default(),
         };
         if layout.anchors.is_empty() {
             return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
@@ -130,8 +133,8 @@ impl Layout {
         (self.weight, self.hint) = hint_of_weight(p, loads);
     }
 
-    /// Which side of its wheel the cable runs on, seen along it: over means above where it travels
-    /// to the right.
+    /// Sets the side of its wheel on which the cable runs, seen along it: over means above where it
+    /// travels to the right.
     fn face_wheels(&mut self, p: &Problem) {
         let centres: Vec<Vec2> = self.anchors.iter().map(|a| a.at).collect();
         for (k, a) in self.anchors.iter_mut().enumerate() {

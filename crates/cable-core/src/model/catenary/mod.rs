@@ -1,14 +1,15 @@
-//! Rung 0 as a model: exact elastic catenaries between supports, loads and pulleys. Statics and
-//! slow motion with friction that remembers; no obstacles within reach, no bending, no inertia.
+//! `catenary` joins exact elastic catenaries between supports, loads and pulleys. It does statics
+//! and slow motion with friction that remembers; no obstacles within reach, no bending, no inertia.
 //!
-//! What is unknown is only where the material sits at each pulley (`slide`); everything between is
-//! a convex problem of two forces ([`crate::catenary`]). With friction the resting place depends on
-//! how the cable was laid: [`Mechanics::settle`] takes it spread evenly along its way and lets it
-//! slip only where friction cannot hold it.
+//! The only unknowns are the arc lengths of the material at the pulleys (`slide`); everything
+//! between is a convex problem of two forces ([`crate::catenary`]). With friction the resting place
+//! depends on how the cable was laid: [`Mechanics::settle`] takes it spread evenly along its way
+//! and lets it slip only where friction cannot hold it.
 
 mod equilibrium;
 pub(super) mod layout;
 pub(super) mod report;
+pub mod settings;
 mod slide;
 mod wheel;
 
@@ -17,6 +18,7 @@ use std::sync::Arc;
 use self::equilibrium::{Equilibrium, Start, first_arcs, solve};
 use self::layout::{Layout, nearest_along, unsupported};
 use self::report::{report, straight};
+use self::settings::CatenarySettings;
 use self::slide::Mode;
 use super::gauge::TensionGauge;
 use super::{Inertia, Mechanics, Model, Settings, StepReport};
@@ -26,12 +28,6 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, Histories, Node, ShownEquilibrium, SupportReaction, Warning, WarningCause};
 use crate::state::State;
 
-/// Supports move by at most this part of the cable in one solve of a slow motion. Larger: slip that
-/// starts and reverses inside a step is missed. Smaller: more solves for the same answer. 1 %
-/// halved changed the drags of the reference scenes by less than 1e-6.
-const STEP: f64 = 0.01;
-/// Halvings of a slow step before it is given up.
-const MAX_HALVINGS: u32 = 10;
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
 
@@ -39,6 +35,7 @@ const LONGEST_STEP_S: f64 = 1e6;
 #[derive(Clone, Debug)]
 pub struct CatenaryModel {
     problem: Arc<Problem>,
+    tuned: CatenarySettings,
     time_s: f64,
     dragged: Vec<Option<Vec2>>,
     /// Supports of the anchors the balance is for (a released one drops out).
@@ -74,6 +71,14 @@ impl CatenaryModel {
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, _settings: Settings) -> Result<Self, SolveError> {
+        Self::with_settings(problem, CatenarySettings::default())
+    }
+
+    /// As [`Self::new`], with other tuned constants.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_settings(problem: Arc<Problem>, tuned: CatenarySettings) -> Result<Self, SolveError> {
         if problem.bending_stiffness > 0.0 {
             return Err(unsupported(Unsupported::BendingStiffness));
         }
@@ -86,6 +91,7 @@ impl CatenaryModel {
         let n = problem.supports.len();
         let mut model = Self {
             problem,
+            tuned,
             time_s: 0.0,
             dragged: vec![None; n],
             anchored: Vec::new(),
@@ -94,8 +100,8 @@ impl CatenaryModel {
             nodes: Vec::new(),
             reactions: Vec::new(),
         };
-        // What nothing holds has no route to show; `settle` says so.
-        if let Ok(layout) = Layout::new(&model.problem, &model.dragged, 0.0) {
+        // A cable that nothing holds has no route to show; `settle` says so.
+        if let Ok(layout) = model.layout(0.0) {
             model.nodes = straight(&model.problem, &layout, &layout.spread(&model.problem));
         } else {
             let at = model.problem.route.first().copied().unwrap_or_else(Vec2::zeros);
@@ -104,6 +110,11 @@ impl CatenaryModel {
             model.nodes = vec![node(0.0), node(length)];
         }
         Ok(model)
+    }
+
+    /// The layout at a time.
+    fn layout(&self, time_s: f64) -> Result<Layout, SolveError> {
+        Ok(Layout { settings: self.tuned, ..Layout::new(&self.problem, &self.dragged, time_s)? })
     }
 
     /// Balance of a layout.
@@ -205,14 +216,14 @@ impl CatenaryModel {
 
     /// One slow step to a time, at once; on an error nothing has changed.
     fn slow_step(&mut self, time_s: f64, instant: Instant) -> Result<StepReport, SolveError> {
-        let layout = Layout::new(&self.problem, &self.dragged, time_s)?;
+        let layout = self.layout(time_s)?;
         let e = self.balance(&layout, Begin::AsBefore)?;
         self.accept(&layout, e, time_s, instant)
     }
 
     /// Nodes of the present balance, after steps that did not make them.
     fn show(&mut self) {
-        if let (Ok(layout), Some(e)) = (Layout::new(&self.problem, &self.dragged, self.time_s), &self.balance) {
+        if let (Ok(layout), Some(e)) = (self.layout(self.time_s), &self.balance) {
             (self.nodes, self.reactions) = report(&self.problem, &layout, e);
         }
     }
@@ -270,7 +281,7 @@ impl Mechanics for CatenaryModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let layout = Layout::new(&self.problem, &self.dragged, self.time_s)?;
+        let layout = self.layout(self.time_s)?;
         let e = match self.balance(&layout, Begin::AsBefore) {
             Ok(e) => e,
             Err(_) => self.balance(&layout, Begin::EvenSpread)?,
@@ -297,10 +308,12 @@ impl Mechanics for CatenaryModel {
             return Err(unsupported(Unsupported::Inertia));
         }
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
-            return Err(SolveError::TimeStep { dt_s, allowed: "0 < dt ≤ 1e6 s" });
+            return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
         }
         let (start, end) = (self.time_s, self.time_s + dt_s);
-        let pieces = (self.support_travel(start, end) / (STEP * self.problem.length)).ceil().clamp(1.0, 1000.0);
+        let pieces = (self.support_travel(start, end) / (self.tuned.max_move_fraction * self.problem.length))
+            .ceil()
+            .clamp(1.0, 1000.0);
         let (mut step, mut total, mut halvings) = (dt_s / pieces, StepReport::default(), 0);
         while self.time_s < end {
             let next = if self.time_s + 1.000_001 * step >= end { end } else { self.time_s + step };
@@ -313,7 +326,7 @@ impl Mechanics for CatenaryModel {
                     halvings += 1;
                     step *= 0.5;
                     total.cost.halved_steps += 1;
-                    if halvings > MAX_HALVINGS {
+                    if halvings > self.tuned.max_step_halvings {
                         if self.time_s > start {
                             self.show();
                         }

@@ -113,7 +113,7 @@ impl<'a> Nodes<'a> {
         let [before, after, here] = [ends[0], ends[1], middle].map(|p| p.force.norm());
         let tension = (0.5 * (before + after) - here).abs();
         let scale = if here > self.least_tension { here } else { self.least_tension };
-        // What is off falls to a quarter with the node in the middle, which is known already.
+        // The error falls to a quarter with the node in the middle, which is known already.
         let rough = off > 4.0 * self.flat || tension > 4.0 * TENSION_FLATNESS * scale;
         let deeper = depth + 1 < LEAST_DEPTH || rough && depth + 1 < MOST_DEPTH;
         if deeper {
@@ -161,7 +161,7 @@ pub(super) fn report(p: &Problem, layout: &Layout, e: &Equilibrium) -> (Vec<Node
     (nodes.out, reactions)
 }
 
-/// What only the hint of weight pulls is slack: its tension is 0.
+/// Sets the tension to 0 where only the auxiliary weight pulls: the cable is slack there.
 pub(in crate::model) fn forget_hint(nodes: &mut [Node], reactions: &mut [SupportReaction], hint: f64) {
     for n in nodes.iter_mut().filter(|n| n.tension_n <= hint) {
         (n.tension_n, n.strain, n.stress_pa, n.force_n) = (0.0, 0.0, 0.0, [0.0; 2]);

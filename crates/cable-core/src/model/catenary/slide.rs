@@ -21,7 +21,7 @@ use crate::catenary::{Chain, ChainForce};
 use crate::math::{Vec2, cross, larger};
 use crate::problem::Problem;
 
-/// How a pulley stands.
+/// State of a pulley.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Mode {
     /// Friction holds: σ stays.
@@ -35,7 +35,7 @@ pub(super) enum Mode {
 pub(super) struct Arc {
     /// Angle of the cable where it arrives, rad.
     pub arrive: f64,
-    /// How far it turns, rad, ≥ 0.
+    /// Turn of the cable on it, rad, ≥ 0.
     pub turn: f64,
     /// Angle of the cable at the point of the wheel where σ is read, rad: fixed to the wheel, so
     /// that a touch point that wanders does not move material.
@@ -258,6 +258,7 @@ impl Slide<'_> {
     /// rad, and a wheel the cable would leave.
     pub fn turned(&self, s: &Stretches, m: impl Fn(usize) -> f64) -> (Vec<Arc>, f64, Option<usize>) {
         let (mut worst, mut lifted) = (0.0f64, None);
+        let least = self.layout.settings.least_touch_gain;
         let mut out = Vec::with_capacity(self.arcs.len());
         for (k, (a, arc)) in self.layout.anchors.iter().zip(self.arcs).enumerate() {
             let (Some(fb), Some(fa), true) = (Self::forces(s, k).0, Self::forces(s, k).1, a.radius > 0.0) else {
@@ -273,7 +274,7 @@ impl Slide<'_> {
                 let t = force.norm();
                 let lambda = self.problem.thermal_stretch * (1.0 + t / self.problem.axial_stiffness);
                 let gain = 1.0 - a.facing * cross(force, self.layout.weight) / (t * t * lambda) * a.radius;
-                (off.abs(), off / if gain > LEAST_GAIN { gain } else { LEAST_GAIN })
+                (off.abs(), off / if gain > least { gain } else { least })
             };
             let ((off1, step1), (off2, step2)) = (step(fb, arc.arrive), step(fa, leave));
             for off in [off1, off2] {
@@ -294,7 +295,3 @@ impl Slide<'_> {
         (out, worst, lifted)
     }
 }
-
-/// Where cable and wheel bend almost alike the touch point is hardly defined; steps are not made
-/// longer than by this divisor. Smaller: the touch point jumps to and fro. Larger: more rounds.
-const LEAST_GAIN: f64 = 0.2;

@@ -35,7 +35,7 @@ fn balance(m: &CatenaryModel) {
     let p = m.problem();
     let sum = m.reactions.iter().fold(Vec2::zeros(), |s, r| s + Vec2::new(r.reaction_x_n, r.reaction_y_n));
     let load = p.body_force(m.time_s) * p.length + p.loads.iter().fold(Vec2::zeros(), |s, l| s + l.force.at(m.time_s));
-    // What a dead load pulls is in the sum with its own sign: reaction −P on the load, P on the
+    // The pull of a dead load is in the sum with its own sign: reaction −P on the load, P on the
     // rest.
     assert!((sum - load).norm() < 1e-8 * (1.0 + load.norm()), "{sum:?} {load:?}");
     for s in p.supports.iter().filter(|s| s.wheel_radius > 0.0) {

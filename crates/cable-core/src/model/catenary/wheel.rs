@@ -23,7 +23,7 @@ use crate::math::perp;
 /// 1e-8 of the tension for a full turn at μ = 0.5.
 const STEPS: usize = 32;
 
-/// What the wheel makes of a tension.
+/// Result of an integration of the tension round a wheel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Passed {
     /// Tension where the cable leaves, N.

@@ -388,7 +388,7 @@ impl Dynamics {
     ) -> Result<StepReport, SolveError> {
         self.refuse()?;
         if !(dt_s > 0.0 && dt_s.is_finite()) {
-            return Err(SolveError::TimeStep { dt_s, allowed: "more than 0 s" });
+            return Err(SolveError::TimeStep { dt_s, longest_s: f64::INFINITY });
         }
         if !self.rested {
             self.settle(dragged)?;

@@ -425,7 +425,7 @@ impl Mechanics for FemModel {
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
-            return Err(SolveError::TimeStep { dt_s, allowed: "more than 0 s" });
+            return Err(SolveError::TimeStep { dt_s, longest_s: f64::INFINITY });
         }
         if inertia == Inertia::QuasiStatic && touches_nothing(&self.problem) && self.bent.is_none() {
             self.ask(Part::Statics)?;

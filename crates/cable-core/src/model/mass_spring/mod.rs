@@ -314,7 +314,7 @@ impl Mechanics for MassSpringModel {
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
         if !(dt_s > 0.0 && dt_s <= MAX_STEP_S) {
-            return Err(SolveError::TimeStep { dt_s, allowed: "above 0 s, at most 60 s" });
+            return Err(SolveError::TimeStep { dt_s, longest_s: 60.0 });
         }
         self.laid = true;
         let end_s = self.clock.time_s + dt_s;

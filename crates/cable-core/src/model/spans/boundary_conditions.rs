@@ -12,6 +12,7 @@ use crate::model::spans::boundary::capstan::Law;
 use crate::model::spans::boundary::curve::{Curve, SUPPORT_CONTACT_DISTANCE_M};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Course, Tie};
+use crate::model::spans::settings::SpansSettings;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
@@ -52,14 +53,15 @@ pub(in crate::model::spans) struct Pulley {
     pub facing: f64,
 }
 
-/// Where the cable is held and loaded, whatever the instant.
+/// Supports and loads of the cable that do not change with time.
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct Layout {
     pub problem: Arc<Problem>,
+    pub settings: Arc<SpansSettings>,
     /// The end of the scene's cable from which it counts.
     pub counted_from: CableEnd,
     loads: Vec<Load>,
-    /// Where it must not pass, in order of x.
+    /// Corners that it must not pass, in order of x.
     pub corners: Arc<[Corner]>,
     /// Strands: material from, to (m) and the support at each end; None = free or dead load.
     pub strands: Vec<Part>,
@@ -103,7 +105,7 @@ impl CableEnd {
 }
 
 impl Layout {
-    /// Whether its problem is that of the scene reversed.
+    /// True if its problem is that of the scene reversed.
     pub fn is_reversed(&self) -> bool {
         self.counted_from == CableEnd::End
     }
@@ -112,7 +114,11 @@ impl Layout {
     ///
     /// # Errors
     /// `Unsupported` for what the model lacks.
-    pub fn new(problem: &Arc<Problem>, counted_from: CableEnd) -> Result<Self, SolveError> {
+    pub fn new(
+        problem: &Arc<Problem>,
+        counted_from: CableEnd,
+        settings: Arc<SpansSettings>,
+    ) -> Result<Self, SolveError> {
         let p = problem;
         if p.bending_stiffness > 0.0 {
             return Err(unsupported(Unsupported::BendingStiffness));
@@ -166,12 +172,13 @@ impl Layout {
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
         let corners = swept_corners::corners(&problem.world).into();
-        let mut layout = Self { problem: problem.clone(), counted_from, loads, corners, strands };
+        let mut layout = Self { problem: problem.clone(), settings, counted_from, loads, corners, strands };
         layout.face_wheels();
         Ok(layout)
     }
 
-    /// Which side of its wheel the cable passes: over means above where it travels to the right.
+    /// Sets the side of its wheel on which the cable passes: over means above where it travels to
+    /// the right.
     fn face_wheels(&mut self) {
         let (p, reversed) = (&self.problem, self.counted_from == CableEnd::End);
         let held: Vec<usize> = (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).collect();
@@ -203,7 +210,7 @@ impl Layout {
         out
     }
 
-    /// What is given at a time, with supports dragged by hand where they are.
+    /// Writes the boundary conditions at a time, with supports dragged by hand at their places.
     pub fn instant(&self, dragged: &[Option<Vec2>], time_s: f64, out: &mut BoundaryConditions) {
         let p = &self.problem;
         let gravity = if p.linear_density > 0.0 { p.weight / p.linear_density } else { Vec2::zeros() };
@@ -236,6 +243,7 @@ impl Layout {
             drag: 0.0,
             mobilised: self.problem.cable.friction_mobilised.way(),
             loads: loads.collect(),
+            settings: self.settings.clone(),
         };
         self.give(&mut course, instant);
         course

@@ -24,23 +24,6 @@ use crate::model::spans::verify::penetration;
 use crate::model::spans::verify::penetration::Penetration;
 use crate::model::spans::verify::tunnelling;
 
-/// Events in one solve at most. A cold start over 24 corners takes 60.
-const MAX_EVENTS: usize = 200;
-/// A contact is let go when its interval has turned round by this much (m or rad). Smaller:
-/// rounding releases what touches in a point. Larger: a contact that pulls is accepted.
-const RELEASE_OVERLAP: f64 = 1e-10;
-/// Depth inside an obstacle that is met, of the strand's length, and at most, m. Smaller: rounding
-/// at touch points; larger: it is seen.
-const DEPTH_FRACTION: f64 = 1e-9;
-const DEPTH_LIMIT_M: f64 = 1e-6;
-/// Times in one solve at most that something is done about loads where Newton stalls.
-const MOST_CAUGHT: usize = 4;
-/// What lies beside a load is let go where it is shorter than this part of the strand when Newton
-/// stalls. Smaller: Newton comes so near to its end only after many halvings. Larger: it is laid
-/// down again for nothing.
-const SHED_LENGTH_FRACTION: f64 = 1e-4;
-/// Edges that a contact grows over at once.
-const MOST_EDGES: usize = 8;
 /// Part of p by which an end of a contact may be off the end of an arc and be taken to be there:
 /// Newton's steps go beyond it by less.
 const ARC_END_FRACTION: f64 = 1e-8;
@@ -56,8 +39,9 @@ pub(in crate::model::spans) fn solve(
     came: Option<&[Vec2]>,
     work: &mut Work,
 ) -> Result<Solved, Failure> {
+    let tuned = course.settings.changes;
     let (mut sum, mut caught) = (Solved::default(), 0);
-    for _ in 0..MAX_EVENTS {
+    for _ in 0..tuned.max_changes {
         point_load::join(strand, course)?;
         let found = match newton::solve(strand, course, work) {
             Ok(found) => found,
@@ -67,7 +51,7 @@ pub(in crate::model::spans) fn solve(
                     continue;
                 }
                 caught += 1;
-                if caught <= MOST_CAUGHT && (shed(strand, course)? || point_load::catch(strand, course)) {
+                if caught <= tuned.max_load_releases && (shed(strand, course)? || point_load::catch(strand, course)) {
                     continue;
                 }
                 if let Some(support) = lifted(strand, course) {
@@ -91,10 +75,10 @@ pub(in crate::model::spans) fn solve(
                 Some(came) => passed(strand, course, corners, came, work)?,
                 None => false,
             }
-            || meet(strand, course, world, came.is_some())?;
+            || meet(strand, course, world, if came.is_some() { Sought::Rest } else { Sought::Step })?;
         if !changed {
-            // What else holds the cable may press it on to its wheel again: it is off when nothing
-            // else changes.
+            // Other contacts may press the cable on to its wheel again: it is off when nothing else
+            // changes.
             return lifted(strand, course).map_or(Ok(sum), |support| Err(Failure::OffWheel { support }));
         }
     }
@@ -107,11 +91,13 @@ fn release(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> 
     let worst = (0..strand.contacts.len())
         .filter(|&j| !is_round_wheel(&strand.contacts[j], course))
         .min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
-    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -RELEASE_OVERLAP) else { return Ok(false) };
+    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -course.settings.changes.release_overlap) else {
+        return Ok(false);
+    };
     let_go(strand, course, j)
 }
 
-/// Whether a contact is a wheel, which has a side; an eye has none.
+/// True if a contact is a wheel, which has a side; an eye has none.
 fn is_round_wheel(c: &Contact, course: &Course) -> bool {
     c.wheel.is_some() && course.track(c).place(c.ends.p[0]).stretch > 0.0
 }
@@ -120,13 +106,16 @@ fn is_round_wheel(c: &Contact, course: &Course) -> bool {
 fn lifted(strand: &CableRun, course: &Course) -> Option<usize> {
     let wheels = strand.contacts.iter().filter(|c| is_round_wheel(c, course));
     let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
-    wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -RELEASE_OVERLAP)?.wheel
+    wheels
+        .min_by(|a, b| turned(a).total_cmp(&turned(b)))
+        .filter(|c| turned(c) < -course.settings.changes.release_overlap)?
+        .wheel
 }
 
 /// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned
 /// round past it would count; whether there was any.
 fn shed(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> {
-    let least = SHED_LENGTH_FRACTION * (strand.to - strand.from);
+    let least = course.settings.changes.shed_length_fraction * (strand.to - strand.from);
     let small = |c: &Contact| !c.is_load() && c.ends.s[1] - c.ends.s[0] < least;
     let beside = |j: usize| strand.is_joined(j, 0) || strand.is_joined(j, 1);
     let Some(j) = (0..strand.contacts.len()).find(|&j| small(&strand.contacts[j]) && beside(j)) else {
@@ -207,7 +196,7 @@ fn join(strand: &mut CableRun, course: &Course) -> bool {
         let apart =
             |track: &Track<'_>| track.curve.is_round() && release_below::hangs_between(track, a.ends.p[1], b.ends.p[0]);
         if a.curve == b.curve
-            && a.home == b.home
+            && a.chain_range == b.chain_range
             && a.wheel.is_none()
             && !loads
             && b.ends.p[1] >= a.ends.p[0]
@@ -232,11 +221,12 @@ fn join(strand: &mut CableRun, course: &Course) -> bool {
 }
 
 /// P: meets the deepest obstacle of each span.
-fn meet(strand: &mut CableRun, course: &Course, world: &World, resting: bool) -> Result<bool, Failure> {
+fn meet(strand: &mut CableRun, course: &Course, world: &World, sought: Sought) -> Result<bool, Failure> {
     if world.is_empty() {
         return Ok(false);
     }
-    let deep = smaller(DEPTH_FRACTION * (strand.to - strand.from), DEPTH_LIMIT_M);
+    let tuned = &course.settings.changes;
+    let deep = smaller(tuned.depth_fraction * (strand.to - strand.from), tuned.max_depth_m);
     let mut any = false;
     // From the last span, so that those before keep their number.
     for k in (0..strand.spans()).rev() {
@@ -246,7 +236,7 @@ fn meet(strand: &mut CableRun, course: &Course, world: &World, resting: bool) ->
             continue;
         }
         if let Some(hit) = penetration::deepest(strand, course, world, k, deep) {
-            touch(strand, course, k, &hit, resting)?;
+            touch(strand, course, k, &hit, sought)?;
             any = true;
         }
     }
@@ -265,10 +255,11 @@ fn passed(
     tunnelling::shape(strand, course, &mut shape);
     let Some(corner) = swept_corners::through(corners, came, &shape, &mut work.turns) else { return Ok(false) };
     let mut best: Option<(f64, usize, f64, Vec2, Vec2)> = None;
+    let points = course.settings.changes.corner_search_points;
     for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
         strand.shapes(course, k, |s0, at, c| {
-            for i in 1..CORNER_SEARCH_POINTS {
-                let s = c.span().length * i as f64 / CORNER_SEARCH_POINTS as f64;
+            for i in 1..points {
+                let s = c.span().length * i as f64 / points as f64;
                 let p = at + c.position_at(s);
                 let d = (p - corner.at).norm();
                 if best.is_none_or(|b| d < b.0) {
@@ -291,17 +282,21 @@ fn passed(
         obstacle: 0,
         feature: corner.feature,
     };
-    touch(strand, course, k, &Penetration { s, at: corner.at, tangent, gap, body: corner.body }, true)?;
+    touch(strand, course, k, &Penetration { s, at: corner.at, tangent, gap, body: corner.body }, Sought::Rest)?;
     Ok(true)
 }
 
-/// Points of a catenary among which the nearest to a corner is sought.
-const CORNER_SEARCH_POINTS: usize = 64;
+/// The equilibrium that is sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Sought {
+    /// A rest: contacts found on the way have not rubbed.
+    Rest,
+    /// The end of a step in time.
+    Step,
+}
 
 /// Lays span k down where it hit.
-///
-/// `resting`: a rest is sought, and what is found on the way has not rubbed.
-fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, resting: bool) -> Result<(), Failure> {
+fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, sought: Sought) -> Result<(), Failure> {
     let no_seat = Failure::NoSeat { s: hit.s, at: hit.at };
     let back = hit.gap.normal.dot(&perp(hit.tangent)) < 0.0;
     let curve_index = 2 * hit.body + usize::from(back);
@@ -312,12 +307,13 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
     let Some(i) = curve.piece_of(hit.gap.feature, hit.at).or_else(kink) else { return Err(no_seat) };
     // Of a wall or an underside the cable goes round the corner that is nearer.
     let found = curve.chain(i, load).or_else(|| curve.chain(curve.corner_beside(i, hit.at)?, load));
-    let Some((i, home)) = found else { return Err(no_seat) };
+    let Some((i, chain_range)) = found else { return Err(no_seat) };
     let edge = curve.place_on(i, 0.0).turn == 0.0;
     let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
     let ends = strand.ends_of(course, k);
     let force = strand.force(course, k, hit.s).norm();
-    let same = |c: &Contact| c.curve == curve_index && c.home == home && c.wheel.is_none() && !c.is_load();
+    let same =
+        |c: &Contact| c.curve == curve_index && c.chain_range == chain_range && c.wheel.is_none() && !c.is_load();
     let end = |j: Option<usize>, side: usize| {
         j.and_then(|j| strand.contacts.get(j)).filter(|c| same(c)).map(|c| c.ends.p[side])
     };
@@ -337,34 +333,34 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
         .and_then(|j| strand.contacts.get_mut(j))
         .filter(|c| same(c) && p > c.ends.p[1] && bears(c, (c.ends.p[1], p)))
     {
-        let p = beyond_edges(curve, home, p, 1, ends[1], None);
+        let p = beyond_edges(curve, chain_range, p, 1, ends[1], None);
         (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.s, force);
         return Ok(());
     }
     if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0] && bears(c, (p, c.ends.p[0]))) {
-        let p = beyond_edges(curve, home, p, 0, ends[0], None);
+        let p = beyond_edges(curve, chain_range, p, 0, ends[0], None);
         (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.s, force);
         return Ok(());
     }
     let mut contact = Contact {
         curve: curve_index,
-        home,
+        chain_range,
         ends: Ends { p: [p, p], s: [hit.s, hit.s], t: [force, force] },
-        mode: if curve.friction > 0.0 && !resting { Mode::Hold } else { Mode::Slide(0.0) },
+        mode: if curve.friction > 0.0 && sought == Sought::Step { Mode::Hold } else { Mode::Slide(0.0) },
         history: TensionProfile::default(),
         wheel: None,
         flips: 0,
         held: None,
         next: Next::Span,
         load: None,
-        smooth: resting,
+        smooth: sought == Sought::Rest,
     };
     let track = course.track(&contact);
     let mut lies = [None, None];
     for side in 0..2 {
         let outer = if side == 0 { k == 0 } else { k == strand.contacts.len() };
         if let (true, Tie::Held(at)) = (outer, strand.ties[side])
-            && let Some(end) = curve.on_chain(home, at, SUPPORT_CONTACT_DISTANCE_M)
+            && let Some(end) = curve.on_chain(chain_range, at, SUPPORT_CONTACT_DISTANCE_M)
             && (if side == 0 { end <= p } else { end >= p })
         {
             let s = if side == 0 { strand.from } else { strand.to };
@@ -387,7 +383,7 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
             strand.ties[side] = Tie::Lies(p);
         }
     }
-    if resting {
+    if sought == Sought::Rest {
         lead(strand, course, k);
     }
     Ok(())
@@ -400,7 +396,7 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, re
 /// `leans`: the way that the span takes there, where it is known better than by its far end.
 fn beyond_edges(
     curve: &Curve,
-    home: ChainRange,
+    chain_range: ChainRange,
     mut p: f64,
     side: usize,
     far: Option<Vec2>,
@@ -408,17 +404,17 @@ fn beyond_edges(
 ) -> f64 {
     let (step, forward) = if side == 0 { (-1, -1.0) } else { (1, 1.0) };
     let Some(far) = far else { return p };
-    let inside = |i: i64| i >= home.first && i <= home.last;
-    let mut i = curve.locate(p, home);
-    for _ in 0..MOST_EDGES {
+    let inside = |i: i64| i >= chain_range.first && i <= chain_range.last;
+    let mut i = curve.locate(p, chain_range);
+    for _ in chain_range.first..=chain_range.last {
         let edge = if curve.is_arc(i) { i + step } else { i };
         let arc = edge + step;
         if !inside(edge) || !inside(arc) || curve.is_arc(edge) || !curve.is_arc(arc) {
             break;
         }
-        let way = leans.unwrap_or_else(|| (far - curve.place(p, home).at) * forward);
+        let way = leans.unwrap_or_else(|| (far - curve.place(p, chain_range).at) * forward);
         // An arc leads on to its edge where it does not come to run along the way.
-        if curve.is_arc(i) && curve.aside(i, way) != step {
+        if curve.is_arc(i) && curve.beyond_arc(i, way) != step {
             break;
         }
         let place = curve.place_on(edge, 0.0);
@@ -437,7 +433,7 @@ fn beyond_edges(
     p
 }
 
-/// What has been laid down in span k leads the contacts beside it over their edges.
+/// Moves the contacts beside span k over their edges to what has been laid down in it.
 fn lead(strand: &mut CableRun, course: &Course, k: usize) {
     for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
         if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.is_load())) {
@@ -450,11 +446,11 @@ fn lead(strand: &mut CableRun, course: &Course, k: usize) {
 fn lead_end(strand: &mut CableRun, course: &Course, j: usize, side: usize, leans: Option<Vec2>) -> bool {
     let far = strand.ends_of(course, j + side)[side];
     let c = &mut strand.contacts[j];
-    let p = beyond_edges(&course.curves[c.curve], c.home, c.ends.p[side], side, far, leans);
+    let p = beyond_edges(&course.curves[c.curve], c.chain_range, c.ends.p[side], side, far, leans);
     if p == c.ends.p[side] {
         return false;
     }
-    let way = course.curves[c.curve].length(c.ends.p[side], p, c.home) / course.law.stretch(c.ends.t[side]);
+    let way = course.curves[c.curve].length(c.ends.p[side], p, c.chain_range) / course.law.stretch(c.ends.t[side]);
     (c.ends.p[side], c.ends.s[side]) = (p, c.ends.s[side] + way);
     true
 }
@@ -466,21 +462,21 @@ fn lift_end(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bo
     let c = &mut strand.contacts[j];
     let (curve, p) = (&course.curves[c.curve], c.ends.p[side]);
     let (back, forward) = if side == 0 { (1, -1.0) } else { (-1, 1.0) };
-    let i = curve.locate(p, c.home);
+    let i = curve.locate(p, c.chain_range);
     let arc = if curve.is_arc(i) { i } else { i - back };
     let (edge, near) = (arc + back, arc + 2 * back);
-    let inside = |i: i64| i >= c.home.first && i <= c.home.last;
-    let way = (far - curve.place(p, c.home).at) * forward;
+    let inside = |i: i64| i >= c.chain_range.first && i <= c.chain_range.last;
+    let way = (far - curve.place(p, c.chain_range).at) * forward;
     if ![arc, edge, near].into_iter().all(inside) || curve.is_arc(edge) || !curve.is_arc(arc) || !curve.is_arc(near) {
         return false;
     }
-    if curve.aside(arc, way) != back {
+    if curve.beyond_arc(arc, way) != back {
         return false;
     }
     let q = curve.with_tangent(near, way);
     let other = c.ends.p[1 - side];
     let q = if (q - other) * forward > 0.0 { q } else { other };
-    let moved = curve.length(p, q, c.home) / course.law.stretch(c.ends.t[side]);
+    let moved = curve.length(p, q, c.chain_range) / course.law.stretch(c.ends.t[side]);
     (c.ends.p[side], c.ends.s[side]) = (q, c.ends.s[side] + moved);
     moved != 0.0
 }
@@ -496,7 +492,7 @@ fn grow(strand: &mut CableRun, course: &Course) -> bool {
             let c = &strand.contacts[j];
             let curve = &course.curves[c.curve];
             let p = c.ends.p[side];
-            let i = curve.locate(p, c.home);
+            let i = curve.locate(p, c.chain_range);
             let border = |q: f64| (p - q).abs() <= ARC_END_FRACTION * (1.0 + p.abs());
             if c.wheel.is_none()
                 && !c.is_load()

@@ -15,7 +15,7 @@ use crate::model::spans::initial::from_solution;
 use crate::model::spans::initial::shortest_path::{RINGS, Ring};
 use crate::model::spans::initial::tension;
 use crate::model::spans::newton;
-use crate::model::spans::newton::slip_predictor::foresee;
+use crate::model::spans::newton::slip_predictor::predict_slip;
 use crate::model::spans::newton::{Solved, Work};
 use crate::model::spans::run::CableRun;
 use crate::model::spans::slack;
@@ -25,82 +25,35 @@ use crate::model::spans::verify::tension_loss;
 use crate::model::spans::verify::tunnelling;
 use crate::solution::Node;
 
-/// Halvings of a step at most: 2⁻¹² of a step of 1 % of the cable is a hair's breadth.
-const MAX_HALVINGS: u32 = 12;
-/// Part of a step over which a cable that runs away is followed at least.
-const RUNAWAY_STEP_FRACTION: f64 = 1e-3;
-/// Drag with which it is followed at first, of the load per metre. Less: steps fail where it runs
-/// fast. More: more of them.
-const DRAG: f64 = 10.0;
-/// It has come to rest when it needs no more than this part of that drag.
-const LEAST_DRAG: f64 = 1e-3;
 /// A force that differs by less than this part is the same.
 const FORCE_TOLERANCE: f64 = 1e-9;
-/// Steps it is followed for at most, and times in a row the drag is raised.
-const MOST_DRAGGED: usize = 200;
-const MOST_RAISED: usize = 5;
-/// Friction, of the force there, that may be missing in the step in which a load comes down, and
-/// the shortest step taken for its sake. More: forces are off by as much while such a step lasts.
-/// Less: more steps.
-const MISSING_FRICTION_FRACTION: f64 = 3e-4;
-const LANDING_STEP_FRACTION: f64 = 1.0 / 64.0;
-/// Spans that are tried as pockets in one step. More: dearer failures, each halving tries again.
-const MOST_POCKETS: usize = 3;
-/// Tension at which a rest is first sought, of the weight of the cable: so taut that it touches
-/// only what it is led round. Less: it lies on more than the string of the route. More: nothing
-/// gained.
-const FIRST_TENSION_WEIGHTS: f64 = 4.0;
-/// The same where that finds none: corners that the string of the route bends round and the cable
-/// does not give away more than it was shrunk by.
-const SECOND_TENSION_WEIGHTS: f64 = 400.0;
-/// Part of the load that acts at first. More: a long span sags into what is below it before it can
-/// be met step by step. Less: nothing gained.
-const FIRST_LOAD_FRACTION: f64 = 1e-3;
-/// First step of the way from taut to what it is, and how large (at most twice this) steps become
-/// that succeed.
-const FIRST_STEP: f64 = 0.05;
-const LARGEST_STEP: f64 = 0.2;
 
-/// Parts of the cone of friction that a cable taken over may use: along the very edge of the cone
-/// sliding from an end would stop anywhere, and Newton stalls. The first changes nothing that
-/// shows, the second holds a little first.
-const ADOPTED_CONE_FRACTIONS: [f64; 3] = [1.0 - 1e-5, 1.0 - 1e-3, 0.99];
-
-/// Friction over what there is that is first tried where a cable slides, then twice that, and so on
-/// to the last, as parts of what there is. First smaller: more of them are tried. Last larger:
-/// dearer where no friction holds it.
-const FIRST_PART: f64 = 0.04;
-const MOST_PART: f64 = 1e4;
 /// Part of the friction that is missing to which it is found: three digits are shown.
 const MISSING_FRICTION_TOLERANCE: f64 = 2e-4;
 /// Less than this part that is missing is none: rounding. Larger: a cable that slides by so little
 /// has no answer and no cause.
 const LEAST_PART: f64 = 1e-7;
-/// Part of the tensions by which a contact may be off sliding where less friction does not hold.
-/// Smaller: what is missing would have to be found to more digits. Larger: a failure to find an
-/// answer is taken for sliding.
-const MOBILISED: f64 = 2e-2;
 
 /// Why no rest was found, and how far the cable was let out.
 pub(in crate::model::spans) type Unfound = (Failure, Option<Box<CableEquilibrium>>);
 
-/// How a route is seen: what stands for a post, and the tension (of the weight) to which the cable
-/// is shrunk at first.
+/// Resolution of a route: the points that stand for a post, and the tension (of the weight) to
+/// which the cable is shrunk at first.
 #[derive(Clone, Copy, Debug)]
-struct Seen {
+struct RouteResolution {
     ring: Ring,
-    cooled: Option<f64>,
-    /// Whether what spreads on the ground may lie there without tension.
+    first_tension: Option<f64>,
+    /// True if a cable that spreads on the ground may lie there without tension.
     loose: bool,
 }
 
-impl Default for Seen {
+impl Default for RouteResolution {
     fn default() -> Self {
-        Self { ring: RINGS[0], cooled: None, loose: true }
+        Self { ring: RINGS[0], first_tension: None, loose: true }
     }
 }
 
-/// Where the search for an initial equilibrium may begin.
+/// Places at which the search for an initial equilibrium may begin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::spans) enum SearchStart {
     /// With friction only.
@@ -109,14 +62,14 @@ pub(in crate::model::spans) enum SearchStart {
     AlsoWithoutFriction,
 }
 
-/// What a step took.
+/// Cost of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::model::spans) struct StepStats {
     pub solved: Solved,
     pub halved: usize,
     /// Times it ran away from where it was to another place that holds it.
     pub ran: usize,
-    /// Whether the rest was found without friction, which held it from then on.
+    /// True if the rest was found without friction, which held it from then on.
     pub eased: bool,
     /// Friction that what came down would have had in the step it came down in, of the force there.
     pub fresh: f64,
@@ -145,20 +98,23 @@ impl CableEquilibrium {
         let ways = [
             (instant, None),
             (&smooth, None),
-            (&smooth, Some(FIRST_TENSION_WEIGHTS)),
-            (instant, Some(FIRST_TENSION_WEIGHTS)),
-            (&smooth, Some(SECOND_TENSION_WEIGHTS)),
+            (&smooth, Some(layout.settings.continuation.first_tension_weights)),
+            (instant, Some(layout.settings.continuation.first_tension_weights)),
+            (&smooth, Some(layout.settings.continuation.second_tension_weights)),
         ];
-        // What is not held at both ends would run to where it needs no friction.
+        // A cable that is not held at both ends would run to where it needs no friction.
         let held = start == SearchStart::AlsoWithoutFriction
             && layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
-        let seen = ways.map(|(begin, cooled)| (begin, Seen { cooled, ..Seen::default() }));
-        let nearer = Self::seen(layout).into_iter().skip(1).map(|seen| (instant, seen));
+        let resolution =
+            ways.map(|(begin, first_tension)| (begin, RouteResolution { first_tension, ..RouteResolution::default() }));
+        let nearer = Self::resolutions(layout).into_iter().skip(1).map(|resolution| (instant, resolution));
         let (mut first, mut stopped) = (None, None);
-        for (begin, seen) in seen.into_iter().chain(nearer).filter(|(begin, _)| held || begin.friction > 0.0) {
-            let cooled = seen.cooled;
+        for (begin, resolution) in
+            resolution.into_iter().chain(nearer).filter(|(begin, _)| held || begin.friction > 0.0)
+        {
+            let first_tension = resolution.first_tension;
             let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
-            match network.laid(layout, begin, seen, work).and_then(|taken| {
+            match network.laid(layout, begin, resolution, work).and_then(|taken| {
                 if begin.friction < instant.friction {
                     network.rub(layout, instant, work).map(|more| StepStats { eased: true, ..taken.and(more) })
                 } else {
@@ -166,11 +122,11 @@ impl CableEquilibrium {
                 }
             }) {
                 Ok(taken) => return Ok((network, taken)),
-                Err(trouble) => {
-                    if cooled.is_some() && stopped.is_none() {
-                        stopped = Some((trouble.clone(), Some(Box::new(network))));
+                Err(failure) => {
+                    if first_tension.is_some() && stopped.is_none() {
+                        stopped = Some((failure.clone(), Some(Box::new(network))));
                     }
-                    first = first.or(Some((trouble, None)));
+                    first = first.or(Some((failure, None)));
                 }
             }
         }
@@ -184,13 +140,17 @@ impl CableEquilibrium {
         Some(Self { strands, course, instant: instant.clone() })
     }
 
-    /// How a cable can be laid as it is: posts seen nearer, too, where it lies on something and
-    /// nothing else holds it.
-    fn seen(layout: &Layout) -> Vec<Seen> {
+    /// The resolutions in which a cable can be laid as it is: posts seen nearer, too, where it lies
+    /// on something and nothing else holds it.
+    fn resolutions(layout: &Layout) -> Vec<RouteResolution> {
         let loose = layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none));
         let rings = if loose { &RINGS[..] } else { &RINGS[..1] };
-        let laid = rings.iter().map(|ring| Seen { ring: *ring, ..Seen::default() });
-        laid.chain(loose.then_some(Seen { cooled: Some(FIRST_TENSION_WEIGHTS), ..Seen::default() })).collect()
+        let laid = rings.iter().map(|ring| RouteResolution { ring: *ring, ..RouteResolution::default() });
+        laid.chain(loose.then_some(RouteResolution {
+            first_tension: Some(layout.settings.continuation.first_tension_weights),
+            ..RouteResolution::default()
+        }))
+        .collect()
     }
 
     /// The same cable where all friction acts against it as it is drawn one way (1: towards its
@@ -211,27 +171,30 @@ impl CableEquilibrium {
     /// With less than that part every contact of the strand slides the same way: that, found just
     /// above it, is what proves that it is friction that is missing, not an answer.
     pub fn friction_needed(layout: &Layout, instant: &BoundaryConditions, work: &mut Work) -> Option<f64> {
+        let tuned = &layout.settings.continuation;
         let course = layout.course(layout.curves(), instant);
-        let mut rests = |part: f64, seen: Seen| {
+        let mut rests = |part: f64, resolution: RouteResolution| {
             let begin = BoundaryConditions { friction: part, ..instant.clone() };
             let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
-            let taken = network.laid(layout, &begin, seen, work).ok()?;
+            let taken = network.laid(layout, &begin, resolution, work).ok()?;
             (taken.ran == 0).then_some(network)
         };
-        let (mut low, mut step) = (1.0, FIRST_PART);
-        let (mut high, seen) = loop {
-            if step > MOST_PART {
+        let (mut low, mut step) = (1.0, tuned.first_missing_part);
+        let (mut high, resolution) = loop {
+            if step > tuned.max_missing_part {
                 return None;
             }
             let high = 1.0 + step;
-            if let Some(seen) = Self::seen(layout).into_iter().find(|seen| rests(high, *seen).is_some()) {
-                break (high, seen);
+            if let Some(resolution) =
+                Self::resolutions(layout).into_iter().find(|resolution| rests(high, *resolution).is_some())
+            {
+                break (high, resolution);
             }
             (low, step) = (high, 2.0 * step);
         };
         while high - low > MISSING_FRICTION_TOLERANCE * (high - 1.0) {
             let middle = 0.5 * (low + high);
-            if rests(middle, seen).is_some() {
+            if rests(middle, resolution).is_some() {
                 high = middle;
             } else {
                 low = middle;
@@ -240,8 +203,8 @@ impl CableEquilibrium {
                 return None;
             }
         }
-        let found = rests(high, seen)?;
-        let near = MOBILISED * (1.0 + MISSING_FRICTION_TOLERANCE * (high - 1.0));
+        let found = rests(high, resolution)?;
+        let near = tuned.mobilised_fraction * (1.0 + MISSING_FRICTION_TOLERANCE * (high - 1.0));
         let slides = |s: &CableRun| [1.0, -1.0].iter().any(|way| point_load::mobilised(s, &found.course, *way, near));
         let loose = layout.strands.iter().zip(&found.strands).filter(|(p, _)| p.supports.iter().all(Option::is_none));
         loose.map(|(_, s)| s).any(slides).then_some(high)
@@ -258,13 +221,13 @@ impl CableEquilibrium {
         work: &mut Work,
     ) -> Result<Self, Failure> {
         let mut first = None;
-        for within in ADOPTED_CONE_FRACTIONS {
+        for within in layout.settings.continuation.adopted_cone_fractions {
             let course = layout.course(layout.curves(), instant);
             let Some(strands) = from_solution::take(layout, &course, instant, nodes, within) else { continue };
             let mut network = Self { strands, course, instant: instant.clone() };
             match network.step(layout, instant, work) {
                 Ok(_) => return Ok(network),
-                Err(trouble) => first = first.or(Some(trouble)),
+                Err(failure) => first = first.or(Some(failure)),
             }
         }
         let at = nodes.first().map_or(Vec2::zeros(), Node::at);
@@ -276,23 +239,24 @@ impl CableEquilibrium {
         &mut self,
         layout: &Layout,
         goal: &BoundaryConditions,
-        seen: Seen,
+        resolution: RouteResolution,
         work: &mut Work,
     ) -> Result<StepStats, Failure> {
-        let taut = seen.cooled;
+        let tuned = &layout.settings.continuation;
+        let taut = resolution.first_tension;
         let mut begin = goal.clone();
         layout.give(&mut self.course, &begin);
         self.strands.clear();
         let mut came = Vec::new();
         for k in 0..layout.strands.len() {
-            let may = taut.is_none() && seen.loose;
+            let may = taut.is_none() && resolution.loose;
             let loose = if may { slack::lay(layout, k, &self.course, &begin) } else { None };
             if let Some(strand) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
                 self.strands.push(strand);
                 came.push(Vec::new());
                 continue;
             }
-            let laid = contacts::lay(layout, k, &self.course, &begin, seen.ring);
+            let laid = contacts::lay(layout, k, &self.course, &begin, resolution.ring);
             let no_way = Failure::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] };
             let (strand, way) = laid.ok_or(no_way)?;
             self.strands.push(strand);
@@ -300,8 +264,8 @@ impl CableEquilibrium {
         }
         if let Some(taut) = taut {
             begin.thermal = self.shrunk_thermal(layout, goal, taut);
-            begin.load *= FIRST_LOAD_FRACTION;
-            begin.forces.iter_mut().for_each(|f| *f *= FIRST_LOAD_FRACTION);
+            begin.load *= tuned.first_load_fraction;
+            begin.forces.iter_mut().for_each(|f| *f *= tuned.first_load_fraction);
             layout.give(&mut self.course, &begin);
             for (strand, part) in self.strands.iter_mut().zip(&layout.strands) {
                 if part.supports.iter().all(Option::is_some) {
@@ -311,7 +275,7 @@ impl CableEquilibrium {
         }
         self.instant = begin.clone();
         let mut taken = self.step_from(layout, &begin, &came, work)?;
-        // What was met on the way rubs from now on.
+        // Contacts that were met on the way rub from now on.
         let mut met = false;
         for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts).filter(|c| c.smooth) {
             c.smooth = false;
@@ -327,8 +291,8 @@ impl CableEquilibrium {
             return Ok(taken);
         }
         let heavy = BoundaryConditions { thermal: begin.thermal, ..goal.clone() };
-        taken = taken.and(self.travel(layout, &heavy, FIRST_STEP, work)?);
-        Ok(taken.and(self.travel(layout, goal, FIRST_STEP, work)?))
+        taken = taken.and(self.travel(layout, &heavy, tuned.first_step, work)?);
+        Ok(taken.and(self.travel(layout, goal, tuned.first_step, work)?))
     }
 
     /// The factor on lengths at which the cable is taut along the string of its route.
@@ -379,15 +343,15 @@ impl CableEquilibrium {
         for k in 0..self.strands.len() {
             match self.solve(layout, k, came.get(k).map(Vec::as_slice), work) {
                 Ok(one) => taken = taken.and(one),
-                Err(trouble) => {
+                Err(failure) => {
                     self.undo(layout, work);
-                    return Err(trouble);
+                    return Err(failure);
                 }
             }
         }
-        if let Err(trouble) = equilibrium::balanced(layout, self) {
+        if let Err(failure) = equilibrium::balanced(layout, self) {
             self.undo(layout, work);
-            return Err(trouble);
+            return Err(failure);
         }
         Ok(taken)
     }
@@ -433,7 +397,7 @@ impl CableEquilibrium {
         place_ends(layout, k, strand, &self.course, &self.instant)?;
         moved.clone_from(strand);
         if came.is_none() && self.course.mobilised == 0.0 {
-            foresee(strand, &self.course, &mut work.foresight);
+            predict_slip(strand, &self.course, &mut work.slip_predictor);
         }
         let mut found = changes::solve(strand, &mut self.course, world, &layout.corners, came, work);
         if found.is_err() {
@@ -453,10 +417,10 @@ impl CableEquilibrium {
             }
         }
         if found.is_err() {
-            // What has hardly any tension left may have lost it: the least, the two least …
+            // Spans with hardly any tension left may have lost it: the least, the two least …
             let mut loose = Vec::new();
             slack_pocket::candidates(start, &self.course, &mut loose);
-            for n in 1..=loose.len().min(MOST_POCKETS) {
+            for n in 1..=loose.len().min(layout.settings.continuation.max_pockets) {
                 strand.clone_from(moved);
                 for (_, k) in &loose[..n] {
                     slack_pocket::fill(strand, &self.course, *k);
@@ -478,13 +442,13 @@ impl CableEquilibrium {
                 c.ends.p[1] = c.ends.p[0];
             }
             c.history.commit(&track, &c.ends, c.mode, c.held, &mut work.past);
-            // What came down in this step rubs from now on.
+            // Contacts that came down in this step rub from now on.
             if c.smooth && came.is_none() {
                 c.smooth = false;
                 c.mode = if self.course.curves[c.curve].friction > 0.0 { Mode::Hold } else { c.mode };
             }
         }
-        equilibrium::sound(&self.strands[k], &self.course)?;
+        equilibrium::verify(&self.strands[k], &self.course)?;
         clearance::clear(&self.strands[k], &self.course, world)?;
         // The shape before the step is drawn with the load and the lengths of before: with those of
         // after it spans of a cable that is let out or loaded in this step would end beside their
@@ -540,11 +504,12 @@ impl CableEquilibrium {
     /// as far as it goes (pseudo-transient continuation: C. T. Kelley and D. E. Keyes, SIAM J.
     /// Numer. Anal. 35, 1998).
     fn follow(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) -> Result<StepStats, Failure> {
+        let tuned = &layout.settings.continuation;
         let (before, old) = (self.strands.clone(), self.instant.clone());
         let size = to.load.norm();
-        let (mut drag, mut taken, mut raised) = (DRAG * size, StepStats::default(), 0);
+        let (mut drag, mut taken, mut raised) = (tuned.drag_factor * size, StepStats::default(), 0);
         let mut pushed = None;
-        for _ in 0..MOST_DRAGGED {
+        for _ in 0..tuned.max_drag_steps {
             self.course.drag = drag;
             let result = self.step(layout, to, work);
             self.course.drag = 0.0;
@@ -554,19 +519,19 @@ impl CableEquilibrium {
                     taken = taken.and(t);
                     drag *= if raised > 0 { 0.5 } else { 0.25 };
                     raised = 0;
-                    if drag < DRAG * LEAST_DRAG * size
+                    if drag < tuned.drag_factor * tuned.rest_drag_fraction * size
                         && let Ok(t) = self.step(layout, to, work)
                     {
                         return Ok(taken.and(t));
                     }
                 }
-                Err(trouble) => {
-                    pushed = matches!(trouble, Failure::Compressed { .. }).then_some(trouble);
+                Err(failure) => {
+                    pushed = matches!(failure, Failure::Compressed { .. }).then_some(failure);
                     drag *= 8.0;
                     raised += 1;
                 }
             }
-            if raised > MOST_RAISED {
+            if raised > tuned.max_drag_raises {
                 break;
             }
         }
@@ -576,13 +541,13 @@ impl CableEquilibrium {
         Err(pushed.unwrap_or(Failure::Restless { s: 0.0 }))
     }
 
-    /// Whether every strand is a rest and not a balance that runs away.
+    /// True if every strand is a stable rest and not a balance that runs away.
     pub fn stable(&self, work: &mut Work) -> bool {
         self.strands.iter().all(|s| newton::stable(s, &self.course, work))
     }
 
     /// Why a step was not taken: it would have to push however much it is held back, or nothing
-    /// better than the trouble of the step.
+    /// better than the failure of the step.
     fn reason(&self, step: Failure, held_back: Failure) -> Failure {
         let found_nothing = matches!(step, Failure::Stalled { .. } | Failure::Restless { .. });
         let pushes = matches!(held_back, Failure::Compressed { .. });
@@ -604,7 +569,7 @@ impl CableEquilibrium {
         }
         let instant = self.instant.clone();
         let mut taut = self.clone();
-        if taut.laid(layout, &instant, Seen { loose: false, ..Seen::default() }, work).is_ok() {
+        if taut.laid(layout, &instant, RouteResolution { loose: false, ..RouteResolution::default() }, work).is_ok() {
             *self = taut;
         }
     }
@@ -636,6 +601,7 @@ impl CableEquilibrium {
         first: f64,
         work: &mut Work,
     ) -> Result<StepStats, Stopped> {
+        let tuned = &layout.settings.continuation;
         let (mut done, mut step, mut taken) = (0.0, first, StepStats::default());
         let mut halvings: u32 = 0;
         // Not on the way to a first rest; and the step that was taken but had something come down
@@ -644,10 +610,10 @@ impl CableEquilibrium {
         while done < 1.0 {
             let next = if done + 1.000_001 * step >= 1.0 { 1.0 } else { done + step };
             at.between(from, to, next);
-            let trouble = match self.step(layout, at, work) {
-                // What comes down has no friction in the step in which it does: that shall be a
+            let failure = match self.step(layout, at, work) {
+                // A contact has no friction in the step in which it comes down: that shall be a
                 // short one.
-                Ok(t) if moves && t.fresh > MISSING_FRICTION_FRACTION && step > LANDING_STEP_FRACTION => {
+                Ok(t) if moves && t.fresh > tuned.missing_friction_fraction && step > tuned.landing_step_fraction => {
                     self.undo(layout, work);
                     whole = whole.or(Some(step));
                     (step, taken.halved) = (0.5 * step, taken.halved + 1);
@@ -657,7 +623,7 @@ impl CableEquilibrium {
                     (moves, whole) = (first >= 1.0, None);
                     taken = taken.and(t);
                     done = next;
-                    if halvings > 0 || step < LARGEST_STEP {
+                    if halvings > 0 || step < tuned.grown_step {
                         halvings = halvings.saturating_sub(1);
                         step *= 2.0;
                     }
@@ -668,20 +634,21 @@ impl CableEquilibrium {
                     (moves, step) = (false, whole.take().unwrap_or(step));
                     continue;
                 }
-                Err(trouble) => trouble,
+                Err(failure) => failure,
             };
             halvings += 1;
             step *= 0.5;
             taken.halved += 1;
-            if halvings > MAX_HALVINGS {
+            if halvings > tuned.max_halvings {
                 // Where nothing near by holds the cable it runs away, to the next place that does.
-                let next = if done + RUNAWAY_STEP_FRACTION < 1.0 { done + RUNAWAY_STEP_FRACTION } else { 1.0 };
+                let next =
+                    if done + tuned.runaway_step_fraction < 1.0 { done + tuned.runaway_step_fraction } else { 1.0 };
                 at.between(from, to, next);
                 let t = match self.follow(layout, at, work) {
                     Ok(t) => t,
-                    Err(other) => return Err(Stopped { failure: self.reason(trouble, other), done }),
+                    Err(other) => return Err(Stopped { failure: self.reason(failure, other), done }),
                 };
-                (taken, done, halvings, step) = (taken.and(t), next, 0, RUNAWAY_STEP_FRACTION);
+                (taken, done, halvings, step) = (taken.and(t), next, 0, tuned.runaway_step_fraction);
                 taken.ran += 1;
             }
         }
@@ -694,7 +661,7 @@ fn strands_of(layout: &Layout, lay: impl Fn(usize) -> Option<CableRun>) -> Optio
     (0..layout.strands.len()).map(lay).collect()
 }
 
-/// How a way to an instant ended that was not gone to its end.
+/// The end of a continuation that did not come to its instant.
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct Stopped {
     /// Why.

@@ -1,9 +1,10 @@
 //! A failure says why a run has no answer here, before it becomes a
 //! [`SolveError`](crate::SolveError).
 
+use crate::error::EquilibriumFault;
 use crate::math::Vec2;
 
-/// What went wrong.
+/// Reason of a failure.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::model::spans) enum Failure {
     /// Newton stopped short: iterations, scaled residual, material point of the worst equation, m.
@@ -22,8 +23,8 @@ pub(in crate::model::spans) enum Failure {
     LoadLies { s: f64 },
     /// An obstacle is met where this model cannot lay the cable.
     NoSeat { s: f64, at: Vec2 },
-    /// What lies loose is drawn along: material point, m.
+    /// A cable that lies loose is drawn along: material point, m.
     Drawn { s: f64 },
     /// The answer does not pass the check that does not use the solver.
-    Unsound { what: &'static str, s: f64, at: Vec2 },
+    Unsound { what: EquilibriumFault, s: f64, at: Vec2 },
 }

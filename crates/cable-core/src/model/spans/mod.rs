@@ -18,6 +18,7 @@
 //! | `slack` | cable that lies without tension |
 //! | `verify` | checks of an answer that do not use the solver |
 //! | `results`, `failure` | the answer; why there is none |
+//! | `settings` | the tuned constants |
 //!
 //! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that
 //! let go. A cable that loses its tension is said to have lost it, with the place.
@@ -34,6 +35,7 @@ mod numerics;
 mod results;
 mod reversed;
 mod run;
+pub mod settings;
 mod slack;
 mod verify;
 
@@ -49,16 +51,13 @@ use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::Work;
 use crate::model::spans::results::Report;
 use crate::model::spans::reversed::Turned;
+use crate::model::spans::settings::SpansSettings;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
-use crate::solution::{CableSolution, Cost, Histories, Node, ShownEquilibrium, Warning, WarningCause};
+use crate::solution::{CableSolution, Cost, Histories, ModelReason, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
-/// Supports move by at most this part of the cable in one solve. Larger: sliding that starts and
-/// reverses inside a step is missed, and what is laid down in a step is laid with the tension it
-/// began with. Smaller: more solves.
-const STEP: f64 = 0.01;
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
 
@@ -66,7 +65,7 @@ const LONGEST_STEP_S: f64 = 1e6;
 #[derive(Clone, Debug)]
 pub struct SpansModel {
     problem: Arc<Problem>,
-    /// Whether other histories are sought.
+    /// True if other histories are searched.
     histories: bool,
     /// The cable as it is laid: counted from either end.
     layout: Layout,
@@ -75,9 +74,9 @@ pub struct SpansModel {
     dragged: Vec<Option<Vec2>>,
     network: Option<CableEquilibrium>,
     work: Work,
-    /// Where a step starts, where it goes, and a piece of it.
+    /// The start and the goal of a step, and a part of it.
     instants: [BoundaryConditions; 3],
-    /// What is shown while there is no network.
+    /// The report shown while there is no network.
     shown: Report,
 }
 
@@ -87,8 +86,20 @@ impl SpansModel {
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        Self::with_settings(problem, settings, Arc::default())
+    }
+
+    /// As [`Self::new`], with other tuned constants.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_settings(
+        problem: Arc<Problem>,
+        settings: Settings,
+        tuned: Arc<SpansSettings>,
+    ) -> Result<Self, SolveError> {
         let from = if reversed::is_led_up(&problem) { CableEnd::End } else { CableEnd::Start };
-        let layout = counted(&problem, from)?;
+        let layout = counted(&problem, from, tuned)?;
         let n = problem.supports.len();
         let mut points: Vec<Vec2> = problem.route.clone();
         if points.len() < 2 {
@@ -112,18 +123,18 @@ impl SpansModel {
         Ok(Self { problem, histories, layout, time_s: 0.0, dragged, network: None, work, instants, shown })
     }
 
-    /// Whether what was found lies without tension.
+    /// True if the cable that was found lies without tension.
     pub(super) fn lies_loose(&self) -> bool {
         self.network.as_ref().is_some_and(|n| n.loose().is_some())
     }
 
-    /// Whether a resting place has been found.
+    /// True if a resting place has been found.
     pub(super) fn stands(&self) -> bool {
         self.network.is_some()
     }
 
-    /// What there is to show now.
-    fn look(&self) -> Report {
+    /// The report of the present state.
+    fn present_report(&self) -> Report {
         match &self.network {
             Some(network) => {
                 let report = results::report(&self.layout, network);
@@ -133,31 +144,30 @@ impl SpansModel {
         }
     }
 
-    /// How far any support moves between two instants, m.
+    /// The greatest distance that any support moves between two instants, m.
     fn travel(from: &BoundaryConditions, to: &BoundaryConditions) -> f64 {
         from.places.iter().zip(&to.places).map(|(a, b)| (b - a).norm()).fold(0.0, |m, d| if d > m { d } else { m })
     }
 
-    /// A trouble as an error: a loss of tension where the last state found, `stopped` or the
+    /// A failure as an error: a loss of tension where the last state found, `stopped` or the
     /// present one, shows one.
-    fn said(&self, stopped: Option<&CableEquilibrium>, trouble: Failure) -> SolveError {
+    fn solve_error(&self, stopped: Option<&CableEquilibrium>, failure: Failure) -> SolveError {
         if let Some(network) = stopped.or(self.network.as_ref())
             && let Some((loss, arc_length_m, at_m)) =
-                verify::tension_loss::lost(&network.strands, &network.course, &trouble)
+                verify::tension_loss::lost(&network.strands, &network.course, &failure)
         {
             let arc_length_m = if self.layout.is_reversed() { self.turned().s(arc_length_m) } else { arc_length_m };
             return SolveError::TensionLost { model: Model::Spans, loss, arc_length_m, at_m };
         }
-        self.in_words(trouble)
+        self.plain_error(failure)
     }
 
-    /// A trouble of the layout in the words everyone uses.
-    fn in_words(&self, trouble: Failure) -> SolveError {
-        said(&self.problem, if self.layout.is_reversed() { self.turned().trouble(trouble) } else { trouble })
+    /// A failure of the layout in the words everyone uses.
+    fn plain_error(&self, failure: Failure) -> SolveError {
+        error_of(&self.problem, if self.layout.is_reversed() { self.turned().failure(failure) } else { failure })
     }
 
-    /// What leads from how the layout counts the cable to how the scene does, where that is
-    /// otherwise.
+    /// The map from the layout's direction along the cable to the scene's, where they differ.
     fn turned(&self) -> Turned<'_> {
         Turned { problem: &self.problem }
     }
@@ -170,10 +180,12 @@ impl SpansModel {
             Err(unfound) => {
                 let (mut there, mut dragged) = (BoundaryConditions::default(), self.dragged.clone());
                 dragged.reverse();
-                let other = counted(&self.problem, self.layout.counted_from.other()).ok().and_then(|other| {
-                    other.instant(&dragged, self.time_s, &mut there);
-                    Some((CableEquilibrium::rest(&other, &there, work).ok()?, other))
-                });
+                let other = counted(&self.problem, self.layout.counted_from.other(), self.layout.settings.clone())
+                    .ok()
+                    .and_then(|other| {
+                        other.instant(&dragged, self.time_s, &mut there);
+                        Some((CableEquilibrium::rest(&other, &there, work).ok()?, other))
+                    });
                 match (other, CableEquilibrium::heaped(&self.layout, instant)) {
                     (Some((found, other)), _) => {
                         (self.layout, self.dragged, *instant) = (other, dragged, there);
@@ -252,7 +264,7 @@ impl SpansModel {
         CableEquilibrium::rest_from(&layout, &instant, start, work).ok().map(|n| n.0).filter(|n| n.loose().is_none())
     }
 
-    /// Whether some of the cable is held by nothing but friction.
+    /// True if some of the cable is held by nothing but friction.
     fn hangs_by_friction(&self) -> bool {
         self.layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none))
     }
@@ -264,17 +276,17 @@ impl SpansModel {
 }
 
 /// The layout of a cable counted from its start, or from its end.
-fn counted(problem: &Arc<Problem>, from: CableEnd) -> Result<Layout, SolveError> {
+fn counted(problem: &Arc<Problem>, from: CableEnd, settings: Arc<SpansSettings>) -> Result<Layout, SolveError> {
     match from {
-        CableEnd::Start => Layout::new(problem, from),
-        CableEnd::End => Layout::new(&Arc::new(reversed::problem(problem)), from),
+        CableEnd::Start => Layout::new(problem, from, settings),
+        CableEnd::End => Layout::new(&Arc::new(reversed::problem(problem)), from, settings),
     }
 }
 
-/// A trouble in the words everyone uses.
-fn said(problem: &Problem, trouble: Failure) -> SolveError {
+/// A failure in the words everyone uses.
+fn error_of(problem: &Problem, failure: Failure) -> SolveError {
     let name = |k: usize| problem.supports.get(k).map_or("", |s| s.name.as_str());
-    match trouble {
+    match failure {
         Failure::Stalled { iterations, residual, s } => SolveError::NotConverged {
             model: Model::Spans,
             iterations,
@@ -302,8 +314,8 @@ impl Mechanics for SpansModel {
         Model::Spans
     }
 
-    fn reason(&self) -> Option<&str> {
-        self.lies_loose().then_some("the cable lies loose: what hangs is plumb, what lies has no tension")
+    fn reason(&self) -> Option<&ModelReason> {
+        self.lies_loose().then_some(&ModelReason::LooseCable)
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
@@ -313,7 +325,7 @@ impl Mechanics for SpansModel {
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
-        // What lies loose remembers nothing.
+        // A cable that lies loose remembers nothing.
         self.network = self.network.take().filter(|n| n.loose().is_none());
         let found = match &mut self.network {
             Some(network) => {
@@ -336,9 +348,9 @@ impl Mechanics for SpansModel {
             let why = NoEquilibrium::TooLittleFriction { friction_ratio: part };
             return Err(SolveError::NoRestingPlace { why });
         }
-        let taken = found.map_err(|(trouble, stopped)| match slides && !self.rubs() {
+        let taken = found.map_err(|(failure, stopped)| match slides && !self.rubs() {
             true => SolveError::NoRestingPlace { why: NoEquilibrium::NoFriction },
-            false => self.said(stopped.as_deref(), trouble),
+            false => self.solve_error(stopped.as_deref(), failure),
         })?;
         let mut report = self.report_of(taken);
         if !stable {
@@ -355,7 +367,7 @@ impl Mechanics for SpansModel {
             report.warnings.push(self.warning(WarningCause::ManyEquilibria { shown, histories }));
         }
         if instant.hint > 0.0 {
-            report.warnings.extend(slack_without_weight(&self.problem, &self.look().nodes));
+            report.warnings.extend(slack_without_weight(&self.problem, &self.present_report().nodes));
         }
         Ok(report)
     }
@@ -370,7 +382,7 @@ impl Mechanics for SpansModel {
             return Err(unsupported(Unsupported::Inertia));
         }
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
-            return Err(SolveError::TimeStep { dt_s, allowed: "0 < dt ≤ 1e6 s" });
+            return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
         }
         if self.network.is_none() {
             self.settle()?;
@@ -380,7 +392,10 @@ impl Mechanics for SpansModel {
         let length = self.layout.problem.length;
         let [mut first, mut last, mut instant] = std::mem::take(&mut self.instants);
         self.layout.instant(&self.dragged, end, &mut last);
-        let pieces = (Self::travel(&network.instant, &last) / (STEP * length)).ceil().clamp(1.0, 1000.0);
+        let pieces = (Self::travel(&network.instant, &last)
+            / (self.layout.settings.continuation.max_move_fraction * length))
+            .ceil()
+            .clamp(1.0, 1000.0);
         let mut work = std::mem::take(&mut self.work);
         let mut sum = StepReport::default();
         first.clone_from(&network.instant);
@@ -414,7 +429,7 @@ impl Mechanics for SpansModel {
         self.network = Some(network);
         (self.work, self.instants) = (work, [first, last, instant]);
         match failed {
-            Some(trouble) => Err(self.said(None, trouble)),
+            Some(failure) => Err(self.solve_error(None, failure)),
             None => {
                 if ran > 0 {
                     sum.warnings.push(self.warning(WarningCause::SlidOn));
@@ -429,7 +444,7 @@ impl Mechanics for SpansModel {
     }
 
     fn state(&self) -> State {
-        State::of_nodes(&self.look().nodes, self.time_s)
+        State::of_nodes(&self.present_report().nodes, self.time_s)
     }
 
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
@@ -437,7 +452,7 @@ impl Mechanics for SpansModel {
             return Err(e);
         }
         self.time_s = state.time_s;
-        self.shown = self.look();
+        self.shown = self.present_report();
         self.network = None;
         Ok(())
     }
@@ -450,7 +465,7 @@ impl Mechanics for SpansModel {
         let nodes = nodes.as_ref().unwrap_or(&answer.nodes);
         let taken = CableEquilibrium::taken(&self.layout, &instant, nodes, &mut work);
         self.work = work;
-        self.network = Some(taken.map_err(|t| self.in_words(t))?);
+        self.network = Some(taken.map_err(|t| self.plain_error(t))?);
         self.time_s = time_s;
         Ok(())
     }
@@ -464,7 +479,7 @@ impl Mechanics for SpansModel {
     }
 
     fn solution(&self) -> CableSolution {
-        let Report { nodes, supports, contacts } = self.look();
+        let Report { nodes, supports, contacts } = self.present_report();
         let name = self.problem.cable.name.clone();
         let answer = CableSolution { name, nodes, supports, contacts, ..CableSolution::default() };
         answer.rounded(&self.problem)

@@ -119,7 +119,7 @@ impl Stretch {
         let (tension, s) = history.at(track, from);
         let pivot = match track.pivot {
             Some(pivot) if pivot.reaches(from) && pivot.reaches(to) => pivot,
-            _ => Pivot::new(track.curve, track.home, &track.law, middle),
+            _ => Pivot::new(track.curve, track.chain_range, &track.law, middle),
         };
         Self { from, to, tension, s, m: history.called(track, middle), pivot, cable_radius }
     }
@@ -303,7 +303,7 @@ pub(in crate::model::spans) fn tensions(network: &CableEquilibrium) -> [f64; 3] 
     [start, last, greatest]
 }
 
-/// What is left of all forces on the cable as they are reported, and their size, N: supports and
+/// The sum of all forces on the cable as they are reported, and their size, N: supports and
 /// contacts hold weight and loads.
 pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquilibrium) -> (Vec2, f64) {
     let (p, course) = (&layout.problem, &network.course);
@@ -329,7 +329,7 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
         for (j, c) in strand.contacts.iter().enumerate() {
             add(match (c.wheel, c.is_load()) {
                 (Some(_), _) => -wheel_force(course, strand, j).0,
-                (None, true) => -point_load::felt(strand, course, j).sum,
+                (None, true) => -point_load::load_balance(strand, course, j).sum,
                 (None, false) => held_by(&course.track(c), c),
             });
             if let (Some([from, to]), None) = (loose(strand, j), c.wheel) {
@@ -343,19 +343,20 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
 /// The contact of the load that is contact j.
 fn load(strand: &CableRun, course: &Course, j: usize, track: &Track<'_>, name: &str) -> ContactReport {
     let c = &strand.contacts[j];
-    let felt = point_load::felt(strand, course, j);
+    let load_balance = point_load::load_balance(strand, course, j);
     let at = track.place(c.ends.p[0]).at;
     // The obstacle holds what all else does to the point.
-    let held = felt.normal * felt.press() - felt.tangent * felt.sum.dot(&felt.tangent);
+    let held =
+        load_balance.normal * load_balance.press() - load_balance.tangent * load_balance.sum.dot(&load_balance.tangent);
     let slips = track.friction <= 0.0 || matches!(c.mode, Mode::Slide(_));
     ContactReport {
         obstacle: name.to_owned(),
         x_m: at.x,
         y_m: at.y,
         arc_length_m: c.ends.s[0],
-        normal: [felt.normal.x, felt.normal.y],
-        normal_n: felt.press(),
-        friction_n: -felt.sum.dot(&felt.tangent),
+        normal: [load_balance.normal.x, load_balance.normal.y],
+        normal_n: load_balance.press(),
+        friction_n: -load_balance.sum.dot(&load_balance.tangent),
         state: if slips { ContactState::Slip } else { ContactState::Stick },
         turn_deg: 0.0,
         tension_before_n: c.ends.t[0],
@@ -399,7 +400,7 @@ fn heap(strand: &CableRun, course: &Course, j: usize, name: &str) -> Vec<Contact
 /// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where
 /// all is alike.
 fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> {
-    /// What is called upon of friction counts as all of it from this share on: rounding.
+    /// Share of mobilised friction from which on it counts as all of it: rounding.
     const LIMIT: f64 = 1.0 - 1e-9;
     let state = |s: &Stretch| if s.m.abs() >= LIMIT * friction { ContactState::Slip } else { ContactState::Stick };
     let Some(first) = stretches.first().map(state).filter(|f| stretches.iter().any(|s| state(s) != *f)) else {

@@ -1,8 +1,8 @@
 //! A cable can be solved from its other end.
 //!
-//! Where friction allows several equilibria, the one that is found must not depend on the end from
-//! which a scene counts its cable. The cable is therefore solved and followed from its *upper* end,
-//! and the solution is reversed afterwards.
+//! With friction several equilibria are possible, and the one that is found must not depend on the
+//! end from which a scene counts its cable. The cable is therefore solved and followed from its
+//! *upper* end, and the solution is reversed afterwards.
 
 use crate::math::Vec2;
 use crate::model::spans::failure::Failure;
@@ -16,8 +16,8 @@ use crate::solution::{ContactPart, ContactReport, ContactSample, Node, SupportRe
 /// whose ends differ by so little is counted from either.
 const HEIGHT_TOLERANCE: f64 = 1e-9;
 
-/// Whether a cable is counted from its end when its rest is sought: that is its upper one; of two
-/// that are level the one beside which the cable is led higher.
+/// True if the rest of a cable is searched from its end, because that is the upper one; of two that
+/// are level the one beside which the cable is led higher.
 pub(in crate::model::spans) fn is_led_up(p: &Problem) -> bool {
     let places: Vec<Vec2> = if p.route.len() > 1 {
         p.route.clone()
@@ -117,9 +117,9 @@ impl Turned<'_> {
         }
     }
 
-    /// A trouble.
-    pub fn trouble(&self, trouble: Failure) -> Failure {
-        match trouble {
+    /// A failure.
+    pub fn failure(&self, failure: Failure) -> Failure {
+        match failure {
             Failure::Stalled { iterations, residual, s } => Failure::Stalled { iterations, residual, s: self.s(s) },
             Failure::Restless { s } => Failure::Restless { s: self.s(s) },
             Failure::Compressed { s, at, tension } => Failure::Compressed { s: self.s(s), at, tension },

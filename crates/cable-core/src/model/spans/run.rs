@@ -6,12 +6,15 @@
 //! fixed in space: after S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic
 //! simulation of highly constrained strands", ACM Transactions on Graphics 30 (2011) 39.
 
+use std::sync::Arc;
+
 use crate::catenary::{Catenary, Chain, PointForce};
 use crate::math::Vec2;
 use crate::model::spans::boundary::capstan::{Law, Track};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
 use crate::model::spans::boundary::friction_memory::{Ends, Held, Mode, TensionProfile};
 use crate::model::spans::boundary::loose::Loose;
+use crate::model::spans::settings::SpansSettings;
 
 /// Everything given at an instant.
 #[derive(Clone, Debug)]
@@ -19,17 +22,19 @@ pub(in crate::model::spans) struct Course {
     /// Boundaries: both senses of each body, then both of each wheel.
     pub curves: Vec<Curve>,
     pub law: Law,
-    /// What sliding is resisted with besides friction while a cable that runs away is followed, N
-    /// per m of slip; else 0.
+    /// Drag against sliding, besides friction, while a cable that runs away is followed, N per m of
+    /// slip; else 0.
     pub drag: f64,
-    /// Which way friction is fully mobilised at every contact: 1 against a cable drawn towards its
-    /// end, −1 towards its start; 0 where friction does what the contact's past asks for.
+    /// Direction in which friction is fully mobilised at every contact: 1 against a cable drawn
+    /// towards its end, −1 towards its start; 0 where friction does what the contact's past asks
+    /// for.
     pub mobilised: f64,
     /// Dead loads inside the cable, in order, N.
     pub loads: Vec<PointForce>,
+    pub settings: Arc<SpansSettings>,
 }
 
-/// What is at an end of a strand.
+/// Condition at an end of a strand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) enum Tie {
     /// Held in the air at a point, m.
@@ -43,7 +48,7 @@ pub(in crate::model::spans) enum Tie {
 }
 
 impl Tie {
-    /// Whether a free span begins here.
+    /// True if a free span begins here.
     pub fn has_span(&self) -> bool {
         matches!(self, Self::Held(_) | Self::Hangs(_))
     }
@@ -54,17 +59,17 @@ impl Tie {
 pub(in crate::model::spans) struct Contact {
     /// Index of the boundary.
     pub curve: usize,
-    pub home: ChainRange,
+    pub chain_range: ChainRange,
     pub ends: Ends,
     pub mode: Mode,
-    /// Where it sticks under the tensions it has, where that was worked out.
+    /// The stick zone under the tensions it has, where that was computed.
     pub held: Option<Held>,
     pub history: TensionProfile,
     /// The pulley it is, by its support.
     pub wheel: Option<usize>,
     /// Times the mode has changed in this solve.
     pub flips: u32,
-    /// How it goes on to the next contact.
+    /// Connection to the next contact.
     pub next: Next,
     /// The point load that rests here, where it is one.
     pub load: Option<RestingLoad>,
@@ -104,7 +109,7 @@ impl Kink {
     }
 }
 
-/// What is between a contact and the next one.
+/// Connection between a contact and the next one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::model::spans) enum Next {
     /// A span.
@@ -135,7 +140,7 @@ impl Next {
 }
 
 impl Contact {
-    /// Whether a point load rests here.
+    /// True if a point load rests here.
     pub fn is_load(&self) -> bool {
         self.load.is_some()
     }
@@ -157,7 +162,7 @@ pub(in crate::model::spans) struct CableRun {
     pub contacts: Vec<Contact>,
     /// G of each span, N; one more than contacts.
     pub forces: Vec<Vec2>,
-    /// How it lies without tension, where it does: it has neither contacts nor spans then.
+    /// The shape without tension, where the cable lies so: it has neither contacts nor spans then.
     pub loose: Option<Loose>,
 }
 
@@ -200,7 +205,7 @@ impl Course {
         let curve = &self.curves[c.curve];
         Track {
             curve,
-            home: c.home,
+            chain_range: c.chain_range,
             law: self.law,
             friction: self.friction(c),
             drag: self.drag,
@@ -278,7 +283,7 @@ impl CableRun {
         self.contacts.len() + 1
     }
 
-    /// Whether span k is there.
+    /// True if span k exists.
     pub fn has_span(&self, k: usize) -> bool {
         if self.loose.is_some() {
             return false;
@@ -287,22 +292,22 @@ impl CableRun {
         !none && (k > 0 || self.ties[0].has_span()) && (k < self.contacts.len() || self.ties[1].has_span())
     }
 
-    /// Whether contact j ends in a pocket on a side.
+    /// True if contact j ends in a pocket on a side.
     pub fn in_pocket(&self, j: usize, side: usize) -> bool {
         (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.next == Next::Pocket)
     }
 
-    /// Whether contact j is joined to what is beside it on a side.
+    /// True if contact j is joined to its neighbour on a side.
     pub fn is_joined(&self, j: usize, side: usize) -> bool {
         (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.next == Next::Joined)
     }
 
-    /// Whether the material at a side of contact j is that of a load.
+    /// True if the material at a side of contact j is that of a load.
     pub fn is_marked(&self, j: usize, side: usize) -> bool {
         self.contacts[j].is_load() || self.is_joined(j, side)
     }
 
-    /// Whether contact j is joined to a load on a side that sticks.
+    /// True if contact j is joined to a load on a side that sticks.
     pub fn is_pinned(&self, j: usize, side: usize) -> bool {
         let beside = (j + 2 * side).checked_sub(1).and_then(|i| self.contacts.get(i));
         self.is_joined(j, side) && beside.is_some_and(|c| c.is_load() && c.mode == Mode::Hold)
@@ -320,7 +325,7 @@ impl CableRun {
         self.forces.get(k).copied().unwrap_or_default() - course.load_between(self.from, s)
     }
 
-    /// Where span k starts and ends, m; None where the end hangs.
+    /// Start and end of span k, m; None where the end hangs.
     pub fn ends_of(&self, course: &Course, k: usize) -> [Option<Vec2>; 2] {
         let tie = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
         let point = |c: &Contact, side: usize| Some(course.track(c).place(c.ends.p[side]).at);

@@ -1,4 +1,5 @@
-//! Named scenes from `assets/scenes/`, used by tests, benches, examples and the viewer alike.
+//! Named scenes are embedded from `assets/scenes/` and used by tests, benches, examples and the
+//! viewer alike.
 
 use crate::scene::{Environment, Motion, Scene, Support, VERSION, View};
 

@@ -10,7 +10,7 @@ use crate::math::Point;
 use crate::scene::Obstacle;
 use crate::scene::read::deserialize::nearest;
 
-/// How well a number is known.
+/// Confidence in a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Confidence {
     /// Read in a source.
@@ -31,9 +31,9 @@ pub struct Figure {
     pub low: Option<f64>,
     /// The most it may be.
     pub high: Option<f64>,
-    /// How well it is known.
+    /// Confidence in it.
     pub confidence: Confidence,
-    /// Where it comes from.
+    /// Its source.
     pub source: String,
 }
 
@@ -41,12 +41,12 @@ pub struct Figure {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CablePreset {
-    /// What a scene file calls it.
+    /// Its name in a scene file.
     #[serde(skip)]
     pub id: &'static str,
-    /// What a person calls it.
+    /// Its name for a person.
     pub name: String,
-    /// What it is, and what to beware of.
+    /// A description, and what to beware of.
     pub note: String,
     /// Mass per unstretched metre, kg/m.
     pub linear_density_kg_per_m: Figure,
@@ -105,12 +105,12 @@ impl CablePreset {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RobotPreset {
-    /// What a scene file calls it.
+    /// Its name in a scene file.
     #[serde(skip)]
     pub id: &'static str,
-    /// What a person calls it.
+    /// Its name for a person.
     pub name: String,
-    /// What it is.
+    /// A description.
     pub note: String,
     /// Mass, kg.
     pub mass_kg: Figure,
@@ -124,9 +124,9 @@ pub struct RobotPreset {
     pub speed_m_per_s: Figure,
     /// Greatest pull on the ground, N.
     pub drive_pull_n: Figure,
-    /// How far behind its tracks' middle the cable hangs, m.
+    /// Distance of the cable's hitch behind its tracks' middle, m.
     pub hitch_back_m: Figure,
-    /// How far above the ground the cable hangs, m.
+    /// Height of the cable's hitch above the ground, m.
     pub hitch_up_m: Figure,
     /// Its outline looking right, m from where its tracks' middle touches the ground.
     pub outline_m: Vec<Point>,
@@ -149,9 +149,9 @@ pub struct MapPreset {
     /// Short name.
     #[serde(skip)]
     pub id: &'static str,
-    /// What a person calls it.
+    /// Its name for a person.
     pub name: String,
-    /// What it is, and which of its shape is known.
+    /// A description, and which of its shape is known.
     pub note: String,
     /// Diameter or width inside, m.
     pub inside_width_m: Figure,
@@ -161,7 +161,7 @@ pub struct MapPreset {
     pub riser_height_m: Figure,
     /// Width of that opening, m.
     pub riser_width_m: Figure,
-    /// Where the cable comes through, m.
+    /// Position of the opening through which the cable comes, m.
     pub riser_at_m: Point,
     /// Terrain and what stands in it; the shape is drawn, not surveyed, unless the note says
     /// otherwise.

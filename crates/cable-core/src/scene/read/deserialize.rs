@@ -15,7 +15,7 @@ use serde::de::{
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::error::SceneFault;
+use crate::error::{SceneFault, ShapeFault};
 use crate::scene::preset;
 
 type TomlNode<'a> = Spanned<DeValue<'a>>;
@@ -79,11 +79,11 @@ impl std::error::Error for Refusal {}
 
 impl serde::de::Error for Refusal {
     fn custom<T: fmt::Display>(message: T) -> Self {
-        Self::new(SceneFault::Shape { what: message.to_string() })
+        Self::new(SceneFault::Shape(ShapeFault::Refused { message: message.to_string() }))
     }
 
     fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        Self::new(SceneFault::Syntax { message: format!("{found} where {} is needed", plain(expected)) })
+        Self::new(SceneFault::Type { found: found.to_string(), needed: plain(expected) })
     }
 
     fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
@@ -91,7 +91,7 @@ impl serde::de::Error for Refusal {
     }
 
     fn invalid_length(found: usize, expected: &dyn Expected) -> Self {
-        Self::new(SceneFault::Syntax { message: format!("{found} elements where {} is needed", plain(expected)) })
+        Self::new(SceneFault::Elements { count: found, needed: plain(expected) })
     }
 
     fn unknown_field(field: &str, known: &'static [&'static str]) -> Self {
@@ -99,24 +99,12 @@ impl serde::de::Error for Refusal {
     }
 
     fn unknown_variant(variant: &str, known: &'static [&'static str]) -> Self {
-        let mut what = String::new();
-        for (i, name) in known.iter().enumerate() {
-            what.push_str(match i {
-                0 => "",
-                _ if i + 1 == known.len() => " or ",
-                _ => ", ",
-            });
-            what.push('`');
-            what.push_str(name);
-            what.push('`');
-        }
-        let hint =
-            nearest(variant, known.iter().copied()).map(|n| format!(", did you mean `{n}`?")).unwrap_or_default();
-        Self::new(SceneFault::Shape { what: format!("`{variant}` is not one of {what}{hint}") })
+        let nearest = nearest(variant, known.iter().copied());
+        Self::new(SceneFault::Shape(ShapeFault::UnknownWord { word: variant.to_owned(), known, nearest }))
     }
 
     fn missing_field(field: &'static str) -> Self {
-        let mut refusal = Self::new(SceneFault::Shape { what: "is missing".to_owned() });
+        let mut refusal = Self::new(SceneFault::Shape(ShapeFault::Missing));
         refusal.steps.push(PathStep::Key(field.to_owned()));
         refusal
     }
@@ -187,8 +175,8 @@ impl<'de> Deserializer<'de> for Value<'de> {
                     if seq.next == items.len() {
                         Ok(value)
                     } else {
-                        let message = format!("{} elements where {} are needed", items.len(), seq.next);
-                        Err(Refusal::new(SceneFault::Syntax { message }))
+                        let needed = seq.next.to_string();
+                        Err(Refusal::new(SceneFault::Elements { count: items.len(), needed }))
                     }
                 })
             }

@@ -6,7 +6,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::deserialize::{Document, Refusal};
 use super::path::Path;
-use crate::error::{SceneError, SceneFault, TextPosition};
+use crate::error::{SceneError, SceneFault, ShapeFault, TextPosition};
 use crate::scene::{Scene, VERSION, preset};
 
 /// Longest scene text, bytes: about 240 000 terrain points. A hostile one takes a hundred times its
@@ -22,11 +22,10 @@ impl Scene {
     pub fn from_toml(text: &str) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if text.len() > MAX_TEXT_BYTES {
-            let what = format!("the text has {} bytes, more than the {MAX_TEXT_BYTES} a scene may have", text.len());
-            return Err(Path::Root.shape(what));
+            return Err(Path::Root.shape(ShapeFault::LongText { bytes: text.len(), most: MAX_TEXT_BYTES }));
         }
         if text.trim().is_empty() {
-            return Err(Path::Root.shape("the text is empty: a scene begins with `version = 1`"));
+            return Err(Path::Root.shape(ShapeFault::EmptyText));
         }
         let document = DeTable::parse(text).map_err(|e| SceneError {
             path: String::new(),
@@ -51,18 +50,16 @@ impl Scene {
     /// As [`Self::from_toml`], and when the bytes are not UTF-8.
     pub fn from_toml_bytes(bytes: &[u8]) -> Result<Self, SceneError> {
         if bytes.len() > MAX_TEXT_BYTES + 3 {
-            let what = format!("{} bytes are more than the {MAX_TEXT_BYTES} a scene may have", bytes.len());
-            return Err(Path::Root.shape(what));
+            return Err(Path::Root.shape(ShapeFault::LongText { bytes: bytes.len(), most: MAX_TEXT_BYTES }));
         }
         match std::str::from_utf8(bytes) {
             Ok(text) => Self::from_toml(text),
             Err(e) => {
                 let good = std::str::from_utf8(&bytes[..e.valid_up_to()]).unwrap_or_default();
                 let utf16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
-                let hint = if utf16 { ", it looks like UTF-16: save it as UTF-8" } else { "" };
                 Err(SceneError {
                     path: String::new(),
-                    fault: SceneFault::Syntax { message: format!("this is not UTF-8 text{hint}") },
+                    fault: SceneFault::NotUtf8 { encoding: utf16.then_some("UTF-16") },
                     at: Some(position(good, good.len())),
                 })
             }

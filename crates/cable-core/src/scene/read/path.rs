@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use crate::error::{SceneError, SceneFault};
+use crate::error::{SceneError, SceneFault, ShapeFault};
 
 /// A place in a scene, as a chain on the stack.
 #[derive(Clone, Copy)]
@@ -33,8 +33,8 @@ impl Path<'_> {
     }
 
     /// Something here must be there, or must not.
-    pub(crate) fn shape(&self, what: impl Into<String>) -> SceneError {
-        self.fault(SceneFault::Shape { what: what.into() })
+    pub(crate) fn shape(&self, fault: ShapeFault) -> SceneError {
+        self.fault(SceneFault::Shape(fault))
     }
 }
 

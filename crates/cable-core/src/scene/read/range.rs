@@ -56,7 +56,8 @@ pub(super) const THICKNESS: Range = Range::new(0.0, 1e3, Quantity::Length);
 pub(super) const ROLLING: Range = Range::new(0.0, 1.0, Quantity::Number);
 pub(super) const ROBOT_SPEED: Range = Range::new(1e-6, 20.0, Quantity::Speed);
 
-/// How much a temperature may change a length: beyond, expansion or temperature is surely mistyped.
+/// Range of the factor by which a temperature may change a length: beyond, expansion or temperature
+/// is surely mistyped.
 pub(super) const THERMAL_FACTOR: [f64; 2] = [0.5, 2.0];
 /// Least time between two knots, s: much less, and velocities over it lose all digits.
 pub(super) const MIN_INTERVAL_S: f64 = 1e-9;

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use crate::scene::{Scene, preset};
 
-/// What a cable's file must give even with a preset.
+/// Keys that a cable's file must give even with a preset.
 const REQUIRED_KEYS: [&str; 3] = ["name", "length_m", "supports"];
 
 impl Scene {

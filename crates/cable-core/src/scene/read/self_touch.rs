@@ -14,7 +14,7 @@ const LEAF_EDGES: usize = 4;
 /// million points of rough ground take 1e7.
 const MAX_PAIRS: usize = 60_000_000;
 
-/// What a line does to itself.
+/// Kind of a line's contact with itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SelfTouch {
     /// These edges cross, touch or lie on each other; edge k goes from point k to the next.

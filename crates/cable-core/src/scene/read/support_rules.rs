@@ -4,7 +4,7 @@
 use super::path::Path;
 use super::range;
 use super::validate::{Checked, MAX_POINTS_ON_CABLE, at_most, force, motion, number, point, unique};
-use crate::error::SceneFault;
+use crate::error::{SceneFault, ShapeFault};
 use crate::scene::{Cable, Scene, Support, SupportKind};
 
 use SupportKind::{Clamped, Fixed, Free, Load, Pulley, Robot};
@@ -15,7 +15,7 @@ pub(super) fn check(scene: &Scene, cable: &Cable, cable_at: &Path<'_>) -> Checke
     let supports = &cable.supports;
     at_most(&at, supports.len(), MAX_POINTS_ON_CABLE)?;
     if supports.len() < 2 {
-        return Err(at.shape("a cable needs two supports, its start and its end (kind = \"free\" for a loose end)"));
+        return Err(at.shape(ShapeFault::TooFewSupports));
     }
     unique(&at, supports.iter().map(|s| s.name.as_str()))?;
     let (mut before, last) = (0.0, supports.len() - 1);
@@ -25,18 +25,18 @@ pub(super) fn check(scene: &Scene, cable: &Cable, cable_at: &Path<'_>) -> Checke
         check_keys(support, &here)?;
         check_numbers(support, &here)?;
         if support.kind == Robot && scene.robot.is_none() {
-            return Err(here.key("kind").shape("hangs on the robot, but the scene has no [robot]"));
+            return Err(here.key("kind").shape(ShapeFault::HitchWithoutRobot));
         }
         match (is_end, support.kind, support.arc_length_m) {
             (true, Pulley, _) => {
-                return Err(here.key("kind").shape("a pulley cannot hold an end of the cable: it slides through"));
+                return Err(here.key("kind").shape(ShapeFault::PulleyAtEnd));
             }
-            (false, Free, _) => return Err(here.key("kind").shape("only an end of the cable can be free")),
+            (false, Free, _) => return Err(here.key("kind").shape(ShapeFault::FreeWithin)),
             (true, _, Some(_)) => {
-                return Err(here.key("arc_length_m").shape("leave it out: the first and last support sit at the ends"));
+                return Err(here.key("arc_length_m").shape(ShapeFault::ArcLengthAtEnd));
             }
             (false, Fixed | Clamped | Load | Robot, None) => {
-                return Err(here.key("arc_length_m").shape("is missing: where on the cable does it sit?"));
+                return Err(here.key("arc_length_m").shape(ShapeFault::MissingArcLength));
             }
             (false, _, Some(s)) => {
                 if !(s > before && s < cable.length_m) {
@@ -75,10 +75,10 @@ fn check_keys(s: &Support, at: &Path<'_>) -> Checked {
     ];
     for (key, given, allowed, needed) in rules {
         if given && !allowed {
-            return Err(at.key(key).shape(format!("does not belong to a {} support", name(kind))));
+            return Err(at.key(key).shape(ShapeFault::NotForKind { kind: name(kind) }));
         }
         if needed && !given {
-            return Err(at.key(key).shape(format!("is missing: a {} support needs it", name(kind))));
+            return Err(at.key(key).shape(ShapeFault::MissingForKind { kind: name(kind) }));
         }
     }
     Ok(())

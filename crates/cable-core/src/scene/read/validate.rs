@@ -8,7 +8,7 @@ use super::path::Path;
 use super::range::{self, Range};
 use super::self_touch::{SelfTouch, first_self_touch};
 use super::{length_check, support_rules};
-use crate::error::{SceneError, SceneFault};
+use crate::error::{SceneError, SceneFault, ShapeFault};
 use crate::math::Point;
 use crate::scene::{Cable, LineEnds, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset};
 
@@ -38,12 +38,12 @@ impl Scene {
             return Err(root.key("version").fault(SceneFault::Version { value: f64::from(self.version) }));
         }
         if self.name.len() > MAX_TITLE {
-            return Err(root.key("name").shape(format!("a name has at most {MAX_TITLE} bytes")));
+            return Err(root.key("name").shape(ShapeFault::LongName { most: MAX_TITLE }));
         }
         self.check_environment()?;
         let at = root.key("cables");
         if self.cables.is_empty() {
-            return Err(at.shape("a scene needs at least one cable"));
+            return Err(at.shape(ShapeFault::NoCable));
         }
         at_most(&at, self.cables.len(), MAX_CABLES)?;
         unique(&at, self.cables.iter().map(|c| c.name.as_str()))?;
@@ -129,7 +129,7 @@ impl Scene {
         let route = at.key("route_m");
         at_most(&route, cable.route_m.len(), MAX_KNOTS)?;
         if cable.route_m.len() == 1 {
-            return Err(route.shape("a route needs two points or more"));
+            return Err(route.shape(ShapeFault::ShortRoute));
         }
         points(&route, &cable.route_m, range::COORDINATE)?;
         apart(&route, &cable.route_m)?;
@@ -154,10 +154,10 @@ impl Scene {
 pub(super) fn force(at: &Path<'_>, constant: Option<Point>, times: &[f64], forces: &[Point]) -> Checked {
     let given = !times.is_empty() || !forces.is_empty();
     match constant {
-        Some(_) if given => Err(at.key("force_n").shape("give either force_n, or times_s and forces_n")),
+        Some(_) if given => Err(at.key("force_n").shape(ShapeFault::TwoForces)),
         Some(f) => point(&at.key("force_n"), f, range::FORCE),
         None if given => series(&at.key("times_s"), &at.key("forces_n"), times, forces, range::FORCE),
-        None => Err(at.key("force_n").shape("is missing: give force_n, or times_s and forces_n")),
+        None => Err(at.key("force_n").shape(ShapeFault::NoForce)),
     }
 }
 
@@ -177,7 +177,7 @@ pub(super) fn motion(at: &Path<'_>, motion: &Motion, start: Point) -> Checked {
 fn series(times_at: &Path<'_>, values_at: &Path<'_>, times: &[f64], values: &[Point], range: Range) -> Checked {
     at_most(times_at, times.len(), MAX_KNOTS)?;
     if times.is_empty() {
-        return Err(times_at.shape("needs at least one time"));
+        return Err(times_at.shape(ShapeFault::NoTime));
     }
     if times.len() != values.len() {
         return Err(values_at.fault(SceneFault::UnequalCounts { values: values.len(), times: times.len() }));
@@ -221,13 +221,13 @@ fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneErro
     apart(&line, corners)?;
     match (&obstacle.shape, corners.first(), corners.last()) {
         (Shape::Terrain { .. }, Some(first), Some(last)) if !(last[0] > first[0]) => {
-            Err(line.shape("terrain goes from left to right, solid below: its last point must lie right of its first"))
+            Err(line.shape(ShapeFault::TerrainLeftwards))
         }
         (Shape::Polygon { .. }, Some(first), Some(last)) if first == last => {
-            Err(line.index(corners.len() - 1).shape("repeats the first point: a polygon closes by itself"))
+            Err(line.index(corners.len() - 1).shape(ShapeFault::PolygonClosedTwice))
         }
         (Shape::Polygon { .. }, _, _) if !(area(corners).abs() > 0.0) => {
-            Err(line.shape("a polygon needs an area: these points lie on a line or cross it back"))
+            Err(line.shape(ShapeFault::PolygonWithoutArea))
         }
         (Shape::Terrain { .. }, _, _) => not_crossing(&line, corners, LineEnds::Open),
         (Shape::Polygon { .. }, _, _) => not_crossing(&line, corners, LineEnds::Joined),
@@ -245,9 +245,7 @@ fn not_crossing(at: &Path<'_>, line: &[Point], ends: LineEnds) -> Checked {
             let edges_m = Box::new([j, i].map(|k| [line[k], end(k)]));
             Err(at.index(j).fault(SceneFault::EdgesCross { other: i, edges_m }))
         }
-        Some(SelfTouch::Tangled) => Err(at.shape(
-            "so many edges lie side by side that crossings cannot be ruled out in a second: give it fewer or shorter ones",
-        )),
+        Some(SelfTouch::Tangled) => Err(at.shape(ShapeFault::Tangled)),
     }
 }
 
@@ -305,7 +303,7 @@ fn points(at: &Path<'_>, values: &[Point], range: Range) -> Checked {
 /// No two neighbours in the same place.
 fn apart(at: &Path<'_>, line: &[Point]) -> Checked {
     match line.windows(2).position(|w| w[0] == w[1]) {
-        Some(i) => Err(at.index(i + 1).shape("is the same point as the one before it: leave one out")),
+        Some(i) => Err(at.index(i + 1).shape(ShapeFault::RepeatedPoint)),
         None => Ok(()),
     }
 }
@@ -320,13 +318,13 @@ pub(super) fn unique<'a>(at: &Path<'_>, names: impl Iterator<Item = &'a str>) ->
     for (i, name) in names.enumerate() {
         let place = at.index(i);
         if name.trim().is_empty() {
-            return Err(place.key("name").shape("a name must not be empty"));
+            return Err(place.key("name").shape(ShapeFault::EmptyName));
         }
         if name.len() > MAX_NAME {
-            return Err(place.key("name").shape(format!("a name has at most {MAX_NAME} bytes")));
+            return Err(place.key("name").shape(ShapeFault::LongName { most: MAX_NAME }));
         }
         if !seen.insert(name) {
-            return Err(place.key("name").shape(format!("`{name}` is already taken: names are unique")));
+            return Err(place.key("name").shape(ShapeFault::TakenName { name: name.to_owned() }));
         }
     }
     Ok(())

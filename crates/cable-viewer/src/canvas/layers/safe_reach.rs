@@ -4,7 +4,7 @@
 //! not all that tells it; where nothing is known, and where it does not reach, nothing is drawn.
 
 use cable_core::analysis::safe_reach::area::Area;
-use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace};
+use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace, Trip};
 use cable_core::math::Point;
 use cable_core::scene::preset::robot_preset;
 use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
@@ -150,7 +150,7 @@ fn ends(
     height: f32,
     figures: &mut Vec<(Pos2, String, Color32)>,
 ) {
-    let Some(ends) = map.safe_m(map.service_n, back) else { return };
+    let Some(ends) = map.safe_m(map.service_n, if back { Trip::ThereAndBack } else { Trip::There }) else { return };
     for (x, name) in ends.into_iter().zip(["safe from", "safe to"]) {
         let Some(place) = map.places.iter().find(|p| p.at_m[0] >= x) else { continue };
         let at = view.at(place.at_m);

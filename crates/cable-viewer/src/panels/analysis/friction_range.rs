@@ -8,6 +8,7 @@ use crate::jobs::background::Progress;
 use crate::jobs::friction_range;
 use crate::state::AppState;
 use crate::units::format;
+use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::property::{Provenance, Quantity, row};
@@ -69,8 +70,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 }
                 ui.end_row();
             });
-            if let Some((time_s, why)) = &found.ended {
-                field::fault(ui, &format!("Up to {time_s:.2} s: {why}"));
+            if let Some(failure) = &found.failure {
+                field::fault(ui, &format!("Up to {:.2} s: {}", failure.time_s, sentence(&failure.error)));
             }
         }
     }

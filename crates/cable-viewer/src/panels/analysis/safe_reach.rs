@@ -2,7 +2,7 @@
 //! would snag: asked for, and read off.
 
 use cable_core::analysis::safe_reach::area::Area;
-use cable_core::analysis::safe_reach::line::ReachMap;
+use cable_core::analysis::safe_reach::line::{ReachMap, Trip};
 use egui::{ComboBox, ProgressBar, Slider, Ui};
 
 use crate::command::{Command, ViewCommand};
@@ -156,7 +156,7 @@ fn to(x: f64) -> String {
 }
 
 fn of_line(map: &ReachMap, back: bool, name: &str, tension_n: f64) -> String {
-    let Some([left, right]) = map.safe_m(tension_n, back) else {
+    let Some([left, right]) = map.safe_m(tension_n, if back { Trip::ThereAndBack } else { Trip::There }) else {
         return format!("Above {name} tension ({}) at its present position", format::force(tension_n));
     };
     let why = |x: f64, side: f64| {

@@ -18,6 +18,7 @@ use crate::jobs::background::Progress;
 use crate::render::theme::{self, Palette};
 use crate::state::questions::{bending_query, bending_query_fits};
 use crate::state::{AppState, Freshness};
+use crate::units::sentence::sentence;
 use crate::units::{format, unit};
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::{field, readout};
@@ -333,7 +334,7 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(
         Progress::Done(found) => found.iter().find(|b| b.cable == cable.name)?,
     };
     let Some(with) = found.greatest_tension_n else {
-        let why = found.unknown.as_deref().unwrap_or("not sought");
+        let why = found.unknown.as_ref().map_or_else(|| "not sought".to_owned(), sentence);
         return Some((neglected, format!(". No answer was found with that: {why}")));
     };
     let most = figures::greatest(solved, |n| n.tension_n).map_or(0.0, |(tension, _)| tension);

@@ -99,7 +99,7 @@ pub(super) struct Exploration<'a> {
     pub found: Area,
 }
 
-/// What is heard of it.
+/// A function that receives the progress of a map.
 type AreaProgress<'a> = &'a mut dyn FnMut(&Area, f64) -> ControlFlow<()>;
 
 impl Exploration<'_> {
@@ -287,8 +287,8 @@ impl Exploration<'_> {
         }
     }
 
-    /// What lies between four neighbours on a coarse grid is guessed from them until a finer one
-    /// knows.
+    /// Interpolates the places between four neighbours on a coarse grid until a finer one computes
+    /// them.
     fn guess(&mut self, place: usize, stride: usize) {
         let around: Vec<usize> = self.neighbours(place, stride).map(|(k, _)| k).chain([place]).collect();
         for low in around.iter().copied() {
@@ -344,7 +344,7 @@ impl Exploration<'_> {
         let (way, mut gone, mut before) = (to - from, 0.0, f64::NEG_INFINITY);
         while !self.world.is_empty() && gone < way.norm() {
             let Some(gap) = self.world.signed_gap(from + way * (gone / way.norm()), f64::INFINITY) else { return true };
-            // What the start touches, or is a little inside of, it may leave.
+            // The end may leave an obstacle that it touches at the start, or is a little inside of.
             if !(gap.gap_m >= 0.0 || gap.gap_m > before) {
                 return false;
             }
@@ -401,12 +401,12 @@ impl Exploration<'_> {
             n.is_some_and(|n| !simulation.model().capabilities().nodes_catch || !caught(n))
         };
         let mut found_n = self.step(simulation, ends, 1);
-        for (parts, anew) in [(RETRY_PARTS, false), (1, true), (RETRY_PARTS, true)] {
+        for (parts, start) in [(RETRY_PARTS, Start::AsItIs), (1, Start::LaidAnew), (RETRY_PARTS, Start::LaidAnew)] {
             if good(simulation, found_n) {
                 break;
             }
             let mut other = before.clone();
-            if anew && other.resume(&at_rest(&before.solution())).is_err() {
+            if start == Start::LaidAnew && other.resume(&at_rest(&before.solution())).is_err() {
                 continue;
             }
             if let Some(n) = self.step(&mut other, ends, parts)
@@ -436,4 +436,13 @@ impl Exploration<'_> {
         }
         Some(most)
     }
+}
+
+/// The state from which a step is tried again.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Start {
+    /// The state before it.
+    AsItIs,
+    /// That state with the cable at rest, laid anew.
+    LaidAnew,
 }

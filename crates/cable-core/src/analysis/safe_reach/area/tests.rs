@@ -43,7 +43,7 @@ fn without_anything_to_touch_each_place_is_what_a_cable_laid_there_pulls() {
             let mut scene = free();
             scene.cables[0].supports.last_mut().unwrap().at_m = Some(at);
             let laid = Simulation::new(scene, Model::Catenary).unwrap().settle().unwrap().max_tension().tension_n;
-            // What is guessed lies between four places that agree to 2 % of the service tension.
+            // A guessed tension lies between four places that agree to 2 % of the service tension.
             let allowed = if found.guessed[k] { 0.02 * found.service_n } else { 1e-6 * laid };
             assert!((there_n - laid).abs() < allowed, "{at:?}: {there_n} for {laid} N");
             compared += 1;
@@ -118,8 +118,8 @@ fn it_ends_when_it_is_told_to_and_is_the_same_each_time() {
     assert_eq!(bits(&look(&query)), bits(&look(&query)));
 }
 
-/// What is heard of a fine map before it is done covers it from a coarse one, and is told to be
-/// guessed; in the end only places between others that agree are.
+/// A fine map that is not done is covered from a coarse one and is told to be guessed; in the end
+/// only places between others that agree are.
 #[test]
 fn a_coarse_map_comes_first_and_finer_ones_go_on_from_it() {
     let query = query(free(), [[-2.0, -2.0], [12.0, 6.0]], 0.5);

@@ -33,18 +33,18 @@ pub(in crate::model::spans) struct Way {
     /// Radius, m.
     c: f64,
     count: usize,
-    /// How far each goes, rad, with sine and cosine.
+    /// Angle of each, rad, with sine and cosine.
     h: f64,
     turn: (f64, f64),
     /// b·t and b·n at the start, N/m.
-    load: (f64, f64),
+    load: [f64; 2],
 }
 
 /// Farthest way along an arc, rad: 1600 turns. Less: drums are refused; more: a step of Newton into
 /// nowhere takes a minute.
 pub(in crate::model::spans) const MOST_TURN: f64 = 1e4;
 
-/// How tension and material go on from a point of an arc: derivatives by the angle.
+/// Derivatives of tension and material by the angle at a point of an arc.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct Rates {
     /// dT/dψ, d²T/dψ², d³T/dψ³, N.
@@ -80,8 +80,8 @@ impl Way {
         let ((sin, cos), mut load) = (self.turn, self.load);
         let grown = if m == 0.0 { 1.0 } else { exp(m * self.h) };
         let mut on = |t: f64| {
-            let (bt, bn) = load;
-            let end = (bt * cos - bn * sin, bn * cos + bt * sin);
+            let [bt, bn] = load;
+            let end = [bt * cos - bn * sin, bn * cos + bt * sin];
             let found = self.stretch(law, [load, end], t, m, grown);
             load = end;
             found
@@ -97,7 +97,7 @@ impl Way {
 
     /// No more than a hair's breadth.
     fn hair(&self, law: &Law, t: f64, m: f64) -> (Step, Rates) {
-        let ((c, h), (bt, bn)) = ((self.c, self.h), self.load);
+        let ((c, h), [bt, bn]) = ((self.c, self.h), self.load);
         let start = Point::new(law, c, law.thermal * law.compliance, bt + m * bn, m * bt - bn, t, m);
         let rates = start.rates(c, law.thermal * law.compliance, 1.0, m);
         let step = rates.on(&Step::none(t), h);
@@ -106,8 +106,8 @@ impl Way {
     }
 
     /// A stretch, with the loads at its start and end; `grown` = e^{mh}.
-    fn stretch(&self, law: &Law, load: [(f64, f64); 2], t: f64, m: f64, grown: f64) -> (Step, Rates) {
-        let (c, h, [(bt, bn), (bt1, bn1)]) = (self.c, self.h, load);
+    fn stretch(&self, law: &Law, load: [[f64; 2]; 2], t: f64, m: f64, grown: f64) -> (Step, Rates) {
+        let (c, h, [[bt, bn], [bt1, bn1]]) = (self.c, self.h, load);
         let k = law.thermal * law.compliance;
         let start = Point::new(law, c, k, bt + m * bn, m * bt - bn, t, m);
         let (q, r, [f, f1, f2]) = (start.q, start.r, start.f);

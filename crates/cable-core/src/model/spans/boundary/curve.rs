@@ -36,7 +36,7 @@ const ARC_END_TOLERANCE: f64 = 1e-9;
 pub(in crate::model::spans) enum Form {
     /// Straight.
     Edge {
-        /// Where it starts, m.
+        /// Start, m.
         from: Vec2,
         /// Direction of travel, a unit vector.
         tangent: Vec2,
@@ -56,9 +56,9 @@ pub(in crate::model::spans) enum Form {
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct Piece {
     pub form: Form,
-    /// How far it goes: m on an edge, rad on an arc.
+    /// Extent: m on an edge, rad on an arc.
     pub extent: f64,
-    /// Whether a concave kink lies before it.
+    /// True if a concave kink lies before it.
     pub kink_before: bool,
     /// Feature of the obstacle it belongs to; None of a wheel.
     pub feature: Option<usize>,
@@ -73,7 +73,7 @@ pub(in crate::model::spans) struct Curve {
     pub friction: f64,
     /// +1 with the solid right of travel, −1 with the solid left of it.
     pub sense: f64,
-    /// How far it has been moved, m (a wheel that travels).
+    /// Displacement from the scene's place, m (a wheel that travels).
     pub shift: Vec2,
     /// Shared by all copies: scanned ground has a million.
     pieces: Arc<[Piece]>,
@@ -160,7 +160,7 @@ impl Curve {
                     Form::Arc { center, radius, from: -turned(from, -self.sense * p.extent) }
                 }
             };
-            // What was the kink after a piece is the kink before it now.
+            // The kink after a piece is the kink before it now.
             let kink_before = self.pieces.get(n - k).or(self.pieces.first()).is_some_and(|next| next.kink_before);
             Piece { form, kink_before, ..p }
         };
@@ -168,7 +168,7 @@ impl Curve {
         Self::new(pieces, self.period.is_some(), self.obstacle, self.friction, -self.sense)
     }
 
-    /// Whether it is round all the way: a post or a wheel.
+    /// True if it is round all the way: a post or a wheel.
     pub fn is_round(&self) -> bool {
         matches!(self.pieces[..], [Piece { form: Form::Arc { .. }, .. }])
     }
@@ -189,12 +189,12 @@ impl Curve {
         }
     }
 
-    /// Whether a piece is an arc.
+    /// True if a piece is an arc.
     pub fn is_arc(&self, i: i64) -> bool {
         matches!(self.piece(i).form, Form::Arc { .. })
     }
 
-    /// Where a piece starts in p.
+    /// Start of a piece in p.
     pub fn origin(&self, i: i64) -> f64 {
         if let Some(start) = self.starts.get(i as usize) {
             return *start;
@@ -204,14 +204,14 @@ impl Curve {
         self.starts[i.rem_euclid(n) as usize] + if turns == 0 { 0.0 } else { turns as f64 * self.period.unwrap_or(0.0) }
     }
 
-    /// Where a piece ends in p.
+    /// End of a piece in p.
     pub fn end(&self, i: i64) -> f64 {
         self.origin(i) + self.piece(i).extent
     }
 
     /// The piece at p, of those of a chain: its first or last beyond their ends.
-    pub fn locate(&self, p: f64, home: ChainRange) -> i64 {
-        let (mut i, mut last) = (home.first, home.last);
+    pub fn locate(&self, p: f64, chain_range: ChainRange) -> i64 {
+        let (mut i, mut last) = (chain_range.first, chain_range.last);
         while i < last {
             let middle = i + (last - i + 1) / 2;
             if self.origin(middle) <= p {
@@ -224,8 +224,8 @@ impl Curve {
     }
 
     /// The point at p.
-    pub fn place(&self, p: f64, home: ChainRange) -> Place {
-        let i = self.locate(p, home);
+    pub fn place(&self, p: f64, chain_range: ChainRange) -> Place {
+        let i = self.locate(p, chain_range);
         self.place_on(i, p - self.origin(i))
     }
 
@@ -248,8 +248,8 @@ impl Curve {
     }
 
     /// Length from `a` to `b` along the curve, m.
-    pub fn length(&self, a: f64, b: f64, home: ChainRange) -> f64 {
-        let (i, j) = (self.locate(a, home), self.locate(b, home));
+    pub fn length(&self, a: f64, b: f64, chain_range: ChainRange) -> f64 {
+        let (i, j) = (self.locate(a, chain_range), self.locate(b, chain_range));
         let weight = |k: i64| match self.piece(k).form {
             Form::Edge { .. } => 1.0,
             Form::Arc { radius, .. } => radius,
@@ -258,14 +258,14 @@ impl Curve {
             return (b - a) * weight(i);
         }
         if i > j {
-            return -self.length(b, a, home);
+            return -self.length(b, a, chain_range);
         }
         let inner: f64 = (i + 1..j).map(|k| self.piece(k).extent * weight(k)).sum();
         (self.origin(i + 1) - a) * weight(i) + inner + (b - self.origin(j)) * weight(j)
     }
 
-    /// Whether the cable can lie on a piece under a load per metre.
-    fn holds(&self, i: i64, load: Vec2) -> bool {
+    /// True if the cable can lie on a piece under a load per metre.
+    fn supports_cable(&self, i: i64, load: Vec2) -> bool {
         let piece = self.piece(i);
         match piece.form {
             Form::Edge { tangent, .. } => {
@@ -278,20 +278,23 @@ impl Curve {
     /// The chain a piece belongs to and the number of the piece in it; None if it cannot hold a
     /// cable. A chain of a closed boundary is always counted from the same turn.
     pub fn chain(&self, i: i64, load: Vec2) -> Option<(i64, ChainRange)> {
-        if !self.holds(i, load) {
+        if !self.supports_cable(i, load) {
             return None;
         }
         let n = self.pieces.len() as i64;
         let open = self.period.is_none();
         let (mut first, mut last) = (i, i);
-        while last - first < n && !(open && first == 0) && !self.piece(first).kink_before && self.holds(first - 1, load)
+        while last - first < n
+            && !(open && first == 0)
+            && !self.piece(first).kink_before
+            && self.supports_cable(first - 1, load)
         {
             first -= 1;
         }
         while last - first < n
             && !(open && last == n - 1)
             && !self.piece(last + 1).kink_before
-            && self.holds(last + 1, load)
+            && self.supports_cable(last + 1, load)
         {
             last += 1;
         }
@@ -301,8 +304,12 @@ impl Curve {
 
     /// The piece beyond the kink at the start (side 0) or the end of a chain; None where there is
     /// none.
-    pub fn beyond_kink(&self, home: ChainRange, side: usize) -> Option<i64> {
-        let (i, after) = if side == 0 { (home.first - 1, home.first) } else { (home.last + 1, home.last + 1) };
+    pub fn beyond_kink(&self, chain_range: ChainRange, side: usize) -> Option<i64> {
+        let (i, after) = if side == 0 {
+            (chain_range.first - 1, chain_range.first)
+        } else {
+            (chain_range.last + 1, chain_range.last + 1)
+        };
         let there = self.period.is_some() || (i >= 0 && i < self.pieces.len() as i64);
         (there && !self.is_round() && self.piece(after).kink_before).then_some(i)
     }
@@ -331,8 +338,8 @@ impl Curve {
     }
 
     /// p of a point that lies on a chain, within a distance (m).
-    pub fn on_chain(&self, home: ChainRange, at: Vec2, within: f64) -> Option<f64> {
-        (home.first..=home.last).find_map(|i| {
+    pub fn on_chain(&self, chain_range: ChainRange, at: Vec2, within: f64) -> Option<f64> {
+        (chain_range.first..=chain_range.last).find_map(|i| {
             let p = self.project(i, at);
             ((self.place_on(i, p - self.origin(i)).at - at).norm() <= within).then_some(p)
         })
@@ -377,9 +384,9 @@ impl Curve {
         }
     }
 
-    /// Whether the tangent of arc i comes to be `along` only before its start (−1) or after its end
-    /// (+1); 0 where it does on it.
-    pub fn aside(&self, i: i64, along: Vec2) -> i64 {
+    /// Side of arc i, before its start (−1) or after its end (+1), on which alone its tangent comes
+    /// to be `along`; 0 where it does so on the arc.
+    pub fn beyond_arc(&self, i: i64, along: Vec2) -> i64 {
         let piece = self.piece(i);
         let Form::Arc { from, .. } = piece.form else { return 0 };
         let x = -self.sense * cross(from, along).atan2(from.dot(&along));

@@ -1,7 +1,7 @@
 //! A contact remembers its friction as a profile of tension, in closed form.
 //!
-//! Where the cable has stuck the tension is what it was, where it slides it follows the law of
-//! sliding from one end:
+//! A cable that sticks keeps the tension that it had; one that slides follows the capstan law from
+//! one end:
 //!
 //! ```text
 //! T(p) = clamp(T_old(p), max(L₁, L₂), min(U₁, U₂))
@@ -18,6 +18,7 @@
 
 use crate::math::smaller;
 use crate::model::spans::boundary::capstan::{Step, Track};
+use crate::model::spans::boundary::segment_cursor::Sliding;
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 
 /// Part of the friction coefficient by which it is changed to see what that moves.
@@ -54,7 +55,23 @@ pub(in crate::model::spans) struct Ends {
     pub t: [f64; 2],
 }
 
-/// How a contact stands.
+/// Direction along a boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) enum Going {
+    /// Towards greater p.
+    Right,
+    /// Towards smaller p.
+    Left,
+}
+
+/// Change of a reached tension with m.
+#[derive(Clone, Copy, Debug)]
+enum Growth {
+    Grows,
+    Falls,
+}
+
+/// Mode of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) enum Mode {
     /// Some of it sticks.
@@ -63,14 +80,14 @@ pub(in crate::model::spans) enum Mode {
     Slide(f64),
 }
 
-/// Where sliding from an end stops.
+/// The point at which sliding from an end stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Front {
     pub p: f64,
     /// The way from the end to it.
     pub way: Step,
     pub m: f64,
-    /// Whether the old tension stopped it; else it came to the other end.
+    /// True if the old tension stopped it; else it came to the other end.
     pub met: bool,
     /// Old material at p, m.
     pub old: f64,
@@ -123,7 +140,7 @@ impl TensionProfile {
                     continue;
                 }
                 let reach = |m: f64| track.slide(next.p, knot.p, next.tension, m).tension;
-                knot.m = Self::between(&mut knot.tension, friction, reach, false);
+                knot.m = Self::between(&mut knot.tension, friction, reach, Growth::Falls);
             }
             out.push(knot);
         }
@@ -131,10 +148,13 @@ impl TensionProfile {
         Self { knots: out }
     }
 
-    /// The m with which sliding reaches a tension, which is brought to what it can reach. `grows`:
-    /// what it reaches grows with m.
-    fn between(tension: &mut f64, friction: f64, reach: impl Fn(f64) -> f64, grows: bool) -> f64 {
-        let sign = if grows { 1.0 } else { -1.0 };
+    /// The m with which sliding reaches a tension, which is brought to what it can reach; that
+    /// grows with m, or falls.
+    fn between(tension: &mut f64, friction: f64, reach: impl Fn(f64) -> f64, growth: Growth) -> f64 {
+        let sign = match growth {
+            Growth::Grows => 1.0,
+            Growth::Falls => -1.0,
+        };
         let (low, high) = (reach(-friction * sign), reach(friction * sign));
         if *tension >= high {
             *tension = high;
@@ -195,11 +215,11 @@ impl TensionProfile {
         laid
     }
 
-    /// Counts its material anew from its first knot (its last, if `back`), as its tensions strain
-    /// it.
-    pub fn measure(&mut self, track: &Track<'_>, back: bool) {
+    /// Counts its material anew from its first knot on, or from its last one back, as its tensions
+    /// strain it.
+    pub fn measure(&mut self, track: &Track<'_>, going: Going) {
         let way = |a: &Knot, b: &Knot| track.slide(a.p, b.p, a.tension, a.m).material;
-        if back {
+        if going == Going::Left {
             for k in (1..self.knots.len()).rev() {
                 self.knots[k - 1].s = self.knots[k].s - way(&self.knots[k - 1], &self.knots[k]);
             }
@@ -233,14 +253,14 @@ impl TensionProfile {
                 }
                 let from = *last;
                 let reach = |m: f64| track.slide(from.p, knot.p, from.tension, m).tension;
-                last.m = Self::between(&mut tension, friction, reach, true);
+                last.m = Self::between(&mut tension, friction, reach, Growth::Grows);
                 knot.tension = tension;
             }
             self.knots.push(knot);
         }
     }
 
-    /// What is remembered up to p, and from there on.
+    /// The profile up to p, and from there on.
     pub fn split(&self, track: &Track<'_>, p: f64) -> (Self, Self) {
         let (tension, s) = self.at(track, p);
         let knot = Knot { p, s, tension, m: self.called(track, p) };
@@ -273,8 +293,8 @@ impl TensionProfile {
 
     /// The knot from which the tension at p follows, seen going on to the right or back to the
     /// left, and whether it lies beyond what was there.
-    fn knot(&self, p: f64, right: bool) -> (Knot, bool) {
-        let k = self.knots.partition_point(|k| if right { k.p <= p } else { k.p < p });
+    fn knot(&self, p: f64, going: Going) -> (Knot, bool) {
+        let k = self.knots.partition_point(|k| if going == Going::Right { k.p <= p } else { k.p < p });
         match k.checked_sub(1).and_then(|j| self.knots.get(j)) {
             None => (self.knots.first().copied().unwrap_or(Knot { p, s: 0.0, tension: 0.0, m: 0.0 }), true),
             Some(knot) => (*knot, k == self.knots.len()),
@@ -283,7 +303,7 @@ impl TensionProfile {
 
     /// Old tension and material at p.
     pub fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
-        let (knot, beyond) = self.knot(p, true);
+        let (knot, beyond) = self.knot(p, Going::Right);
         let way =
             if beyond { track.lay(knot.p, p, knot.tension) } else { track.slide(knot.p, p, knot.tension, knot.m) };
         (way.tension, knot.s + way.material)
@@ -291,14 +311,14 @@ impl TensionProfile {
 
     /// The friction coefficient called upon at p.
     pub fn called(&self, track: &Track<'_>, p: f64) -> f64 {
-        let (knot, beyond) = self.knot(p, true);
+        let (knot, beyond) = self.knot(p, Going::Right);
         if beyond { track.even(p) } else { knot.m }
     }
 
     /// From p towards `to`: how far the old tension has one law there, and its m.
     fn stretch(&self, track: &Track<'_>, p: f64, to: f64) -> (f64, f64) {
         let right = to > p;
-        let (knot, beyond) = self.knot(p, right);
+        let (knot, beyond) = self.knot(p, if right { Going::Right } else { Going::Left });
         let k = self.knots.partition_point(|k| if right { k.p <= p } else { k.p < p });
         let border = if right { self.knots.get(k) } else { k.checked_sub(1).and_then(|j| self.knots.get(j)) };
         let mut next = track.next_border(p, to);
@@ -327,7 +347,9 @@ impl TensionProfile {
         }
         while at != to {
             let (next, old_m) = self.stretch(track, at, to);
-            let (met, [there, here]) = track.on(at, next).crossing(next, [(old, old_m), (way.tension, m)]);
+            let (met, [there, here]) = track
+                .on(at, next)
+                .crossing(next, [Sliding { tension: old, m: old_m }, Sliding { tension: way.tension, m }]);
             way = way.then(here);
             if let Some(x) = met {
                 return Front { p: x, way, m, met: true, old: s + there.material };
@@ -341,7 +363,7 @@ impl TensionProfile {
         Front { p: to, way, m, met: false, old: s }
     }
 
-    /// Where a contact sticks under its end tensions.
+    /// The stick zone of a contact under its end tensions.
     pub fn hold(&self, track: &Track<'_>, e: &Ends) -> Held {
         let friction = track.friction;
         let [p1, p2] = e.p;

@@ -10,8 +10,8 @@ use crate::model::spans::boundary::capstan::{Law, LocalLoad, Step};
 use crate::model::spans::boundary::curve::{ChainRange, Curve, Place};
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 
-/// Where two tensions are about one before this part of a piece it is not asked whether they are so
-/// on it. Larger: asked after all more often.
+/// Part of a piece before which two tensions that meet are not searched for on it again. Larger:
+/// asked after all more often.
 const MEETING_SKIP_FRACTION: f64 = 0.9;
 
 /// Looks at both tensions before their meeting is sought within bounds.
@@ -23,39 +23,39 @@ pub(in crate::model::spans) struct Pivot {
     p: f64,
     pub at: Place,
     /// b·t and b·n there, N/m.
-    load: (f64, f64),
-    /// Where the piece begins and ends; beyond the ends of its chain it goes on.
+    load: [f64; 2],
+    /// Start and end of the piece; beyond the ends of its chain it goes on.
     ends: [f64; 2],
 }
 
 impl Pivot {
     /// The piece at p.
-    pub fn new(curve: &Curve, home: ChainRange, law: &Law, p: f64) -> Self {
-        let i = curve.locate(p, home);
+    pub fn new(curve: &Curve, chain_range: ChainRange, law: &Law, p: f64) -> Self {
+        let i = curve.locate(p, chain_range);
         let origin = curve.origin(i);
         let at = curve.place_on(i, p - origin);
-        let first = if i > home.first { origin } else { f64::NEG_INFINITY };
-        let last = if i < home.last { curve.origin(i + 1) } else { f64::INFINITY };
+        let first = if i > chain_range.first { origin } else { f64::NEG_INFINITY };
+        let last = if i < chain_range.last { curve.origin(i + 1) } else { f64::INFINITY };
         Self { p, at, load: law.spot(&at).load, ends: [first, last] }
     }
 
     /// The places of both ends of a contact, and the piece of the first.
-    pub fn of_ends(curve: &Curve, home: ChainRange, law: &Law, [first, last]: [f64; 2]) -> ([Place; 2], Self) {
-        let pivot = Self::new(curve, home, law, first);
-        ([pivot.at, if pivot.holds(last) { pivot.place(last) } else { curve.place(last, home) }], pivot)
+    pub fn of_ends(curve: &Curve, chain_range: ChainRange, law: &Law, [first, last]: [f64; 2]) -> ([Place; 2], Self) {
+        let pivot = Self::new(curve, chain_range, law, first);
+        ([pivot.at, if pivot.holds(last) { pivot.place(last) } else { curve.place(last, chain_range) }], pivot)
     }
 
-    /// Whether p is on this piece.
+    /// True if p is on this piece.
     pub fn holds(&self, p: f64) -> bool {
         p >= self.ends[0] && p < self.ends[1]
     }
 
-    /// Whether p is on this piece or at its end.
+    /// True if p is on this piece or at its end.
     pub fn reaches(&self, p: f64) -> bool {
         p >= self.ends[0] && p <= self.ends[1]
     }
 
-    /// Whether it is an arc.
+    /// True on an arc.
     pub fn turns(&self) -> bool {
         self.at.turn != 0.0
     }
@@ -89,9 +89,18 @@ impl LocalLoad {
         if !self.turns || way == 0.0 {
             return self;
         }
-        let ((sin, cos), (bt, bn)) = (sin_cos(way), self.load);
-        Self { load: (bt * cos - bn * sin, bn * cos + bt * sin), ..self }
+        let ((sin, cos), [bt, bn]) = (sin_cos(way), self.load);
+        Self { load: [bt * cos - bn * sin, bn * cos + bt * sin], ..self }
     }
+}
+
+/// A tension that slides on with m.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct Sliding {
+    /// Tension, N.
+    pub tension: f64,
+    /// The friction coefficient called upon, with its sign.
+    pub m: f64,
 }
 
 /// One piece of a track, from a point on it.
@@ -107,10 +116,15 @@ impl SegmentCursor<'_> {
         self.law.along(&self.from, p - self.p0, t, m)
     }
 
-    /// Where before p₁ two tensions, each with its m, that differ at its point come to be one, and
-    /// both ways there; None where that is not before p₁, and both ways there. On an edge both Θ
-    /// are linear, round a sharp corner both T are exponential, else about.
-    pub fn crossing(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> (Option<f64>, [Step; 2]) {
+    /// The place before p₁ where two tensions, each with its m, that differ at its point become
+    /// equal, and both integrations up to there; None where that is not before p₁, and both
+    /// integrations up to p₁. On an edge both Θ are linear, round a sharp corner both T are
+    /// exponential, else about.
+    pub fn crossing(
+        &self,
+        p1: f64,
+        [Sliding { tension: t, m }, Sliding { tension: u, m: n }]: [Sliding; 2],
+    ) -> (Option<f64>, [Step; 2]) {
         let law = self.law;
         let whole = p1 - self.p0;
         let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
@@ -120,7 +134,7 @@ impl SegmentCursor<'_> {
             // As if the load were that of its start all along.
             let held = |t: f64, m: f64| {
                 let g = self.from.stretch / (law.stretch(t) * (1.0 + m * m));
-                let (bt, bn) = self.from.load;
+                let [bt, bn] = self.from.load;
                 t - g * (2.0 * m * bt + (m * m - 1.0) * bn)
             };
             (held(u, n) / held(t, m)).ln() / (m - n)
@@ -134,7 +148,8 @@ impl SegmentCursor<'_> {
         }
         if part > 0.0
             && part < MEETING_SKIP_FRACTION
-            && let Some((at, ways)) = self.closing(about, whole, [(t, m), (u, n)])
+            && let Some((at, ways)) =
+                self.closing(about, whole, [Sliding { tension: t, m }, Sliding { tension: u, m: n }])
         {
             return (Some(at), ways);
         }
@@ -148,13 +163,18 @@ impl SegmentCursor<'_> {
         if end.abs() <= TENSION_ROUNDING * t.abs() {
             return (Some(p1), [a, b]);
         }
-        let (at, ways) = self.meeting(p1, [(t, m), (u, n)], end);
+        let (at, ways) = self.meeting(p1, [Sliding { tension: t, m }, Sliding { tension: u, m: n }], end);
         (Some(at), ways)
     }
 
     /// As [`Self::crossing`] round an arc, from about where: Newton's method, the last step from
     /// the derivatives alone.
-    fn closing(&self, about: f64, whole: f64, [(t, m), (u, n)]: [(f64, f64); 2]) -> Option<(f64, [Step; 2])> {
+    fn closing(
+        &self,
+        about: f64,
+        whole: f64,
+        [Sliding { tension: t, m }, Sliding { tension: u, m: n }]: [Sliding; 2],
+    ) -> Option<(f64, [Step; 2])> {
         let mut way = about;
         for _ in 0..FREE_SEARCH_LOOKS {
             let there = Way::new(&self.from, way);
@@ -178,7 +198,12 @@ impl SegmentCursor<'_> {
     }
 
     /// As [`Self::crossing`] round an arc; `end`: the difference at p₁.
-    fn meeting(&self, p1: f64, [(t, m), (u, n)]: [(f64, f64); 2], end: f64) -> (f64, [Step; 2]) {
+    fn meeting(
+        &self,
+        p1: f64,
+        [Sliding { tension: t, m }, Sliding { tension: u, m: n }]: [Sliding; 2],
+        end: f64,
+    ) -> (f64, [Step; 2]) {
         let sign = (t - u).signum();
         let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
         let last = Cell::new((f64::NAN, [Step::none(t); 2]));

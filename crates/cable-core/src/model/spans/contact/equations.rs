@@ -1,16 +1,16 @@
 //! A contact has two equations for its material; they stand here with their derivatives.
 //!
-//! Where some of it sticks, at the fronts p_l and p_r, with A the material between end and front as
-//! it slides:
+//! A contact of which some sticks, with fronts at p_l and p_r and A the material between end and
+//! front as it slides, obeys
 //!
 //! ```text
 //! s₁ + A₁ − s_old(p_l) = 0,      s₂ − A₂ − s_old(p_r) = 0
 //! ```
 //!
-//! Where all of it slides with m: s₂ − s₁ − A = 0 and T₂ = the tension the law makes of T₁. Moving
-//! an end by dp under the same end tension is the same as a tension there changed by −T'(p) dp, so
-//! every derivative by p follows from the one by tension. At a front both stretches have the same
-//! tension, so that moving it changes nothing.
+//! A contact of which all slides with m obeys s₂ − s₁ − A = 0 and T₂ = the tension the law makes of
+//! T₁. Moving an end by dp under the same end tension is the same as a tension there changed by
+//! −T'(p) dp, so every derivative by p follows from the one by tension. At a front both stretches
+//! have the same tension, so that moving it changes nothing.
 
 use crate::math::larger;
 use crate::model::spans::boundary::capstan::Track;
@@ -22,7 +22,7 @@ use crate::model::spans::boundary::friction_memory::{Ends, Front, Held, Mode, Te
 pub(in crate::model::spans) struct Rows {
     pub residual: [f64; 2],
     pub by: [[f64; 6]; 2],
-    /// Whether a row is of tensions (N), not of material (m).
+    /// True if a row is of tensions (N), not of material (m).
     pub of_tension: [bool; 2],
 }
 
@@ -121,8 +121,8 @@ fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, si
     }
 }
 
-/// Where a cable runs away it is followed with a drag η: T₂ less what the law makes of T₁ is η
-/// (s_old(p₁) − s₁), the slip.
+/// Rows of a contact that slides. A cable that runs away is followed with a drag η: T₂ less what
+/// the law makes of T₁ is η (s_old(p₁) − s₁), the slip.
 fn sliding(track: &Track<'_>, history: &TensionProfile, e: &Ends, [a, b]: &[Place; 2], m: f64) -> Rows {
     let way = track.slide(e.p[0], e.p[1], e.t[0], m);
     let slope = track.law.slope(a, e.t[0], m);
@@ -195,7 +195,7 @@ fn holding(track: &Track<'_>, e: &Ends, spots: &[Place; 2], fronts: &[Front; 2])
     out
 }
 
-/// What is added where the fronts meet: the meeting point moves with both tensions, and the old
+/// Terms added where the fronts meet: the meeting point moves with both tensions, and the old
 /// tension there differs from the new one.
 fn meeting(
     out: &mut Rows,
@@ -257,7 +257,8 @@ pub(in crate::model::spans) fn next_mode(
             for side in (0..2).filter(|&side| pinned[side]) {
                 let (old_t, old_s) = history.at(track, e.p[side]);
                 if (e.s[side] - old_s).abs() <= END_MOVE_TOLERANCE * (e.s[0].abs() + e.s[1].abs()) {
-                    // What does not move is drawn the more the more the rest slides away from it.
+                    // A point that does not move is drawn the more the more the rest slides away
+                    // from it.
                     let drawn = (e.t[side] - old_t) * m * if side == 0 { 1.0 } else { -1.0 };
                     let rounding = cone * friction * larger(e.t[0].abs(), e.t[1].abs());
                     return if drawn < -rounding { Mode::Hold } else { mode };

@@ -7,7 +7,7 @@
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::friction_memory::{Knot, Mode, TensionProfile};
-use crate::model::spans::contact::point_load::{LoadBalance, felt};
+use crate::model::spans::contact::point_load::{LoadBalance, load_balance};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Contact, Course, Kink, RestingLoad};
 
@@ -21,8 +21,8 @@ const GIVE_WAY_FRACTION: f64 = 1e-6;
 /// The piece beyond the kink at an end of a contact's chain, and p of the kink.
 fn beyond(course: &Course, c: &Contact, kink: Kink) -> Option<(i64, f64)> {
     let curve = &course.curves[c.curve];
-    let p = if kink == Kink::Back { curve.origin(c.home.first) } else { curve.end(c.home.last) };
-    curve.beyond_kink(c.home, kink.side()).map(|i| (i, p))
+    let p = if kink == Kink::Back { curve.origin(c.chain_range.first) } else { curve.end(c.chain_range.last) };
+    curve.beyond_kink(c.chain_range, kink.side()).map(|i| (i, p))
 }
 
 /// Direction and normal of the other edge where it begins.
@@ -52,7 +52,7 @@ pub(in crate::model::spans) fn press(course: &Course, c: &Contact, f: &LoadBalan
     }
 }
 
-/// Whether the load keeps its kink, to a part of its forces.
+/// True if the load keeps its kink, to a part of its forces.
 pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) -> bool {
     leaves(course, c, kink, f, room).is_none()
 }
@@ -77,24 +77,24 @@ pub(in crate::model::spans) fn enter(strand: &mut CableRun, course: &Course) -> 
 
 /// Lets the load that is contact j out of its kink; whether it left.
 pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Failure> {
-    let f = felt(strand, course, j);
+    let f = load_balance(strand, course, j);
     let c = &strand.contacts[j];
     let Some(kink) = c.kink() else { return Ok(false) };
     let Some(on) = leaves(course, c, kink, &f, CONE_ROUNDING) else { return Ok(false) };
     let (curve, friction) = (&course.curves[c.curve], course.friction(c));
-    let mut home = c.home;
+    let mut chain_range = c.chain_range;
     if on {
         let found = beyond(course, c, kink).and_then(|(i, _)| curve.chain(i, course.law.load));
-        home = found.ok_or(Failure::LoadLies { s: c.ends.s[0] })?.1;
+        chain_range = found.ok_or(Failure::LoadLies { s: c.ends.s[0] })?.1;
     }
     let p = match (kink, on) {
-        (Kink::Ahead, true) => curve.origin(home.first),
-        (Kink::Back, true) => curve.end(home.last),
+        (Kink::Ahead, true) => curve.origin(chain_range.first),
+        (Kink::Back, true) => curve.end(chain_range.last),
         _ => c.ends.p[0],
     };
     let c = &mut strand.contacts[j];
     let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
-    (c.home, c.ends.p, c.history) = (home, [p; 2], TensionProfile::new(knot, knot));
+    (c.chain_range, c.ends.p, c.history) = (chain_range, [p; 2], TensionProfile::new(knot, knot));
     c.load = Some(RestingLoad::default());
     c.mode = Mode::Slide(friction * if on { kink.sign() } else { -kink.sign() });
     for side in 0..2 {
@@ -103,13 +103,14 @@ pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: 
     Ok(true)
 }
 
-/// What is joined to the load that is contact j but lies on another chain leaves it by a span.
+/// Separates by a span a contact that is joined to the load that is contact j but lies on another
+/// chain.
 fn part(strand: &mut CableRun, course: &Course, j: usize, side: usize) {
     if !strand.is_joined(j, side) {
         return;
     }
     let i = j + 2 * side - 1;
-    if strand.contacts[i].home == strand.contacts[j].home {
+    if strand.contacts[i].chain_range == strand.contacts[j].chain_range {
         return;
     }
     strand.contacts[if side == 0 { i } else { j }].next.part();
@@ -127,7 +128,7 @@ pub(in crate::model::spans) fn give_way(strand: &mut CableRun, i: usize, end: us
     e.p[end] += sign * 0.5 * (e.p[1] - e.p[0]) * if most > 0.0 { by / most } else { 0.0 };
 }
 
-/// Whether contact `c` lies on the chain beyond the kink that a load is in, on that side.
+/// True if contact `c` lies on the chain beyond the kink that a load is in, on that side.
 pub(in crate::model::spans) fn follows(course: &Course, load: &Contact, c: &Contact, side: usize) -> bool {
     load.kink().is_some_and(|kink| {
         kink.side() == side
@@ -135,8 +136,8 @@ pub(in crate::model::spans) fn follows(course: &Course, load: &Contact, c: &Cont
             && beyond(course, load, kink).is_some_and(|(i, p)| {
                 let curve = &course.curves[c.curve];
                 let (first, at) = match kink {
-                    Kink::Ahead => (c.home.first, curve.origin(c.home.first)),
-                    Kink::Back => (c.home.last, curve.end(c.home.last)),
+                    Kink::Ahead => (c.chain_range.first, curve.origin(c.chain_range.first)),
+                    Kink::Back => (c.chain_range.last, curve.end(c.chain_range.last)),
                 };
                 // Of a closed boundary that is counted from another turn nothing is said.
                 first == i && at == p

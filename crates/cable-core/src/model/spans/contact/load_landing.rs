@@ -21,7 +21,7 @@ pub(in crate::model::spans) struct Landing {
     tip: Option<usize>,
 }
 
-/// What of span k is inside something.
+/// The deepest point of span k inside an obstacle.
 pub(in crate::model::spans) fn find(
     strand: &CableRun,
     course: &Course,
@@ -83,13 +83,13 @@ pub(in crate::model::spans) fn touch(
     // In a kink there is nothing but its edges.
     let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(l.gap.feature.checked_sub(back)?, l.at));
     let found = curve.piece_of(l.gap.feature, l.at).or_else(kink).and_then(|i| curve.chain(i, load));
-    let Some((i, home)) = found else { return Err(no_seat) };
+    let Some((i, chain_range)) = found else { return Err(no_seat) };
     let p = curve.project(i, l.at);
     let tension = strand.force(course, k, l.s).norm();
     let knot = |p: f64, s: f64, tension: f64| Knot { p, s, tension, m: 0.0 };
     let mut c = Contact {
         curve: index,
-        home,
+        chain_range,
         ends: Ends { p: [p; 2], s: [l.s, l.s.next_up()], t: [tension; 2] },
         mode: Mode::Slide(0.0),
         held: None,
@@ -108,7 +108,7 @@ pub(in crate::model::spans) fn touch(
     };
     c.ends.s = [l.s; 2];
     if !pressed {
-        let place = curve.place(p, home);
+        let place = curve.place(p, chain_range);
         let (press, pull) = (-load.dot(&place.normal), load.dot(&place.tangent).abs());
         let rate = pull - curve.friction * press;
         if !(rate > 0.0) {

@@ -15,6 +15,7 @@
 //! draws the end.
 
 use crate::catenary::PointForce;
+use crate::error::EquilibriumFault;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
@@ -32,11 +33,8 @@ const MATERIAL_ROUNDING: f64 = 1e-15;
 pub(in crate::model::spans) const LIFT_FRACTION: f64 = 1e-9;
 /// Equations must hold to this part of the forces; the solver stops at 1e-11.
 const BALANCE_TOLERANCE: f64 = 1e-7;
-/// A contact's end this near to a load, of the strand's length, may end there. Smaller: it is found
-/// after more halvings. Larger: loads in the air are set down for nothing.
-const CATCH_DISTANCE_FRACTION: f64 = 0.02;
 
-/// What a load feels.
+/// Forces on a load.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct LoadBalance {
     /// V, N, and what of it does not turn with the boundary.
@@ -55,8 +53,8 @@ impl LoadBalance {
     }
 }
 
-/// What the load that is contact j feels.
-pub(in crate::model::spans) fn felt(strand: &CableRun, course: &Course, j: usize) -> LoadBalance {
+/// Forces on the load that is contact j.
+pub(in crate::model::spans) fn load_balance(strand: &CableRun, course: &Course, j: usize) -> LoadBalance {
     let c = &strand.contacts[j];
     let place = course.track(c).place(c.ends.p[0]);
     let own = load(strand, course, j);
@@ -68,7 +66,7 @@ pub(in crate::model::spans) fn felt(strand: &CableRun, course: &Course, j: usize
         } else if strand.is_joined(j, side) {
             let (tension, beside) = (strand.forces[j + side].x, &strand.contacts[j + 2 * side - 1]);
             size = larger(size, tension.abs());
-            if beside.home == c.home {
+            if beside.chain_range == c.chain_range {
                 along += tension * sign;
             } else {
                 fixed += course.track(beside).place(beside.ends.p[1 - side]).tangent * (tension * sign);
@@ -99,11 +97,11 @@ pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: 
     if friction <= 0.0 {
         return Mode::Slide(0.0);
     }
-    let felt = felt(strand, course, j);
+    let load_balance = load_balance(strand, course, j);
     match c.mode {
         Mode::Hold => {
-            let (along, press) = (felt.sum.dot(&felt.tangent), larger(felt.press(), 0.0));
-            let beyond = along.abs() > friction * press + CONE_ROUNDING * patience * felt.size;
+            let (along, press) = (load_balance.sum.dot(&load_balance.tangent), larger(load_balance.press(), 0.0));
+            let beyond = along.abs() > friction * press + CONE_ROUNDING * patience * load_balance.size;
             if beyond { Mode::Slide(friction * along.signum()) } else { Mode::Hold }
         }
         Mode::Slide(m) => {
@@ -120,7 +118,7 @@ pub(in crate::model::spans) fn fresh(strand: &CableRun, course: &Course) -> f64 
     let missing = |j: usize| {
         let c = &strand.contacts[j];
         if c.is_load() && c.smooth {
-            let f = felt(strand, course, j);
+            let f = load_balance(strand, course, j);
             return course.curves[c.curve].friction * larger(f.press(), 0.0) / larger(f.size, f64::MIN_POSITIVE);
         }
         let [t1, t2] = c.ends.t;
@@ -130,14 +128,15 @@ pub(in crate::model::spans) fn fresh(strand: &CableRun, course: &Course) -> f64 
     (0..strand.contacts.len()).map(missing).fold(0.0, larger)
 }
 
-/// Whether all of a strand is about to slide one way (1: towards its end, −1: towards its start):
-/// at each contact the tensions are those of sliding, but for this part of them.
+/// True if all of a strand is about to slide `way` (1: towards its end, −1: towards its start): at
+/// each contact the tensions are those of sliding, but for this part of them.
 pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way: f64, near: f64) -> bool {
     let slides = |(j, c): (usize, &Contact)| {
         let m = way * course.friction(c);
         if c.is_load() {
-            let felt = felt(strand, course, j);
-            return felt.sum.dot(&(felt.tangent + felt.normal * m)).abs() <= near * felt.size;
+            let load_balance = load_balance(strand, course, j);
+            return load_balance.sum.dot(&(load_balance.tangent + load_balance.normal * m)).abs()
+                <= near * load_balance.size;
         }
         let [t1, t2] = c.ends.t;
         let reached = course.track(c).slide(c.ends.p[0], c.ends.p[1], t1, m).tension;
@@ -147,32 +146,32 @@ pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way
     !strand.contacts.is_empty() && strand.contacts.iter().enumerate().all(slides)
 }
 
-/// Where a load was last, p.
+/// The place of a load in the state before, p.
 pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
     c.history.knots().first().map_or(c.ends.p[0], |k| k.p)
 }
 
-/// Whether an answer holds at the load that is contact j.
-pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usize) -> Result<(), Failure> {
+/// Checks the load that is contact j against its laws.
+pub(in crate::model::spans) fn verify(strand: &CableRun, course: &Course, j: usize) -> Result<(), Failure> {
     let c = &strand.contacts[j];
-    let f = felt(strand, course, j);
+    let f = load_balance(strand, course, j);
     let unsound =
-        |what: &'static str| Failure::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
+        |what: EquilibriumFault| Failure::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
     let room = BALANCE_TOLERANCE * f.size;
     if !(kink_load::press(course, c, &f) >= -room) {
-        return Err(unsound("a load is held down"));
+        return Err(unsound(EquilibriumFault::LoadHeldDown));
     }
     if let Some(kink) = c.kink() {
         if !kink_load::holds(course, c, kink, &f, BALANCE_TOLERANCE) {
-            return Err(unsound("a load is out of its kink"));
+            return Err(unsound(EquilibriumFault::LoadOutOfKink));
         }
     } else if !(f.sum.dot(&f.tangent).abs() <= course.friction(c) * f.press() + room) {
-        return Err(unsound("a load slides against more than its friction"));
+        return Err(unsound(EquilibriumFault::LoadSlides));
     }
     for side in (0..2).filter(|&side| strand.is_joined(j, side)) {
         let beside = strand.contacts[j + 2 * side - 1].ends;
         if !((beside.p[1 - side] - c.ends.p[side]).abs() <= BALANCE_TOLERANCE * (strand.to - strand.from)) {
-            return Err(unsound("a load is not where the cable beside it ends"));
+            return Err(unsound(EquilibriumFault::LoadElsewhere));
         }
     }
     Ok(())
@@ -183,7 +182,7 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course, j: usiz
 pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) -> Result<bool, Failure> {
     for j in 0..strand.contacts.len() {
         if strand.contacts[j].is_load() {
-            let f = felt(strand, course, j);
+            let f = load_balance(strand, course, j);
             if kink_load::press(course, &strand.contacts[j], &f) < -CONE_ROUNDING * f.size {
                 lift(strand, course, j);
                 return Ok(true);
@@ -235,20 +234,20 @@ pub(in crate::model::spans) fn join(strand: &mut CableRun, course: &Course) -> R
     Ok(())
 }
 
-/// Whether there was one more beside the load that is contact j.
+/// Joins one more contact beside the load that is contact j, and says whether there was one.
 fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Failure> {
     let load = strand.contacts[j].clone();
     for side in 0..2 {
         let Some(i) = (j + 2 * side).checked_sub(1).filter(|&i| i < strand.contacts.len()) else { continue };
         let c = &strand.contacts[i];
-        let same = c.curve == load.curve && c.home == load.home && c.wheel.is_none();
+        let same = c.curve == load.curve && c.chain_range == load.chain_range && c.wheel.is_none();
         let here = same || kink_load::follows(course, &load, c, side);
         if !here || strand.is_joined(j, side) || strand.in_pocket(j, side) {
             continue;
         }
         let (k, first) = (j + side, if side == 0 { i } else { j });
         if c.is_load() {
-            // What lies between two loads of one chain lies, too.
+            // Cable between two loads of one chain lies, too.
             let [a, b] = [first, first + 1].map(|k| strand.contacts[k].ends);
             if !same || !(b.p[0] > a.p[0]) {
                 return Err(Failure::LoadLies { s: load.ends.s[side] });
@@ -291,7 +290,7 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
                 let turned =
                     l.arc_length >= c.ends.s[1].min(c.ends.s[0]) && l.arc_length <= c.ends.s[0].max(c.ends.s[1]);
                 if (beside || turned)
-                    && off <= CATCH_DISTANCE_FRACTION * (strand.to - strand.from)
+                    && off <= course.settings.changes.catch_distance_fraction * (strand.to - strand.from)
                     && best.is_none_or(|b| off < b.0)
                 {
                     best = Some((off, j, side, l.arc_length));
@@ -303,7 +302,7 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
     let c = &strand.contacts[j];
     let e = c.ends;
     let p = walk(&course.track(c), e.p[side], (s - e.s[side]) * course.law.stretch(e.t[side]));
-    let load = lying(c, p, [s, s.next_up()], e.t[side], true);
+    let load = lying(c, p, [s, s.next_up()], e.t[side], FrictionPast::None);
     let left = if side == 0 { e.p[1] - p } else { p - e.p[0] };
     if left <= 0.0 {
         // Nothing else of it is left.
@@ -326,7 +325,7 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
 
 /// So far (m, either way) along a boundary from p, to the end of its chain at most.
 fn walk(track: &Track<'_>, mut p: f64, way: f64) -> f64 {
-    let (first, last) = (track.curve.origin(track.home.first), track.curve.end(track.home.last));
+    let (first, last) = (track.curve.origin(track.chain_range.first), track.curve.end(track.chain_range.last));
     let end = if way > 0.0 { last } else { first };
     let mut left = way.abs();
     while p != end && left > 0.0 {
@@ -344,7 +343,7 @@ fn walk(track: &Track<'_>, mut p: f64, way: f64) -> f64 {
 /// Sets a load within contact j down where it lies.
 fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     let c = &strand.contacts[j];
-    // What is at an end of the strand draws that end.
+    // A load at an end of the strand draws that end.
     let [from, to] = [larger(c.ends.s[0], strand.from), smaller(c.ends.s[1], strand.to)];
     let Some(s) = course.loads.iter().find(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0) else {
         return false;
@@ -360,11 +359,12 @@ fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     });
     let tension = c.history.at(&track, q).0;
     let knots = c.history.knots();
-    // What had been laid before stays; where it is only now coming to lie nothing has rubbed yet.
+    // Cable that had been laid before stays; where it is only now coming to lie nothing has rubbed
+    // yet.
     let fresh = c.smooth || !knots.first().zip(knots.last()).is_some_and(|(a, b)| q >= a.p && q <= b.p);
     let (first, second) = c.history.split(&track, q);
     let after = s.next_up();
-    let mut load = lying(c, q, [s, after], tension, fresh);
+    let mut load = lying(c, q, [s, after], tension, FrictionPast::of(fresh));
     (load.next, load.smooth) = (Next::Joined, fresh);
     let mut rest = c.clone();
     (rest.ends.p[0], rest.ends.s[0], rest.ends.t[0], rest.history) = (q, after, tension, second);
@@ -389,7 +389,7 @@ fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
             continue;
         }
         let (p, s, tension) = (c.ends.p[side], c.ends.s[side], c.ends.t[side]);
-        let load = lying(c, p, [s; 2], tension, c.smooth);
+        let load = lying(c, p, [s; 2], tension, FrictionPast::of(c.smooth));
         let k = j + side;
         strand.contacts.insert(k, load);
         strand.contacts[j].next = Next::Joined;
@@ -399,8 +399,24 @@ fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     false
 }
 
+/// The past of a load on a boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum FrictionPast {
+    /// Nothing has rubbed yet.
+    None,
+    /// Friction has held it.
+    Held,
+}
+
+impl FrictionPast {
+    fn of(smooth: bool) -> Self {
+        if smooth { Self::None } else { Self::Held }
+    }
+}
+
 /// A load on what a contact lies on.
-fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, fresh: bool) -> Contact {
+fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, past: FrictionPast) -> Contact {
+    let fresh = past == FrictionPast::None;
     Contact {
         ends: Ends { p: [p; 2], s, t: [tension; 2] },
         mode: if fresh { Mode::Slide(0.0) } else { Mode::Hold },

@@ -15,7 +15,7 @@ use crate::model::spans::run::{CableRun, Contact, Course, Next};
 /// what the check lets pass: contacts that it refuses are not parted.
 const PULL_ROUNDING: f64 = 1e-9;
 
-/// Whether a bottom of a round boundary lies between two places on it.
+/// True if a bottom of a round boundary lies between two places on it.
 pub(in crate::model::spans) fn hangs_between(track: &Track<'_>, from: f64, to: f64) -> bool {
     let mut found = false;
     track.bottoms(from, to, |_| found = true);
@@ -92,7 +92,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
     true
 }
 
-/// What the contact remembers after the present state.
+/// The profile that the contact remembers after the present state.
 fn after(track: &Track<'_>, c: &Contact) -> TensionProfile {
     let mut past = c.history.clone();
     past.commit(track, &c.ends, c.mode, c.held, &mut TensionProfile::default());

@@ -7,7 +7,7 @@
 //! material between them as there is over, surplus = s₁ − s₂ ≥ 0. Where the surplus is used up the
 //! cable draws a span across the kink again. Between the two nothing jumps: T → 0 as surplus → 0.
 //!
-//! What is over is a heap in the kink that weighs B = −b·surplus and more where dead loads are in
+//! The surplus is a heap in the kink that weighs B = −b·surplus and more where dead loads are in
 //! it. The two edges have to carry it: pressed alone, N₁n₁ + N₂n₂ = −B, where −B is between their
 //! normals; else by the one edge it lies on, within its cone. A heap that neither carries slides on
 //! down (see [`heap`]).
@@ -21,27 +21,21 @@ use crate::model::spans::run::{CableRun, Contact, Course, Next};
 /// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it.
 /// Larger: the cable there is too short by as much.
 pub(in crate::model::spans) const POCKET_SHORTAGE_FRACTION: f64 = 1e-11;
-/// Spans of less tension than this part of the cable's weight may have become pockets where a step
-/// fails. Smaller: it takes more halvings to come so near. Larger: more of them are tried for
-/// nothing.
-const POCKET_TENSION_FRACTION: f64 = 1e-2;
 /// Ends of two chains this near to each other (m) are one kink.
 const KINK_DISTANCE_M: f64 = 1e-9;
 /// Part of a heap's weight by which it may leave the cone of what it lies on: rounding.
 const HEAP_CONE_ROUNDING: f64 = 1e-9;
-/// A span drawn across a kink takes at most this part of the contacts beside it.
-const KINK_SPAN_FRACTION: f64 = 0.3;
 
-/// Where the ends of the contacts before and after span k would lie in a kink: p on both, the turn,
-/// rad.
+/// The places at which the ends of the contacts before and after span k would lie in a kink: p on
+/// both, the turn, rad.
 fn kink(strand: &CableRun, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
     let (a, b) = (strand.contacts.get(k.checked_sub(1)?)?, strand.contacts.get(k)?);
     if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.is_load() || b.is_load() {
         return None;
     }
     let curve = &course.curves[a.curve];
-    let p = [curve.end(a.home.last), curve.origin(b.home.first)];
-    let (u, v) = (curve.place(p[0], a.home), curve.place(p[1], b.home));
+    let p = [curve.end(a.chain_range.last), curve.origin(b.chain_range.first)];
+    let (u, v) = (curve.place(p[0], a.chain_range), curve.place(p[1], b.chain_range));
     let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
     ((u.at - v.at).norm() <= KINK_DISTANCE_M && turn > 0.0 && p[0] >= a.ends.p[0] && p[1] <= b.ends.p[1])
         .then_some((p, turn))
@@ -50,7 +44,7 @@ fn kink(strand: &CableRun, course: &Course, k: usize) -> Option<([f64; 2], f64)>
 /// Spans that may become pockets, those of the least tension first.
 pub(in crate::model::spans) fn candidates(strand: &CableRun, course: &Course, out: &mut Vec<(f64, usize)>) {
     out.clear();
-    let most = POCKET_TENSION_FRACTION * course.law.load.norm() * (strand.to - strand.from);
+    let most = course.settings.changes.pocket_tension_fraction * course.law.load.norm() * (strand.to - strand.from);
     for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
         let tension = strand.force(course, k, strand.material(k).0).norm();
         if tension < most && kink(strand, course, k).is_some() {
@@ -87,7 +81,8 @@ pub(in crate::model::spans) struct Borne {
     pub friction: f64,
 }
 
-/// What carries the heap between contacts k − 1 and k; None where nothing does, and it slides.
+/// The edges that carry the heap between contacts k − 1 and k; None where nothing does, and it
+/// slides.
 pub(in crate::model::spans) fn heap(strand: &CableRun, course: &Course, k: usize) -> Option<[Borne; 2]> {
     let (a, b) = (&strand.contacts[k - 1], &strand.contacts[k]);
     let edge = |c: &Contact, contact: usize, end: usize| {
@@ -127,7 +122,7 @@ pub(in crate::model::spans) fn open(strand: &mut CableRun, course: &Course) -> b
     let half = (0.5 * turn).tan();
     let (mut x, stretch) = (short / (2.0 - turn / half), course.law.stretch(0.0));
     for j in [k - 1, k] {
-        let most = KINK_SPAN_FRACTION * extent(j);
+        let most = course.settings.changes.kink_span_fraction * extent(j);
         x = if x < most { x } else { most };
     }
     let normal = course.track(&strand.contacts[k]).place(strand.contacts[k].ends.p[0]).normal;

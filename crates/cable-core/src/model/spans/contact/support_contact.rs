@@ -4,15 +4,12 @@ use crate::math::Vec2;
 use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::run::{CableRun, Course, Tie};
 
-/// Part of a contact that the first guess of a lifted end leaves lying at least.
-const LYING_FRACTION: f64 = 0.02;
-
 /// Moves an end that is held to `at`, m.
 pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, side: usize, at: Vec2) {
     let outer = if side == 0 { 0 } else { strand.contacts.len().wrapping_sub(1) };
     let on = strand.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.is_load()).and_then(|c| {
         let curve = course.track(c).curve;
-        curve.on_chain(c.home, at, SUPPORT_CONTACT_DISTANCE_M)
+        curve.on_chain(c.chain_range, at, SUPPORT_CONTACT_DISTANCE_M)
     });
     match (strand.ties[side], on) {
         (Tie::Lies(_), Some(p)) => {
@@ -32,7 +29,7 @@ pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, sid
     }
 }
 
-/// Whether p lies outside contact `j` on that side.
+/// True if p lies outside contact `j` on that side.
 fn beyond(strand: &CableRun, j: usize, side: usize, p: f64) -> bool {
     let e = &strand.contacts[j].ends;
     if side == 0 { p <= e.p[0] } else { p >= e.p[1] }
@@ -52,7 +49,7 @@ fn lift(strand: &mut CableRun, course: &Course, side: usize, j: usize, at: Vec2)
     let c = &mut strand.contacts[j];
     let track = course.track(c);
     let curve = track.curve;
-    let i = curve.locate(c.ends.p[side], c.home);
+    let i = curve.locate(c.ends.p[side], c.chain_range);
     let foot = curve.project(i, at);
     let place = track.place(foot);
     let height = (at - place.at).dot(&place.normal).abs();
@@ -60,7 +57,7 @@ fn lift(strand: &mut CableRun, course: &Course, side: usize, j: usize, at: Vec2)
     let reach = if press > 0.0 { (2.0 * c.ends.t[side].abs() * height / press).sqrt() } else { 0.0 };
     let other = c.ends.p[1 - side];
     let sign = if side == 0 { 1.0 } else { -1.0 };
-    let least = (foot - other).abs() * (1.0 - LYING_FRACTION);
+    let least = (foot - other).abs() * (1.0 - course.settings.changes.lying_fraction);
     let p = foot + sign * if reach < least { reach } else { least };
     let end = if side == 0 { strand.from } else { strand.to };
     // Of the material there is some must remain for the span.

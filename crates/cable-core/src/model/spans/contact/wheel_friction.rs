@@ -25,8 +25,8 @@ pub(in crate::model) struct OnWheel {
     pub stiffness: f64,
 }
 
-/// Where the cable meets and leaves a wheel: angle (rad, growing along the cable), material (m),
-/// tension (N).
+/// The points at which the cable meets and leaves a wheel: angle (rad, growing along the cable),
+/// material (m), tension (N).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::model) struct WheelEnds {
     pub p: [f64; 2],
@@ -39,7 +39,7 @@ pub(in crate::model) struct WheelEnds {
 pub(in crate::model) struct WheelRows {
     pub residual: [f64; 2],
     pub by: [[f64; 6]; 2],
-    /// Whether a row is of tensions (N), not of material (m).
+    /// True if a row is of tensions (N), not of material (m).
     pub of_tension: [bool; 2],
 }
 
@@ -70,7 +70,7 @@ impl WheelFriction {
         let law = Law::new(on.load, on.thermal, on.stiffness);
         Track {
             curve: &self.curve,
-            home: WHEEL_RANGE,
+            chain_range: WHEEL_RANGE,
             law,
             friction: self.curve.friction,
             drag: 0.0,

@@ -14,48 +14,17 @@ use crate::model::spans::initial::shortest_path::{Bend, Ring};
 use crate::model::spans::initial::tension;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 
-/// Ends of a route this near to a boundary lie on it, of the cable's radius.
-const LYING_END_RADII: f64 = 0.05;
-/// The same of a free end and of the points of the route behind it, which fall on what is below
-/// them. Smaller: an end drawn by hand a little above the ground hangs from its support, through
-/// the ground; larger: what hangs beside an obstacle is laid on it.
-const FALLING_END_RADII: f64 = 1.0;
-/// Tension with which the cable is laid at least where it does not lie in one piece, of its weight.
-/// Smaller: spans over hollows shrink to nothing. Larger: friction at a free end has to hold it,
-/// and it slides there first.
-const FIRST_TENSION_WEIGHTS: f64 = 1e-3;
-/// A route longer than the cable by more than this part is not how it lies: no cable is strained
-/// so. It is laid along the string then. Smaller: a cable laid taut is laid anew with other
-/// tensions. Larger: the first guess is far off.
-const ROUTE_EXCESS_FRACTION: f64 = 0.05;
-/// Points of a route between its ends lie on a boundary if they are this near, of the cable's
-/// radius: routes follow the surface, the centre line is cut off at kinks.
-const ROUTE_CONTACT_RADII: f64 = 0.5;
-/// How far along the route, in radii of a post, the cable may come up to it before or after the
-/// string does: less than half a turn, so that turns are not mistaken for each other.
-const POST_APPROACH_RADII: f64 = 2.5;
-/// How much further than at its nearest a route that is drawn round a wheel may be from its centre,
-/// of the radius. Smaller: the chords of a coarse polygon are left; larger: of a route that only
-/// comes near more is taken for its round.
-const ABOUT: f64 = 0.1;
-/// Rounds of bringing a free end to where the material ends; each gains the digits of the strain.
-const END_FIT_ROUNDS: usize = 6;
-/// Corners by which a seat goes on at most.
-const MOST_STRETCHED: usize = 8;
-/// A contact guessed keeps at least this part of the strand's material clear of the next.
-const CONTACT_SPACING_FRACTION: f64 = 1e-4;
-
 /// Something the cable bends round, in order.
 #[derive(Clone, Debug)]
 struct Seat {
     curve: usize,
-    home: ChainRange,
+    chain_range: ChainRange,
     /// First and last piece.
     pieces: [i64; 2],
     wheel: Option<usize>,
     /// First and last of it along the route, m.
     way: [f64; 2],
-    /// How far the string turns there, rad.
+    /// Turn of the string there, rad.
     turn: f64,
 }
 
@@ -79,6 +48,7 @@ fn along(
     way: &Way,
     ring: Ring,
 ) -> Option<CableRun> {
+    let tuned = &layout.settings.initial;
     let part = layout.strands.get(index)?;
     let [from, to] = part.material;
     let total = way.total();
@@ -91,12 +61,15 @@ fn along(
     });
     // Ends that lie: how many points of the route, and the contact. What a load lifts does not.
     let heads = [0, 1].map(|side| {
-        let near =
-            if part.supports[side].is_none() { [FALLING_END_RADII; 2] } else { [LYING_END_RADII, ROUTE_CONTACT_RADII] };
+        let near = if part.supports[side].is_none() {
+            [tuned.falling_end_radii; 2]
+        } else {
+            [tuned.lying_end_radii, tuned.route_contact_radii]
+        };
         let near = near.map(|n| n * layout.problem.radius);
         lying(course, &layout.problem.world, near, &way.points, side).filter(|h| match ties[side] {
             Tie::Hangs(force) => {
-                let place = course.curves[h.curve].place(h.p[side], h.home);
+                let place = course.curves[h.curve].place(h.p[side], h.chain_range);
                 force.dot(&place.normal) <= LIFT_FRACTION * force.norm()
             }
             _ => true,
@@ -125,9 +98,9 @@ fn along(
     } else {
         0.0
     };
-    let least = FIRST_TENSION_WEIGHTS * course.law.load.norm() * (to - from);
+    let least = tuned.laid_tension_weights * course.law.load.norm() * (to - from);
     if let [Some(a), Some(b)] = &heads
-        && (a.count + b.count > way.points.len() && a.curve == b.curve && a.home == b.home)
+        && (a.count + b.count > way.points.len() && a.curve == b.curve && a.chain_range == b.chain_range)
     {
         return Some(lies_whole(strand, course, [a, b], tension));
     }
@@ -153,7 +126,7 @@ fn along(
         let join = smaller(join, 0.5 * (h.p[1] - h.p[0]));
         let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
         let p = if side == 0 { [h.p[0], h.p[1] - join] } else { [h.p[0] + join, h.p[1]] };
-        let c = contact(course, h.curve, h.home, p, s, tension);
+        let c = contact(course, h.curve, h.chain_range, p, s, tension);
         contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
         strand.ties[side] = end_tie(ties[side], h.p[side]);
     }
@@ -168,7 +141,11 @@ fn along(
     // tangent.
     let wheel = |q: &Pulley| layout.problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
     let tangent_ways = layout.problem.route.len() < 2 && part.pulleys.iter().any(wheel);
-    if (slack > ROUTE_EXCESS_FRACTION || tangent_ways) && heads.iter().all(Option::is_none) && !loose(0) && !loose(1) {
+    if (slack > tuned.route_excess_fraction || tangent_ways)
+        && heads.iter().all(Option::is_none)
+        && !loose(0)
+        && !loose(1)
+    {
         tension::relay(&mut strand, course);
     }
     Some(strand)
@@ -187,7 +164,7 @@ fn solve_spans(strand: &mut CableRun, course: &Course) -> Option<()> {
 
 /// A strand that lies on one boundary from end to end.
 fn lies_whole(mut strand: CableRun, course: &Course, [a, b]: [&Head; 2], tension: f64) -> CableRun {
-    let mut c = contact(course, a.curve, a.home, [a.p[0], b.p[1]], [strand.from, strand.to], tension);
+    let mut c = contact(course, a.curve, a.chain_range, [a.p[0], b.p[1]], [strand.from, strand.to], tension);
     c.wheel = None;
     strand.ties = [0, 1].map(|side| end_tie(strand.ties[side], if side == 0 { a.p[0] } else { b.p[1] }));
     strand.contacts.push(c);
@@ -208,7 +185,10 @@ fn lies_whole(mut strand: CableRun, course: &Course, [a, b]: [&Head; 2], tension
 fn joint(course: &Course, heads: &[Option<Head>; 2], meet: bool, tension: f64) -> f64 {
     match heads {
         [Some(a), Some(b)] if meet => {
-            let (u, v) = (course.curves[a.curve].place(a.p[1], a.home), course.curves[b.curve].place(b.p[0], b.home));
+            let (u, v) = (
+                course.curves[a.curve].place(a.p[1], a.chain_range),
+                course.curves[b.curve].place(b.p[0], b.chain_range),
+            );
             let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
             0.5 * tension * turn / course.law.load.norm()
         }
@@ -261,20 +241,24 @@ fn bends(
         let turns = if curve.is_round() { ((p1 + seat.turn - p2) / std::f64::consts::TAU).round() } else { 0.0 };
         let p2 = p2 + std::f64::consts::TAU * turns;
         // An eye has no side of its own: it is passed on the one on which the string bends.
-        let eye = seat.wheel.is_some() && curve.place(p1, seat.home).stretch == 0.0;
+        let eye = seat.wheel.is_some() && curve.place(p1, seat.chain_range).stretch == 0.0;
         let (index, [p1, p2]) = if eye && p2 < p1 { (seat.curve ^ 1, [-p1, -p2]) } else { (seat.curve, [p1, p2]) };
         let curve = &course.curves[index];
         // One that the string passes without a bend touches in one point, seen from either end.
         let [p1, p2] = if p2 > p1 { [p1, p2] } else { [0.5 * (p1 + p2); 2] };
-        let half = 0.5 * curve.length(p1, p2, seat.home) / course.law.stretch(tension);
+        let half = 0.5 * curve.length(p1, p2, seat.chain_range) / course.law.stretch(tension);
         // Round a post the string's points are not those of the cable: where it comes and goes on
         // the route itself.
         let seen = |p: f64, w: f64| {
-            let place = curve.place(p, seat.home);
-            if curve.is_round() { way.close(place.at, w, POST_APPROACH_RADII * place.stretch) } else { w }
+            let place = curve.place(p, seat.chain_range);
+            if curve.is_round() {
+                way.close(place.at, w, course.settings.initial.post_approach_radii * place.stretch)
+            } else {
+                w
+            }
         };
         let s = at(0.5 * (seen(p1, seat.way[0]) + seen(p2, seat.way[1])));
-        let mut c = contact(course, index, seat.home, [p1, p2], [s - half, s + half], tension);
+        let mut c = contact(course, index, seat.chain_range, [p1, p2], [s - half, s + half], tension);
         c.wheel = seat.wheel;
         contacts.push(c);
     }
@@ -305,7 +289,7 @@ pub(in crate::model::spans) fn measure(strand: &mut CableRun, course: &Course, l
         (Some(a), Some(b)) => (b - a).norm() / stretch,
         _ => 0.0,
     };
-    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.home) / stretch;
+    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.chain_range) / stretch;
     if loose[1] {
         let mut s = if loose[0] { strand.contacts.first().map_or(0.0, |c| c.ends.s[0]) } else { strand.from };
         for j in 0..n {
@@ -355,7 +339,7 @@ fn end_tie(tie: Tie, p: f64) -> Tie {
 
 /// Keeps material in order, and some of it in each span.
 pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
-    let least = CONTACT_SPACING_FRACTION * (strand.to - strand.from);
+    let least = course.settings.initial.contact_spacing_fraction * (strand.to - strand.from);
     let n = strand.contacts.len();
     let mut before = strand.from;
     for j in 0..n {
@@ -387,7 +371,7 @@ pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
         c.history = lay_down(&track, &c.ends, [free, held]);
         // A free end lies where the material ends.
         for side in (0..2).filter(|&side| free[side]) {
-            for _ in 0..END_FIT_ROUNDS {
+            for _ in 0..course.settings.initial.end_fit_rounds {
                 // Laid from a free end it is the other end that does not fit.
                 let other = if free[1 - side] { side } else { 1 - side };
                 let (tension, s) = c.history.at(&track, c.ends.p[other]);
@@ -413,11 +397,11 @@ fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> Tensio
     TensionProfile::laid(track, start, e.p)
 }
 
-fn contact(course: &Course, curve: usize, home: ChainRange, p: [f64; 2], s: [f64; 2], tension: f64) -> Contact {
+fn contact(course: &Course, curve: usize, chain_range: ChainRange, p: [f64; 2], s: [f64; 2], tension: f64) -> Contact {
     let knot = |k: usize| Knot { p: p[k], s: s[k], tension, m: 0.0 };
     Contact {
         curve,
-        home,
+        chain_range,
         ends: Ends { p, s, t: [tension; 2] },
         mode: if course.curves[curve].friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) },
         history: TensionProfile::new(knot(0), knot(1)),
@@ -433,13 +417,13 @@ fn contact(course: &Course, curve: usize, home: ChainRange, p: [f64; 2], s: [f64
 /// An end of a route that lies on a boundary.
 struct Head {
     curve: usize,
-    home: ChainRange,
+    chain_range: ChainRange,
     p: [f64; 2],
     /// Points of the route that lie, the end included.
     count: usize,
 }
 
-/// Whether the first points of a route (the last, for side 1) lie on one chain: the end and the
+/// True if the first points of a route (the last, for side 1) lie on one chain: the end and the
 /// others as `near` as that, m.
 fn lying(course: &Course, world: &World, near: [f64; 2], points: &[Vec2], side: usize) -> Option<Head> {
     let n = points.len();
@@ -452,14 +436,14 @@ fn lying(course: &Course, world: &World, near: [f64; 2], points: &[Vec2], side: 
     let curve_index = 2 * body + usize::from(back);
     let curve = course.curves.get(curve_index)?;
     let i = curve.piece_of(gap.feature, point(0))?;
-    let (_, home) = curve.chain(i, course.law.load)?;
-    let on: Vec<f64> = (0..n).map_while(|k| curve.on_chain(home, point(k), near[k.min(1)])).collect();
+    let (_, chain_range) = curve.chain(i, course.law.load)?;
+    let on: Vec<f64> = (0..n).map_while(|k| curve.on_chain(chain_range, point(k), near[k.min(1)])).collect();
     let (first, last) = (*on.first()?, *on.last()?);
     let p = if side == 0 { [first, last] } else { [last, first] };
-    (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, home, p, count: on.len() })
+    (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, chain_range, p, count: on.len() })
 }
 
-/// What the string bends round, pulleys among it; posts are seen as rings of points.
+/// The bodies that the string bends round, pulleys among them; posts are seen as rings of points.
 fn seats(
     layout: &Layout,
     part: &Part,
@@ -498,16 +482,16 @@ fn seats(
         }
         if let Some(q) = pulley {
             let curve = q.curve + usize::from(q.facing < 0.0);
-            let home = ChainRange { first: 0, last: 0 };
+            let chain_range = ChainRange { first: 0, last: 0 };
             // Tangents say how far it turns but for whole turns. A wheel passed on its side turns
             // it by −90° (it lifts off, almost) to 270°: half a turn, two tails that hang from it,
             // lies in the middle of that.
             let turn = if q.facing == 0.0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
             // The route may be drawn round it: where it comes and where it goes.
-            let radius = course.curves[curve].place(0.0, home).stretch;
-            let near = way.distance(stop, w) + ABOUT * radius;
+            let radius = course.curves[curve].place(0.0, chain_range).stretch;
+            let near = way.distance(stop, w) + course.settings.initial.wheel_route_radii * radius;
             let round = way.beside(stop, w, near);
-            out.push(Seat { curve, home, pieces: [0, 0], wheel: Some(q.support), way: round, turn });
+            out.push(Seat { curve, chain_range, pieces: [0, 0], wheel: Some(q.support), way: round, turn });
             (begin, reached) = ((stop, leg), w);
         }
     }
@@ -519,17 +503,17 @@ fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, w: f64, turn: f64) -> Op
     let curve_index = 2 * b.corner.body + usize::from(b.sense < 0.0);
     let curve = course.curves.get(curve_index)?;
     let i = curve.piece_of(b.corner.feature, b.corner.at)?;
-    let (i, home) = curve.chain(i, course.law.load)?;
+    let (i, chain_range) = curve.chain(i, course.law.load)?;
     if let Some(last) = out.last_mut()
         && last.wheel.is_none()
         && last.curve == curve_index
-        && (curve.is_round() || (last.home == home && i >= last.pieces[1]))
+        && (curve.is_round() || (last.chain_range == chain_range && i >= last.pieces[1]))
     {
         (last.pieces[1], last.way[1]) = (i, w);
         last.turn += turn;
         return Some(());
     }
-    out.push(Seat { curve: curve_index, home, pieces: [i, i], wheel: None, way: [w, w], turn });
+    out.push(Seat { curve: curve_index, chain_range, pieces: [i, i], wheel: None, way: [w, w], turn });
     Some(())
 }
 
@@ -540,18 +524,18 @@ fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, w: f64, turn: f64) -> Op
 /// along the edge nothing turns, and Newton's method does not find across it.
 fn stretched(course: &Course, seats: &mut [Seat], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
     let mut found = rounds(course, seats, ends[0], ends[1]);
-    for _ in 0..MOST_STRETCHED {
+    for _ in 0..course.settings.initial.max_extended_corners {
         let mut changed = false;
         for (k, seat) in seats.iter_mut().enumerate() {
             let curve = &course.curves[seat.curve];
             let arrive = tangent(found[k][1], found[k + 1][0]);
             let leave = tangent(found[k + 1][1], found[k + 2][0]);
             let (first, last) = (seat.pieces[0] - 2, seat.pieces[1] + 2);
-            if curve.aside(seat.pieces[0], arrive) < 0 && first >= seat.home.first && curve.is_arc(first) {
+            if curve.beyond_arc(seat.pieces[0], arrive) < 0 && first >= seat.chain_range.first && curve.is_arc(first) {
                 seat.pieces[0] = first;
                 changed = true;
             }
-            if curve.aside(seat.pieces[1], leave) > 0 && last <= seat.home.last && curve.is_arc(last) {
+            if curve.beyond_arc(seat.pieces[1], leave) > 0 && last <= seat.chain_range.last && curve.is_arc(last) {
                 seat.pieces[1] = last;
                 changed = true;
             }

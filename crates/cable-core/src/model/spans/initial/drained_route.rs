@@ -29,7 +29,7 @@ pub(in crate::model::spans) struct Frame {
     pub up: Vec2,
 }
 
-/// What a cable does on a part of the way.
+/// State of a cable on a part of the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) enum Leg {
     /// Hangs plumb, from a height to another.
@@ -98,7 +98,7 @@ impl Top {
         }
     }
 
-    /// Where two of them have one height, at most two places.
+    /// Places at which two of them have one height, at most two.
     fn crossings(&self, other: &Self) -> [f64; 2] {
         match (*self, *other) {
             (Self::Line { from, slope }, Self::Line { from: g, slope: n }) => {
@@ -130,7 +130,7 @@ impl Roof {
         self.top.height(u)
     }
 
-    /// How it rises there.
+    /// Its slope there.
     fn slope(&self, u: f64) -> f64 {
         match self.top {
             Top::Line { slope, .. } => slope,
@@ -138,7 +138,7 @@ impl Roof {
         }
     }
 
-    /// How far along its piece a place of it is.
+    /// Distance of a place of it along its piece.
     fn along(&self, u: f64) -> f64 {
         self.start
             + match self.top {
@@ -179,7 +179,7 @@ impl Roof {
 #[derive(Debug)]
 pub(in crate::model::spans) struct Roofs {
     pub all: Vec<Roof>,
-    /// How far the roofs up to each reach.
+    /// The greatest u that the roofs up to each reach.
     reach: Vec<f64>,
 }
 
@@ -225,7 +225,7 @@ fn roofs_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: &mut Vec<
         }
         Form::Arc { center, radius, from } => {
             let center = frame.split(center + curve.shift);
-            // How far along it the cable would rise plumb.
+            // Distance along it at which the cable would rise plumb.
             let rises = -curve.sense * cross(from, frame.up).atan2(from.dot(&frame.up));
             let turn = std::f64::consts::TAU;
             let turns: &[f64] = if given.extent.is_finite() { &[-1.0, 0.0, 1.0] } else { &[0.0] };
@@ -263,7 +263,7 @@ struct Draining<'a> {
 }
 
 impl Drained {
-    /// What is left of a route; None where the cable falls off everything.
+    /// The part of a route that stays on obstacles; None where the cable falls off everything.
     pub fn new(roofs: &Roofs, bodies: &[Body], frame: Frame, route: &[Vec2]) -> Option<Self> {
         let points: Vec<Vec2> = route.iter().map(|p| frame.split(*p)).collect();
         let (first, last) = (points.first()?, points.last()?);
@@ -317,7 +317,7 @@ impl Draining<'_> {
         self.hang(u, height);
         self.height = height;
         let mut u = on;
-        // What does not hold there slides on down, to the first that does.
+        // Cable that does not hold there slides on down, to the first place that holds it.
         for _ in 0..MOST_DOWN {
             let here = &self.roofs.all[roof];
             let slope = here.slope(u);
@@ -395,7 +395,7 @@ impl Draining<'_> {
         Some(())
     }
 
-    /// What it falls on where the same roofs are below and above all the way.
+    /// The surface on which it falls where the same roofs are below and above all the way.
     fn between(
         &self,
         low: f64,
@@ -427,8 +427,7 @@ impl Draining<'_> {
         Some(())
     }
 
-    /// Whether the route passes above a roof: where it cuts into its body, whether that is from
-    /// above.
+    /// True if the route passes above a roof: where it cuts into its body, if that is from above.
     fn is_below(&self, roof: usize, u: f64, v: f64) -> bool {
         let roof = &self.roofs.all[roof];
         if roof.height(u) <= v {

@@ -10,15 +10,12 @@
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
+use crate::model::spans::boundary::friction_memory::{Ends, Going, Knot, Mode, TensionProfile};
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::solution::Node;
 
-/// A node this near to a boundary (m) lies on it: a barrier keeps nodes as far off as it reaches,
-/// 1e-4 m.
-const CONTACT_DISTANCE_M: f64 = 2.5e-4;
 /// Of the material of a strand, what is kept between two contacts at least.
 const CONTACT_SPACING_FRACTION: f64 = 1e-6;
 
@@ -86,16 +83,17 @@ fn pulleys(part: &Part, course: &Course, instant: &BoundaryConditions, stations:
         let clockwise = cross(before, after) <= 0.0;
         let back = q.facing < 0.0 || (q.facing == 0.0 && !clockwise);
         let curve = q.curve + usize::from(back);
-        let home = ChainRange { first: 0, last: 0 };
+        let chain_range = ChainRange { first: 0, last: 0 };
         let middle = before.normalize() + after.normalize();
         let p = course.curves.get(curve).map_or(0.0, |c| c.with_tangent(0, middle));
-        stations[k].lies = Some((curve, home, p));
+        stations[k].lies = Some((curve, chain_range, p));
         stations[k].wheel = Some(q.support);
     }
 }
 
 /// Finds the boundary that each station lies on.
 fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
+    let near = layout.settings.initial.adopted_contact_distance_m;
     let world = &layout.problem.world;
     let n = stations.len();
     let mut before: Option<(usize, ChainRange, f64)> = None;
@@ -106,21 +104,18 @@ fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
             before = None;
             continue;
         }
-        station.lies = world
-            .signed_gap(station.at, CONTACT_DISTANCE_M)
-            .filter(|g| g.gap_m.abs() <= CONTACT_DISTANCE_M)
-            .and_then(|gap| {
-                let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
-                let back = cross(along, gap.normal) < 0.0;
-                let index = 2 * body + usize::from(back);
-                let curve = course.curves.get(index)?;
-                let (i, home) = curve.chain(curve.piece_of(gap.feature, station.at)?, course.law.load)?;
-                let mut p = curve.project(i, station.at);
-                if let (true, Some(b)) = (curve.is_round(), before.filter(|b| b.0 == index)) {
-                    p += std::f64::consts::TAU * ((b.2 - p) / std::f64::consts::TAU).ceil().max(0.0);
-                }
-                Some((index, home, p))
-            });
+        station.lies = world.signed_gap(station.at, near).filter(|g| g.gap_m.abs() <= near).and_then(|gap| {
+            let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
+            let back = cross(along, gap.normal) < 0.0;
+            let index = 2 * body + usize::from(back);
+            let curve = course.curves.get(index)?;
+            let (i, chain_range) = curve.chain(curve.piece_of(gap.feature, station.at)?, course.law.load)?;
+            let mut p = curve.project(i, station.at);
+            if let (true, Some(b)) = (curve.is_round(), before.filter(|b| b.0 == index)) {
+                p += std::f64::consts::TAU * ((b.2 - p) / std::f64::consts::TAU).ceil().max(0.0);
+            }
+            Some((index, chain_range, p))
+        });
         before = station.lies;
     }
 }
@@ -143,19 +138,19 @@ fn laid(
     let last = stations.len() - 1;
     let mut k = 0;
     while k <= last {
-        let Some((index, home, p)) = stations[k].lies else {
+        let Some((index, chain_range, p)) = stations[k].lies else {
             k += 1;
             continue;
         };
         let (first, mut reached) = (k, p);
         while stations[k].wheel.is_none()
             && let Some((i, h, p)) = stations.get(k + 1).filter(|s| s.wheel.is_none()).and_then(|s| s.lies)
-            && (i, h) == (index, home)
+            && (i, h) == (index, chain_range)
             && p >= reached
         {
             (k, reached) = (k + 1, p);
         }
-        let run = Run { curve: &course.curves[index], index, home, first, last: k, within };
+        let run = Run { curve: &course.curves[index], index, chain_range, first, last: k, within };
         if let Some(c) = run.contact(&mut strand, course, stations) {
             strand.contacts.push(c);
         }
@@ -194,7 +189,7 @@ fn keep_apart(strand: &mut CableRun) -> Option<()> {
 struct Run<'a> {
     curve: &'a Curve,
     index: usize,
-    home: ChainRange,
+    chain_range: ChainRange,
     first: usize,
     last: usize,
     /// Part of the cone that is called upon.
@@ -206,7 +201,7 @@ impl Run<'_> {
     fn contact(&self, strand: &mut CableRun, course: &Course, stations: &[Station]) -> Option<Contact> {
         let mut contact = Contact {
             curve: self.index,
-            home: self.home,
+            chain_range: self.chain_range,
             ends: Ends { p: [0.0; 2], s: [0.0; 2], t: [0.0; 2] },
             mode: if self.curve.friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) },
             history: TensionProfile::default(),
@@ -245,8 +240,8 @@ impl Run<'_> {
         }
         knots.push(knot(1));
         let track = course.track(&contact);
-        // What is beyond the cone goes to where the tension is known without friction: away from an
-        // end that lies, to one that is not held.
+        // A difference beyond the cone goes to where the tension is known without friction: away
+        // from an end that lies, to one that is not held.
         let lies = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
         let at_end = [self.first == 0, self.last + 1 == stations.len()];
         let free = strand.ties.map(|t| matches!(t, Tie::Hangs(_) | Tie::Loose(_)));
@@ -259,12 +254,12 @@ impl Run<'_> {
         // Other models' nodes have their material as their bars have it, not as the tension between
         // them strains it: what that is off goes to the span beyond, where there is one.
         if !at_end[usize::from(!back)] {
-            contact.history.measure(&track, back);
+            contact.history.measure(&track, if back { Going::Left } else { Going::Right });
             if let [first, .., last] = contact.history.knots() {
                 contact.ends.s = [first.s, last.s];
             }
         }
-        // What the cone has changed at an end that lies is its tension.
+        // The cone changes only the tension at an end that lies.
         if let (Some(k), Tie::Lies(_)) = (contact.history.knots().last(), strand.ties[1]) {
             contact.ends.t[1] = k.tension;
         }
@@ -287,7 +282,7 @@ impl Run<'_> {
         if tip {
             let s = if side == 0 { strand.from } else { strand.to };
             match strand.ties[side] {
-                Tie::Held(at) => match self.curve.on_chain(self.home, at, SUPPORT_CONTACT_DISTANCE_M) {
+                Tie::Held(at) => match self.curve.on_chain(self.chain_range, at, SUPPORT_CONTACT_DISTANCE_M) {
                     Some(p) => {
                         strand.ties[side] = Tie::Lies(p);
                         return Some((p, s, tension));
@@ -301,9 +296,9 @@ impl Run<'_> {
                 },
                 Tie::Hangs(force) => {
                     strand.ties[side] = Tie::Loose(force);
-                    let place = self.curve.place(p, self.home);
+                    let place = self.curve.place(p, self.chain_range);
                     let along = force.dot(&place.tangent);
-                    // What is pressed down rubs by itself.
+                    // An end that is pressed down rubs by itself.
                     let pressed = self.curve.friction > 0.0 && force.dot(&place.normal) < -LIFT_FRACTION * force.norm();
                     return Some((
                         p,
@@ -320,8 +315,8 @@ impl Run<'_> {
                 _ => return None,
             }
         }
-        let i = self.curve.locate(p, self.home);
-        if self.curve.place(p, self.home).turn == 0.0 {
+        let i = self.curve.locate(p, self.chain_range);
+        if self.curve.place(p, self.chain_range).turn == 0.0 {
             return Some((p, station.s, tension));
         }
         let beside = if side == 0 { stations[k - 1].at } else { stations[k + 1].at };
@@ -334,14 +329,14 @@ impl Run<'_> {
         if !beyond {
             return Some((p, station.s, tension));
         }
-        let way = self.curve.length(p, q, self.home) / course.law.stretch(tension);
+        let way = self.curve.length(p, q, self.chain_range) / course.law.stretch(tension);
         Some((q, station.s + way, tension))
     }
 
     /// Direction of travel of the line that touches the arc at p and goes through a point beside
     /// it.
     fn tangent_from(&self, beside: Vec2, p: f64, side: usize) -> Option<Vec2> {
-        let place = self.curve.place(p, self.home);
+        let place = self.curve.place(p, self.chain_range);
         let center = place.at - place.normal * place.stretch;
         let way = if side == 0 { center - beside } else { beside - center };
         let far = way.norm();

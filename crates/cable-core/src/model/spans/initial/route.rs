@@ -28,7 +28,8 @@ impl Way {
         self.along.last().copied().unwrap_or(0.0)
     }
 
-    /// How far along it comes nearest to a point, not before `from`, up to the end of leg `last`.
+    /// Arc length at which it comes nearest to a point, not before `from`, up to the end of leg
+    /// `last`.
     pub fn nearest(&self, at: Vec2, from: f64, last: Option<usize>) -> f64 {
         let (mut best, mut found) = (f64::INFINITY, from);
         let pieces = self.points.len().saturating_sub(1);
@@ -49,7 +50,7 @@ impl Way {
         found
     }
 
-    /// How far along it comes nearest to a point, within so much of `around`.
+    /// Arc length at which it comes nearest to a point, within so much of `around`.
     pub fn close(&self, at: Vec2, around: f64, within: f64) -> f64 {
         let (mut best, mut found) = (f64::INFINITY, around);
         for k in 0..self.points.len().saturating_sub(1) {
@@ -161,8 +162,8 @@ pub(in crate::model::spans) fn way(layout: &Layout, part: &Part, instant: &Bound
     Way::new(points)
 }
 
-/// What leads from `a` to `b` where the straight way is blocked: out from under what either is
-/// under, then above everything between.
+/// A way from `a` to `b` where the straight one is blocked: out from under what either is under,
+/// then above everything between.
 fn over(world: &World, a: Vec2, b: Vec2) -> Vec<Vec2> {
     let free = |p: Vec2, q: Vec2| world.free_fraction([p, p], [q, q], 0.0) >= 1.0;
     if world.is_empty() || free(a, b) {

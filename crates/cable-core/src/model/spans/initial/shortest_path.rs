@@ -20,9 +20,9 @@ pub(in crate::model::spans) struct Ring {
     pub part: f64,
 }
 
-/// How posts are seen at first, and how they are where that shows nothing to lie on and nothing
-/// else holds the cable: a string that hardly bends round a post passes between few points far
-/// inside it. Nearer at once: routes drawn roughly pass on the wrong side.
+/// Resolutions of posts: coarse at first, finer where the coarse one shows nothing to lie on and
+/// nothing else holds the cable: a string that hardly bends round a post passes between few points
+/// far inside it. Nearer at once: routes drawn roughly pass on the wrong side.
 pub(in crate::model::spans) const RINGS: [Ring; 3] =
     [Ring { points: 12, part: 0.5 }, Ring { points: 24, part: 0.9 }, Ring { points: 96, part: 0.99 }];
 /// A move of the end smaller than this part of a leg is no move: the corner just left is not met
@@ -62,7 +62,7 @@ pub(in crate::model::spans) fn corners(world: &World, ring: Ring) -> Vec<Corner>
     out
 }
 
-/// What the string bends round, in order. None where it finds no end.
+/// The bodies that the string bends round, in order. None where it finds no end.
 pub(in crate::model::spans) fn pull(route: &[Vec2], corners: &[Corner]) -> Option<Vec<Bend>> {
     let start = *route.first()?;
     let mut bends: Vec<Bend> = Vec::new();

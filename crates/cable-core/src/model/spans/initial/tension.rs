@@ -6,7 +6,7 @@ use crate::model::spans::run::{CableRun, Contact, Course};
 
 /// Length of the taut string through what it touches, m.
 pub(in crate::model::spans) fn taut_length(strand: &CableRun, course: &Course) -> f64 {
-    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.home);
+    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.chain_range);
     let spans: f64 = (0..strand.spans())
         .filter_map(|k| match strand.ends_of(course, k) {
             [Some(a), Some(b)] => Some((b - a).norm()),

@@ -26,18 +26,18 @@ pub(super) fn gather(strand: &CableRun, out: &mut Vec<f64>) {
     }
 }
 
-/// Whether the tension of that side of contact j is an unknown of its own.
+/// True if the tension of that side of contact j is an unknown of its own.
 pub(super) fn lies(strand: &CableRun, j: usize, side: usize) -> bool {
     let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
     outer && matches!(strand.ties[side], Tie::Lies(_))
 }
 
-/// Which ends of contact j are held on the boundary.
+/// True for the ends of contact j that are held on the boundary.
 pub(super) fn pinned(strand: &CableRun, j: usize) -> [bool; 2] {
     [0, 1].map(|side| lies(strand, j, side) || strand.is_pinned(j, side))
 }
 
-/// Whether that side of contact j is an end of the strand that lies.
+/// True if that side of contact j is an end of the strand that lies.
 fn is_end(strand: &CableRun, j: usize, side: usize) -> bool {
     let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
     outer && !strand.ties[side].has_span()
@@ -84,33 +84,33 @@ pub(super) struct System {
 }
 
 /// Works out the equations of a strand where it is, and where each of its contacts sticks.
-pub(super) fn assemble(strand: &mut CableRun, course: &Course, sheet: &mut System) {
+pub(super) fn assemble(strand: &mut CableRun, course: &Course, system: &mut System) {
     let n = count(strand);
-    sheet.residual.clear();
-    sheet.residual.resize(n, 0.0);
-    sheet.band.reset(n);
-    sheet.spots.clear();
-    let seen = |c: &Contact| Pivot::of_ends(&course.curves[c.curve], c.home, &course.law, c.ends.p);
-    sheet.spots.extend(strand.contacts.iter().map(seen));
+    system.residual.clear();
+    system.residual.resize(n, 0.0);
+    system.band.reset(n);
+    system.spots.clear();
+    let seen = |c: &Contact| Pivot::of_ends(&course.curves[c.curve], c.chain_range, &course.law, c.ends.p);
+    system.spots.extend(strand.contacts.iter().map(seen));
     for k in 0..strand.spans() {
-        span_rows(strand, course, k, sheet);
+        span_rows(strand, course, k, system);
         if k < strand.contacts.len() {
-            contact_rows(strand, course, k, sheet);
+            contact_rows(strand, course, k, system);
         }
     }
 }
 
 /// As [`assemble`], where nothing but the mode of contact j has changed since.
-pub(super) fn renew(strand: &mut CableRun, course: &Course, j: usize, sheet: &mut System) {
+pub(super) fn renew(strand: &mut CableRun, course: &Course, j: usize, system: &mut System) {
     if strand.contacts[j].is_load() {
-        // What is joined to it is held or let go with it.
-        return assemble(strand, course, sheet);
+        // A contact that is joined to it is held or let go with it.
+        return assemble(strand, course, system);
     }
     for row in 6 * j + 2..6 * j + 6 {
-        sheet.residual[row] = 0.0;
-        sheet.band.clear(row);
+        system.residual[row] = 0.0;
+        system.band.clear(row);
     }
-    contact_rows(strand, course, j, sheet);
+    contact_rows(strand, course, j, system);
 }
 
 /// Lengths in hundredths of the strand.
@@ -118,9 +118,9 @@ fn scale(strand: &CableRun) -> f64 {
     100.0 / (strand.to - strand.from)
 }
 
-fn span_rows(strand: &CableRun, course: &Course, k: usize, sheet: &mut System) {
+fn span_rows(strand: &CableRun, course: &Course, k: usize, system: &mut System) {
     let (row, scale) = (6 * k, scale(strand));
-    let (r, band) = (&mut sheet.residual, &mut sheet.band);
+    let (r, band) = (&mut system.residual, &mut system.band);
     let m = strand.contacts.len();
     if k > 0 && strand.is_joined(k, 0) {
         // One place; the tension stands where the force would.
@@ -149,8 +149,8 @@ fn span_rows(strand: &CableRun, course: &Course, k: usize, sheet: &mut System) {
         band.add(row + 1, row + 1, size);
         return;
     }
-    let before = k.checked_sub(1).map(|j| &sheet.spots[j].0[1]);
-    let after = sheet.spots.get(k).map(|s| &s.0[0]);
+    let before = k.checked_sub(1).map(|j| &system.spots[j].0[1]);
+    let after = system.spots.get(k).map(|s| &s.0[0]);
     let held = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
     let ends = (
         before.map_or_else(|| held(&strand.ties[0]), |s| Some(s.at)),
@@ -184,9 +184,9 @@ fn span_rows(strand: &CableRun, course: &Course, k: usize, sheet: &mut System) {
 }
 
 /// The rows of a load that lies, see `weight`.
-fn weight_rows(strand: &CableRun, course: &Course, j: usize, sheet: &mut System) {
-    let (r, b, scale) = (&mut sheet.residual, &mut sheet.band, scale(strand));
-    let (c, place) = (&strand.contacts[j], &sheet.spots[j].0[0]);
+fn weight_rows(strand: &CableRun, course: &Course, j: usize, system: &mut System) {
+    let (r, b, scale) = (&mut system.residual, &mut system.band, scale(strand));
+    let (c, place) = (&strand.contacts[j], &system.spots[j].0[0]);
     let (row, p) = (6 * j + 2, c.ends.p[0]);
     // Its material stays as it is, and both of its ends are one.
     b.add(row, row + 1, scale);
@@ -199,12 +199,12 @@ fn weight_rows(strand: &CableRun, course: &Course, j: usize, sheet: &mut System)
         b.add(row + 1, row, scale);
         return;
     };
-    let felt = point_load::felt(strand, course, j);
-    let size = 1.0 / larger(felt.size, 1e-9 * course.law.load.norm());
-    let across = felt.tangent + felt.normal * m;
-    r[row + 1] = felt.sum.dot(&across) * size;
+    let load_balance = point_load::load_balance(strand, course, j);
+    let size = 1.0 / larger(load_balance.size, 1e-9 * course.law.load.norm());
+    let across = load_balance.tangent + load_balance.normal * m;
+    r[row + 1] = load_balance.sum.dot(&across) * size;
     if place.turn != 0.0 {
-        b.add(row + 1, row, felt.fixed.dot(&(felt.tangent * m - felt.normal)) * size);
+        b.add(row + 1, row, load_balance.fixed.dot(&(load_balance.tangent * m - load_balance.normal)) * size);
     }
     for (side, sign) in [(0, -size), (1, size)] {
         let g = 6 * (j + side);
@@ -217,11 +217,11 @@ fn weight_rows(strand: &CableRun, course: &Course, j: usize, sheet: &mut System)
     }
 }
 
-fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, sheet: &mut System) {
+fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, system: &mut System) {
     if strand.contacts[j].is_load() {
-        return weight_rows(strand, course, j, sheet);
+        return weight_rows(strand, course, j, system);
     }
-    let (r, b, (spots, pivot), scale) = (&mut sheet.residual, &mut sheet.band, &sheet.spots[j], scale(strand));
+    let (r, b, (spots, pivot), scale) = (&mut system.residual, &mut system.band, &system.spots[j], scale(strand));
     let c = &strand.contacts[j];
     let track = Track { pivot: Some(*pivot), ..course.track(c) };
     let row = 6 * j + 2;

@@ -1,5 +1,5 @@
-//! Newton's method for a strand: all spans and contacts at once, never a span solved inside another
-//! iteration.
+//! Newton's method solves a strand: all spans and contacts at once, never a span solved inside
+//! another iteration.
 //!
 //! Six unknowns and six equations for each contact, two more for the last span, in the order span,
 //! contact, span …:
@@ -20,66 +20,35 @@ pub(in crate::model::spans) mod stability;
 #[cfg(test)]
 mod tests;
 
-use crate::math::{Vec2, larger};
+use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::friction_memory::{Held, Mode, TensionProfile};
 use crate::model::spans::boundary_conditions::BoundaryConditions;
 use crate::model::spans::contact::equations;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::newton::jacobian::{System, assemble, gather, lies, pinned, renew, scatter};
-use crate::model::spans::newton::slip_predictor::Foresight;
+use crate::model::spans::newton::slip_predictor::SlipPredictor;
 pub(super) use crate::model::spans::newton::stability::stable;
 use crate::model::spans::run::{CableRun, Course};
 
-/// Iterations at most. A failure is not cured by more; steps are halved instead.
-const MAX_ITERATIONS: usize = 60;
-/// Iterations without progress before it is given up.
-const MAX_STALLED: usize = 12;
-/// Halvings of one step at most.
-const MAX_HALVINGS: usize = 14;
-/// Residual wanted: of lengths in hundredths of the strand, of angles, of tensions relative.
-const RESIDUAL: f64 = 1e-11;
 /// Residual that rounding leaves where a cable is EA/T times stiffer than it is taut: this times
 /// EA/T.
 const STIFF_RESIDUAL: f64 = 2e-14;
-/// A residual that will do is made better by one more step where it is more than this times T/EA:
-/// forces are off by a hundredth of this part then. Smaller: a step more in each solve. Larger:
-/// forces of stiff cables are as exact as their tolerance, 1e-8.
-const REFINED_RESIDUAL_FACTOR: f64 = 1e-8;
 /// Residual that no step makes smaller: rounding.
 const RESIDUAL_ROUNDING: f64 = 5e-15;
-/// Where no step gains anything the residual is rounding if it is below so many times the one
-/// wanted. Larger: a step that was halved often enough is taken without having been solved.
-const ROUNDING: f64 = 20.0;
-/// A contact's end moves by at most so many radians in one iteration. Larger: it jumps a turn of a
-/// post.
-const MOST_TURN: f64 = 0.7;
-/// A span keeps at least this part of its material in one iteration.
-const KEPT_MATERIAL_FRACTION: f64 = 0.1;
 /// A step to the end of a piece of boundary goes beyond it by this part of p: more than rounding,
 /// less than matters.
 const PIECE_END_OVERSHOOT: f64 = 1e-9;
-/// Residual below which modes are judged. Larger: a contact slides because an iterate has tensions
-/// it will not keep, and what is held at neither end slides away. Smaller: iterations spent on a
-/// mode that will not last.
-const MODE_RESIDUAL: f64 = 1e-3;
-/// If stick and slip modes cycle, violations of the friction cone up to this multiple of round-off
-/// are tolerated.
-const CYCLE_ROUNDINGS: f64 = 1e4;
-/// Iterations without progress after which modes are judged all the same.
-const STALLED_ITERATIONS: usize = 3;
-/// Changes of mode of one contact while iterating; after that only between converged states.
-const MOST_FLIPS: u32 = 6;
 
 /// Memory of a solve, kept between steps. A copy has none of its own: what is in it means nothing
 /// between two steps.
 #[derive(Debug, Default)]
 pub(super) struct Work {
-    sheet: System,
+    system: System,
     rhs: Vec<f64>,
     saved: Vec<f64>,
     best: Vec<f64>,
-    /// What the search for corners passed through counts with.
+    /// Winding numbers of the search for corners passed through.
     pub turns: Vec<i32>,
     /// The shape before and after a step.
     pub shapes: [Vec<Vec2>; 2],
@@ -89,8 +58,8 @@ pub(super) struct Work {
     pub before: Vec<CableRun>,
     /// Instants: before a step; where a way begins; where a step goes.
     pub instants: [BoundaryConditions; 3],
-    /// What a guess at the modes is made with.
-    pub foresight: Foresight,
+    /// Scratch space of the slip predictor.
+    pub slip_predictor: SlipPredictor,
     /// A contact's past as it was.
     pub past: TensionProfile,
 }
@@ -111,7 +80,7 @@ pub(super) struct Stall {
     pub at: usize,
 }
 
-/// What a solve took.
+/// Cost of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Solved {
     pub iterations: usize,
@@ -138,16 +107,18 @@ fn squares(r: &[f64]) -> f64 {
 /// The residual that will do, of a strand whose contacts have the tensions of the spans beside
 /// them.
 fn tolerance(strand: &CableRun, course: &Course) -> f64 {
-    let least = least_tension(strand, course);
+    let (least, wanted) = (least_tension(strand, course), course.settings.newton.residual);
     let stiff = if least.is_finite() && least > 0.0 { STIFF_RESIDUAL * course.law.stiffness / least } else { 0.0 };
-    larger(RESIDUAL, stiff.min(1e3 * RESIDUAL))
+    larger(wanted, stiff.min(1e3 * wanted))
 }
 
-/// Whether a residual that will do leaves forces off by more than need be: a length that is missing
+/// True if a residual that suffices leaves forces with too great an error: a length that is missing
 /// is strain, and that times EA is force.
 fn is_rough(strand: &CableRun, course: &Course, residual: f64) -> bool {
     let least = least_tension(strand, course);
-    least.is_finite() && residual > larger(RESIDUAL_ROUNDING, REFINED_RESIDUAL_FACTOR * least / course.law.stiffness)
+    least.is_finite()
+        && residual
+            > larger(RESIDUAL_ROUNDING, course.settings.newton.refined_residual_factor * least / course.law.stiffness)
 }
 
 /// The least tension at an end of a span, N; infinite where there is no span.
@@ -175,7 +146,8 @@ fn least_tension(strand: &CableRun, course: &Course) -> f64 {
 }
 
 /// Largest part of a step that keeps spans and does not jump turns.
-fn room(strand: &CableRun, course: &Course, x: &[f64], d: &[f64]) -> f64 {
+fn max_step(strand: &CableRun, course: &Course, x: &[f64], d: &[f64]) -> f64 {
+    let tuned = &course.settings.newton;
     let mut alpha = 1.0f64;
     for k in 0..strand.spans() {
         if strand.has_span(k) {
@@ -183,8 +155,8 @@ fn room(strand: &CableRun, course: &Course, x: &[f64], d: &[f64]) -> f64 {
             let first = if k > 0 { d[6 * k - 1] } else { 0.0 };
             let last = if k < strand.contacts.len() { d[6 * k + 3] } else { 0.0 };
             let (length, change) = (to - from, last - first);
-            if change < 0.0 && alpha * -change > (1.0 - KEPT_MATERIAL_FRACTION) * length {
-                alpha = (1.0 - KEPT_MATERIAL_FRACTION) * length / -change;
+            if change < 0.0 && alpha * -change > (1.0 - tuned.kept_material_fraction) * length {
+                alpha = (1.0 - tuned.kept_material_fraction) * length / -change;
             }
         }
         let Some(c) = strand.contacts.get(k) else { continue };
@@ -194,8 +166,8 @@ fn room(strand: &CableRun, course: &Course, x: &[f64], d: &[f64]) -> f64 {
                 continue;
             }
             let (p, dp) = (x[6 * k + 2 + 2 * side], d[6 * k + 2 + 2 * side]);
-            if alpha * dp.abs() > MOST_TURN && (track.turns(p) || track.turns(p + alpha * dp)) {
-                alpha = MOST_TURN / dp.abs();
+            if alpha * dp.abs() > tuned.max_turn && (track.turns(p) || track.turns(p + alpha * dp)) {
+                alpha = tuned.max_turn / dp.abs();
             }
         }
     }
@@ -216,11 +188,11 @@ fn borders(strand: &CableRun, course: &Course, x: &[f64], d: &[f64], mut each: i
             if lies(strand, k, side) || dp == 0.0 {
                 continue;
             }
-            let i = track.curve.locate(p, c.home);
+            let i = track.curve.locate(p, c.chain_range);
             let beyond = PIECE_END_OVERSHOOT * (1.0 + p.abs());
             let way = match dp > 0.0 {
-                true if i < c.home.last => track.curve.end(i) - p + beyond,
-                false if i > c.home.first => track.curve.origin(i) - p - beyond,
+                true if i < c.chain_range.last => track.curve.end(i) - p + beyond,
+                false if i > c.chain_range.first => track.curve.origin(i) - p - beyond,
                 _ => continue,
             };
             each(index, way / dp);
@@ -230,6 +202,7 @@ fn borders(strand: &CableRun, course: &Course, x: &[f64], d: &[f64], mut each: i
 
 /// Solves a strand from where it is. On an error it is left wherever the iteration was.
 pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> Result<Solved, Stall> {
+    let tuned = &course.settings.newton;
     strand.take_tensions(course);
     for c in &mut strand.contacts {
         c.flips = 0;
@@ -238,15 +211,19 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
         }
     }
     let (mut best, mut stalled, mut iterations, mut polished) = (f64::INFINITY, 0, 0, false);
-    assemble(strand, course, &mut work.sheet);
+    assemble(strand, course, &mut work.system);
     loop {
-        let (mut worst, mut at) = norm(&work.sheet.residual);
+        let (mut worst, mut at) = norm(&work.system.residual);
         let done = worst <= tolerance(strand, course);
-        if worst <= MODE_RESIDUAL || stalled >= STALLED_ITERATIONS {
-            let (changed, content) =
-                change_modes(strand, course, if done { 4 * MOST_FLIPS } else { MOST_FLIPS }, &mut work.sheet);
+        if worst <= tuned.mode_residual || stalled >= tuned.mode_stalled_iterations {
+            let (changed, content) = change_modes(
+                strand,
+                course,
+                if done { 4 * tuned.max_mode_changes } else { tuned.max_mode_changes },
+                &mut work.system,
+            );
             if changed {
-                (worst, at) = norm(&work.sheet.residual);
+                (worst, at) = norm(&work.system.residual);
                 (best, stalled) = (f64::INFINITY, 0);
                 // In rounding at the edge of the cone another mode changes nothing: nothing is left
                 // to solve.
@@ -260,7 +237,7 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
                         continue;
                     }
                 }
-                return if content || agreed(strand, course, &work.sheet) {
+                return if content || modes_agree(strand, course, &work.system) {
                     Ok(Solved { iterations, residual: worst })
                 } else {
                     Err(Stall { iterations, residual: worst, at: at / 6 })
@@ -273,14 +250,16 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
         } else {
             stalled += 1;
         }
-        let over = !worst.is_finite() || iterations == MAX_ITERATIONS || stalled > MAX_STALLED;
+        let over = !worst.is_finite() || iterations == tuned.max_iterations || stalled > tuned.max_stalled;
         iterations += usize::from(!over);
         if over || !step(strand, course, work) {
-            if !over && change_modes(strand, course, MOST_FLIPS, &mut work.sheet).0 {
+            if !over && change_modes(strand, course, tuned.max_mode_changes, &mut work.system).0 {
                 continue;
             }
             // Rounding: nothing is gained any more.
-            return if worst <= ROUNDING * tolerance(strand, course) && agreed(strand, course, &work.sheet) {
+            return if worst <= tuned.stalled_residual_factor * tolerance(strand, course)
+                && modes_agree(strand, course, &work.system)
+            {
                 Ok(Solved { iterations, residual: worst })
             } else {
                 Err(stall(worst))
@@ -290,7 +269,7 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
 }
 
 /// The mode that the state of contact j asks for.
-fn asked(strand: &CableRun, course: &Course, sheet: &System, j: usize, patience: f64) -> Mode {
+fn required_mode(strand: &CableRun, course: &Course, system: &System, j: usize, patience: f64) -> Mode {
     let c = &strand.contacts[j];
     if course.mobilised != 0.0 && c.kink().is_none() {
         return Mode::Slide(course.mobilised * course.friction(c));
@@ -298,61 +277,70 @@ fn asked(strand: &CableRun, course: &Course, sheet: &System, j: usize, patience:
     if c.is_load() {
         return point_load::next_mode(strand, course, j, patience);
     }
-    // What holds within its cone goes on so, and what is smooth slides.
+    // A contact that holds within its cone goes on so, and a smooth one slides.
     if matches!((c.mode, c.held), (Mode::Hold, Some(Held::Between(_) | Held::Meet(_)))) && course.friction(c) > 0.0 {
         return c.mode;
     }
-    let track = Track { pivot: sheet.spots.get(j).map(|s| s.1), ..course.track(c) };
+    let track = Track { pivot: system.spots.get(j).map(|s| s.1), ..course.track(c) };
     equations::next_mode(&track, &c.history, &c.ends, c.held, c.mode, pinned(strand, j), patience)
 }
 
-/// Whether every contact is in the mode that its state asks for; the sheet is that of the state.
-fn agreed(strand: &CableRun, course: &Course, sheet: &System) -> bool {
-    // What is rounding grows with the stiffness as the residual does.
-    let patience = CYCLE_ROUNDINGS * tolerance(strand, course) / RESIDUAL;
-    (0..strand.contacts.len()).all(|j| asked(strand, course, sheet, j, patience) == strand.contacts[j].mode)
+/// True if every contact is in the mode that its state asks for; the system is that of the state.
+fn modes_agree(strand: &CableRun, course: &Course, system: &System) -> bool {
+    let tuned = &course.settings.newton;
+    // Rounding grows with the stiffness as the residual does.
+    let patience = tuned.cycle_rounding_factor * tolerance(strand, course) / tuned.residual;
+    (0..strand.contacts.len()).all(|j| required_mode(strand, course, system, j, patience) == strand.contacts[j].mode)
 }
 
 /// Gives contacts the mode they ask for; whether any was changed, and whether none asked for
 /// another.
-fn change_modes(strand: &mut CableRun, course: &Course, most: u32, sheet: &mut System) -> (bool, bool) {
+fn change_modes(strand: &mut CableRun, course: &Course, most: u32, system: &mut System) -> (bool, bool) {
+    let tuned = &course.settings.newton;
     let (mut changed, mut content) = (false, true);
     for j in 0..strand.contacts.len() {
         let flips = strand.contacts[j].flips;
-        let next = asked(strand, course, sheet, j, if flips < MOST_FLIPS { 1.0 } else { CYCLE_ROUNDINGS });
+        let next = required_mode(
+            strand,
+            course,
+            system,
+            j,
+            if flips < tuned.max_mode_changes { 1.0 } else { tuned.cycle_rounding_factor },
+        );
         let c = &mut strand.contacts[j];
         content &= next == c.mode;
         if next != c.mode && c.flips < most {
             c.mode = next;
             c.flips += 1;
             changed = true;
-            renew(strand, course, j, sheet);
+            renew(strand, course, j, system);
         }
     }
     (changed, content)
 }
 
 /// One Newton step with a line search on the sum of squares; false where none makes it smaller. The
-/// sheet is that of where the strand then is.
+/// system is that of where the strand then is.
 fn step(strand: &mut CableRun, course: &Course, work: &mut Work) -> bool {
     gather(strand, &mut work.saved);
-    let before = squares(&work.sheet.residual);
+    let before = squares(&work.system.residual);
     work.rhs.clear();
-    work.rhs.extend(work.sheet.residual.iter().map(|v| -v));
-    work.sheet.band.scale(&mut work.rhs);
-    if work.sheet.band.solve(&mut work.rhs) && search(strand, course, before, work) {
+    work.rhs.extend(work.system.residual.iter().map(|v| -v));
+    work.system.band.scale(&mut work.rhs);
+    if work.system.band.solve(&mut work.rhs) && search(strand, course, before, work) {
         return true;
     }
     scatter(strand, course, &work.saved);
-    assemble(strand, course, &mut work.sheet);
+    assemble(strand, course, &mut work.system);
     false
 }
 
 fn search(strand: &mut CableRun, course: &Course, before: f64, work: &mut Work) -> bool {
-    let (mut alpha, mut first) = (room(strand, course, &work.saved, &work.rhs), f64::INFINITY);
-    for round in 0..MAX_HALVINGS {
+    // Part of the step at which the first contact comes to the end of its piece of boundary.
+    let (mut alpha, mut first) = (max_step(strand, course, &work.saved, &work.rhs), None);
+    for round in 0..course.settings.newton.max_halvings {
         if round > 1 {
-            alpha = if first < alpha { first } else { 0.5 * alpha };
+            alpha = first.filter(|first| *first < alpha).unwrap_or(0.5 * alpha);
         }
         work.best.clear();
         work.best.extend(work.saved.iter().zip(&work.rhs).map(|(x, d)| x + alpha * d));
@@ -361,17 +349,17 @@ fn search(strand: &mut CableRun, course: &Course, before: f64, work: &mut Work) 
             // does.
             borders(strand, course, &work.saved, &work.rhs, |index, part| {
                 if part > 0.0 && part < alpha {
-                    first = if part < first { part } else { first };
+                    first = Some(first.map_or(part, |first| smaller(part, first)));
                     work.best[index] = work.saved[index] + part * work.rhs[index];
                 }
             });
-            if first == f64::INFINITY {
+            if first.is_none() {
                 continue;
             }
         }
         scatter(strand, course, &work.best);
-        assemble(strand, course, &mut work.sheet);
-        if squares(&work.sheet.residual) < (1.0 - 1e-4 * alpha) * before {
+        assemble(strand, course, &mut work.system);
+        if squares(&work.system.residual) < (1.0 - 1e-4 * alpha) * before {
             return true;
         }
     }

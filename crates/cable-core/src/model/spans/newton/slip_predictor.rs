@@ -25,28 +25,16 @@ use crate::model::spans::boundary::curve::Place;
 use crate::model::spans::boundary::friction_memory::{Ends, Mode};
 use crate::model::spans::boundary::segment_cursor::Pivot;
 use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::settings::SlipSettings;
 
-/// Rounds of changing sides, over two for each contact.
-const MORE_ROUNDS: usize = 6;
-/// Rounds of Newton's method at most, and the change of tension, as part of it, from which another
-/// is worth its cost: what is left after it is about that squared. A round costs a tenth of an
-/// iteration of Newton's method for the whole.
-const ROUNDS: usize = 6;
-const ROUND_TOLERANCE: f64 = 2e-3;
-/// Change of tension, as part of it, in the last of all rounds with which its guess is still taken.
-const ACCEPTED_TENSION_CHANGE: f64 = 0.02;
-/// A span whose tension would change by more than this factor in a round is not foreseen.
-const TENSION_CHANGE_LIMIT: f64 = 4.0;
 /// A span whose force changes by no more than this part in a round is where it was. Larger: the
 /// guess is off by as much.
 const FORCE_TOLERANCE: f64 = 1e-8;
-/// A contact's end follows its span by at most this angle, rad.
-const FOLLOWED_ANGLE: f64 = 0.2;
 
 /// A span to first order.
 #[derive(Clone, Copy, Debug, Default)]
-struct Bar {
-    /// Where it starts and ends, m; None where it keeps its force.
+struct LinearSpan {
+    /// Start and end, m; None where it keeps its force.
     ends: Option<[Vec2; 2]>,
     /// G, N, and material at both ends, m.
     force: Vec2,
@@ -58,47 +46,49 @@ struct Bar {
     tension: [f64; 2],
     /// Change of tension at each end by σ before and after it, N/m.
     by: [[f64; 2]; 2],
-    /// Whether the last round left it where it was: what is said of it holds on.
+    /// True if the last round left it unmoved, so that its prediction holds on.
     still: bool,
 }
 
 /// A contact to first order.
 #[derive(Clone, Copy, Debug)]
-struct Link {
-    /// Where it ends, material and tensions there.
+struct LinearContact {
+    /// End places, material and tensions there.
     ends: Ends,
     /// Tension that sliding with −μ and +μ makes of that, N, and its derivative; None where it is
     /// not ours to say.
     reach: Option<[(f64, f64); 2]>,
     /// −1, 0, +1: slides back, sticks, slides on.
     side: i8,
-    /// What slides in a round, and what slid before it, m.
+    /// Slip of this round, and slip before it, m.
     sigma: f64,
     slid: f64,
 }
 
 /// The places of both ends of a contact, and the piece of the first.
-type Spots = ([Place; 2], Pivot);
+type ContactPlaces = ([Place; 2], Pivot);
 
 /// Memory of a guess.
 #[derive(Clone, Debug, Default)]
-pub(in crate::model::spans) struct Foresight {
-    bars: Vec<Bar>,
-    links: Vec<Link>,
+pub(in crate::model::spans) struct SlipPredictor {
+    bars: Vec<LinearSpan>,
+    links: Vec<LinearContact>,
     /// Upper diagonal and right-hand side of the elimination.
     swept: Vec<(f64, f64)>,
-    spots: Vec<Spots>,
+    spots: Vec<ContactPlaces>,
+    tuned: SlipSettings,
 }
 
 /// Gives each contact the mode that the step will ask for, and contacts and spans their place, as
-/// far as that can be foreseen.
-pub(in crate::model::spans) fn foresee(strand: &mut CableRun, course: &Course, memory: &mut Foresight) {
+/// far as that can be predicted.
+pub(in crate::model::spans) fn predict_slip(strand: &mut CableRun, course: &Course, memory: &mut SlipPredictor) {
     if course.drag > 0.0 || strand.contacts.is_empty() {
         return;
     }
     strand.take_tensions(course);
-    let Foresight { bars, links, spots, .. } = memory;
-    let seen = |c: &Contact| Pivot::of_ends(&course.curves[c.curve], c.home, &course.law, c.ends.p);
+    let SlipPredictor { bars, links, spots, tuned, .. } = memory;
+    *tuned = course.settings.newton.slip;
+    let seen = |c: &Contact| Pivot::of_ends(&course.curves[c.curve], c.chain_range, &course.law, c.ends.p);
     spots.clear();
     spots.extend(strand.contacts.iter().map(seen));
     bars.clear();
@@ -123,22 +113,22 @@ pub(in crate::model::spans) fn foresee(strand: &mut CableRun, course: &Course, m
 }
 
 /// A span as it is, to begin with.
-fn span(strand: &CableRun, course: &Course, spots: &[Spots], k: usize) -> Bar {
+fn span(strand: &CableRun, course: &Course, spots: &[ContactPlaces], k: usize) -> LinearSpan {
     if !strand.has_span(k) {
-        return Bar::default();
+        return LinearSpan::default();
     }
     let (from, to) = strand.material(k);
     let forces = [strand.force(course, k, from), strand.force(course, k, to)];
     let held = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
     let before = k.checked_sub(1).and_then(|j| spots.get(j)).map_or_else(|| held(&strand.ties[0]), |s| Some(s.0[1].at));
     let after = spots.get(k).map_or_else(|| held(&strand.ties[1]), |s| Some(s.0[0].at));
-    // What hangs keeps its force.
+    // A span that hangs keeps its force.
     let ends = before.zip(after).map(|(a, b)| [a, b]);
     let tension = forces.map(|f| f.norm());
-    Bar { ends, force: strand.forces[k], material: [from, to], tension, ..Bar::default() }
+    LinearSpan { ends, force: strand.forces[k], material: [from, to], tension, ..LinearSpan::default() }
 }
 
-impl Bar {
+impl LinearSpan {
     /// Force at both ends, N.
     fn pulls(&self, course: &Course, first: f64) -> [Vec2; 2] {
         let [from, to] = self.material;
@@ -171,12 +161,12 @@ impl Bar {
     }
 }
 
-fn link(strand: &CableRun, course: &Course, spots: &[Spots], j: usize) -> Link {
+fn link(strand: &CableRun, course: &Course, spots: &[ContactPlaces], j: usize) -> LinearContact {
     let c = &strand.contacts[j];
     let e = &c.ends;
     let ties = [(j == 0).then(|| strand.ties[0]), (j + 1 == strand.contacts.len()).then(|| strand.ties[1])];
     let lies = ties.iter().flatten().any(|t| matches!(t, Tie::Lies(_) | Tie::Loose(_)));
-    let mut out = Link { ends: c.ends, reach: None, side: 0, sigma: 0.0, slid: 0.0 };
+    let mut out = LinearContact { ends: c.ends, reach: None, side: 0, sigma: 0.0, slid: 0.0 };
     let beside_slack = strand.in_pocket(j, 0) || strand.in_pocket(j, 1);
     let beside_load = strand.is_marked(j, 0) || strand.is_marked(j, 1);
     if lies || beside_slack || beside_load || !(e.p[1] > e.p[0] && e.t[0] > 0.0) {
@@ -188,34 +178,34 @@ fn link(strand: &CableRun, course: &Course, spots: &[Spots], j: usize) -> Link {
         let way = track.slide(e.p[0], e.p[1], e.t[0], m);
         (way.tension, way.by_tension)
     }));
-    // What is smooth always slides.
+    // A smooth contact always slides.
     out.side = if friction > 0.0 { 0 } else { 1 };
     out
 }
 
-impl Foresight {
+impl SlipPredictor {
     /// Newton's method for what slides: whether it came to an end, None where not even the modes
     /// can be told.
     fn rounds(&mut self, strand: &CableRun, course: &Course) -> Option<bool> {
         let mut last = f64::INFINITY;
-        for round in 0..ROUNDS {
+        for round in 0..self.tuned.newton_rounds {
             if !self.bars.iter_mut().all(|b| b.renew(course, strand.from)) || !self.settle() {
                 return (round > 0).then_some(false);
             }
             let Some(change) = self.step() else { return Some(false) };
             self.turn(strand, course);
-            if change <= ROUND_TOLERANCE {
+            if change <= self.tuned.round_tolerance {
                 return Some(true);
             }
             last = change;
         }
-        Some(last <= ACCEPTED_TENSION_CHANGE)
+        Some(last <= self.tuned.accepted_tension_change)
     }
 
     /// Lets the ends of contacts on arcs follow the directions of their spans.
     fn turn(&mut self, strand: &CableRun, course: &Course) {
-        let law = &course.law;
-        let pulls = |bar: &Bar, end: usize| bar.ends.map(|_| bar.pulls(course, strand.from)[end]);
+        let (law, most) = (&course.law, self.tuned.max_followed_angle);
+        let pulls = |bar: &LinearSpan, end: usize| bar.ends.map(|_| bar.pulls(course, strand.from)[end]);
         for (j, c) in strand.contacts.iter().enumerate() {
             let (l, (places, pivot)) = (&mut self.links[j], &mut self.spots[j]);
             if l.reach.is_none() || self.bars[j].still && self.bars[j + 1].still {
@@ -230,7 +220,7 @@ impl Foresight {
                 let (tension, place) = (force.norm(), &mut places[side]);
                 l.ends.t[side] = tension;
                 let angle = angle(place.tangent, force);
-                if place.turn == 0.0 || !(angle.abs() <= FOLLOWED_ANGLE) {
+                if place.turn == 0.0 || !(angle.abs() <= most) {
                     continue;
                 }
                 let by = angle / place.turn;
@@ -261,7 +251,7 @@ impl Foresight {
     /// Takes what the round has found; the greatest change of tension as part of it, None where
     /// that is wild.
     fn step(&mut self) -> Option<f64> {
-        let mut greatest = 0.0;
+        let (mut greatest, limit) = (0.0, self.tuned.max_tension_factor);
         for k in 0..self.bars.len() {
             let slide = |j: Option<usize>| j.and_then(|j| self.links.get(j)).map_or(0.0, |l| l.sigma);
             let (before, after) = (slide(k.checked_sub(1)), slide(Some(k)));
@@ -272,7 +262,7 @@ impl Foresight {
             let change = bar.change[0] + bar.change[1] * before + bar.change[2] * after;
             let now = [0, 1].map(|i| bar.tension[i] + bar.by[i][0] * before + bar.by[i][1] * after);
             for (now, was) in now.into_iter().zip(bar.was) {
-                if !(now <= was * TENSION_CHANGE_LIMIT && now >= was / TENSION_CHANGE_LIMIT) {
+                if !(now <= was * limit && now >= was / limit) {
                     return None;
                 }
                 greatest = larger(greatest, (now - was).abs() / was);
@@ -293,7 +283,7 @@ impl Foresight {
 
     /// Finds sides and slips that agree; false where that comes to no end.
     fn settle(&mut self) -> bool {
-        for _ in 0..2 * self.links.len() + MORE_ROUNDS {
+        for _ in 0..2 * self.links.len() + self.tuned.extra_rounds {
             if !self.solve() {
                 return false;
             }
@@ -337,7 +327,7 @@ impl Foresight {
 
     /// Changes the sides that disagree with the slips; whether there was any.
     fn change(&mut self) -> bool {
-        let sigma = |links: &[Link], j: Option<usize>| j.and_then(|j| links.get(j)).map_or(0.0, |l| l.sigma);
+        let sigma = |links: &[LinearContact], j: Option<usize>| j.and_then(|j| links.get(j)).map_or(0.0, |l| l.sigma);
         let mut changed = false;
         for j in 0..self.links.len() {
             let l = self.links[j];

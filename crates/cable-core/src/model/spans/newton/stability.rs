@@ -4,7 +4,7 @@ use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::newton::{Work, assemble, lies};
 use crate::model::spans::run::{CableRun, Course, Next, Tie};
 
-/// Whether a balance without friction is a rest: what is pushed comes back.
+/// True if a balance without friction is stable: it returns after a disturbance.
 ///
 /// A contact that sticks keeps its material, one that slides has T₂ − T₁ = 0 instead, which must
 /// rise with the material s that comes to it. By s₁ = s₂ = s the two rows are [−1, 1] and [−∂T₁,
@@ -20,11 +20,11 @@ pub(in crate::model::spans) fn stable(strand: &CableRun, course: &Course, work: 
     }
     let count = (0..strand.contacts.len()).filter(|&j| !lies(strand, j, 0)).count();
     let mut sign = |strand: &mut CableRun| {
-        assemble(strand, course, &mut work.sheet);
+        assemble(strand, course, &mut work.system);
         work.rhs.clear();
-        work.rhs.resize(work.sheet.residual.len(), 1.0);
-        work.sheet.band.scale(&mut work.rhs);
-        work.sheet.band.solve(&mut work.rhs).then(|| work.sheet.band.is_negative())
+        work.rhs.resize(work.system.residual.len(), 1.0);
+        work.system.band.scale(&mut work.rhs);
+        work.system.band.solve(&mut work.rhs).then(|| work.system.band.is_negative())
     };
     let mut stuck = strand.clone();
     let found = sign(&mut stuck);

@@ -35,7 +35,7 @@ fn loaded(
     (c.length_m, c.friction) = (length, friction);
     c.supports = vec![Support::fixed("A", route_m[0]), Support::fixed("B", *route_m.last().unwrap())];
     c.route_m = route_m;
-    let layout = Layout::new(&problems(&scene).unwrap().remove(0), CableEnd::Start).unwrap();
+    let layout = Layout::new(&problems(&scene).unwrap().remove(0), CableEnd::Start, std::sync::Arc::default()).unwrap();
     let mut instant = BoundaryConditions::default();
     layout.instant(&[None, None], 0.0, &mut instant);
     let mut work = Work::default();
@@ -67,17 +67,17 @@ fn compare(strand: &CableRun, course: &Course, seed: usize) {
         moved
     };
     let residual = |x: &[f64]| {
-        let mut sheet = System::default();
-        assemble(&mut at(x), course, &mut sheet);
-        sheet.residual
+        let mut system = System::default();
+        assemble(&mut at(x), course, &mut system);
+        system.residual
     };
-    let mut sheet = System::default();
-    assemble(&mut at(&x), course, &mut sheet);
-    let (r, band) = (sheet.residual, sheet.band);
+    let mut system = System::default();
+    assemble(&mut at(&x), course, &mut system);
+    let (r, band) = (system.residual, system.band);
     let n = x.len();
     let largest: Vec<f64> =
         (0..n).map(|i| (0..n).map(|j| band.entry(i, j).abs() * size(j)).fold(0.0, f64::max)).collect();
-    // What lies in a kink stays there: its place, and the force of a span that is not there, are no
+    // A load in a kink stays there: its place, and the force of a span that is not there, are no
     // unknowns.
     let fixed = |j: usize| match j % 6 {
         0 | 1 => !strand.has_span(j / 6),
@@ -97,8 +97,7 @@ fn compare(strand: &CableRun, course: &Course, seed: usize) {
         up[j] += h;
         down[j] -= h;
         let (up, down) = (residual(&up), residual(&down));
-        // What is held on the boundary has a row that is linear only near its answer, see
-        // `rub::pin`.
+        // An end that is held on the boundary has a row that is linear only near its answer.
         let linear = |i: &usize| !(i % 6 > 2 && i % 6 < 5 && strand.is_pinned(i / 6, i % 6 - 3));
         for i in (0..n).filter(linear) {
             let exact = band.entry(i, j) * size(j);

@@ -1,6 +1,6 @@
-//! LU factorisation with partial pivoting of a matrix with a narrow band: G. H. Golub and C. F. Van
-//! Loan, *Matrix Computations*, Johns Hopkins, 4th ed. 2013, §4.3. The network's Jacobian is
-//! neither symmetric nor definite.
+//! This file holds the LU factorisation with partial pivoting of a matrix with a narrow band: G. H.
+//! Golub and C. F. Van Loan, *Matrix Computations*, Johns Hopkins, 4th ed. 2013, §4.3. The
+//! network's Jacobian is neither symmetric nor definite.
 
 /// Entries left and right of the diagonal.
 pub(in crate::model::spans) const BAND: usize = 4;
@@ -11,7 +11,7 @@ const WIDTH: usize = 3 * BAND + 1;
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::spans) struct Band {
     rows: Vec<[f64; WIDTH]>,
-    /// Whether the determinant of what was factorised last is negative.
+    /// True if the determinant of the last factorised matrix is negative.
     negative: bool,
 }
 
@@ -57,7 +57,7 @@ impl Band {
         }
     }
 
-    /// Whether the determinant of what was solved last is negative.
+    /// True if the determinant of the last solved matrix is negative.
     pub fn is_negative(&self) -> bool {
         self.negative
     }

@@ -8,9 +8,9 @@ pub(in crate::model::spans) const TENSION_ROUNDING: f64 = 1e-14;
 /// Rounds of such a search at most: halving alone takes 52.
 const MAX_ROUNDS: usize = 100;
 
-/// Where f falls from above zero at `a` to zero or below at `b`: Newton's method from the secant,
-/// kept inside what brackets the root. `f`: value and slope; `floor`: a value that is rounding; the
-/// values at a and b and a place near the root where they are known.
+/// Finds the root at which f falls from above zero at `a` to zero or below at `b`: Newton's method
+/// from the secant, kept inside what brackets the root. `f`: value and slope; `floor`: a value that
+/// is rounding; the values at a and b and a place near the root where they are known.
 pub(in crate::model::spans) fn crossing(
     a: f64,
     b: f64,
@@ -40,7 +40,7 @@ pub(in crate::model::spans) fn crossing(
         }
         let next = x - value / slope;
         let inside = (next - x0) * (next - x1) < 0.0;
-        // What does not halve is not near enough for Newton.
+        // A step that does not halve the value is not near enough for Newton.
         let step = if inside && value.abs() < 0.5 * before { next } else { 0.5 * (x0 + x1) };
         before = value.abs();
         if (step - x).abs() <= rounding {

@@ -1,7 +1,7 @@
 //! A bridge is a span from a support to a crest that draws it tight.
 //!
-//! Where a support is so near above a crest that what hangs beyond it pulls more than friction
-//! holds at the foot of its plumb line, the cable has slid until it is a free span, tangent to the
+//! A support may be so near above a crest that what hangs beyond it pulls more than friction holds
+//! at the foot of its plumb line; the cable has then slid until it is a free span, tangent to the
 //! crest at p with the tension that friction leaves there. Seen from p, with H the force across the
 //! load, V that against it and V₁ = V + bσ,
 //!
@@ -17,16 +17,16 @@ use crate::model::spans::boundary::loose::{Line, Part};
 use crate::model::spans::slack::joint::Profile;
 use crate::model::spans::slack::{Drape, HALVINGS};
 
-/// How far from its support a span may end, of its length and the size of coordinates: next to
-/// plumb rounding of where it touches moves its end a thousand times as much. Larger: a jump could
-/// be taken for a root.
+/// Greatest distance from its support at which a span may end, of its length and the size of
+/// coordinates: next to plumb rounding of where it touches moves its end a thousand times as much.
+/// Larger: a jump could be taken for a root.
 const ENDS: f64 = 1e-10;
 /// Rounds of Newton's method for the length of a span: it is off by its strain at first.
 const ROUNDS: usize = 8;
 
 /// A span, and where it touches.
 pub(super) struct Bridge {
-    /// Which of the stretches, and p on it.
+    /// Number of the stretch, and p on it.
     pub line: usize,
     pub p: f64,
     pub part: Part,
@@ -36,7 +36,7 @@ pub(super) struct Bridge {
 #[derive(Clone, Copy)]
 struct Seen {
     length: f64,
-    /// How much higher than the support it ends, m.
+    /// Height above the support at which it ends, m.
     over: f64,
     /// Tension where it touches and its direction from there.
     tension: f64,

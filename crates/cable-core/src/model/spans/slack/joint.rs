@@ -32,7 +32,7 @@ const TANGENCY_FRACTION: f64 = 1e-3;
 /// A span from one stretch to the next, seen from where its tension comes.
 #[derive(Clone, Copy, Debug)]
 struct Over {
-    /// Where it leaves the one and where it meets the other.
+    /// Places at which it leaves the one and meets the other.
     p: [f64; 2],
     /// Tensions where it leaves and where it meets, N.
     tension: [f64; 2],
@@ -119,7 +119,7 @@ impl Drape<'_> {
         larger(s.slide(self.course, s.p[side], p, enters, against).tension, 0.0)
     }
 
-    /// Whether a cable under tension would bridge what is between two stretches.
+    /// True if a cable under tension would bridge the gap between two stretches.
     pub(super) fn bends_in(&self, a: &Stretch, b: &Stretch) -> bool {
         let [before, after] = [a.place(self.course, a.p[1]), b.place(self.course, b.p[0])];
         cross(before.tangent, after.tangent) * self.course.curves[a.curve].sense > STRAIGHT_TURN

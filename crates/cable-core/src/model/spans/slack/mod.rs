@@ -55,7 +55,7 @@ impl Stretch {
         curve.place_on(self.piece, p - curve.origin(self.piece))
     }
 
-    /// How the tension `t` at one place of it goes on to another.
+    /// The tension at another place of it that follows from the tension `t` at one.
     fn slide(&self, course: &Course, from: f64, to: f64, t: f64, m: f64) -> Step {
         course.law.along(&course.law.spot(&self.place(course, from)), to - from, t, m)
     }
@@ -66,7 +66,7 @@ impl Stretch {
 }
 
 impl Part {
-    /// Whether it lies without tension, so that there may be more of it.
+    /// True if it lies without tension, so that there may be more of it.
     fn is_loose(&self) -> bool {
         matches!(self.form, Line::Lies(_)) && self.tension == [0.0; 2]
     }
@@ -251,12 +251,12 @@ impl Drape<'_> {
         Ok(out)
     }
 
-    /// How far a plumb line rises, m.
+    /// Height by which a plumb line rises, m.
     fn rise(&self, [from, to]: [Vec2; 2]) -> f64 {
         (to - from).dot(&self.frame.up)
     }
 
-    /// Whether it has no tension between two lines: at a foot, and in a kink that a cable under
+    /// True if it has no tension between two lines: at a foot, and in a kink that a cable under
     /// tension would bridge. None where it turns with nothing to turn it.
     fn rests(&self, a: &Line, b: &Line) -> Option<bool> {
         let plumb = |s: &Stretch, p: f64| cross(s.place(self.course, p).tangent, self.frame.up).abs() <= STRAIGHT_TURN;
@@ -279,9 +279,9 @@ impl Drape<'_> {
         }
     }
 
-    /// What lies between two points without tension, or from or to a support. Where a support hangs
-    /// nearby and the crest draws the cable tight there, a span bridges to it; whether that was
-    /// done at the end. Else on which side it is drawn tight, if that is it.
+    /// The stretches between two points without tension, or from or to a support. Where a support
+    /// hangs nearby and the crest draws the cable tight there, a span bridges to it; whether that
+    /// was done at the end. Else on which side it is drawn tight, if that is it.
     fn chain(
         &self,
         lines: &[Line],
@@ -464,7 +464,7 @@ impl Loose {
         part.map_or_else(Vec2::zeros, |part| part.force(course, side))
     }
 
-    /// What obstacles carry of it, N.
+    /// Force with which obstacles carry it, N.
     pub fn held(&self, course: &Course) -> Vec2 {
         let ends = [0, 1].map(|side| self.end_force(course, side));
         let s = self.parts.first().zip(self.parts.last()).map_or(0.0, |(a, b)| b.s[1] - a.s[0]);
@@ -477,7 +477,7 @@ impl Loose {
         self.parts.iter().map(press).sum()
     }
 
-    /// Whether all that lies has no tension. Where it is drawn over crests, and where all that is
+    /// True if nothing that lies has tension. Where it is drawn over crests, and where all that is
     /// over is a heap in a kink, a strand under hardly any tension is much the same, and can be
     /// followed as it moves.
     pub fn spreads(&self) -> bool {

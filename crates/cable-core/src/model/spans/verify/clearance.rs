@@ -9,6 +9,7 @@
 
 use crate::contact::World;
 use crate::contact::geometry::{Body, Edge};
+use crate::error::EquilibriumFault;
 use crate::math::{Vec2, cross, perp, smaller};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Contact, Course};
@@ -50,13 +51,13 @@ impl Hull {
         (a.inf(apex).inf(b) - Vec2::repeat(r), a.sup(apex).sup(b) + Vec2::repeat(r))
     }
 
-    /// Whether a box comes within r of it, as far as its sides tell.
+    /// True if a box comes within r of it, as far as its sides tell.
     fn meets(&self, low: Vec2, high: Vec2, r: f64) -> bool {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         self.sides.iter().all(|(at, n)| (middle - at).dot(n) + half.x * n.x.abs() + half.y * n.y.abs() > -r)
     }
 
-    /// Whether an edge is nowhere nearer than r, as far as the sides, the edge itself and the ways
+    /// True if an edge is nowhere nearer than r, as far as the sides, the edge itself and the ways
     /// from its ends tell.
     fn misses_edge(&self, e: &Edge, r: f64) -> bool {
         let (n, t) = (e.normal(), e.tangent);
@@ -69,25 +70,25 @@ impl Hull {
             || self.aside(e.q, |n| n.dot(&t) >= 0.0, r)
     }
 
-    /// Whether a point is nowhere nearer than r, as far as the sides and the ways to the corners
+    /// True if a point is nowhere nearer than r, as far as the sides and the ways to the corners
     /// tell.
     fn misses_point(&self, v: Vec2, r: f64) -> bool {
         self.sides.iter().any(|(at, n)| (v - at).dot(n) <= -r) || self.aside(v, |_| true, r)
     }
 
-    /// Whether all of it is at least r from a point in a direction (a unit vector).
+    /// True if all of it is at least r from a point in a direction (a unit vector).
     fn beyond(&self, v: Vec2, n: Vec2, r: f64) -> bool {
         self.corners.iter().all(|c| (c - v).dot(&n) >= r)
     }
 
-    /// Whether all of it is at least r from a point in the direction of one of its corners, of
+    /// True if all of it is at least r from a point in the direction of one of its corners, of
     /// those that will do.
     fn aside(&self, v: Vec2, will_do: impl Fn(Vec2) -> bool, r: f64) -> bool {
         let unit = self.corners.iter().map(|c| (c - v, (c - v).norm())).filter(|(_, far)| *far >= r && *far > 0.0);
         unit.map(|(way, far)| way / far).any(|n| will_do(n) && self.beyond(v, n, r))
     }
 
-    /// Whether it is clear of a body. `beside`: a corner or circle that what it holds runs round at
+    /// True if it is clear of a body. `beside`: a corner or circle that what it holds runs round at
     /// the right distance.
     fn misses(&self, body: &Body, beside: Option<usize>) -> bool {
         let r = body.offset - smaller(DEPTH, 0.1 * body.offset);
@@ -105,7 +106,7 @@ impl Hull {
     }
 }
 
-/// Whether a strand is clear of everything.
+/// Checks that a strand is clear of everything.
 pub(in crate::model::spans) fn clear(strand: &CableRun, course: &Course, world: &World) -> Result<(), Failure> {
     let mut inside = None;
     for k in 0..strand.spans() {
@@ -124,13 +125,13 @@ pub(in crate::model::spans) fn clear(strand: &CableRun, course: &Course, world: 
             inside = inside.or_else(|| contact(c, course, world));
         }
         if let Some((s, at)) = inside {
-            return Err(Failure::Unsound { what: "the cable is inside an obstacle", s, at });
+            return Err(Failure::Unsound { what: EquilibriumFault::InsideObstacle, s, at });
         }
     }
     Ok(())
 }
 
-/// Where a contact is inside something.
+/// The place at which a contact is inside something.
 fn contact(c: &Contact, course: &Course, world: &World) -> Option<(f64, Vec2)> {
     let track = course.track(c).seen_from(c.ends.p[0]);
     let mut p = c.ends.p[0];
@@ -138,7 +139,7 @@ fn contact(c: &Contact, course: &Course, world: &World) -> Option<(f64, Vec2)> {
         let border = track.next_border(p, c.ends.p[1]);
         let arc = track.turns(0.5 * (p + border));
         let q = if arc && border > p + TURN { p + TURN } else { border };
-        let piece = track.curve.piece(track.curve.locate(0.5 * (p + q), c.home));
+        let piece = track.curve.piece(track.curve.locate(0.5 * (p + q), c.chain_range));
         let point = |p: f64| {
             let place = track.place(p);
             (place.at, place.tangent)
@@ -152,7 +153,7 @@ fn contact(c: &Contact, course: &Course, world: &World) -> Option<(f64, Vec2)> {
     None
 }
 
-/// Where a stretch is inside something.
+/// The place at which a stretch is inside something.
 fn inside_on(
     world: &World,
     point: &dyn Fn(f64) -> (Vec2, Vec2),
@@ -163,7 +164,7 @@ fn inside_on(
     world.geometry().bodies().iter().find_map(|body| search(body, point, ends, beside, 0))
 }
 
-/// Where a stretch is inside a body, halved until it is clear or no stretch any more.
+/// The place at which a stretch is inside a body, halved until it is clear or no stretch any more.
 fn search(
     body: &Body,
     point: &dyn Fn(f64) -> (Vec2, Vec2),

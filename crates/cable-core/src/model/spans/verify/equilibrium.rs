@@ -2,6 +2,7 @@
 //! the balance of each contact from its ends, and the cone of friction along it. `clearance` asks
 //! that nothing is inside an obstacle.
 
+use crate::error::EquilibriumFault;
 use crate::math::{GAUSS_5, Vec2, bounded, cross};
 use crate::model::spans::boundary::capstan::{Step, Track};
 use crate::model::spans::boundary_conditions::CableEquilibrium;
@@ -32,7 +33,7 @@ const PANEL: f64 = 0.5;
 
 /// Returns an error unless the solution satisfies equilibrium. The caller keeps the stick zones
 /// that the contacts were solved with.
-pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Result<(), Failure> {
+pub(in crate::model::spans) fn verify(strand: &CableRun, course: &Course) -> Result<(), Failure> {
     let mut before = strand.from;
     let greatest = strand
         .contacts
@@ -49,7 +50,7 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Resu
         let long = strand.to - strand.from;
         // A pocket that is short by less is not opened.
         if !(from >= before - BALANCE_TOLERANCE * long && to >= from - slack_pocket::POCKET_SHORTAGE_FRACTION * long) {
-            return Err(Failure::Unsound { what: "material out of order", s: from, at: Vec2::zeros() });
+            return Err(Failure::Unsound { what: EquilibriumFault::MaterialOrder, s: from, at: Vec2::zeros() });
         }
         before = to;
         if strand.has_span(k) {
@@ -62,8 +63,8 @@ pub(in crate::model::spans) fn sound(strand: &CableRun, course: &Course) -> Resu
     Ok(())
 }
 
-/// Whether supports and contacts, as they are reported, hold all of the weight and the loads: what
-/// no part of the network asked for is missed by each part's own check.
+/// Checks that supports and contacts, as they are reported, hold all of the weight and the loads:
+/// what no part of the network asked for is missed by each part's own check.
 pub(in crate::model::spans) fn balanced(layout: &Layout, network: &CableEquilibrium) -> Result<(), Failure> {
     let (left, size) = results::unbalanced(layout, network);
     if left.norm() <= BALANCE_TOLERANCE * size {
@@ -71,7 +72,7 @@ pub(in crate::model::spans) fn balanced(layout: &Layout, network: &CableEquilibr
     }
     let strand = network.strands.first();
     let at = strand.and_then(|s| s.ends_of(&network.course, 0)[0]).unwrap_or_default();
-    Err(Failure::Unsound { what: "supports and contacts do not hold the weight and the loads", s: 0.0, at })
+    Err(Failure::Unsound { what: EquilibriumFault::Unbalanced, s: 0.0, at })
 }
 
 /// The span closes.
@@ -85,7 +86,7 @@ fn span(strand: &CableRun, course: &Course, k: usize) -> Result<(), Failure> {
             before = next;
         }
         if !((at - b).norm() <= BALANCE_TOLERANCE * (strand.to - strand.from)) {
-            return Err(Failure::Unsound { what: "a span does not close", s: from, at });
+            return Err(Failure::Unsound { what: EquilibriumFault::SpanOpen, s: from, at });
         }
     }
     Ok(())
@@ -134,26 +135,26 @@ fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Ve
 fn contact(strand: &CableRun, course: &Course, j: usize, greatest: f64) -> Result<(), Failure> {
     let c = &strand.contacts[j];
     let (track, e) = (course.track(c).seen_from(c.ends.p[0]), &c.ends);
-    let unsound = |what: &'static str, p: f64, s: f64| Failure::Unsound { what, s, at: track.place(p).at };
-    let (first, last) = (track.curve.origin(c.home.first), track.curve.end(c.home.last));
+    let unsound = |what: EquilibriumFault, p: f64, s: f64| Failure::Unsound { what, s, at: track.place(p).at };
+    let (first, last) = (track.curve.origin(c.chain_range.first), track.curve.end(c.chain_range.last));
     if !(track.curve.is_round() || e.p[0] >= first - CHAIN_END_TOLERANCE && e.p[1] <= last + CHAIN_END_TOLERANCE) {
-        return Err(unsound("a contact goes on beyond what it lies on", e.p[0], e.s[0]));
+        return Err(unsound(EquilibriumFault::ContactBeyondBoundary, e.p[0], e.s[0]));
     }
     if c.is_load() {
-        return point_load::sound(strand, course, j);
+        return point_load::verify(strand, course, j);
     }
     for side in 0..2 {
         if let Some(force) = strand.force_at_contact(course, j, side) {
             let tangent = track.place(e.p[side]).tangent;
             if !(cross(force, tangent).abs() <= BALANCE_TOLERANCE * force.norm() && force.dot(&tangent) > 0.0) {
-                return Err(unsound("a span is not tangent to what it leaves", e.p[side], e.s[side]));
+                return Err(unsound(EquilibriumFault::SpanNotTangent, e.p[side], e.s[side]));
             }
         } else if strand.in_pocket(j, side) {
             if e.t[side] != 0.0 {
-                return Err(unsound("slack has tension", e.p[side], e.s[side]));
+                return Err(unsound(EquilibriumFault::SlackUnderTension, e.p[side], e.s[side]));
             }
             if side == 1 && slack_pocket::heap(strand, course, j + 1).is_none() {
-                return Err(unsound("what lies loose slides", e.p[side], e.s[side]));
+                return Err(unsound(EquilibriumFault::LooseCableSlides, e.p[side], e.s[side]));
             }
         } else if strand.is_joined(j, side) {
             // The load beside it is looked at by itself.
@@ -162,7 +163,7 @@ fn contact(strand: &CableRun, course: &Course, j: usize, greatest: f64) -> Resul
             if !((e.t[side] - course.pull(c, side, force)).abs() <= BALANCE_TOLERANCE * greatest
                 && lifts <= BALANCE_TOLERANCE * force.norm())
             {
-                return Err(unsound("an end is not what draws it", e.p[side], e.s[side]));
+                return Err(unsound(EquilibriumFault::EndTension, e.p[side], e.s[side]));
             }
         }
         if !(e.t[side] >= -COMPRESSION_ROUNDING * greatest - 1e-9) {
@@ -194,7 +195,7 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(
         && (lost(first.s, c.ends.s[0]) || lost(last.s, c.ends.s[1]))
     {
         return Err(Failure::Unsound {
-            what: "material is lost at an end of a contact",
+            what: EquilibriumFault::MaterialAtContactEnd,
             s: first.s,
             at: track.place(first.p).at,
         });
@@ -202,7 +203,7 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(
     for pair in c.history.knots().windows(2) {
         let (knot, next) = (&pair[0], &pair[1]);
         let (mut p, mut t, mut s) = (knot.p, knot.tension, knot.s);
-        let unsound = |what: &'static str| Err(Failure::Unsound { what, s: knot.s, at: track.place(knot.p).at });
+        let unsound = |what: EquilibriumFault| Err(Failure::Unsound { what, s: knot.s, at: track.place(knot.p).at });
         while p < next.p {
             let q = track.next_border(p, next.p);
             let whole = track.slide(p, q, t, knot.m);
@@ -212,7 +213,7 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(
                     return Err(Failure::Compressed { s: s + way.material, at: place.at, tension: way.tension });
                 }
                 if !(track.law.press(&place, way.tension) >= -room) {
-                    return unsound("a contact pulls");
+                    return unsound(EquilibriumFault::ContactPulls);
                 }
                 Ok(())
             };
@@ -230,10 +231,10 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(
             continue;
         }
         if !(knot.m.abs() <= friction * (1.0 + BALANCE_TOLERANCE)) {
-            return unsound("friction beyond its cone");
+            return unsound(EquilibriumFault::FrictionBeyondCone);
         }
         if lost(s, next.s) {
-            return unsound("material is lost along a contact");
+            return unsound(EquilibriumFault::MaterialAlongContact);
         }
         if !((t - next.tension).abs() <= room) {
             return sampled(track, c, friction, room);
@@ -242,7 +243,7 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(
     Ok(())
 }
 
-/// Whether tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and
+/// True if tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and
 /// N ds/dp > T − cb.
 fn firm(track: &Track<'_>, p: f64, q: f64, t: f64, m: f64) -> bool {
     let place = track.place(p);
@@ -250,8 +251,8 @@ fn firm(track: &Track<'_>, p: f64, q: f64, t: f64, m: f64) -> bool {
     place.turn != 0.0 && track.law.stiffness > 0.0 && t - (q - p) * (m.abs() * t + 2.0 * load) > load && m.abs() <= 1.0
 }
 
-/// Where the load has changed since something was laid, what sticks has changed by less than
-/// friction takes up: the cone from point to point.
+/// Checks the cone from point to point where the load has changed since something was laid: what
+/// sticks has changed by less than friction takes up.
 fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Failure> {
     let past = &c.history;
     let [first, last] = c.ends.p;
@@ -261,7 +262,7 @@ fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64) -> Result<(
         let (next, s) = past.at(track, q);
         let (low, high) = (track.slide(p, q, t, -friction).tension, track.slide(p, q, t, friction).tension);
         if !(next >= low - room && next <= high + room) {
-            return Err(Failure::Unsound { what: "friction beyond its cone", s, at: track.place(q).at });
+            return Err(Failure::Unsound { what: EquilibriumFault::FrictionBeyondCone, s, at: track.place(q).at });
         }
         (p, t) = (q, next);
     }

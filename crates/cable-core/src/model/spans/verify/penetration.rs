@@ -32,7 +32,7 @@ pub(in crate::model::spans) struct Penetration {
     pub at: Vec2,
     /// Direction of the cable there.
     pub tangent: Vec2,
-    /// What it is inside of; `gap_m` < 0.
+    /// The gap to the obstacle it is inside of; `gap_m` < 0.
     pub gap: Gap,
     /// Index of the body.
     pub body: usize,
@@ -65,12 +65,12 @@ impl<'a> Arc<'a> {
         Self { s0, at, shape, load, sides }
     }
 
-    /// Whether a point is at least so far from it, seen from the tangents at its ends.
+    /// True if a point is at least so far from it, seen from the tangents at its ends.
     fn misses(&self, v: Vec2, by: f64) -> bool {
         self.sides.iter().flatten().any(|(at, normal)| (at - v).dot(normal) >= by)
     }
 
-    /// Whether all of edge k and of the one before it face it from at least so far, seen from one
+    /// True if all of edge k and of the one before it face it from at least so far, seen from one
     /// of those tangents.
     fn misses_edges(&self, body: &Body, k: usize, by: f64) -> bool {
         let before = k.checked_sub(1).or(body.edges.len().checked_sub(1));
@@ -204,7 +204,7 @@ fn search(arc: &Arc<'_>, body: &Body, low: Vec2, high: Vec2, tolerance: f64, mut
         if let Some(s) = arc.along(e.tangent) {
             let d = arc.point(s) - e.p;
             let (x, height) = (d.dot(&e.tangent), d.dot(&perp(e.tangent)));
-            // What is deep is nearest to an edge, or to the kink beside it, that it does not lie
+            // A deep point is nearest to an edge, or to the kink beside it, that it does not lie
             // straight below.
             let aside = larger(body.offset, -height);
             if height < body.offset - tolerance && x > -aside && x < e.length() + aside {

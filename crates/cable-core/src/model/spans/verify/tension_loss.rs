@@ -5,25 +5,21 @@ use crate::math::{Vec2, cross};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Course};
 
-/// A span has hardly any tension left when the force across its load is below this part of the load
-/// on it: it then hangs in a hairpin 1/50 as wide as it is long. Smaller: failures of slack spans
-/// are put down to the solver. Larger: the other way round.
-const SLACK_FORCE_FRACTION: f64 = 5e-3;
-
-/// What was lost, where on the cable (m) and in the plane (m), in the last state that was found.
+/// The kind of loss, its place on the cable (m) and in the plane (m), in the last state that was
+/// found.
 pub(in crate::model::spans) fn lost(
     strands: &[CableRun],
     course: &Course,
-    trouble: &Failure,
+    failure: &Failure,
 ) -> Option<(TensionLoss, f64, Vec2)> {
-    if let Failure::Compressed { s, at, .. } = trouble {
+    if let Failure::Compressed { s, at, .. } = failure {
         return Some((TensionLoss::Lay, *s, *at));
     }
-    if !matches!(trouble, Failure::Stalled { .. } | Failure::Restless { .. } | Failure::Unsound { .. }) {
+    if !matches!(failure, Failure::Stalled { .. } | Failure::Restless { .. } | Failure::Unsound { .. }) {
         return None;
     }
     let b = course.law.load;
-    // What weighs nothing hangs in no bight.
+    // A cable without weight hangs in no bight.
     if b.norm() == 0.0 {
         return None;
     }
@@ -32,7 +28,7 @@ pub(in crate::model::spans) fn lost(
             let (from, to) = strand.material(k);
             let force = strand.force(course, k, from);
             let across = cross(force, b).abs() / b.norm();
-            if across > SLACK_FORCE_FRACTION * b.norm() * (to - from) {
+            if across > course.settings.verify.fold_force_fraction * b.norm() * (to - from) {
                 continue;
             }
             let mut place = None;

@@ -6,27 +6,20 @@ use crate::math::{Vec2, cross, larger, smaller};
 use crate::model::spans::run::{CableRun, Contact, Course, Next};
 use crate::model::spans::verify::penetration;
 
-/// Points of each catenary and contact.
-const POINTS: usize = 24;
-
-/// A contact's end that moves by more than this (m or rad) may have gone round something. Smaller:
-/// more is looked at closely.
-const CHECKED_MOVE: f64 = 0.5;
-
 /// A corner this near to a tangent is on it, m: rounding.
 const TANGENCY_DISTANCE_M: f64 = 1e-12;
 
-/// Whether the ends of the spans alone tell that nothing was passed: contacts are the same, and
+/// True if the ends of the spans alone tell that nothing was passed: contacts are the same, and
 /// every corner lies on the same side of each span before and after. A span is convex: above its
 /// tangents and below its chord, seen against the load.
 pub(in crate::model::spans) fn clear(old: &CableRun, new: &CableRun, course: &Course, corners: &[Corner]) -> bool {
-    let load = course.law.load;
+    let (load, unchecked) = (course.law.load, course.settings.verify.unchecked_move);
     let same = |(a, b): (&Contact, &Contact)| {
         let moved = |side: usize| (a.ends.p[side] - b.ends.p[side]).abs();
-        (a.curve, a.home, a.wheel, a.next == Next::Pocket, a.is_load())
-            == (b.curve, b.home, b.wheel, b.next == Next::Pocket, b.is_load())
-            && moved(0) < CHECKED_MOVE
-            && moved(1) < CHECKED_MOVE
+        (a.curve, a.chain_range, a.wheel, a.next == Next::Pocket, a.is_load())
+            == (b.curve, b.chain_range, b.wheel, b.next == Next::Pocket, b.is_load())
+            && moved(0) < unchecked
+            && moved(1) < unchecked
     };
     load.x == 0.0
         && load.y < 0.0
@@ -34,12 +27,12 @@ pub(in crate::model::spans) fn clear(old: &CableRun, new: &CableRun, course: &Co
         && old.contacts.iter().zip(&new.contacts).all(same)
         && [0, 1].into_iter().all(|k| old.ties[k].has_span() == new.ties[k].has_span())
         && (0..new.spans()).filter(|&k| new.has_span(k)).all(|k| {
-            let spans = [old, new].map(|strand| Bow::of(strand, course, k));
+            let spans = [old, new].map(|strand| SpanBound::of(strand, course, k));
             let [Some(a), Some(b)] = spans else { return false };
             let (low, high) = (smaller(a.low, b.low), larger(a.high, b.high));
             let first = corners.partition_point(|c| c.at.x < low);
             corners[first..].iter().take_while(|c| c.at.x <= high).all(|c| {
-                let inside = |bow: &Bow| c.at.x > bow.low && c.at.x < bow.high;
+                let inside = |bound: &SpanBound| c.at.x > bound.low && c.at.x < bound.high;
                 inside(&a)
                     && inside(&b)
                     && (a.is_above(c.at) && b.is_above(c.at) || a.is_below(c.at) && b.is_below(c.at))
@@ -48,14 +41,14 @@ pub(in crate::model::spans) fn clear(old: &CableRun, new: &CableRun, course: &Co
 }
 
 /// A span by its ends: from where to where in x, its tangents and its chord.
-struct Bow {
+struct SpanBound {
     low: f64,
     high: f64,
     ends: [Vec2; 2],
     tangents: [Option<(Vec2, Vec2)>; 2],
 }
 
-impl Bow {
+impl SpanBound {
     /// None where an end hangs or loads act on the way.
     fn of(strand: &CableRun, course: &Course, k: usize) -> Option<Self> {
         let (from, to) = strand.material(k);
@@ -68,12 +61,12 @@ impl Bow {
         Some(Self { low, high, ends: [a, b], tangents: [side(a, from), side(b, to)] })
     }
 
-    /// Whether a point between its ends lies below it.
+    /// True if a point between its ends lies below it.
     fn is_above(&self, v: Vec2) -> bool {
         self.tangents.iter().flatten().any(|(at, normal)| (v - at).dot(normal) <= TANGENCY_DISTANCE_M)
     }
 
-    /// Whether a point between its ends lies above it.
+    /// True if a point between its ends lies above it.
     fn is_below(&self, v: Vec2) -> bool {
         let [a, b] = self.ends;
         let up = cross(b - a, v - a);
@@ -83,18 +76,19 @@ impl Bow {
 
 /// A shape of a strand as points.
 pub(in crate::model::spans) fn shape(strand: &CableRun, course: &Course, out: &mut Vec<Vec2>) {
+    let points = course.settings.verify.tunnelling_points;
     out.clear();
     for k in 0..strand.spans() {
         if strand.has_span(k) {
             strand.shapes(course, k, |_, at, c| {
-                let h = c.span().length / POINTS as f64;
-                out.extend((0..=POINTS).map(|i| at + c.position_at(i as f64 * h)));
+                let h = c.span().length / points as f64;
+                out.extend((0..=points).map(|i| at + c.position_at(i as f64 * h)));
             });
         }
         if let Some(c) = strand.contacts.get(k) {
             let track = course.track(c);
             let [a, b] = c.ends.p;
-            out.extend((0..=POINTS).map(|i| track.place(a + (b - a) * i as f64 / POINTS as f64).at));
+            out.extend((0..=points).map(|i| track.place(a + (b - a) * i as f64 / points as f64).at));
         }
     }
 }

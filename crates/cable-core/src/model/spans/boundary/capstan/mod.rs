@@ -1,4 +1,5 @@
-//! How tension changes along a boundary while the cable slides, and how much material lies there.
+//! This file integrates the tension of a cable that slides along a boundary, and the material that
+//! lies there.
 //!
 //! With b the load per unstretched metre, t the direction of travel, n the outward normal, λ =
 //! τ(1 + T/EA) the stretch, τ = 1 + αΔT, c the radius (∞ on an edge), equilibrium of a piece of
@@ -47,13 +48,13 @@ pub(in crate::model::spans) struct Law {
 pub(in crate::model::spans) struct LocalLoad {
     /// d(length)/dp, m.
     pub stretch: f64,
-    /// Whether it is on an arc.
+    /// True on an arc.
     pub turns: bool,
     /// b·t and b·n, N/m.
-    pub load: (f64, f64),
+    pub load: [f64; 2],
 }
 
-/// What came of a way along the boundary.
+/// Result of an integration along the boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Step {
     /// Tension at its end, N.
@@ -90,7 +91,7 @@ impl Law {
 
     /// A place as the law sees it.
     pub fn spot(&self, place: &Place) -> LocalLoad {
-        let load = (self.load.dot(&place.tangent), self.load.dot(&place.normal));
+        let load = [self.load.dot(&place.tangent), self.load.dot(&place.normal)];
         LocalLoad { stretch: place.stretch, turns: place.turn != 0.0, load }
     }
 
@@ -102,12 +103,12 @@ impl Law {
     /// As [`Self::slope`].
     pub fn slope_at(&self, spot: &LocalLoad, t: f64, m: f64) -> f64 {
         let turned = if spot.turns { m * t } else { 0.0 };
-        turned - spot.stretch * (spot.load.0 + m * spot.load.1) / self.stretch(t)
+        turned - spot.stretch * (spot.load[0] + m * spot.load[1]) / self.stretch(t)
     }
 
     /// dΘ/dp on an edge.
     pub fn edge_rate(&self, spot: &LocalLoad, m: f64) -> f64 {
-        -(spot.load.0 + m * spot.load.1) / self.thermal
+        -(spot.load[0] + m * spot.load[1]) / self.thermal
     }
 
     /// Normal force per unstretched metre times its stretch, per dp: N ds/dp, N (per metre of an
@@ -161,13 +162,13 @@ impl Step {
 #[derive(Clone, Copy)]
 pub(in crate::model::spans) struct Track<'a> {
     pub curve: &'a Curve,
-    pub home: ChainRange,
+    pub chain_range: ChainRange,
     pub law: Law,
     /// μ.
     pub friction: f64,
     /// See [`Course`](crate::model::spans::run::Course).
     pub drag: f64,
-    /// Whether all of it slides away from the end that is drawn as far as there is tension, and
+    /// True if all of it slides away from the end that is drawn, as far as there is tension, and
     /// lies loose beyond that.
     pub floored: bool,
     /// A point of it from which what lies on the same piece is seen.
@@ -177,22 +178,22 @@ pub(in crate::model::spans) struct Track<'a> {
 impl Track<'_> {
     /// The same, seen from p.
     pub fn seen_from(self, p: f64) -> Self {
-        Self { pivot: Some(Pivot::new(self.curve, self.home, &self.law, p)), ..self }
+        Self { pivot: Some(Pivot::new(self.curve, self.chain_range, &self.law, p)), ..self }
     }
 
     /// The point at p.
     pub fn place(&self, p: f64) -> Place {
         match &self.pivot {
             Some(pivot) if pivot.holds(p) => pivot.place(p),
-            _ => self.curve.place(p, self.home),
+            _ => self.curve.place(p, self.chain_range),
         }
     }
 
-    /// Whether p is on an arc.
+    /// True if p is on an arc.
     pub fn turns(&self, p: f64) -> bool {
         match &self.pivot {
             Some(pivot) if pivot.holds(p) => pivot.turns(),
-            _ => self.curve.is_arc(self.curve.locate(p, self.home)),
+            _ => self.curve.is_arc(self.curve.locate(p, self.chain_range)),
         }
     }
 
@@ -201,7 +202,7 @@ impl Track<'_> {
         let from = match &self.pivot {
             Some(pivot) if pivot.reaches(p0) && pivot.reaches(p1) => pivot.spot(p0),
             _ => {
-                let i = self.curve.locate(0.5 * (p0 + p1), self.home);
+                let i = self.curve.locate(0.5 * (p0 + p1), self.chain_range);
                 self.law.spot(&self.curve.place_on(i, p0 - self.curve.origin(i)))
             }
         };
@@ -219,7 +220,7 @@ impl Track<'_> {
         {
             return self.law.along(&pivot.spot(p0), p1 - p0, t, m);
         }
-        let (mut i, last) = (self.curve.locate(p0, self.home), self.curve.locate(p1, self.home));
+        let (mut i, last) = (self.curve.locate(p0, self.chain_range), self.curve.locate(p1, self.chain_range));
         let (mut at, mut sum) = (p0, Step::none(t));
         loop {
             let origin = self.curve.origin(i);
@@ -298,7 +299,7 @@ impl Track<'_> {
     /// below it, T e^{−mψ} where b·t + m b·n = 0. If neither is below nothing there and at the
     /// ends, it is nowhere.
     pub fn loosest(&self, p: f64, q: f64, m: f64, mut each: impl FnMut(f64)) {
-        let middle = self.curve.locate(0.5 * (p + q), self.home);
+        let middle = self.curve.locate(0.5 * (p + q), self.chain_range);
         if !self.curve.is_arc(middle) {
             return;
         }
@@ -311,7 +312,7 @@ impl Track<'_> {
     /// Calls back with the places between p and q at which a round boundary faces the load: its
     /// bottoms.
     pub fn bottoms(&self, p: f64, q: f64, each: impl FnMut(f64)) {
-        self.facing(self.home.first, self.law.load, p, q, each);
+        self.facing(self.chain_range.first, self.law.load, p, q, each);
     }
 
     /// The places between p and q, on arc i, whose outward normal is along `out`.
@@ -325,7 +326,7 @@ impl Track<'_> {
 
     /// The middle of the length between two places.
     pub fn middle(&self, [first, last]: [f64; 2]) -> f64 {
-        let long = |a: f64, b: f64| self.curve.length(a, b, self.home);
+        let long = |a: f64, b: f64| self.curve.length(a, b, self.chain_range);
         let (mut low, mut high) = (first, last);
         // Down to rounding; a point, which has no length, is halved by its turn.
         for _ in 0..64 {
@@ -345,10 +346,10 @@ impl Track<'_> {
         if self.pivot.as_ref().is_some_and(|v| v.reaches(p) && v.reaches(to)) {
             return to;
         }
-        let mut i = self.curve.locate(p, self.home);
+        let mut i = self.curve.locate(p, self.chain_range);
         if to > p {
             // A border reached by rounding lies behind.
-            while i < self.home.last {
+            while i < self.chain_range.last {
                 let border = self.curve.origin(i + 1);
                 if border >= to {
                     return to;
@@ -359,7 +360,7 @@ impl Track<'_> {
                 i += 1;
             }
         } else {
-            while i > self.home.first {
+            while i > self.chain_range.first {
                 let border = self.curve.origin(i);
                 if border <= to {
                     return to;

@@ -9,8 +9,8 @@ fn law(stiffness: f64) -> Law {
 
 const ROUND: ChainRange = ChainRange { first: 0, last: 0 };
 
-fn on(curve: &Curve, home: ChainRange, law: Law, friction: f64) -> Track<'_> {
-    Track { curve, home, law, friction, drag: 0.0, floored: false, pivot: None }
+fn on(curve: &Curve, chain_range: ChainRange, law: Law, friction: f64) -> Track<'_> {
+    Track { curve, chain_range, law, friction, drag: 0.0, floored: false, pivot: None }
 }
 
 /// dT/dψ = mT − (c/λ)(b·t + m b·n) and ds/dψ = c/λ by 4th-order Runge–Kutta.
@@ -34,8 +34,8 @@ fn stepped(track: &Track<'_>, from: f64, to: f64, t: f64, m: f64) -> (f64, f64) 
     (t, s)
 }
 
-/// What the closed form leaves out, N and m: with δT of the order of ε = cb/EA of T the tension is
-/// corrected by it, the material is not: ε² T and c ψ ε T/EA.
+/// Terms that the closed form leaves out, N and m: with δT of the order of ε = cb/EA of T the
+/// tension is corrected by it, the material is not: ε² T and c ψ ε T/EA.
 fn left_out(track: &Track<'_>, radius: f64, turn: f64, t: f64) -> [f64; 2] {
     let stiffness = track.law.stiffness;
     let part = 9.0 * radius / stiffness;
@@ -61,8 +61,8 @@ fn on_a_slope_theta_is_linear() {
     let [curve, _] = Curve::both(&world.geometry().bodies()[0]);
     let law = law(1e4);
     let edge = (0..3).find(|&i| curve.place_on(i, 0.0).turn == 0.0).unwrap();
-    let (_, home) = curve.chain(edge, law.load).unwrap();
-    let track = on(&curve, home, law, 0.4);
+    let (_, chain_range) = curve.chain(edge, law.load).unwrap();
+    let track = on(&curve, chain_range, law, 0.4);
     let p = curve.origin(edge) + 1.0;
     let (sin, cos) = (3.0f64 / 109.0f64.sqrt(), 10.0 / 109.0f64.sqrt());
     let (bt, bn) = (0.7 * cos - 9.0 * sin, -0.7 * sin - 9.0 * cos);

@@ -1,5 +1,5 @@
-//! The verdict of the laws of mechanics on an answer: which were asked, and which it breaks.
-//! [`crate::verify`] finds it.
+//! A verification says which laws of mechanics an answer was asked, and which it breaks;
+//! [`crate::verify`] makes it.
 
 use serde::{Deserialize, Serialize};
 
@@ -111,11 +111,11 @@ pub struct Finding {
     pub arc_length_m: f64,
     /// Place, m.
     pub at_m: [f64; 2],
-    /// What touches or holds there; empty where nothing does.
+    /// The obstacle or support there; empty where nothing touches or holds.
     pub with: String,
     /// By how much, in the SI unit of [`Law::quantity`].
     pub value: f64,
-    /// How much is let pass.
+    /// Its limit.
     pub limit: f64,
 }
 
@@ -129,21 +129,42 @@ pub struct Balance {
     /// Obstacles and the floor of a plan view on the cable, N, as the cable's own forces ask for
     /// it.
     pub contacts_n: [f64; 2],
-    /// What is left of the worst piece, N.
+    /// Residual force of the worst piece, N.
     pub residual_n: f64,
     /// The force that residuals are compared with, N: the greatest tension or load.
     pub scale_n: f64,
 }
 
-/// What a check found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// A law that was not asked of a cable, and why.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum NotChecked {
+    /// Balance and length of a cable that moves.
+    MovingBalance {
+        /// Name of the cable.
+        cable: String,
+    },
+    /// Balance and length of a cable that is broken.
+    BrokenBalance {
+        /// Name of the cable.
+        cable: String,
+    },
+    /// Contact of a cable with itself, which only a full check asks for.
+    SelfContact {
+        /// Name of the cable.
+        cable: String,
+    },
+}
+
+/// Findings of a check.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Verification {
     /// Broken laws, the worst first; empty = sound.
     pub findings: Vec<Finding>,
     /// Laws that were asked.
     pub checked: Vec<Law>,
-    /// What was not asked, and why.
-    pub not_checked: Vec<String>,
+    /// Laws that were not asked, and why.
+    pub not_checked: Vec<NotChecked>,
     /// Forces on all cables.
     pub balance: Balance,
     /// Material beyond the way of the nodes, m: cable that lies in folds or layers, which a plane

@@ -1,0 +1,70 @@
+//! A model reason says why an answer comes from the model it comes from; [`crate::wording`] makes
+//! the sentence.
+
+use crate::error::SolveError;
+
+/// Why an answer comes from its model.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum ModelReason {
+    /// The user asked for it.
+    #[default]
+    Requested,
+    /// The answer was read from a run.
+    Recorded,
+    /// Masses move.
+    Inertia,
+    /// The friction of the cable is mobilised towards one end.
+    MobilisedFriction,
+    /// The cable has bending stiffness.
+    BendingStiffness,
+    /// The cable can touch itself.
+    SelfContact,
+    /// The floor of a plan view rubs everywhere.
+    FloorFriction,
+    /// A taut cable among obstacles.
+    Obstacles,
+    /// An end hangs over pulleys.
+    EndOverPulleys,
+    /// The cable rubs on wheels.
+    WheelFriction,
+    /// The cable touches nothing but its supports.
+    SupportsOnly,
+    /// The cable lies loose.
+    LooseCable,
+    /// The cable touches the robot, which moves.
+    TouchesRobot,
+    /// The model without a mesh did not find the cable clear of the ground.
+    BuriedWithoutMesh,
+    /// The model before it has no answer.
+    NoAnswer(Box<SolveError>),
+    /// The answer of the model before it breaks a law.
+    Unsound(Box<SolveError>),
+    /// The bending stiffness of flexible cables was settled, too.
+    Bending {
+        /// Why that model.
+        reason: Box<Self>,
+        /// What was taken for the bending stiffness.
+        bending: LikelyBending,
+    },
+}
+
+/// What was made of the bending stiffness that is likely of the presets of flexible cables.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LikelyBending {
+    /// It was taken, as the user asked.
+    Taken(Vec<TakenStiffness>),
+    /// It was taken because the answer without it is not that of a cable.
+    TakenWhereItMatters(Vec<TakenStiffness>),
+    /// There is no answer with it.
+    NoAnswer(Box<SolveError>),
+}
+
+/// The bending stiffness that was taken for a cable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TakenStiffness {
+    /// Name of the cable.
+    pub cable: String,
+    /// Bending stiffness, N·m².
+    pub bending_stiffness_n_m2: f64,
+}

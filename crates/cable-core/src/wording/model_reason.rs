@@ -1,0 +1,57 @@
+//! These sentences say why an answer comes from its model.
+
+use super::{Figures, Sentence, display_in_si, serialize_in_si};
+use crate::solution::{LikelyBending, ModelReason, TakenStiffness};
+use crate::units::{Quantity, UnitSystem};
+
+display_in_si!(ModelReason, LikelyBending);
+serialize_in_si!(ModelReason);
+
+impl Sentence for ModelReason {
+    fn sentence(&self, units: UnitSystem) -> String {
+        let text = match self {
+            Self::Requested => "asked for",
+            Self::Recorded => "read from a run",
+            Self::Inertia => "masses move",
+            Self::MobilisedFriction => "friction is fully mobilised towards one end",
+            Self::BendingStiffness => "the cable has bending stiffness",
+            Self::SelfContact => "the cable can touch itself",
+            Self::FloorFriction => "in plan view the floor rubs everywhere",
+            Self::Obstacles => "a taut cable among obstacles: contacts as intervals have no discretisation error",
+            Self::EndOverPulleys => "an end hangs over pulleys: contacts as intervals find where it stops running",
+            Self::WheelFriction => "the cable rubs on wheels: contacts as intervals have no discretisation error",
+            Self::SupportsOnly => "supports only: the elastic catenary has no discretisation error",
+            Self::LooseCable => "the cable lies loose: what hangs is plumb, what lies has no tension",
+            Self::TouchesRobot => "the cable touches the robot, which moves",
+            Self::BuriedWithoutMesh => "the cable was not found clear of the ground without a mesh",
+            Self::NoAnswer(error) | Self::Unsound(error) => return error.sentence(units),
+            Self::Bending { reason, bending } => {
+                return format!("{}; {}", reason.sentence(units), bending.sentence(units));
+            }
+        };
+        text.to_owned()
+    }
+}
+
+impl Sentence for LikelyBending {
+    fn sentence(&self, units: UnitSystem) -> String {
+        let taken = |cables: &[TakenStiffness]| {
+            let each = cables.iter().map(|c| {
+                let stiffness = Figures(units).given(Quantity::BendingStiffness, c.bending_stiffness_n_m2);
+                format!("`{}` with {stiffness}", c.cable)
+            });
+            let all = each.collect::<Vec<_>>().join(", ");
+            format!("the bending stiffness that is likely of its preset was taken: {all}")
+        };
+        match self {
+            Self::Taken(cables) => taken(cables),
+            Self::TakenWhereItMatters(cables) => {
+                format!("without bending stiffness it is bent too tightly or crosses itself, so {}", taken(cables))
+            }
+            Self::NoAnswer(error) => format!(
+                "with the bending stiffness that is likely of its preset there is no answer: {}",
+                error.sentence(units)
+            ),
+        }
+    }
+}
