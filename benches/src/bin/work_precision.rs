@@ -51,7 +51,7 @@ const GOALS: [f64; 3] = [1e-2, 1e-3, 1e-6];
 
 /// Colour and mark of everyone who answers. Colours are those of M. Okabe and K. Ito, "Color universal design"
 /// (2008), and grey tones for peers beyond eight.
-const MARKS: [(&str, &str, u32); 12] = [
+const MARKS: [(&str, &str, u32); 13] = [
     ("catenary", "#000000", 4),
     ("spans", "#009E73", 3),
     ("fem", "#0072B2", 0),
@@ -63,6 +63,7 @@ const MARKS: [(&str, &str, u32); 12] = [
     ("mujoco", "#E69F00", 5),
     ("pymunk", "#E69F00", 3),
     ("box2d", "#999999", 5),
+    ("rapier2d", "#999999", 3),
     ("other", "#BBBBBB", 6),
 ];
 
