@@ -4,9 +4,6 @@
 use crate::contact::Gap;
 use crate::math::Vec2;
 
-/// Distance kept ready for contact beside what is travelled, m.
-pub(in crate::model::mass_spring) const CONTACT_SKIN: f64 = 1e-4;
-
 part! {
     /// What the cable touches, and where friction holds it.
     #[derive(Default)]

@@ -21,16 +21,6 @@ use std::ops::RangeInclusive;
 use crate::energy::bending::turn;
 use crate::model::mass_spring::mesh::nodes::Mesh;
 
-/// Nodes that share the turn of a round at least: fewer is a corner to this mesh.
-const ROUND_NODES: usize = 3;
-/// Part of the largest turn at a node that makes another one count.
-const COUNTS: f64 = 0.2;
-/// Turn that counts as none, rad: the nodes of a cable that lies on a flat floor differ by less.
-const TURN_TOLERANCE: f64 = 1e-3;
-/// Beyond this (rad, 80°) an angle is taken as this: the tangent says no more than that nothing is
-/// known.
-const STEEPEST_ANGLE: f64 = 1.4;
-
 /// The turn of the cable round an obstacle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::model::mass_spring) struct Wrap {
@@ -42,6 +32,7 @@ pub(in crate::model::mass_spring) struct Wrap {
 
 /// The turn at `nodes` that touch one obstacle with friction `mu`.
 pub(in crate::model::mass_spring) fn wrap(mesh: &Mesh, nodes: RangeInclusive<usize>, mu: f64) -> Wrap {
+    let tuning = &mesh.tuning.estimate;
     let inner = (*nodes.start()).max(1)..=(*nodes.end()).min(mesh.position.len().saturating_sub(2));
     let turn_at = |n: usize| turn(mesh.position[n] - mesh.position[n - 1], mesh.position[n + 1] - mesh.position[n]);
     let (mut whole, mut sharpest) = (0.0, 0.0);
@@ -50,11 +41,11 @@ pub(in crate::model::mass_spring) fn wrap(mesh: &Mesh, nodes: RangeInclusive<usi
         whole += t;
         sharpest = if t.abs() > sharpest { t.abs() } else { sharpest };
     }
-    if sharpest < TURN_TOLERANCE {
+    if sharpest < tuning.min_turn_rad {
         return Wrap::default();
     }
-    let nodes = inner.filter(|&n| turn_at(n).abs() > COUNTS * sharpest).count();
-    let angle = if nodes < ROUND_NODES { whole.abs() } else { 0.5 * sharpest };
-    let bounded = if angle > STEEPEST_ANGLE { STEEPEST_ANGLE } else { angle };
+    let nodes = inner.filter(|&n| turn_at(n).abs() > tuning.turn_share * sharpest).count();
+    let angle = if nodes < tuning.round_nodes { whole.abs() } else { 0.5 * sharpest };
+    let bounded = if angle > tuning.max_turn_rad { tuning.max_turn_rad } else { angle };
     Wrap { turn: whole, uncertainty: bounded.cos().recip() - 1.0 + mu * angle }
 }

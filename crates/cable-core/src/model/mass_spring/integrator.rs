@@ -3,10 +3,6 @@
 use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::model::settings::Stepping;
 
-/// Explicit sub-steps in a display frame of 1/60 s beyond which a step is a preview, unless asked
-/// otherwise. At 100 elements they take some 100 ms a simulated second.
-pub(in crate::model::mass_spring) const MAX_SUB_STEPS_PER_FRAME: f64 = 1000.0;
-
 /// A display frame, s.
 pub(in crate::model::mass_spring) const FRAME_S: f64 = 1.0 / 60.0;
 
@@ -18,11 +14,11 @@ pub(in crate::model::mass_spring) fn is_preview(mesh: &Mesh, stepping: Stepping)
     match stepping {
         Stepping::Explicit => false,
         Stepping::Preview => true,
-        // This is asked of even elements: a short one beside a pulley comes and goes, and a run must
-        // keep its integrator.
+        // This is asked of even elements: a short one beside a pulley comes and goes, and a run
+        // must keep its integrator.
         Stepping::Auto => {
             let wave_speed = (mesh.problem.axial_stiffness / mesh.problem.linear_density).sqrt();
-            mesh.even_length / wave_speed * MAX_SUB_STEPS_PER_FRAME < FRAME_S
+            mesh.even_length / wave_speed * mesh.tuning.sub_step.max_per_frame < FRAME_S
         }
     }
 }

@@ -3,6 +3,7 @@
 //!
 //! | room | what it holds |
 //! |---|---|
+//! | `settings` | the tuned constants |
 //! | `mesh` | nodes, springs and pulleys; nodes that are added and removed beside pulleys |
 //! | `forces` | springs, bending, weight, wind and loads; reactions of supports |
 //! | `contact_memory` | the contacts of the last sub-step, and the anchors of friction |
@@ -53,6 +54,7 @@ mod forces;
 mod integrator;
 mod mesh;
 mod results;
+pub mod settings;
 mod xpbd;
 
 use std::sync::Arc;
@@ -78,6 +80,7 @@ use forces::{nodal, tension};
 use integrator::is_preview;
 use mesh::edit::{even_out, remesh};
 use mesh::nodes::{Mesh, first_support_arc_lengths};
+use settings::Tuning;
 
 part! {
     /// The report of the present instant and of the last step.
@@ -112,9 +115,6 @@ pub struct MassSpringModel {
 const MAX_STEP_S: f64 = 60.0;
 /// Nodes of which one is farther from a point by less than this, of the even length, are as near.
 const NEAREST_TOLERANCE: f64 = 1e-6;
-/// Elements where neither scene nor settings give a number: fewer is visibly angular, more makes
-/// sub-steps shorter and dearer.
-const DEFAULT_SEGMENTS: usize = 60;
 
 fn unsupported(feature: Unsupported) -> SolveError {
     SolveError::Unsupported { model: Model::MassSpring, feature }
@@ -166,17 +166,20 @@ impl MassSpringModel {
     /// # Errors
     /// `Unsupported` when the scene needs a feature that the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        Self::with_tuning(problem, settings, Arc::new(Tuning::default()))
+    }
+
+    /// The same with other tuned constants.
+    ///
+    /// # Errors
+    /// `Unsupported` when the scene needs a feature that the model lacks.
+    pub fn with_tuning(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Result<Self, SolveError> {
         if problem.cable.self_contact {
             return Err(unsupported(Unsupported::SelfContact));
         }
-        Ok(Self::on_route(problem, settings))
-    }
-
-    /// A model along the route of the scene.
-    fn on_route(problem: Arc<Problem>, settings: Settings) -> Self {
-        let supports = first_support_arc_lengths(&problem);
-        let segments = segments(&problem, &settings);
-        Self::of_mesh(Mesh::new(problem, segments, &supports), settings)
+        let supports = first_support_arc_lengths(&problem, &tuning.mesh);
+        let segments = segments(&problem, &settings, &tuning);
+        Ok(Self::of_mesh(Mesh::new(problem, tuning, segments, &supports), settings))
     }
 
     fn of_mesh(mut mesh: Mesh, settings: Settings) -> Self {
@@ -197,14 +200,14 @@ impl MassSpringModel {
         }
     }
 
-    /// The same cable along a shape, its supports at given arc lengths (m); None if the shape has no
-    /// place for it.
+    /// The same cable along a shape, its supports at given arc lengths (m); None if the shape has
+    /// no place for it.
     fn on_shape(&self, shape: &State, supports: &[f64]) -> Option<Self> {
-        let problem = self.mesh.problem.clone();
-        let segments = segments(&problem, &self.settings);
+        let (problem, tuning) = (self.mesh.problem.clone(), self.mesh.tuning.clone());
+        let segments = segments(&problem, &self.settings, &tuning);
         let mesh = match self.mesh.usable_nodes(shape) {
-            Some(nodes) => Mesh::with_nodes(problem, segments, supports, nodes),
-            None => Mesh::new(problem, segments, supports),
+            Some(nodes) => Mesh::with_nodes(problem, tuning, segments, supports, nodes),
+            None => Mesh::new(problem, tuning, segments, supports),
         };
         let mut next = Self::of_mesh(mesh, self.settings);
         let time_s = shape.time_s;
@@ -290,8 +293,8 @@ impl MassSpringModel {
         }
     }
 
-    /// Arc lengths of the supports on a shape, m: that of a pulley is of the material nearest to it,
-    /// in order.
+    /// Arc lengths of the supports on a shape, m: that of a pulley is of the material nearest to
+    /// it, in order.
     pub(in crate::model::mass_spring) fn support_arc_lengths(&self, shape: &State) -> Vec<f64> {
         let scale = self.mesh.problem.length / shape.arc_length_m.last().copied().unwrap_or(1.0);
         let mut least = 0.0;
@@ -328,8 +331,8 @@ impl MassSpringModel {
 }
 
 /// Elements of a cable where they are even.
-fn segments(problem: &Problem, settings: &Settings) -> usize {
-    settings.segments.or(problem.cable.segments).unwrap_or(DEFAULT_SEGMENTS).max(1)
+fn segments(problem: &Problem, settings: &Settings, tuning: &Tuning) -> usize {
+    settings.segments.or(problem.cable.segments).unwrap_or(tuning.mesh.segments).max(1)
 }
 
 impl Mechanics for MassSpringModel {

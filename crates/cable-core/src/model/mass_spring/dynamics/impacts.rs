@@ -3,19 +3,9 @@
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded};
 use crate::model::Model;
-use crate::model::mass_spring::contact_memory::{CONTACT_SKIN, ContactImpulse, ContactMemory};
+use crate::model::mass_spring::contact_memory::{ContactImpulse, ContactMemory};
 use crate::model::mass_spring::dynamics::momentum::Account;
 use crate::model::mass_spring::mesh::nodes::Mesh;
-
-/// Greatest speed at which a penetration is pushed out, m/s: more throws the cable off, less lets
-/// it sink for longer.
-const PUSH_OUT_SPEED: f64 = 1.0;
-/// Time in which a shallow one is pushed out, s: a cable that rests a few micrometres deep must not
-/// jump.
-const PUSH_OUT_TIME: f64 = 0.02;
-/// Passes over the contacts of a sub-step: one leaves neighbours in each other's way, more changes
-/// nothing visible.
-const CONTACT_PASSES: usize = 2;
 
 /// Refuses to go on from where the middle of the cable is inside an obstacle: distances have no
 /// sign there, and what should push it out would hold it in. What lies in less deep is pushed
@@ -53,6 +43,7 @@ pub(in crate::model::mass_spring) fn apply(
     if mesh.problem.world.is_empty() {
         return;
     }
+    let tuning = mesh.tuning.impact;
     for e in 0..mesh.rest_length.len() {
         if mesh.wheels.bend(e) {
             continue;
@@ -63,7 +54,7 @@ pub(in crate::model::mass_spring) fn apply(
         if contacts.clearance[e] > 0.0 {
             continue;
         }
-        let near = CONTACT_SKIN + 2.0 * travel;
+        let near = tuning.skin_m + 2.0 * travel;
         let reach = near + mesh.rest_length[e];
         contacts.gap_buffer.clear();
         mesh.problem.world.segment_gaps(mesh.position[e], mesh.position[e + 1], reach, &mut contacts.gap_buffer);
@@ -73,7 +64,7 @@ pub(in crate::model::mass_spring) fn apply(
             contacts.impulses.push(ContactImpulse { element: e, gap: *gap, normal: 0.0, friction: 0.0, slips: false });
         }
     }
-    for _ in 0..CONTACT_PASSES {
+    for _ in 0..tuning.passes {
         for contact in &mut contacts.impulses {
             apply_one(contact, mesh, account, h);
         }
@@ -81,6 +72,7 @@ pub(in crate::model::mass_spring) fn apply(
 }
 
 fn apply_one(contact: &mut ContactImpulse, mesh: &mut Mesh, account: &mut Account, h: f64) {
+    let tuning = &mesh.tuning.impact;
     let (a, b, c) = (contact.element, contact.element + 1, contact.gap.fraction);
     let inverse = |i: usize| if mesh.supported[i] { 0.0 } else { 1.0 / mesh.mass[i] };
     let (ia, ib) = (inverse(a), inverse(b));
@@ -93,7 +85,7 @@ fn apply_one(contact: &mut ContactImpulse, mesh: &mut Mesh, account: &mut Accoun
     let v = mesh.velocity[a] * (1.0 - c) + mesh.velocity[b] * c;
     // The gap after the sub-step is gap + v·n·h ≥ 0; a penetration leaves at a bounded speed.
     let gap = contact.gap.gap_m;
-    let target = if gap > 0.0 { -gap / h } else { (-gap / PUSH_OUT_TIME).min(PUSH_OUT_SPEED) };
+    let target = if gap > 0.0 { -gap / h } else { (-gap / tuning.push_out_time_s).min(tuning.push_out_speed_m_per_s) };
     let wanted = contact.normal + (target - v.dot(&n)) / w;
     let normal = if wanted > 0.0 { wanted } else { 0.0 };
     let change = normal - contact.normal;

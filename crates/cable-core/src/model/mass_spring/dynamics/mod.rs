@@ -1,5 +1,5 @@
-//! These modules take one explicit sub-step: supports and hands that move, material that slides over
-//! pulleys, impacts, the account of momentum, limits and rollback.
+//! These modules take one explicit sub-step: supports and hands that move, material that slides
+//! over pulleys, impacts, the account of momentum, limits and rollback.
 
 pub(in crate::model::mass_spring) mod hands;
 pub(in crate::model::mass_spring) mod impacts;

@@ -10,16 +10,6 @@ use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::problem::Problem;
 use crate::solution::{Warning, WarningCause};
 
-/// Fastest a node may move, m/s. Recoil of a broken rope stays below it (breaking strain times wave
-/// speed: 20 m/s for steel, 300 m/s for nylon); a lower limit cuts that, a higher one lets thin
-/// obstacles cost ever shorter sub-steps.
-const NODE_SPEED_LIMIT: f64 = 300.0;
-/// Kinetic energy over what supports, loads and stretch can have given beyond which the motion is
-/// not believed. Less damps real whips, more shows the explosion first.
-const MAX_ENERGY_RATIO: f64 = 10.0;
-/// Part of the velocities that is left in such a sub-step: 0.7 takes a tenfold energy back in seven of them.
-const BRAKE: f64 = 0.7;
-
 /// A speed or an energy that was held back.
 #[derive(Clone, Copy, Debug, Default)]
 struct Excess {
@@ -61,6 +51,7 @@ impl RunawayGuard {
         drives: &mut SupportDrives,
         time_s: f64,
     ) -> f64 {
+        let tuning = mesh.tuning.runaway;
         let (mut energy, mut mass, mut momentum) = (0.0, 0.0, Vec2::zeros());
         let (mut fastest, mut node, mut support) = (0.0, 0, 0.0);
         for i in 0..mesh.position.len() {
@@ -80,7 +71,7 @@ impl RunawayGuard {
         if support > drives.max_speed {
             drives.max_speed = support;
         }
-        let limit = MAX_ENERGY_RATIO * (self.work + 2.0 * mass * drives.max_speed * drives.max_speed);
+        let limit = tuning.max_energy_ratio * (self.work + 2.0 * mass * drives.max_speed * drives.max_speed);
         if energy > limit && !mesh.supported.contains(&true) {
             // What flies freely may fall as fast as it likes; only its own motion counts.
             energy -= 0.5 * momentum.norm_squared() / mass;
@@ -88,7 +79,7 @@ impl RunawayGuard {
         let found = |value, limit| Excess {
             value,
             limit,
-            time_s: time_s,
+            time_s,
             arc_length_m: mesh.arc_length[node],
             at: mesh.position[node],
         };
@@ -97,12 +88,12 @@ impl RunawayGuard {
         if brake && self.energy.is_none_or(|e| energy > e.value) {
             self.energy = Some(found(energy, limit));
         }
-        let cut = speed > NODE_SPEED_LIMIT;
+        let cut = speed > tuning.max_speed_m_per_s;
         if cut && self.speed.is_none_or(|s| speed > s.value) {
-            self.speed = Some(found(speed, NODE_SPEED_LIMIT));
+            self.speed = Some(found(speed, tuning.max_speed_m_per_s));
         }
         if cut || brake {
-            speed = reduce_speeds(mesh, if brake { BRAKE } else { 1.0 });
+            speed = reduce_speeds(mesh, if brake { tuning.brake_factor } else { 1.0 });
         }
         if support > speed { support } else { speed }
     }
@@ -121,14 +112,15 @@ impl RunawayGuard {
 
 /// Brakes all free nodes and cuts their speeds; returns the greatest speed left, m/s.
 fn reduce_speeds(mesh: &mut Mesh, brake: f64) -> f64 {
+    let limit = mesh.tuning.runaway.max_speed_m_per_s;
     let mut fastest = 0.0;
     for i in (0..mesh.position.len()).filter(|&i| !mesh.supported[i]) {
         mesh.velocity[i] *= brake;
         let speed = mesh.velocity[i].norm();
-        if speed > NODE_SPEED_LIMIT {
-            mesh.velocity[i] *= NODE_SPEED_LIMIT / speed;
+        if speed > limit {
+            mesh.velocity[i] *= limit / speed;
         }
-        let left = if speed > NODE_SPEED_LIMIT { NODE_SPEED_LIMIT } else { speed };
+        let left = if speed > limit { limit } else { speed };
         fastest = if left > fastest || left.is_nan() { left } else { fastest };
     }
     fastest

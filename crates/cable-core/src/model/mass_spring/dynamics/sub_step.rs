@@ -14,16 +14,8 @@ use crate::model::mass_spring::mesh::edit::release_pulleys;
 use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::problem::Problem;
 
-/// Fraction of the stable sub-step that is used: more is unstable as elements stretch, less is
-/// slower.
-const STEP_SAFETY: f64 = 0.8;
-/// Greatest fraction of the cable's radius a node travels in a sub-step: more could pass a thin
-/// obstacle.
-const TRAVEL_RADIUS_FRACTION: f64 = 0.25;
-/// Shortest sub-step, of the stable one: below, motion has run away.
-const SHORTEST_SUB_STEP_FRACTION: f64 = 1e-6;
-
-/// This block is the explicit integrator: the one place of the model that sets every part in motion.
+/// This block is the explicit integrator: the one place of the model that sets every part in
+/// motion.
 impl MassSpringModel {
     /// Advances by `dt_s` in equal sub-steps below the stability limit, shorter where motion is
     /// fast.
@@ -36,6 +28,7 @@ impl MassSpringModel {
         release_pulleys(&mut self.mesh, begin);
         self.remesh();
         let hand_settings = HandSettings::of(&self.settings);
+        let tuning = self.mesh.tuning.sub_step;
         let mut stable = stable_step(&self.mesh);
         let mut count = 0;
         let mut left = dt_s;
@@ -49,13 +42,13 @@ impl MassSpringModel {
         };
         while left > 0.0 {
             let fastest = guard.limit(&mut self.mesh, &mut self.drives, self.clock.time_s);
-            let travel = TRAVEL_RADIUS_FRACTION * self.mesh.problem.radius / fastest;
+            let travel = tuning.max_travel_radii * self.mesh.problem.radius / fastest;
             let limit = if !self.mesh.problem.world.is_empty() && travel < stable { travel } else { stable };
             let h = until_release(&self.mesh.problem, self.clock.time_s, left / (left / limit).ceil());
             if let Some(e) = self.mesh.non_finite(self.clock.time_s) {
                 return Err(e);
             }
-            if h < SHORTEST_SUB_STEP_FRACTION * if stable < dt_s { stable } else { dt_s } {
+            if h < tuning.min_stable_fraction * if stable < dt_s { stable } else { dt_s } {
                 let node = self.mesh.velocity.iter().position(|v| v.norm() >= fastest).unwrap_or(0);
                 return Err(SolveError::StepFailed {
                     model: crate::Model::MassSpring,
@@ -136,7 +129,7 @@ fn stable_step(mesh: &Mesh) -> f64 {
     let omega = f64::sqrt(fastest);
     // τ = 2ζ/ω for this mode.
     let zeta = 0.5 * mesh.damping_time_s * omega;
-    STEP_SAFETY * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
+    mesh.tuning.sub_step.stable_fraction * 2.0 / omega * ((1.0 + zeta * zeta).sqrt() - zeta)
 }
 
 /// Length of a sub-step of `h` (s) that ends where a support lets go in it, s.

@@ -1,6 +1,6 @@
 //! Contacts and friction of a resting cable are energies.
 //!
-//! A contact is a spring from `OFFSET` on, ½k(gap − δ)² for gap < δ, on the signed sums of pairs
+//! A contact is a spring from a gap δ on, ½k(gap − δ)² for gap < δ, on the signed sums of pairs
 //! that make the force of a polyline continuous (see [`crate::contact::pairs`]). Friction is
 //! measured from an anchor: the material point that was there and where, y = (X(s) − a)·t, limited
 //! by μ times the normal force of the last accepted step; after a solve the anchor follows, y ←
@@ -13,19 +13,7 @@ use crate::math::{Mat2, Vec2, larger, perp};
 use crate::model::mass_spring::contact_memory::{Anchor, ContactImpulse, Surface};
 use crate::model::mass_spring::equilibrium::system::System;
 use crate::model::mass_spring::mesh::nodes::Mesh;
-
-/// Gap at which a contact begins to pair, m; the whole load on one contact closes it. Less is
-/// stiffer and takes more steps, more lifts the cable.
-const OFFSET: f64 = 2e-5;
-/// Distance to an obstacle, m, within which the cable of the first shape lies on it: the barrier of
-/// `fem` keeps a millimetre. Less lets the cable slide while it falls that far, more anchors stretches
-/// that hang beside.
-const FIRST_CONTACT_DISTANCE: f64 = 2e-3;
-/// Sliding at which friction is called up whole, m: less takes more steps, more creeps, and near a
-/// held end, where a stiff cable moves by less, friction is called up in part only.
-const SLIP: f64 = 5e-6;
-/// A contact takes the anchor of material this near, in even lengths.
-const ANCHOR_REACH_LENGTHS: f64 = 0.75;
+use crate::model::mass_spring::settings::ContactTuning;
 
 /// Friction at one place, frozen for a step.
 #[derive(Clone, Copy, Debug)]
@@ -75,6 +63,7 @@ pub(in crate::model::mass_spring) enum Anchors {
 
 /// The contacts of a mesh while its equilibrium is sought.
 pub(in crate::model::mass_spring) struct Contacts {
+    tuning: ContactTuning,
     stiffness: f64,
     anchors: Vec<Anchor>,
     friction: Vec<FrictionContact>,
@@ -83,6 +72,7 @@ pub(in crate::model::mass_spring) struct Contacts {
 
 impl Contacts {
     pub(in crate::model::mass_spring) fn new(mesh: &Mesh, anchors: &[Anchor], kept: Anchors) -> Self {
+        let tuning = mesh.tuning.contact;
         let mut anchors = match kept {
             Anchors::Forgotten => Vec::new(),
             Anchors::Kept => anchors.to_vec(),
@@ -98,10 +88,10 @@ impl Contacts {
             });
             anchors = floor.chain(others).collect();
         }
-        let stiffness = mesh.problem.force_scale() / OFFSET;
-        let mut this = Self { stiffness, anchors, friction: Vec::new(), pairs: Vec::new() };
+        let stiffness = mesh.problem.force_scale() / tuning.offset_m;
+        let mut this = Self { tuning, stiffness, anchors, friction: Vec::new(), pairs: Vec::new() };
         if kept == Anchors::Forgotten {
-            this.find_pairs(mesh, FIRST_CONTACT_DISTANCE);
+            this.find_pairs(mesh, tuning.first_contact_m);
             let laid = this.pairs.iter().filter(|p| p.signed.weight > 0.0).map(|p| p.anchor(mesh));
             this.anchors.extend(laid);
         }
@@ -145,7 +135,7 @@ impl Contacts {
             let low = sum - high;
             p.friction_limit = mesh.problem.thermal_stretch * (high - low) * (1.0 + 0.5 * sum / ea);
         }
-        self.find_pairs(mesh, OFFSET);
+        self.find_pairs(mesh, self.tuning.offset_m);
         self.friction.clear();
         if let Some((mu, normal)) = mesh.problem.floor_friction {
             for n in 0..mesh.position.len() {
@@ -175,7 +165,9 @@ impl Contacts {
                 .min_by(|&a, &b| {
                     (self.anchors[a].arc_length - s).abs().total_cmp(&(self.anchors[b].arc_length - s).abs())
                 })
-                .filter(|&a| (self.anchors[a].arc_length - s).abs() < ANCHOR_REACH_LENGTHS * mesh.even_length);
+                .filter(|&a| {
+                    (self.anchors[a].arc_length - s).abs() < self.tuning.anchor_reach_lengths * mesh.even_length
+                });
             let anchor = match nearest {
                 Some(a) => {
                     taken[a] = true;
@@ -191,7 +183,7 @@ impl Contacts {
             let along = perp(gap.normal);
             let backwards = along.dot(&(mesh.position[e + 1] - mesh.position[e])) < 0.0;
             let direction = if backwards { -along } else { along };
-            let limit = gap.friction * self.stiffness * (OFFSET - gap.gap_m);
+            let limit = gap.friction * self.stiffness * (self.tuning.offset_m - gap.gap_m);
             self.friction.push(FrictionContact { anchor, element, fraction, direction, limit, pair: k });
         }
         !self.friction.is_empty() || !mesh.wheels.pulleys.is_empty()
@@ -200,11 +192,11 @@ impl Contacts {
     /// Adds energy, gradient and Hessian of contacts (as they are here) and friction (as it was
     /// frozen).
     pub(in crate::model::mass_spring) fn assemble(&mut self, mesh: &Mesh, system: &mut System) -> f64 {
-        self.find_pairs(mesh, OFFSET);
+        self.find_pairs(mesh, self.tuning.offset_m);
         let mut value = 0.0;
         for pair in &self.pairs {
             let (gap, e, c) = (pair.signed.gap, pair.element, pair.fraction);
-            let (k, depth) = (self.stiffness * pair.signed.weight, OFFSET - gap.gap_m);
+            let (k, depth) = (self.stiffness * pair.signed.weight, self.tuning.offset_m - gap.gap_m);
             value += 0.5 * k * depth * depth;
             let (n, force) = (gap.normal, k * depth);
             let shares = [1.0 - c, c];
@@ -243,9 +235,10 @@ impl Contacts {
         for contact in &self.friction {
             let shift = contact.shift(mesh);
             let (energy, gradient, hessian) = if contact.direction == Vec2::zeros() {
-                friction_law::at_plane(shift, contact.limit, SLIP)
+                friction_law::at_plane(shift, contact.limit, self.tuning.slip_m)
             } else {
-                let (energy, slope, stiff) = friction_law::at(shift.dot(&contact.direction), contact.limit, SLIP);
+                let (energy, slope, stiff) =
+                    friction_law::at(shift.dot(&contact.direction), contact.limit, self.tuning.slip_m);
                 (energy, contact.direction * slope, contact.direction * contact.direction.transpose() * stiff)
             };
             value += energy;
@@ -270,11 +263,11 @@ impl Contacts {
             .map(|contact| {
                 let shift = contact.shift(mesh);
                 if contact.direction == Vec2::zeros() {
-                    let at = contact.anchor.at + shift - friction_law::return_map_plane(shift, SLIP);
+                    let at = contact.anchor.at + shift - friction_law::return_map_plane(shift, self.tuning.slip_m);
                     return Anchor { at, ..contact.anchor };
                 }
                 let pair = &self.pairs[contact.pair.min(self.pairs.len() - 1)];
-                let kept = friction_law::return_map(shift.dot(&contact.direction), SLIP);
+                let kept = friction_law::return_map(shift.dot(&contact.direction), self.tuning.slip_m);
                 let here = pair.anchor(mesh);
                 Anchor { at: here.at - contact.direction * kept, ..here }
             })
@@ -286,14 +279,15 @@ impl Contacts {
         let mut impulses = Vec::with_capacity(self.pairs.len());
         for (k, pair) in self.pairs.iter().enumerate().filter(|(_, p)| p.signed.weight > 0.0) {
             let contact = self.friction.iter().find(|r| r.pair == k && r.direction != Vec2::zeros());
-            let (friction, limit) = contact
-                .map_or((0.0, 0.0), |r| (-friction_law::at(r.shift(mesh).dot(&r.direction), r.limit, SLIP).1, r.limit));
+            let (friction, limit) = contact.map_or((0.0, 0.0), |r| {
+                (-friction_law::at(r.shift(mesh).dot(&r.direction), r.limit, self.tuning.slip_m).1, r.limit)
+            });
             impulses.push(ContactImpulse {
                 element: pair.element,
                 gap: crate::contact::Gap { fraction: pair.fraction, ..pair.signed.gap },
-                normal: self.stiffness * pair.signed.weight * (OFFSET - pair.signed.gap.gap_m),
+                normal: self.stiffness * pair.signed.weight * (self.tuning.offset_m - pair.signed.gap.gap_m),
                 friction,
-                slips: limit > 0.0 && friction.abs() >= SLIP_FRACTION * limit,
+                slips: limit > 0.0 && friction.abs() >= self.tuning.slip_fraction * limit,
             });
         }
         impulses
@@ -305,9 +299,6 @@ fn curvature(pair: &ContactPair, away: f64) -> f64 {
     // Features with odd numbers are corners and circles.
     if pair.signed.gap.feature % 2 == 1 && away > 0.0 { 1.0 / away } else { 0.0 }
 }
-
-/// Part of the greatest friction from which on a contact is said to slide.
-const SLIP_FRACTION: f64 = 0.999;
 
 impl FrictionContact {
     /// Displacement of the material from its anchor, m.
@@ -327,7 +318,8 @@ pub(in crate::model::mass_spring) fn floor_uncertainty(mesh: &Mesh, anchors: &[A
     if on_floor != mesh.position.len() || !(top > 0.0) {
         return 0.0;
     }
-    let sticks = |n: &usize| (mesh.position[*n] - anchors[*n].at).norm() < SLIP_FRACTION * SLIP;
+    let tuning = &mesh.tuning.contact;
+    let sticks = |n: &usize| (mesh.position[*n] - anchors[*n].at).norm() < tuning.slip_fraction * tuning.slip_m;
     let held: f64 = (0..on_floor).filter(sticks).map(|n| mu * normal * mesh.half_straight_length(n)).sum();
     held / top
 }

@@ -1,6 +1,6 @@
-//! The errors of the figures of a cable at rest: by comparison with `spans`, which has no mesh, where
-//! that finds the equilibrium; with `fem` where that knows a stiff cable better than was asked for;
-//! else with meshes of elements twice and four times as long.
+//! The errors of the figures of a cable at rest: by comparison with `spans`, which has no mesh,
+//! where that finds the equilibrium; with `fem` where that knows a stiff cable better than was
+//! asked for; else with meshes of elements twice and four times as long.
 //!
 //! Masses and springs are of the second order in the air and of the first at corners and where the
 //! cable touches down, as the bars of `fem` in contact are, and the estimate is the same
@@ -14,12 +14,6 @@ use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::solution::CableSolution;
 use crate::solution::ErrorEstimates;
-
-/// Least number of elements of which half make a mesh.
-const LEAST_ELEMENTS: usize = 8;
-/// Least error of the finest of three meshes, of the difference of the coarser two: that of the first
-/// order.
-const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
 
 /// The model beside which errors are estimated.
 #[derive(Clone, Debug, Default)]
@@ -71,7 +65,7 @@ impl Estimate {
         let mut errors = ErrorEstimates::between(&half, &fine).plus(&rounding);
         if let Some(coarsest) = coarser(model, 4, start) {
             let change = ErrorEstimates::between(&answer(&coarsest), &half);
-            errors = errors.or_larger(&change.times(FIRST_ORDER_ERROR_FRACTION));
+            errors = errors.or_larger(&change.times(model.mesh.tuning.estimate.first_order_fraction));
         }
         Self { estimator: ErrorEstimator::Coarse(Box::new(coarse)), errors }
     }
@@ -105,8 +99,8 @@ impl Estimate {
         .unwrap_or_default()
     }
 
-    /// Errors beside a coarser mesh, at least those `before`: friction is as wrong as the steps were
-    /// that it remembers.
+    /// Errors beside a coarser mesh, at least those `before`: friction is as wrong as the steps
+    /// were that it remembers.
     fn beside(model: &MassSpringModel, before: ErrorEstimates, coarse: MassSpringModel) -> Self {
         let errors = before.or_larger(&ErrorEstimates::between(&answer(&coarse), &answer(model)));
         Self { estimator: ErrorEstimator::Coarse(Box::new(coarse)), errors }
@@ -137,11 +131,12 @@ fn errors_beside(model: &MassSpringModel, exact: &CableSolution) -> ErrorEstimat
 /// The same cable at rest on elements `times` as long.
 fn coarser(model: &MassSpringModel, times: usize, start: Start) -> Option<MassSpringModel> {
     let elements = model.mesh.rest_length.len();
-    if elements < LEAST_ELEMENTS {
+    if elements < model.mesh.tuning.estimate.min_elements {
         return None;
     }
     let settings = Settings { segments: Some(elements / times), ..model.settings };
-    let mut coarse = MassSpringModel::on_route(model.mesh.problem.clone(), settings);
+    let mut coarse =
+        MassSpringModel::with_tuning(model.mesh.problem.clone(), settings, model.mesh.tuning.clone()).ok()?;
     coarse.drives.targets.clone_from(&model.drives.targets);
     if start == Start::Present {
         let state = model.state();

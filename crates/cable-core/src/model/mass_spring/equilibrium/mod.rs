@@ -1,4 +1,5 @@
-//! These modules find equilibria and steps without inertia, and estimate the errors of their figures.
+//! These modules find equilibria and steps without inertia, and estimate the errors of their
+//! figures.
 
 pub(in crate::model::mass_spring) mod assembly;
 pub(in crate::model::mass_spring) mod contact_energy;

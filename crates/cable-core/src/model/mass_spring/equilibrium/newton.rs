@@ -2,10 +2,11 @@
 //!
 //! Springs that only pull, U = EA (length − l₀)²/2l₀ for length > l₀, are convex in nodes and
 //! material coordinates together, so no compressed state can come out; weight is linear. Bending,
-//! contacts and friction (see `contact_energy`) add their terms. The tangent is a band: a step costs about as much as a few sweeps of
-//! relaxation, of which a stiff chain needs N·√(EA/T) for each swing. The diagonal is shifted (K.
-//! Levenberg, A method for the solution of certain non-linear problems in least squares, Quarterly
-//! of Applied Mathematics 2, 1944) until the energy or the unbalanced force falls.
+//! contacts and friction (see `contact_energy`) add their terms. The tangent is a band: a step
+//! costs about as much as a few sweeps of relaxation, of which a stiff chain needs N·√(EA/T) for
+//! each swing. The diagonal is shifted (K. Levenberg, A method for the solution of certain
+//! non-linear problems in least squares, Quarterly of Applied Mathematics 2, 1944) until the energy
+//! or the unbalanced force falls.
 
 use crate::contact::friction;
 use crate::energy::Curvature;
@@ -20,41 +21,10 @@ use crate::model::mass_spring::forces::pulley;
 use crate::model::mass_spring::mesh::edit::remesh;
 use crate::model::mass_spring::mesh::nodes::Mesh;
 
-/// Unbalanced force at rest, of the force scale: round-off allows little less, more shows in the
-/// reactions.
-const RESIDUAL: f64 = 1e-9;
-/// The same where something is touched: contacts that come and go leave more.
-const TOUCHING_RESIDUAL: f64 = 1e-7;
-/// Stiffness lent to elements that are slack at the start, whose tension there is known (corrected
-/// bars are shorter by their sag, which is more than a stiff spring stretches): how it fades from
-/// step to step. More makes truly slack elements slow, less starts with wild steps.
-const LENT_STIFFNESS_FADE: f64 = 0.1;
 /// Units in the last place by which positions are off when they are good: strain is off by that
 /// over l₀, tension EA times it. Two positions and the length between them lose about one each, and
 /// both springs of a node add up.
 const ULPS: f64 = 8.0;
-/// Newton steps. The hardest scene of the catalogue takes some 200.
-const MAX_STEPS: usize = 1500;
-/// First shift of the diagonal, of EA over the shortest element; and how it falls and rises with
-/// success. Smaller starts with wild steps, larger wastes a few steps.
-const FIRST_SHIFT: f64 = 1e-8;
-const SHIFT_DOWN: f64 = 0.1;
-const SHIFT_UP: f64 = 8.0;
-/// Shift beyond which no step helps, of that or of the stiffness of contacts where that is more;
-/// and below which it is left alone.
-const LAST_SHIFT: f64 = 1e3;
-const LEAST_SHIFT: f64 = 1e-14;
-/// Up to this step friction follows the normal forces at every step, which is fastest; where that
-/// runs in circles, later ones first solve with them frozen, for so many steps at most.
-const EAGER_FRICTION_STEPS: usize = 150;
-const MAX_FROZEN_STEPS: usize = 25;
-/// Greatest move in a step where there is something to run into, of the cable's radius: more steps
-/// over an edge.
-const MAX_MOVE_RADII: f64 = 0.5;
-/// Greatest slide through a pulley in a step, of the even length: more turns an element inside out.
-const MAX_SLIDE_LENGTHS: f64 = 0.25;
-/// Slide through a pulley at which its friction is called up whole, m.
-const PULLEY_SLIP: f64 = 1e-6;
 
 /// An unbalanced force and its node.
 #[derive(Clone, Copy, Debug)]
@@ -100,10 +70,11 @@ impl<'a> EquilibriumSolver<'a> {
 
     /// Moves the anchors of pulleys; returns the points where friction holds from now on.
     pub(in crate::model::mass_spring) fn move_anchors(&mut self) -> Vec<Anchor> {
+        let slip = self.mesh.tuning.contact.pulley_slip_m;
         let anchors = self.contacts.moved_anchors(self.mesh);
         for p in &mut self.mesh.wheels.pulleys {
             let s = self.mesh.arc_length[p.node];
-            p.anchor = s - friction::return_map(s - p.anchor, PULLEY_SLIP);
+            p.anchor = s - friction::return_map(s - p.anchor, slip);
         }
         anchors
     }
@@ -115,12 +86,13 @@ impl<'a> EquilibriumSolver<'a> {
 
     /// Moves the nodes to equilibrium. On an error they are somewhere on the way.
     pub(in crate::model::mass_spring) fn solve(&mut self) -> Result<Iterations, SolveError> {
+        let tuning = self.mesh.tuning.newton;
         let unit =
             self.mesh.problem.axial_stiffness / self.mesh.rest_length.iter().copied().fold(f64::INFINITY, f64::min);
         // A contact may be stiffer than the springs: a step must be short for it, too.
         let stiffest = larger(unit, self.contacts.stiffness(self.mesh));
         let tolerance = self.rest_tolerance();
-        let mut shift = FIRST_SHIFT * unit;
+        let mut shift = tuning.first_shift * unit;
         let mut curvature = Curvature::Exact;
         self.contacts.freeze_friction(self.mesh);
         let mut energy = self.assemble(curvature);
@@ -128,7 +100,7 @@ impl<'a> EquilibriumSolver<'a> {
         let mut iterations = 0;
         // Steps since normal forces were taken over into friction.
         let mut frozen = 0;
-        for k in 1..=MAX_STEPS {
+        for k in 1..=tuning.max_steps {
             iterations = k;
             if worst.force_n <= tolerance && frozen == 0 {
                 return Ok(Iterations { count: k, residual_n: worst.force_n });
@@ -138,16 +110,18 @@ impl<'a> EquilibriumSolver<'a> {
             let left = self.residual();
             // Near round-off the energy no longer tells a better state, the unbalanced force does.
             if solved && new.is_finite() && (new < energy || left.force_n < worst.force_n) {
-                shift = (shift * SHIFT_DOWN).max(LEAST_SHIFT * unit);
+                shift = (shift * tuning.shift_decrease).max(tuning.min_shift * unit);
                 curvature = Curvature::Exact;
                 (energy, worst) = (new, left);
-                self.system.fade *= LENT_STIFFNESS_FADE;
+                self.system.fade *= tuning.first_stiffness_fade;
                 let remeshed = !self.mesh.wheels.pulleys.is_empty() && remesh(self.mesh, self.time_s);
                 if remeshed {
                     self.system = System { fade: self.system.fade, ..System::new(self.mesh)? };
                 }
-                let due =
-                    k < EAGER_FRICTION_STEPS || left.force_n <= tolerance || frozen >= MAX_FROZEN_STEPS || remeshed;
+                let due = k < tuning.eager_friction_steps
+                    || left.force_n <= tolerance
+                    || frozen >= tuning.max_frozen_steps
+                    || remeshed;
                 frozen = if due { 0 } else { frozen + 1 };
                 if due && (self.contacts.freeze_friction(self.mesh) || remeshed) {
                     energy = self.assemble(curvature);
@@ -158,13 +132,13 @@ impl<'a> EquilibriumSolver<'a> {
                 self.mesh.arc_length.copy_from_slice(&self.system.arc_length);
                 self.mesh.update_pulley_elements();
                 if solved {
-                    shift *= SHIFT_UP;
+                    shift *= tuning.shift_increase;
                 } else if curvature == Curvature::Exact {
                     curvature = Curvature::Clipped;
                 } else {
-                    shift *= SHIFT_UP;
+                    shift *= tuning.shift_increase;
                 }
-                if !(shift < LAST_SHIFT * stiffest) {
+                if !(shift < tuning.max_shift * stiffest) {
                     break;
                 }
                 energy = self.assemble(curvature);
@@ -182,10 +156,11 @@ impl<'a> EquilibriumSolver<'a> {
         })
     }
 
-    /// Unbalanced force at equilibrium, N: a part of the forces here, but never below the round-off of
-    /// the positions times EA.
+    /// Unbalanced force at equilibrium, N: a part of the forces here, but never below the round-off
+    /// of the positions times EA.
     fn rest_tolerance(&self) -> f64 {
-        let part = if self.mesh.can_touch() { TOUCHING_RESIDUAL } else { RESIDUAL };
+        let tuning = &self.mesh.tuning.newton;
+        let part = if self.mesh.can_touch() { tuning.touching_residual } else { tuning.residual };
         let far = self
             .mesh
             .position
@@ -221,11 +196,15 @@ impl<'a> EquilibriumSolver<'a> {
         }
         system.step.copy_from_slice(&system.gradient);
         system.factor.solve_in_place(&mut system.step);
-        let limit = if mesh.problem.world.is_empty() { f64::INFINITY } else { MAX_MOVE_RADII * mesh.problem.radius };
+        let limit = if mesh.problem.world.is_empty() {
+            f64::INFINITY
+        } else {
+            mesh.tuning.newton.max_move_radii * mesh.problem.radius
+        };
         let mut scale = 1.0;
         for i in 0..n {
             let (size, limit) = if mesh.wheels.at_node[i].is_some() {
-                (system.step[2 * i].abs(), MAX_SLIDE_LENGTHS * mesh.even_length)
+                (system.step[2 * i].abs(), mesh.tuning.newton.max_slide_lengths * mesh.even_length)
             } else {
                 (system.step[2 * i].hypot(system.step[2 * i + 1]), limit)
             };
@@ -258,12 +237,12 @@ impl<'a> EquilibriumSolver<'a> {
             value += assembly::add_bending(mesh, system, curvature);
         }
         value += self.contacts.assemble(mesh, system);
+        let slip = mesh.tuning.contact.pulley_slip_m;
         let body = mesh.problem.body_force(self.time_s);
         for k in 0..mesh.wheels.pulleys.len() {
             pulley::update(mesh, k, body);
             let p = &mesh.wheels.pulleys[k];
-            let (energy, slope, stiff) =
-                friction::at(mesh.arc_length[p.node] - p.anchor, p.friction_limit, PULLEY_SLIP);
+            let (energy, slope, stiff) = friction::at(mesh.arc_length[p.node] - p.anchor, p.friction_limit, slip);
             value += energy;
             system.gradient[2 * p.node] = slope - p.sliding_force;
             system.hessian.add(2 * p.node, 2 * p.node, stiff);

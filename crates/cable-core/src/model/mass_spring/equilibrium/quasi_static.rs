@@ -8,18 +8,6 @@ use crate::model::mass_spring::equilibrium::contact_energy::Anchors;
 use crate::model::mass_spring::equilibrium::newton::EquilibriumSolver;
 use crate::model::mass_spring::forces::nodal;
 
-/// Longest path of a support between two equilibria, of the even length (friction is measured from
-/// where the material was, and a longer path leaves that element) and of the cable's radius where
-/// there is an obstacle to hit (a longer one stretches the end so far that Newton's first steps draw
-/// a node in under a corner, where it locks).
-const SUPPORT_PATH_LENGTHS: f64 = 0.5;
-/// Most equilibria in a step.
-const MAX_PARTS: f64 = 1e4;
-/// Shortest part of one of them that is tried after a failure.
-const SHORTEST_PART: f64 = 1.0 / 1024.0;
-/// Points of a motion that measure its path.
-const PATH_SAMPLES: u32 = 8;
-
 /// This block solves equilibria and repeats the whole model's state where a part of a step fails.
 impl MassSpringModel {
     /// Moves the nodes to equilibrium. On an error they are somewhere on the way.
@@ -48,6 +36,7 @@ impl MassSpringModel {
     /// Follows the supports through equilibria for `dt_s`.
     pub(in crate::model::mass_spring) fn quasi_static_step(&mut self, dt_s: f64) -> Result<(), SolveError> {
         let (begin, end) = (self.clock.time_s, self.clock.time_s + dt_s);
+        let tuning = self.mesh.tuning.quasi_static;
         let from = self.mesh.position.clone();
         let nodes: Vec<(usize, usize)> = self.mesh.support_node.iter().copied().enumerate().collect();
         let mut path: f64 = 0.0;
@@ -55,8 +44,8 @@ impl MassSpringModel {
             let support = &self.mesh.problem.supports[k];
             // The path of a motion within the step may be longer than the distance.
             let mut last = from[node];
-            for j in 1..=PATH_SAMPLES {
-                let time = begin + dt_s * f64::from(j) / f64::from(PATH_SAMPLES);
+            for j in 1..=tuning.path_samples {
+                let time = begin + dt_s * f64::from(j) / f64::from(tuning.path_samples);
                 let Some((at, _)) = support.position_at(time) else { break };
                 let at = self.drives.targets[k].unwrap_or(at);
                 path += (at - last).norm();
@@ -69,7 +58,7 @@ impl MassSpringModel {
             self.mesh.even_length.min(self.mesh.problem.radius)
         };
         let parts = if self.mesh.can_touch() || !self.mesh.wheels.pulleys.is_empty() {
-            (path / (SUPPORT_PATH_LENGTHS * within)).ceil().clamp(1.0, MAX_PARTS)
+            (path / (tuning.max_path_lengths * within)).ceil().clamp(1.0, tuning.max_parts)
         } else {
             1.0
         };
@@ -92,7 +81,7 @@ impl MassSpringModel {
                 Err(e) => {
                     *self = kept;
                     part *= 0.5;
-                    if part * parts < SHORTEST_PART {
+                    if part * parts < tuning.min_part {
                         return Err(e);
                     }
                 }

@@ -41,8 +41,8 @@ impl System {
         })
     }
 
-    /// Adds a block; on the diagonal it must be symmetric, and of (i, j) and (j, i) only one is to be
-    /// added.
+    /// Adds a block; on the diagonal it must be symmetric, and of (i, j) and (j, i) only one is to
+    /// be added.
     pub(in crate::model::mass_spring) fn add_block(&mut self, i: usize, j: usize, block: &Mat2) {
         for r in 0..2 {
             for c in 0..2 {

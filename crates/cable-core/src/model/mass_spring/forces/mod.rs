@@ -1,5 +1,5 @@
-//! These modules compute the forces on nodes: springs, bending, weight, wind and loads, the force on
-//! material that slides over pulleys, and what supports carry.
+//! These modules compute the forces on nodes: springs, bending, weight, wind and loads, the force
+//! on material that slides over pulleys, and what supports carry.
 
 pub(in crate::model::mass_spring) mod bending;
 pub(in crate::model::mass_spring) mod nodal;

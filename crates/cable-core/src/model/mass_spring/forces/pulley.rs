@@ -5,10 +5,6 @@ use crate::math::{Vec2, cross, perp};
 use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::model::mass_spring::mesh::pulley::{ElementGeometry, angle_of, principal_angle};
 
-/// Tension over the weight of half an element below which the direction of the force there tells
-/// nothing.
-const DIRECTION_TENSION_RATIO: f64 = 4.0;
-
 /// Updates what the cable does at all pulleys.
 pub(in crate::model::mass_spring) fn update_all(mesh: &mut Mesh, time_s: f64) {
     let body = mesh.problem.body_force(time_s);
@@ -22,13 +18,14 @@ pub(in crate::model::mass_spring) fn update_all(mesh: &mut Mesh, time_s: f64) {
 pub(in crate::model::mass_spring) fn update(mesh: &mut Mesh, k: usize, body: Vec2) {
     let i = mesh.wheels.pulleys[k].node;
     let (b, a) = (mesh.element(i - 1), mesh.element(i));
+    let ratio = mesh.tuning.mesh.direction_tension_ratio;
     let (tb, ta) = (mesh.tension[i - 1], mesh.tension[i]);
     // Half a straight part's weight lies between the middle of an element and the wheel: that also
     // turns the cable a little, and moves where it touches.
     let at_wheel = |r: &ElementGeometry, tension: f64, half: Vec2| {
         let force = r.direction * tension + half;
         let size = force.norm();
-        (size, if size > DIRECTION_TENSION_RATIO * half.norm() { force / size } else { r.direction })
+        (size, if size > ratio * half.norm() { force / size } else { r.direction })
     };
     let (before, from) = at_wheel(&b, tb, body * (-0.5 * mesh.straight_length[i - 1]));
     let (after, to) = at_wheel(&a, ta, body * (0.5 * mesh.straight_length[i]));

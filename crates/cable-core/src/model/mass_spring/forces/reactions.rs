@@ -2,7 +2,6 @@
 
 use crate::contact::Gap;
 use crate::math::Vec2;
-use crate::model::mass_spring::contact_memory::CONTACT_SKIN;
 use crate::model::mass_spring::mesh::nodes::Mesh;
 
 /// Speed of a supported node, m/s, below which it does not slide on the ground.
@@ -39,7 +38,7 @@ pub(in crate::model::mass_spring) fn of_support(mesh: &Mesh, i: usize) -> Vec2 {
 /// what the cable pulls along it, but the support is there for that.
 pub(in crate::model::mass_spring) fn ground(mesh: &Mesh, i: usize) -> Option<GroundForce> {
     let force = total(mesh, i);
-    let gap = mesh.problem.world.signed_gap(mesh.position[i], CONTACT_SKIN)?;
+    let gap = mesh.problem.world.signed_gap(mesh.position[i], mesh.tuning.impact.skin_m)?;
     let normal_force = -force.dot(&gap.normal);
     if !(normal_force > 0.0) {
         return None;

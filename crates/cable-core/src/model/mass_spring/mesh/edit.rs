@@ -2,28 +2,16 @@
 //! nodes.
 //!
 //! Mass and momentum are conserved, kinetic energy falls or stays (it is convex). A node that is
-//! removed shortens the path by the sag it stood for, a new one hangs on that sag: the difference of
-//! rest length is spread over the whole stretch between its fixed marks, so that tension does not
-//! jump there.
+//! removed shortens the path by the sag it stood for, a new one hangs on that sag: the difference
+//! of rest length is spread over the whole stretch between its fixed marks, so that tension does
+//! not jump there.
 
 use crate::math::Vec2;
 use crate::model::mass_spring::mesh::nodes::Mesh;
 
-/// Straight part of an element beside a pulley, of the even length, below which its other node is
-/// removed: less shortens the stable step, more remeshes more often.
-const SHORTEST_STRAIGHT_PART: f64 = 0.3;
-/// Straight part of an element beside a pulley, of the even length, beyond which it is halved.
-const LONGEST_STRAIGHT_PART: f64 = 1.7;
-/// Beside a node that cannot be removed the material stops at this part of the even length.
-const BLOCKED_STRAIGHT_PART: f64 = 0.1;
-/// Greatest sag of a new node, of its element: more comes of slack, whose tension tells nothing.
-const MAX_SAG: f64 = 0.1;
-/// Greatest change of rest length that is spread over a stretch, of the rest of it.
-const MAX_SPREAD: f64 = 0.01;
-
 /// Material that stays beside a node that does not run through a pulley, m.
 pub(in crate::model::mass_spring) fn least_straight_length(mesh: &Mesh) -> f64 {
-    BLOCKED_STRAIGHT_PART * mesh.even_length
+    mesh.tuning.mesh.blocked_straight_lengths * mesh.even_length
 }
 
 /// Brings the elements beside pulleys near the even length.
@@ -38,15 +26,16 @@ pub(in crate::model::mass_spring) fn even_out(mesh: &mut Mesh, time_s: f64) {
 
 /// Keeps the elements beside pulleys near the even length; returns true if nodes have changed.
 pub(in crate::model::mass_spring) fn remesh(mesh: &mut Mesh, time_s: f64) -> bool {
+    let (min, max) = (mesh.tuning.mesh.min_straight_lengths, mesh.tuning.mesh.max_straight_lengths);
     let mut changed = false;
     for k in 0..mesh.wheels.pulleys.len() {
         for side in 0..2 {
             let i = mesh.wheels.pulleys[k].node;
             let e = i - 1 + side;
-            if mesh.straight_length[e] < SHORTEST_STRAIGHT_PART * mesh.even_length {
+            if mesh.straight_length[e] < min * mesh.even_length {
                 let n = if side == 0 { i - 1 } else { i + 1 };
                 changed |= remove_beside(mesh, k, n);
-            } else if mesh.straight_length[e] > LONGEST_STRAIGHT_PART * mesh.even_length {
+            } else if mesh.straight_length[e] > max * mesh.even_length {
                 halve_beside(mesh, k, e, time_s);
                 changed = true;
             }
@@ -129,7 +118,7 @@ fn halve_beside(mesh: &mut Mesh, k: usize, e: usize, time_s: f64) {
     let body = mesh.problem.body_force(time_s);
     let across = body - r.direction * body.dot(&r.direction);
     let sag = across * (0.5 * half * 0.5 * mesh.straight_length[e] / mesh.tension[e]);
-    let sag = if sag.norm() <= MAX_SAG * half { sag } else { Vec2::zeros() };
+    let sag = if sag.norm() <= mesh.tuning.mesh.max_sag_lengths * half { sag } else { Vec2::zeros() };
     let at = (r.start + r.end) * 0.5 + sag;
     let rest = mesh.material_length[e];
     let s = if e < i {
@@ -156,7 +145,7 @@ fn spread_length(mesh: &mut Mesh, e: usize, more: f64) {
         last += 1;
     }
     let others: f64 = (first..last).filter(|&k| k != e).map(|k| mesh.material_length[k]).sum();
-    if others > 0.0 && more.abs() < MAX_SPREAD * others {
+    if others > 0.0 && more.abs() < mesh.tuning.mesh.max_spread_fraction * others {
         let mut s = mesh.arc_length[first];
         for k in first..last - 1 {
             s += if k == e { mesh.material_length[k] + more } else { mesh.material_length[k] * (1.0 - more / others) };

@@ -5,31 +5,20 @@ use std::sync::Arc;
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded};
 use crate::model::mass_spring::mesh::pulley::{ElementGeometry, Pulley, Wheels};
+use crate::model::mass_spring::settings::{MeshTuning, Tuning};
 use crate::problem::Problem;
 use crate::state::State;
 
-/// Nodes of another model are taken if they are nowhere nearer than this, of the even length: less
-/// makes sub-steps short.
-const LEAST_SPACING: f64 = 0.2;
-/// Least damping ratio of the fastest axial mode. Without any, springs that go slack and taut near
-/// the stability limit pump energy into violent motion (a cable dropped into its supports gained 11
-/// kJ in 4 s); the first mode of N elements gets π/2N of it, and motion across the cable nothing.
-/// More damps what is seen.
-const MIN_MODE_DAMPING: f64 = 0.1;
 /// Points of the cable nearer to each other than this part of its length are one.
 const SAME_PLACE_FRACTION: f64 = 1e-9;
-/// Greatest part of the cable that the path to the last support gets when it is longer: the rest
-/// hangs, the first balance decides.
-const MAX_PATH_FRACTION: f64 = 0.95;
-/// Greatest damping ratio of the fastest mode: more shortens the stable step without changing what
-/// is seen.
-const MAX_MODE_DAMPING: f64 = 1.0;
 
 part! {
     /// The nodes and springs of a cable, and the pulleys that it runs over.
     Mesh {
         /// The cable that it divides.
         problem: Arc<Problem>,
+        /// The tuned constants by which it is solved.
+        tuning: Arc<Tuning>,
         /// Arc length of each node, m.
         arc_length: Vec<f64>,
         /// Position of each node, m.
@@ -72,26 +61,34 @@ impl Mesh {
     /// on the whole cable. `support_arc_lengths` (m) are those of all supports.
     pub(in crate::model::mass_spring) fn new(
         problem: Arc<Problem>,
+        tuning: Arc<Tuning>,
         segments: usize,
         support_arc_lengths: &[f64],
     ) -> Self {
-        let seats = separate_supports(&problem, support_arc_lengths, segments);
+        let seats = separate_supports(&problem, &tuning.mesh, support_arc_lengths, segments);
         let nodes = even_nodes(&problem, segments, &seats);
-        Self::on_nodes(problem, segments, &seats, nodes)
+        Self::on_nodes(problem, tuning, segments, &seats, nodes)
     }
 
     /// The same with nodes at given arc lengths (m).
     pub(in crate::model::mass_spring) fn with_nodes(
         problem: Arc<Problem>,
+        tuning: Arc<Tuning>,
         segments: usize,
         support_arc_lengths: &[f64],
         nodes: Vec<f64>,
     ) -> Self {
-        let seats = separate_supports(&problem, support_arc_lengths, segments);
-        Self::on_nodes(problem, segments, &seats, nodes)
+        let seats = separate_supports(&problem, &tuning.mesh, support_arc_lengths, segments);
+        Self::on_nodes(problem, tuning, segments, &seats, nodes)
     }
 
-    fn on_nodes(problem: Arc<Problem>, segments: usize, seats: &[f64], arc_length: Vec<f64>) -> Self {
+    fn on_nodes(
+        problem: Arc<Problem>,
+        tuning: Arc<Tuning>,
+        segments: usize,
+        seats: &[f64],
+        arc_length: Vec<f64>,
+    ) -> Self {
         let material_length: Vec<f64> = arc_length.windows(2).map(|w| w[1] - w[0]).collect();
         let rest_length: Vec<f64> = material_length.iter().map(|d| d * problem.thermal_stretch).collect();
         let (count, elements) = (arc_length.len(), material_length.len());
@@ -127,9 +124,10 @@ impl Mesh {
             tension: vec![0.0; elements],
             even_length: problem.length / segments as f64,
             load_node: problem.loads.iter().map(|l| nearest(l.arc_length)).collect(),
-            damping_time_s: damping_time(&problem, &rest_length),
+            damping_time_s: damping_time(&problem, &tuning.mesh, &rest_length),
             wheels: Wheels::new(pulleys, count),
             problem,
+            tuning,
             arc_length,
             rest_length,
             material_length,
@@ -144,7 +142,7 @@ impl Mesh {
         let fits = |wanted: f64| s.iter().any(|v| (v - wanted).abs() <= SAME_PLACE_FRACTION * self.problem.length);
         let supports = self.problem.supports.iter().filter_map(|p| p.arc_length);
         let marks = supports.chain(self.problem.loads.iter().map(|l| l.arc_length)).chain([0.0, self.problem.length]);
-        let apart = s.windows(2).all(|w| w[1] - w[0] >= LEAST_SPACING * self.even_length);
+        let apart = s.windows(2).all(|w| w[1] - w[0] >= self.tuning.mesh.min_spacing_lengths * self.even_length);
         let wanted = self.problem.length / self.even_length;
         let many = (0.5 * wanted..=2.0 * wanted).contains(&(s.len() as f64));
         let plain = self.wheels.pulleys.is_empty() && !self.problem.world.is_empty();
@@ -259,8 +257,8 @@ fn even_nodes(problem: &Problem, segments: usize, seats: &[f64]) -> Vec<f64> {
 /// Arc length of each support (m): as the scene gives it; for supports that slide as `wanted`, but
 /// apart from what they could run onto by a part of an even element, or by their share of the room.
 /// Material lies on both sides of a pulley, however near to a support it stands.
-fn separate_supports(p: &Problem, wanted: &[f64], segments: usize) -> Vec<f64> {
-    let least = LEAST_SPACING * p.length / segments as f64;
+fn separate_supports(p: &Problem, tuning: &MeshTuning, wanted: &[f64], segments: usize) -> Vec<f64> {
+    let least = tuning.min_spacing_lengths * p.length / segments as f64;
     let mut out: Vec<f64> = (0..p.supports.len())
         .map(|k| p.supports[k].arc_length.or(wanted.get(k).copied()).unwrap_or(f64::NAN))
         .collect();
@@ -284,20 +282,20 @@ fn separate_supports(p: &Problem, wanted: &[f64], segments: usize) -> Vec<f64> {
 }
 
 /// Damping ζ of the first axial mode, ω₁ = π/L·√(EA/ρ): strain-rate force EA·τ·ε̇ with τ = 2ζ/ω₁.
-/// Mode k then has ζ_k = ζ·ω_k/ω₁, which for the fastest one is kept between [`MIN_MODE_DAMPING`]
-/// and [`MAX_MODE_DAMPING`].
-fn damping_time(p: &Problem, rest: &[f64]) -> f64 {
+/// Mode k then has ζ_k = ζ·ω_k/ω₁, which for the fastest one is kept between
+/// [`MeshTuning::min_mode_damping`] and [`MeshTuning::max_mode_damping`].
+fn damping_time(p: &Problem, tuning: &MeshTuning, rest: &[f64]) -> f64 {
     let c = (p.axial_stiffness / p.linear_density).sqrt();
     let first = std::f64::consts::PI / p.damped_length * c;
     let shortest = rest.iter().copied().fold(f64::INFINITY, f64::min);
     let fastest = 2.0 * c / shortest;
     let own = 2.0 * p.cable.damping_ratio / first;
-    bounded(own, 2.0 * MIN_MODE_DAMPING / fastest, 2.0 * MAX_MODE_DAMPING / fastest)
+    bounded(own, 2.0 * tuning.min_mode_damping / fastest, 2.0 * tuning.max_mode_damping / fastest)
 }
 
 /// Arc lengths of the supports before anything is known, m: material is even along the straight
 /// path between those whose arc length is given; a hanging end gets what the path leaves.
-pub(in crate::model::mass_spring) fn first_support_arc_lengths(p: &Problem) -> Vec<f64> {
+pub(in crate::model::mass_spring) fn first_support_arc_lengths(p: &Problem, tuning: &MeshTuning) -> Vec<f64> {
     let count = p.supports.len();
     let mut path = vec![0.0; count];
     let mut last: Option<Vec2> = None;
@@ -310,8 +308,9 @@ pub(in crate::model::mass_spring) fn first_support_arc_lengths(p: &Problem) -> V
     }
     let known = |k: usize| p.supports[k].arc_length.filter(|_| p.supports[k].at.is_some());
     let whole = path.last().copied().unwrap_or(0.0);
-    let scale_into =
-        |room: f64, path: f64| if path < MAX_PATH_FRACTION * room { 1.0 } else { MAX_PATH_FRACTION * room / path };
+    let scale_into = |room: f64, path: f64| {
+        if path < tuning.max_path_fraction * room { 1.0 } else { tuning.max_path_fraction * room / path }
+    };
     (0..count)
         .map(|k| {
             if let Some(s) = p.supports[k].arc_length {

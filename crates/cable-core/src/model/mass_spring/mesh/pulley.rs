@@ -150,8 +150,8 @@ impl Pulley {
         (self.node, self.anchor) = (node, arc_length);
     }
 
-    /// Material where the cable arrives at the wheel and leaves it, m, with the `nodes` at these arc
-    /// lengths (m).
+    /// Material where the cable arrives at the wheel and leaves it, m, with the `nodes` at these
+    /// arc lengths (m).
     pub(in crate::model::mass_spring) fn material_on_wheel(&self, nodes: &[f64], thermal_stretch: f64) -> [f64; 2] {
         let s = nodes[self.node];
         [s - self.arc[0] / thermal_stretch, s + self.arc[1] / thermal_stretch]

@@ -25,8 +25,8 @@ pub(in crate::model::mass_spring) fn least_certain(
     worst.filter(|contact| contact.uncertainty > tolerance)
 }
 
-/// Relative uncertainty of tension by corners and by the friction of a floor, if that is worse than a
-/// tolerance.
+/// Relative uncertainty of tension by corners and by the friction of a floor, if that is worse than
+/// a tolerance.
 pub(in crate::model::mass_spring) fn tension_uncertainty(
     mesh: &Mesh,
     contacts: &ContactMemory,

@@ -4,7 +4,6 @@ use crate::energy::bending::turn;
 use crate::math::{Vec2, angle, perp};
 use crate::model::arc_nodes;
 use crate::model::input_filter::Hand;
-use crate::model::mass_spring::contact_memory::CONTACT_SKIN;
 use crate::model::mass_spring::forces::{bending, nodal, reactions};
 use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::model::mass_spring::mesh::pulley::Pulley;
@@ -28,8 +27,8 @@ pub(in crate::model::mass_spring) struct NodeReader<'a> {
 }
 
 impl NodeReader<'_> {
-    /// The nodes; a pulley has two, where the cable arrives and leaves, and a wheel some more between
-    /// them.
+    /// The nodes; a pulley has two, where the cable arrives and leaves, and a wheel some more
+    /// between them.
     pub(in crate::model::mass_spring) fn nodes(&self) -> Vec<Node> {
         let mut out = Vec::with_capacity(self.mesh.position.len() + 2 * self.mesh.wheels.pulleys.len());
         for i in 0..self.mesh.position.len() {
@@ -53,7 +52,8 @@ impl NodeReader<'_> {
         self.element_force(e) + self.mesh.problem.body_force(self.time_s) * (sign * path)
     }
 
-    /// Adds the nodes on a wheel: the tension grows exponentially from one end of the arc to the other.
+    /// Adds the nodes on a wheel: the tension grows exponentially from one end of the arc to the
+    /// other.
     fn wheel_nodes(&self, p: Pulley, out: &mut Vec<Node>) {
         let [s0, s1] = p.material_on_wheel(&self.mesh.arc_length, self.mesh.problem.thermal_stretch);
         let (b, a) = (self.mesh.element(p.node - 1), self.mesh.element(p.node));
@@ -131,8 +131,8 @@ impl NodeReader<'_> {
         }
     }
 
-    /// Internal force just beyond a node, at the end of the cable just before it, N: that in the middle
-    /// of the element and half of its load.
+    /// Internal force just beyond a node, at the end of the cable just before it, N: that in the
+    /// middle of the element and half of its load.
     fn internal_force(&self, i: usize) -> Vec2 {
         match (i, i < self.mesh.rest_length.len()) {
             (0, _) => self.end_force(i),
@@ -187,23 +187,25 @@ impl NodeReader<'_> {
         force.dot(&along).abs()
     }
 
-    /// Tension just inside a free end: the load there; with a point mass, whose inertia pulls as well,
-    /// the tension of its element `e`.
+    /// Tension just inside a free end: the load there; with a point mass, whose inertia pulls as
+    /// well, the tension of its element `e`.
     fn free_end_tension(&self, i: usize, e: usize) -> f64 {
         let support =
             self.mesh.support_node.iter().position(|&n| n == i).filter(|&k| self.mesh.problem.supports[k].mass == 0.0);
         let tension = self.mesh.tension.get(e).copied().unwrap_or(0.0);
         let hung = support.map_or(tension, |k| self.mesh.problem.hung_on(k, self.time_s).norm());
         // On the ground a part of it presses there.
-        if self.mesh.problem.world.signed_gap(self.mesh.position[i], CONTACT_SKIN).is_some() && hung > tension {
+        if self.mesh.problem.world.signed_gap(self.mesh.position[i], self.mesh.tuning.impact.skin_m).is_some()
+            && hung > tension
+        {
             tension
         } else {
             hung
         }
     }
 
-    /// Curvature between a clamp at an end and the middle of its element `e`, which has the direction
-    /// `d`; 0 without a clamp.
+    /// Curvature between a clamp at an end and the middle of its element `e`, which has the
+    /// direction `d`; 0 without a clamp.
     fn clamp_curvature(&self, i: usize, e: usize, d: Vec2) -> f64 {
         let clamp = bending::clamp_at(self.mesh, i).filter(|_| self.mesh.problem.bending_stiffness > 0.0);
         clamp.map_or(0.0, |c| turn(c, d) / (0.5 * self.mesh.material_length[e]))

@@ -27,10 +27,6 @@ use crate::model::mass_spring::mesh::edit::least_straight_length;
 use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::model::mass_spring::mesh::pulley::Pulley;
 
-/// Rounds of leaving out elements that would push, and of pulleys that hold or slide. In most
-/// sub-steps one does; the last round stands as it is, its error is that of one sub-step.
-const MAX_ROUNDS: usize = 8;
-
 /// Friction of the material on a pulley in a sub-step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum PulleyFriction {
@@ -68,7 +64,7 @@ impl ConstraintSolver {
     /// tensions are those that do it.
     pub(in crate::model::mass_spring) fn solve(&mut self, mesh: &mut Mesh, h: f64) {
         self.set_spring_rows(mesh, h);
-        for _ in 0..MAX_ROUNDS {
+        for _ in 0..mesh.tuning.preview.max_rounds {
             self.set_pulley_rows(mesh, h);
             self.eliminate();
             let mut changed = false;

@@ -5,8 +5,9 @@
 //! Chentanez, "XPBD: position-based simulation of compliant constrained dynamics", Motion in Games,
 //! 2016), one iteration in each of many sub-steps (M. Macklin et al., "Small steps in physics
 //! simulation", Symposium on Computer Animation, 2019). Unlike the papers the constraints of a
-//! chain are not taken one after the other but solved together (`constraint_solve`). It is a picture, not a
-//! measurement: implicit in time, so fast motion is damped, and contacts act a sub-step late.
+//! chain are not taken one after the other but solved together (`constraint_solve`). It is a
+//! picture, not a measurement: implicit in time, so fast motion is damped, and contacts act a
+//! sub-step late.
 //!
 //! Directions are those of the predicted place x* = 2xₙ − xₙ₋₁, so swings across a taut cable, of
 //! frequency ω, obey xₙ₊₁ = (1 − ω²h²) x*, whose roots have modulus √(1 − ω²h²) up to ωh = 1 and
@@ -22,20 +23,12 @@ use crate::model::mass_spring::dynamics::impacts;
 use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;
 use crate::model::mass_spring::dynamics::supports::{HandSettings, SupportDrives};
 use crate::model::mass_spring::forces::{nodal, pulley, tension};
-use crate::model::mass_spring::integrator::{FRAME_S, MAX_SUB_STEPS_PER_FRAME};
+use crate::model::mass_spring::integrator::FRAME_S;
 use crate::model::mass_spring::mesh::edit::release_pulleys;
 use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::model::mass_spring::xpbd::constraint_solve::ConstraintSolver;
 use crate::model::settings::Stepping;
 use crate::solution::{Warning, WarningCause};
-
-/// Longest sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in
-/// proportion.
-const LONGEST_SUB_STEP_S: f64 = 1.0 / 600.0;
-/// Shortest sub-step, s: a snap that asks for less is damped instead, for a sub-step or two.
-const SHORTEST_SUB_STEP_S: f64 = LONGEST_SUB_STEP_S / 64.0;
-/// Greatest ω²h² of swings across the cable: 4/3 is unstable, less costs more.
-const SWING_STEP_LIMIT: f64 = 1.0;
 
 /// This block is the integrator of the preview: it sets every part of the model in motion.
 impl MassSpringModel {
@@ -46,14 +39,15 @@ impl MassSpringModel {
         gauge: &mut TensionGauge,
     ) -> Result<(), SolveError> {
         let end = self.clock.time_s + dt_s;
+        let tuning = self.mesh.tuning.preview;
+        let shortest = tuning.max_sub_step_s * tuning.min_sub_step_fraction;
         let mut solver = ConstraintSolver::default();
         let mut guard = RunawayGuard::new(&self.mesh.problem, self.clock.time_s);
         let (mut left, mut count, mut longest) = (dt_s, 0, 0.0);
         while left > 0.0 {
-            let stable = (SWING_STEP_LIMIT / max_transverse_frequency_squared(&self.mesh)).sqrt();
-            let limit = if stable < LONGEST_SUB_STEP_S { stable } else { LONGEST_SUB_STEP_S };
-            let parts =
-                (left / if limit > SHORTEST_SUB_STEP_S { limit } else { SHORTEST_SUB_STEP_S } - 1e-9).ceil().max(1.0);
+            let stable = (tuning.max_swing / max_transverse_frequency_squared(&self.mesh)).sqrt();
+            let limit = if stable < tuning.max_sub_step_s { stable } else { tuning.max_sub_step_s };
+            let parts = (left / if limit > shortest { limit } else { shortest } - 1e-9).ceil().max(1.0);
             let h = left / parts;
             left = if parts > 1.0 { left - h } else { 0.0 };
             self.clock.time_s = end - left;
@@ -122,7 +116,7 @@ impl MassSpringModel {
             return;
         }
         let name = &self.mesh.problem.cable.name;
-        let stable = FRAME_S / MAX_SUB_STEPS_PER_FRAME;
+        let stable = FRAME_S / self.mesh.tuning.sub_step.max_per_frame;
         self.report.warnings.push(Warning::new(WarningCause::StiffPreview, name, 0.0, [h, stable]));
     }
 }
