@@ -117,11 +117,7 @@ fn solve_all<T: DeserializeOwned>(build: Build<T>, tuning: &Value) -> Result<Out
     Ok(out)
 }
 
-fn solve(
-    model: &mut dyn Mechanics,
-    question: Question,
-    outcome: &mut Outcome,
-) -> Result<(), cable_core::SolveError> {
+fn solve(model: &mut dyn Mechanics, question: Question, outcome: &mut Outcome) -> Result<(), cable_core::SolveError> {
     outcome.work += model.settle()?.cost.iterations;
     push(outcome, model);
     let inertia = match question {

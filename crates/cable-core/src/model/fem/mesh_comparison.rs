@@ -71,24 +71,24 @@ impl TwoMeshes {
         if problem.cable.self_contact {
             self.errors = match exact {
                 // What touches itself nowhere lies as one that cannot; once it moves it may.
-                Some(exact) if !fine.touches_itself() => beside(&fine.solution(), &exact.answer, problem),
+                Some(exact) if !fine.cable.touches_itself() => beside(&fine.cable.solution(), &exact.answer, problem),
                 _ => coarser(problem, settings, fine, dragged).map(|found| found.0).unwrap_or_default(),
             };
             return;
         }
-        if !fine.meshing.slides {
+        if !fine.cable.meshing.slides {
             return;
         }
         if let Some(exact) = exact {
-            let mut answer = fine.solution();
+            let mut answer = fine.cable.solution();
             self.errors = beside(&answer, &exact.answer, problem);
             while refinement == Refinement::Allowed
                 && exceeds(&self.errors, &answer, settings)
-                && 2 * fine.meshing.even_bars <= MOST_BARS
+                && 2 * fine.cable.meshing.even_bars <= MOST_BARS
             {
-                let bars = 2 * fine.meshing.even_bars;
+                let bars = 2 * fine.cable.meshing.even_bars;
                 let Some(finer) = laid_over(problem, settings, fine, bars, &exact.answer, dragged) else { break };
-                let next = finer.solution();
+                let next = finer.cable.solution();
                 let errors = beside(&next, &exact.answer, problem);
                 if !(errors.relative(&next) < self.errors.relative(&answer)) {
                     break;
@@ -118,7 +118,7 @@ impl TwoMeshes {
         if inertia != Inertia::QuasiStatic {
             return;
         }
-        let answer = fine.solution();
+        let answer = fine.cable.solution();
         let coarse = match (before.exact, before.coarse) {
             (Some(mut exact), _) => {
                 if let Some(other) = go_on(&mut exact, dt_s, dragged) {
@@ -127,14 +127,14 @@ impl TwoMeshes {
                     return;
                 }
                 // The cable has no answer without a mesh from here on.
-                laid_over(problem, settings, fine, fine.meshing.even_bars / 2, &answer, dragged).map(Box::new)
+                laid_over(problem, settings, fine, fine.cable.meshing.even_bars / 2, &answer, dragged).map(Box::new)
             }
             (None, Some(mut coarse)) => coarse.advance(dt_s, inertia, dragged).is_ok().then_some(coarse),
             (None, None) => None,
         };
         let Some(coarse) = coarse else { return };
         // What friction remembers is as wrong as the steps were that it remembers.
-        self.errors = before.errors.or_larger(&ErrorEstimates::between(&coarse.solution(), &answer));
+        self.errors = before.errors.or_larger(&ErrorEstimates::between(&coarse.cable.solution(), &answer));
         self.coarse = Some(coarse);
     }
 }
@@ -158,15 +158,16 @@ fn coarser(
     fine: &Dynamics,
     dragged: &[Option<Vec2>],
 ) -> Option<(ErrorEstimates, Dynamics)> {
-    if fine.meshing.even_bars < LEAST_BARS {
+    if fine.cable.meshing.even_bars < LEAST_BARS {
         return None;
     }
-    let answer = fine.solution();
-    let coarse = laid_over(problem, settings, fine, fine.meshing.even_bars / 2, &answer, dragged)?;
-    let other = coarse.solution();
+    let answer = fine.cable.solution();
+    let coarse = laid_over(problem, settings, fine, fine.cable.meshing.even_bars / 2, &answer, dragged)?;
+    let other = coarse.cable.solution();
     let errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
-    let coarsest = laid_over(problem, settings, fine, fine.meshing.even_bars / 4, &answer, dragged);
-    let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(FIRST_ORDER_ERROR_FRACTION));
+    let coarsest = laid_over(problem, settings, fine, fine.cable.meshing.even_bars / 4, &answer, dragged);
+    let change =
+        coarsest.map(|c| ErrorEstimates::between(&c.cable.solution(), &other).times(FIRST_ORDER_ERROR_FRACTION));
     Some((change.map_or(errors, |change| errors.or_larger(&change)), coarse))
 }
 
@@ -189,8 +190,8 @@ fn laid_over(
     dragged: &[Option<Vec2>],
 ) -> Option<Dynamics> {
     let mut other = Dynamics::new(problem.clone(), Settings { segments: Some(bars), ..settings }).ok()?;
-    other.meshing.slides = like.meshing.slides;
-    other.warm_start(answer, like.time(), dragged).ok()?;
+    other.cable.meshing.slides = like.cable.meshing.slides;
+    other.warm_start(answer, like.cable.time(), dragged).ok()?;
     if !other.rested {
         other.settle(dragged).ok()?;
     }

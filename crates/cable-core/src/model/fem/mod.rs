@@ -159,9 +159,10 @@ impl FemModel {
         // A stiff cable is laid as a flexible one: that is where it begins, not how it lies.
         let flexible = self.problem.bending_stiffness == 0.0;
         let before = self.dynamics.clone();
-        let taken = self.dynamics.warm_start(&lay.answer, before.time(), &self.dragged).is_ok() && self.dynamics.rested;
+        let taken =
+            self.dynamics.warm_start(&lay.answer, before.cable.time(), &self.dragged).is_ok() && self.dynamics.rested;
         let greatest = lay.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
-        let found = self.dynamics.solution();
+        let found = self.dynamics.cable.solution();
         let pairs = lay.answer.supports.iter().zip(&found.supports);
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
         let jammed = if self.problem.bending_stiffness > 0.0 {
@@ -198,7 +199,7 @@ impl FemModel {
 
     /// The resting place where something may be touched.
     fn rest_in_touch(&mut self) -> Result<StepReport, SolveError> {
-        let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
+        let begins = !self.dynamics.rested && self.dynamics.cable.time() == 0.0;
         let (laid, exact) = match begins && self.laid_evenly {
             true => self.lay().map_or_else(|slides| (Err(slides), None), |(laid, exact)| (Ok(laid), exact)),
             false => (Ok(Laid::Unknown), None),
@@ -211,10 +212,10 @@ impl FemModel {
             self.begin_coarse();
         }
         let known = matches!(laid, Ok(Laid::TakenOver(_) | Laid::Alone));
-        let start = self.dynamics.state();
+        let start = self.dynamics.cable.state();
         let before = if known { None } else { Some(self.dynamics.clone()) };
         let mut found = self.dynamics.settle(&self.dragged);
-        let slid = if known || found.is_err() { None } else { self.dynamics.slides_as_a_whole() };
+        let slid = if known || found.is_err() { None } else { self.dynamics.cable.slides_as_a_whole() };
         if let Some(why) = slid {
             found = Err(SolveError::NoRestingPlace { why });
         }
@@ -223,8 +224,8 @@ impl FemModel {
             Ok(Laid::Alone | Laid::Unknown) => Vec::new(),
             // What slides from where it is laid may come to rest elsewhere.
             Err(slides) => {
-                let answer = self.dynamics.solution();
-                let rises = !(work(&self.problem, &start, &answer, self.dynamics.time()) > 0.0);
+                let answer = self.dynamics.cable.solution();
+                let rises = !(work(&self.problem, &start, &answer, self.dynamics.cable.time()) > 0.0);
                 if found.is_err() || rises || slides_on(&self.problem, self.settings, &answer) {
                     found = Err(slides);
                     Vec::new()
@@ -254,13 +255,13 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let (off, s) = self.dynamics.bending_error();
+        let (off, s) = self.dynamics.cable.bending_error();
         self.unbent = Some(off);
         let limit = self.settings.tolerance;
         if off <= limit {
             return None;
         }
-        let cause = WarningCause::CoarseBend { bars: self.dynamics.meshing.even_bars };
+        let cause = WarningCause::CoarseBend { bars: self.dynamics.cable.meshing.even_bars };
         Some(Warning::new(cause, &self.problem.cable.name, s, [off, limit]))
     }
 
@@ -281,7 +282,7 @@ impl FemModel {
             return;
         }
         let before = self.dynamics.clone();
-        let time_s = before.time();
+        let time_s = before.cable.time();
         if self.dynamics.warm_start(&coarse.solution(), time_s, &self.dragged).is_err() {
             self.dynamics = before;
         }
@@ -294,7 +295,7 @@ impl FemModel {
             return None;
         }
         let lay = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.led).ok()?;
-        let (time_s, tolerance) = (self.dynamics.time(), STIFF_ESTIMATE_FRACTION * self.settings.tolerance);
+        let (time_s, tolerance) = (self.dynamics.cable.time(), STIFF_ESTIMATE_FRACTION * self.settings.tolerance);
         let flexible = lay.as_ref().map(|l| &l.answer);
         let (answer, cost) = elastica::rest(&self.problem, time_s, &self.dragged, flexible, tolerance)?;
         self.bent = Some(answer);
@@ -308,9 +309,9 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let answer = self.dynamics.solution();
-        let bar = self.dynamics.even();
-        let found = Elastica::from_mesh(&self.problem, self.dynamics.time(), &self.dragged, &answer, bar)?;
+        let answer = self.dynamics.cable.solution();
+        let bar = self.dynamics.cable.even();
+        let found = Elastica::from_mesh(&self.problem, self.dynamics.cable.time(), &self.dragged, &answer, bar)?;
         let cost = self.take_bent(found)?;
         // What the mesh found is followed, not left: places that differ by more are another rest.
         let near = |n: &Node| {
@@ -345,7 +346,7 @@ impl FemModel {
     /// models that take over its nodes.
     #[must_use]
     pub fn with_material_nodes(mut self) -> Self {
-        self.dynamics.meshing.slides = false;
+        self.dynamics.cable.meshing.slides = false;
         self
     }
 
@@ -353,7 +354,7 @@ impl FemModel {
     /// moved, to this one.
     pub(super) fn kept(&self) -> Self {
         let mut copy = self.clone();
-        copy.dynamics.problem = self.problem.clone();
+        copy.dynamics.cable.problem = self.problem.clone();
         copy
     }
 
@@ -368,8 +369,9 @@ impl FemModel {
 
     /// What there is to say of a mesh that is coarser than the tolerance asks for.
     fn coarse_warning(&self) -> Option<Warning> {
-        let (estimate, asked) = (self.meshes.errors.relative(&self.dynamics.solution())?, self.settings.tolerance);
-        let cause = WarningCause::CoarseForces { elements: self.dynamics.meshing.even_bars };
+        let (estimate, asked) =
+            (self.meshes.errors.relative(&self.dynamics.cable.solution())?, self.settings.tolerance);
+        let cause = WarningCause::CoarseForces { elements: self.dynamics.cable.meshing.even_bars };
         (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
     }
 
@@ -377,7 +379,7 @@ impl FemModel {
     fn ask(&mut self, part: Part) -> Result<(), SolveError> {
         if self.present != part {
             match part {
-                Part::Statics => self.statics.set_state(&self.dynamics.state())?,
+                Part::Statics => self.statics.set_state(&self.dynamics.cable.state())?,
                 Part::Dynamics => {
                     self.dynamics.set_state(&self.statics.state())?;
                     self.dynamics.come_to_rest(&self.dragged);
@@ -434,11 +436,11 @@ impl Mechanics for FemModel {
             self.ask(Part::Dynamics)?;
             self.unbent = None;
             if let Some(answer) = self.bent.take() {
-                self.dynamics.warm_start(&answer, self.dynamics.time(), &self.dragged)?;
+                self.dynamics.warm_start(&answer, self.dynamics.cable.time(), &self.dragged)?;
             }
             let mut report = self.dynamics.advance_gauged(dt_s, inertia, &self.dragged, gauge)?;
             self.meshes.follow(&self.problem, self.settings, &self.dynamics, dt_s, inertia, &self.dragged);
-            let led = !touches_nothing(&self.problem) || self.dynamics.slides_anywhere();
+            let led = !touches_nothing(&self.problem) || self.dynamics.cable.slides_anywhere();
             match if led { self.bend_warning() } else { None } {
                 Some(warning) => report.warnings.push(warning),
                 // What is less than was asked for says nothing of the other errors of a step.
@@ -450,11 +452,11 @@ impl Mechanics for FemModel {
 
     fn state(&self) -> State {
         if let Some(answer) = &self.bent {
-            return State::of_nodes(&answer.nodes, self.dynamics.time());
+            return State::of_nodes(&answer.nodes, self.dynamics.cable.time());
         }
         match self.present {
             Part::Statics => self.statics.state(),
-            Part::Dynamics => self.dynamics.state(),
+            Part::Dynamics => self.dynamics.cable.state(),
         }
     }
 
@@ -504,11 +506,11 @@ impl Mechanics for FemModel {
 
     fn set_robot_pose(&mut self, to: RigidPose) {
         self.led = Some(to);
-        self.dynamics.set_robot_pose(to);
+        self.dynamics.cable.set_robot_pose(to);
     }
 
     fn robot_contact(&self) -> Option<RobotContact> {
-        self.dynamics.outline_report()
+        self.dynamics.cable.outline_report()
     }
 
     fn solution(&self) -> CableSolution {
@@ -518,7 +520,7 @@ impl Mechanics for FemModel {
         match self.present {
             Part::Statics => self.statics.solution(),
             Part::Dynamics => {
-                let answer = self.dynamics.solution();
+                let answer = self.dynamics.cable.solution();
                 let meshes = self.meshes.errors;
                 let estimates = [self.unbent, meshes.relative(&answer)].into_iter().flatten();
                 let errors = match self.unbent {
@@ -545,7 +547,7 @@ impl Mechanics for FemModel {
     fn lend(&mut self) -> Option<OwnedResources> {
         Some(OwnedResources {
             memory: self.dynamics.solver.memory.0.take().map(|memory| memory as Box<dyn std::any::Any + Send>),
-            problem: self.dynamics.problem.clone(),
+            problem: self.dynamics.cable.problem.clone(),
         })
     }
 
@@ -555,8 +557,8 @@ impl Mechanics for FemModel {
             problem: state::moving_outline::with_outline(self.problem.clone()),
         });
         self.dynamics.solver.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
-        self.dynamics.problem = own.problem;
-        self.dynamics.place_outline();
+        self.dynamics.cable.problem = own.problem;
+        self.dynamics.cable.place_outline();
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

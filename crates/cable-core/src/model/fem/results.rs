@@ -4,9 +4,9 @@ use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Balanced, Load, ONE_MARK_BAR_FRACTION, Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::angle_between;
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::bar_weight::Weight;
@@ -30,7 +30,7 @@ const PATH_EXCESS_DIAMETERS: f64 = 0.005;
 
 /// The answer at positions `x` and velocities `v`.
 #[must_use]
-pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
+pub fn solution(d: &CableState, x: &[Vec2], v: &[Vec2]) -> CableSolution {
     let problem = &d.problem;
     let tension = bar_tensions(d, x);
     let (ends, lain) = end_forces(d, x, &tension);
@@ -49,7 +49,7 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
     }
 }
 
-impl Dynamics {
+impl CableState {
     /// The answer with the mesh as it is.
     pub(in crate::model::fem) fn solution_now(&self) -> CableSolution {
         solution(self, &self.motion.x, &self.motion.v)
@@ -131,11 +131,11 @@ impl Dynamics {
 
 /// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than
 /// zero.
-fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
+fn bar_tensions(d: &CableState, x: &[Vec2]) -> Vec<f64> {
     (0..d.mesh.rest_length.len()).map(|e| bar_tension(d, x, e)).collect()
 }
 
-fn bar_tension(d: &Dynamics, x: &[Vec2], e: usize) -> f64 {
+fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
     let path = d.mesh.path(e, x);
     let t = d.mesh.bar(e).tension(path.length);
     let flexible = d.mesh.is_flexible();
@@ -149,7 +149,7 @@ fn bar_tension(d: &Dynamics, x: &[Vec2], e: usize) -> f64 {
 
 /// Arc length from a node to the middle of the straight part of the bar before it (`side` 0) or
 /// after it (1), m.
-fn half(d: &Dynamics, node: usize, side: usize, x: &[Vec2]) -> f64 {
+fn half(d: &CableState, node: usize, side: usize, x: &[Vec2]) -> f64 {
     let e = node + side - 1;
     let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
     Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.task.body).carried(material)[1 - side]
@@ -172,7 +172,7 @@ struct Lain {
 /// a free end, else that of the middle plus what acts on the half between. On the ground what acts
 /// on the half is guessed from the next node. With it what the ground does to the halves that lie
 /// along an edge.
-fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<Lain>; 2]) {
+fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<Lain>; 2]) {
     let n = x.len();
     let mut lain = [None, None];
     let mut end = |node: usize, next: usize, e: usize, sign: f64| {
@@ -229,7 +229,7 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
 
 /// What hangs on a free end, N; None for other nodes, and where a lump moves, whose inertia pulls
 /// as well.
-fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
+fn free_end(d: &CableState, node: usize) -> Option<Vec2> {
     let k = d.meshing.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
     if d.motion.hands[k].is_some() {
         return Some(d.problem.hung_on(k, d.time()) - d.answers.reaction[node]);
@@ -239,7 +239,7 @@ fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
 }
 
 /// Normal and friction force of edges and floor on a node, N.
-fn ground_force(d: &Dynamics, node: usize, x: &[Vec2]) -> Vec2 {
+fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
     let mut sum = Vec2::zeros();
     for rub in d.contacts.rubs.iter().filter(|r| r.touch.node == node && !r.touch.on_segment) {
         sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + rub_force(&d.contacts, rub, x);
@@ -254,7 +254,7 @@ fn ground_force(d: &Dynamics, node: usize, x: &[Vec2]) -> Vec2 {
 /// obstacles and floor do to it. Between its bars nothing is left, whatever their tension: this has
 /// none of the rounding of their forces, and tells what slides from what rests where each node
 /// alone is let off with a little.
-pub(in crate::model::fem) fn unbalanced(d: &Dynamics, x: &[Vec2], time_s: f64) -> Vec2 {
+pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64) -> Vec2 {
     let problem = &d.problem;
     let hung: Vec2 = (0..problem.supports.len()).map(|k| problem.hung_on(k, time_s)).sum();
     let at_support =
@@ -290,7 +290,7 @@ pub(in crate::model::fem) fn rub_force(contacts: &ContactSet, rub: &FrictionCont
     -rub.tangent * friction::at(rub.sliding(x), rub.limit, contacts.slip).1
 }
 
-fn nodes(d: &Dynamics, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
+fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
     let (mesh, n) = (&d.mesh, x.len());
     let area = d.problem.cable.area_m2();
     let moments = moments(d, x);
@@ -379,7 +379,7 @@ struct OnRound {
 /// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the
 /// sliding node before, to where it leaves it, or halfway to the next. Its tension is that of its
 /// weight, and beyond that grows evenly in its logarithm, as friction makes it.
-fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
+fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
     let mesh = &d.mesh;
     let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
@@ -523,7 +523,7 @@ fn curvature_at(mesh: &Mesh, k: usize, x: &[Vec2]) -> f64 {
 }
 
 /// Bending moment at each node, N·m; empty for a flexible cable.
-fn moments(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
+fn moments(d: &CableState, x: &[Vec2]) -> Vec<f64> {
     let mesh = &d.mesh;
     if !(mesh.bending_stiffness > 0.0) {
         return Vec::new();
@@ -542,7 +542,7 @@ fn shear(mesh: &Mesh, moments: &[f64], e: usize, x: &[Vec2]) -> Vec2 {
 }
 
 /// The force of the cable on a pulley with its tensions and arc length.
-fn pulley(d: &Dynamics, support: usize, x: &[Vec2], tension: &[f64]) -> Option<SupportReaction> {
+fn pulley(d: &CableState, support: usize, x: &[Vec2], tension: &[f64]) -> Option<SupportReaction> {
     let seat = Seat::Pulley(support);
     let on = |k: &usize| d.mesh.sliding[*k].is_some_and(|s| s.seat == seat);
     let first = (1..x.len() - 1).find(on)?;
@@ -566,7 +566,7 @@ fn pulley(d: &Dynamics, support: usize, x: &[Vec2], tension: &[f64]) -> Option<S
     })
 }
 
-fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<SupportReaction> {
+fn supports(d: &CableState, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<SupportReaction> {
     let problem: &Problem = &d.problem;
     problem
         .supports
@@ -607,7 +607,7 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
 }
 
 /// One report for each stretch of neighbouring contacts with one obstacle.
-fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2]) -> Vec<ContactReport> {
+fn contacts(d: &CableState, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2]) -> Vec<ContactReport> {
     let mut touches: Vec<ContactPair> = Vec::new();
     d.contacts.find(&d.problem, &d.mesh, x, &mut touches);
     let mut obstacles: Vec<usize> = touches.iter().map(|t| t.pair.gap.obstacle).collect();
@@ -665,7 +665,7 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2])
 }
 
 /// One report for each corner, post or circle with sliding nodes.
-fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
+fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
     let n = x.len();
     let mut k = 1;
     while k + 1 < n {
@@ -724,7 +724,7 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
 }
 
 fn report(
-    d: &Dynamics,
+    d: &CableState,
     x: &[Vec2],
     tension: &[f64],
     lain: &[Option<Lain>; 2],

@@ -206,7 +206,8 @@ fn moved(touch: &ContactPair, step: &[f64]) -> Vec2 {
 mod tests {
     use super::Workspace;
     use crate::math::Vec2;
-    use crate::model::fem::dynamics::{Dynamics, REACH};
+    use crate::model::fem::dynamics::Dynamics;
+    use crate::model::fem::state::cable::REACH;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, Support, catalog};
@@ -228,7 +229,7 @@ mod tests {
         let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap();
         d.settle(&[]).unwrap();
         d.advance(STEP, Inertia::Dynamic, &[]).unwrap();
-        for (k, (x, v)) in d.motion.x.iter_mut().zip(&mut d.motion.v).enumerate() {
+        for (k, (x, v)) in d.cable.motion.x.iter_mut().zip(&mut d.cable.motion.v).enumerate() {
             let gap = 5.0 * REACH + 8e-3 * (1.0 + (0.13 * k as f64).sin());
             (*x, *v) = (Vec2::new(0.1 * k as f64, radius + gap), Vec2::new(0.0, -5.0));
         }
@@ -240,9 +241,9 @@ mod tests {
     fn a_cable_that_lands_all_along_its_length_in_one_step_takes_few_iterations() {
         let mut d = about_to_land();
         d.begin_step(STEP, &[]);
-        let mut pose = d.still_pose();
-        let mut memory = Workspace::new(&d.mesh).unwrap();
-        let done = memory.descend(&d.step_context(), &mut pose).unwrap();
+        let mut pose = d.solver.still_pose(&d.cable);
+        let mut memory = Workspace::new(&d.cable.mesh).unwrap();
+        let done = memory.descend(&d.cable.step_context(), &mut pose).unwrap();
         let landed = memory.touches.len();
         println!("{} iterations, {landed} nodes landed", done.iterations);
         assert!(landed > 90 && done.iterations <= 8, "{landed} {}", done.iterations);

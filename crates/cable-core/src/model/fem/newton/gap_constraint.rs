@@ -176,12 +176,12 @@ mod tests {
         fn a_gap_changes_by_its_slope_and_its_bend(moves in prop::collection::vec(-0.02f64..0.02, 10)) {
             let post = Shape::Circle { center_m: [0.35, -0.2], radius_m: 0.1 };
             let d = mesh(vec![Obstacle { name: "post".to_owned(), shape: post, friction: None }]);
-            let radius = d.problem.radius;
+            let radius = d.cable.problem.radius;
             let x: Vec<Vec2> = (0..5).map(|k| Vec2::new(0.1 + 0.2 * f64::from(k), -0.1 + radius + 5e-3)).collect();
             let then: Vec<Vec2> = x.iter().zip(moves.chunks(2)).map(|(x, go)| x + Vec2::new(go[0], go[1])).collect();
             let touch = |x: &[Vec2]| {
                 let mut found = Vec::new();
-                d.contacts.find_within(&d.problem, &d.mesh, x, 0.1, &mut found);
+                d.cable.contacts.find_within(&d.cable.problem, &d.cable.mesh, x, 0.1, &mut found);
                 found.into_iter().find(|t| t.on_segment && t.node == 1)
             };
             let before = touch(&x).unwrap();
@@ -189,7 +189,7 @@ mod tests {
             let after = touch(&then).unwrap();
             // The gap has no sign: what is crossed is left to the sweep.
             prop_assume!(after.pair.gap.normal.dot(&before.pair.gap.normal) > 0.0);
-            let stop = Stop::of(&before, &d.mesh, &System::new(&d.mesh), 0.0);
+            let stop = Stop::of(&before, &d.cable.mesh, &System::new(&d.cable.mesh), 0.0);
             let change = stop.opening(&moves) + stop.bend(&x, &moves);
             prop_assert!((after.pair.gap.gap_m - before.pair.gap.gap_m - change).abs() < 1e-12);
         }
@@ -207,7 +207,7 @@ mod tests {
                 found.into_iter().find(|p| (p.node, p.segment) == (4, 0)).unwrap()
             };
             let (before, after) = (pair(&x), pair(&then));
-            let stop = Stop::of_own(&before, &System::new(&d.mesh), 0.0);
+            let stop = Stop::of_own(&before, &System::new(&d.cable.mesh), 0.0);
             let change = stop.opening(&moves) + stop.bend(&x, &moves);
             prop_assert!((after.gap_m - before.gap_m - change).abs() < 1e-12);
         }

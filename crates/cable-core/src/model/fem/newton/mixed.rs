@@ -296,8 +296,8 @@ mod tests {
         let settings = Settings { segments: Some(40), ..Settings::default() };
         let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap();
         d.settle(&[]).unwrap();
-        let n = d.mesh.nodes() - 1;
-        for (k, v) in d.motion.v.iter_mut().enumerate() {
+        let n = d.cable.mesh.nodes() - 1;
+        for (k, v) in d.cable.motion.v.iter_mut().enumerate() {
             let s = std::f64::consts::PI * k as f64 / n as f64;
             *v = Vec2::new(waves[0] * s.sin(), waves[1] * s.sin() + waves[2] * (3.0 * s).sin() - 3.0);
         }
@@ -366,10 +366,10 @@ mod tests {
             for _ in 0..80 {
                 let mut trial = d.clone();
                 trial.begin_step(STEP, &[]);
-                let mut expected = trial.still_pose();
-                trial.contacts.prepare(&trial.problem, &trial.mesh, &expected.x, &trial.motion.x);
-                let mut memory = Workspace::new(&trial.mesh).unwrap();
-                let (step, mut found) = (trial.step_context(), expected.clone());
+                let mut expected = trial.solver.still_pose(&trial.cable);
+                trial.cable.contacts.prepare(&trial.cable.problem, &trial.cable.mesh, &expected.x, &trial.cable.motion.x);
+                let mut memory = Workspace::new(&trial.cable.mesh).unwrap();
+                let (step, mut found) = (trial.cable.step_context(), expected.clone());
                 let found_undamped = memory.undamped_newton(&step, SelfTouch::Avoid, &mut found).is_some();
                 if found_undamped && memory.descend(&step, &mut expected).is_ok() {
                     let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm());

@@ -291,20 +291,20 @@ mod tests {
             for _ in 0..3 {
                 d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
             }
-            let (n, mut task) = (d.mesh.nodes(), d.task.clone());
+            let (n, mut task) = (d.cable.mesh.nodes(), d.cable.task.clone());
             task.tolerance = 1e-7;
             for k in 0..n {
                 let s = k as f64 / (n - 1) as f64 * std::f64::consts::PI;
                 let push = Vec2::new(waves[0] * s.sin() + waves[1] * (2.0 * s).sin(), waves[2] * s.sin() + waves[3] * (3.0 * s).sin());
-                task.predicted[k] = d.motion.x[k] + push * 0.004;
-                task.inertia[k] = d.mesh.share(k) * a * a;
+                task.predicted[k] = d.cable.motion.x[k] + push * 0.004;
+                task.inertia[k] = d.cable.mesh.share(k) * a * a;
             }
-            let start = Pose { x: d.motion.x.clone(), slide: vec![0.0; n] };
+            let start = Pose { x: d.cable.motion.x.clone(), slide: vec![0.0; n] };
             let (mut free, mut found) = (FreeStep::default(), start.clone());
-            let Some(done) = free.solve(&d.mesh, &task, &mut found) else { return Err(TestCaseError::fail("not solved")) };
+            let Some(done) = free.solve(&d.cable.mesh, &task, &mut found) else { return Err(TestCaseError::fail("not solved")) };
             prop_assert!(done.residual <= 1e-7 && done.iterations <= 12, "{done:?}");
-            let (mut general, mut expected) = (Workspace::new(&d.mesh).unwrap(), start);
-            let step = StepContext { task: &task, ..d.step_context() };
+            let (mut general, mut expected) = (Workspace::new(&d.cable.mesh).unwrap(), start);
+            let step = StepContext { task: &task, ..d.cable.step_context() };
             prop_assert!(general.minimise(&step, &mut expected).is_ok());
             let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
             prop_assert!(off < 1e-7, "{off}");
@@ -317,11 +317,11 @@ mod tests {
     fn what_it_cannot_solve_is_left_as_it_was() {
         let mut d = dynamics(1e5, false);
         d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
-        let mut task = d.task.clone();
+        let mut task = d.cable.task.clone();
         task.predicted[7].x = f64::NAN;
-        let start = Pose { x: d.motion.x.clone(), slide: vec![0.0; d.mesh.nodes()] };
+        let start = Pose { x: d.cable.motion.x.clone(), slide: vec![0.0; d.cable.mesh.nodes()] };
         let mut pose = start.clone();
-        assert_eq!(FreeStep::default().solve(&d.mesh, &task, &mut pose), None);
+        assert_eq!(FreeStep::default().solve(&d.cable.mesh, &task, &mut pose), None);
         assert_eq!(pose, start);
     }
 }

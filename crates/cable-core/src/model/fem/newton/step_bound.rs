@@ -129,10 +129,10 @@ mod tests {
         fn a_short_way_is_free(seed in prop::collection::vec(-0.5f64..0.5, 122), down in 0.0f64..1.0) {
             let mut d = lying();
             d.begin_step(1.0 / 240.0, &[]);
-            let pose = d.still_pose();
-            d.contacts.prepare(&d.problem, &d.mesh, &pose.x, &d.motion.x);
-            let mut memory = Workspace::new(&d.mesh).unwrap();
-            let step = d.step_context();
+            let pose = d.solver.still_pose(&d.cable);
+            d.cable.contacts.prepare(&d.cable.problem, &d.cable.mesh, &pose.x, &d.cable.motion.x);
+            let mut memory = Workspace::new(&d.cable.mesh).unwrap();
+            let step = d.cable.step_context();
             memory.assemble(&step, &pose, Curvature::Exact);
             prop_assert!(memory.touches.len() > 10, "{} touch", memory.touches.len());
             let gaps = memory.touches.iter().map(|t| t.pair.gap.gap_m);

@@ -9,15 +9,15 @@
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
 use crate::model::Model;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::Path;
+use crate::model::fem::state::cable::CableState;
 
 /// Gap (parts of the barrier's reach) that a bar must have when a node is taken out: less, and the
 /// barrier throws it.
 const LEAST_GAP: f64 = 0.05;
 
-impl Dynamics {
+impl CableState {
     /// Whether a bar meets nothing.
     pub(in crate::model::fem) fn is_clear(&self, e: usize) -> bool {
         self.way_is_clear(&self.mesh.path(e, &self.motion.x), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))

@@ -25,8 +25,8 @@ use crate::contact::sweep::Sweep;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::model::RobotContact;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::results::rub_force;
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::friction_state::{ContactPair, OutlineMotion};
 use crate::model::fem::time::step_setup::clear_way;
@@ -69,7 +69,7 @@ fn is_passed_by(geometry: &Geometry, part: Part, from: [Vec2; 2], to: [Vec2; 2])
     heights.iter().all(|h| *h > body.offset) || heights.iter().all(|h| *h < -body.offset)
 }
 
-impl Dynamics {
+impl CableState {
     /// Leads the outline: it goes there in the next advance.
     pub(in crate::model::fem) fn set_robot_pose(&mut self, to: RigidPose) {
         if let Some(rider) = &mut self.rider

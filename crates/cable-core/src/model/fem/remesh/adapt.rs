@@ -13,9 +13,9 @@
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp, smaller};
 use crate::model::Inertia;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Load, Seat, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::floor_friction;
 use crate::model::fem::system::step_input::load_scale;
@@ -122,7 +122,7 @@ pub(in crate::model::fem) struct Remeshed {
     pub(in crate::model::fem) marks: bool,
 }
 
-impl Dynamics {
+impl CableState {
     /// Adapts the mesh to what the cable runs over, without inertia or with it.
     pub(in crate::model::fem) fn remesh(&mut self, inertia: Inertia) -> Remeshed {
         let rests = inertia == Inertia::QuasiStatic;
@@ -387,7 +387,7 @@ impl Dynamics {
         if self.problem.world.is_empty() || !self.meshing.slides {
             return taken;
         }
-        let mut touches = std::mem::take(&mut self.solver.touches);
+        let mut touches = std::mem::take(&mut self.meshing.found);
         for _ in 0..MAX_CHANGES {
             self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
             let found = touches.iter().find_map(|t| {
@@ -418,7 +418,7 @@ impl Dynamics {
             self.clear_around(node.unwrap_or(bar + 1));
             taken.push(sliding.seat);
         }
-        self.solver.touches = touches;
+        self.meshing.found = touches;
         taken
     }
 

@@ -2,11 +2,11 @@
 //! not change.
 
 use crate::math::Vec2;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::SlidingNode;
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::floor_friction;
 
-impl Dynamics {
+impl CableState {
     /// Puts a node at an arc length (m) between nodes `k` − 1 and `k`.
     pub(in crate::model::fem) fn insert(&mut self, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {
         let beside = [k - 1, k].into_iter().find_map(|j| self.mesh.sliding.get(j).copied().flatten());

@@ -13,10 +13,11 @@
 //! After each step contacts are made plastic: the barrier is a spring and would throw a landing
 //! cable back at 0.4 to 0.8 of its speed.
 
-use crate::math::{Vec2, bounded, larger, perp};
+use crate::math::{Vec2, bounded, perp};
 use crate::model::Inertia;
 use crate::model::fem::dynamics::{Dynamics, STIFFNESS_CHANGE};
 use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::history::Motion;
 use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::system::loss::damping_time;
@@ -39,26 +40,6 @@ pub(in crate::model::fem) fn carried_on(against: Vec2, normal: Vec2, friction: f
     let pressed = if pressed > 0.0 { pressed } else { 0.0 };
     normal * pressed + along * bounded(against.dot(&along), -friction * pressed, friction * pressed)
 }
-
-/// Rounds of finding that out in which no fewer grips are wrong than before, until they are changed
-/// one at a time; and rounds beside those for each sliding node. Fewer: steps of a few nodes that
-/// free each other in turn take longer, or are halved.
-const GRIP_ROUNDS: usize = 6;
-
-/// Rounds for each sliding node. Fewer: steps in which many begin to slip one after the other are
-/// halved; more: what does not end costs more.
-pub(in crate::model::fem) const ROUNDS_EACH: usize = 3;
-
-/// Rounds in which friction follows its normal forces. With none the greatest tension of a stiff
-/// cable (1 N m²) that drops on rubble is 537, 352 and 789 N with 84, 168 and 336 bars at 1/960 s,
-/// with one 427, 399 and 463 N; a second changes that by 2 %, and costs as much as the step (a
-/// pile: 1.5 s, 0.9 with one).
-const RUB_ROUNDS: usize = 1;
-
-/// Change of a friction force that is none, in parts of the greatest; and one of the weight of a
-/// bar is none. Less: sliding costs twice as much and changes by nothing that shows; more: impacts
-/// rub late.
-const RUB_CHANGE: f64 = 0.05;
 
 /// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they
 /// are coarse.
@@ -118,7 +99,7 @@ impl Weights {
     }
 }
 
-impl Dynamics {
+impl CableState {
     /// Makes contacts plastic: what still comes nearer stops, and what goes away goes no faster
     /// than without the force of the contact, as nothing presses on what leaves (J. J. Moreau,
     /// "Unilateral contact and dry friction in finite freedom dynamics", in: Nonsmooth Mechanics
@@ -196,83 +177,6 @@ impl Dynamics {
         self.motion.step_before = h;
     }
 
-    /// Sets the task of a step of `h` (s); returns the weights of its history.
-    pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Weights {
-        self.follow_hands(h, dragged);
-        self.prepare_way([self.motion.time, self.motion.time + h], Some(dragged));
-        self.contacts.set_slip(SLIDE);
-        self.adapt_stiffness(STIFFNESS_CHANGE, 1.0);
-        let weights = self.weights(h);
-        self.set_inertia(weights, h);
-        let (m, task, mesh) = (&self.motion, &self.task, &self.mesh);
-        self.contacts.look_around(&self.problem, mesh, &m.x, |k| {
-            if mesh.held[k] { (task.target[k] - m.x[k]).norm() } else { m.v[k].norm() * h }
-        });
-        weights
-    }
-
-    pub(in crate::model::fem) fn dynamic_step(
-        &mut self,
-        h: f64,
-        dragged: &[Option<Vec2>],
-    ) -> Result<Converged, Failure> {
-        let weights = self.begin_step(h, dragged);
-        let Weights { now, past, a, .. } = weights;
-        let (mut pose, exact) = (self.moving_pose(h), self.task.tolerance);
-        self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
-        self.task.tolerance = self.rounded_tolerance();
-        let done = self.rub_and_minimise(&mut pose);
-        self.task.tolerance = exact;
-        let done = done?;
-        if let Some(node) = self.pulled(&pose.x) {
-            return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
-        }
-        self.note_lag(&pose);
-        self.note_hands(&pose);
-        self.note_balanced(&pose);
-        let given = self.forces_in_step(&pose);
-        let slid = self.sliding_momentum();
-        self.relax_branches(h, &pose.x);
-        self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
-        let (m, mesh) = (&mut self.motion, &self.mesh);
-        for k in 0..pose.x.len() {
-            let v = (pose.x[k] - weights.place(m, k)) * a;
-            let s = mesh.arc_length[k];
-            let w = (s + pose.slide[k] - s * now + m.s_before[k] * past) * a;
-            if let (Some(x), Some(v)) = (m.x_older.get_mut(k), m.v_older.get_mut(k)) {
-                (*x, *v) = (m.x_before[k], m.v_before[k]);
-            }
-            m.x_before[k] = m.x[k];
-            m.v_before[k] = m.v[k];
-            m.s_before[k] = s;
-            m.w_before[k] = m.w[k];
-            m.x[k] = pose.x[k];
-            m.v[k] = v;
-            m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
-        }
-        self.slide(&pose.slide);
-        self.account_for_step(weights, given, slid, &pose.slide);
-        self.solver.pose = pose;
-        self.motion.time += h;
-        self.gauge_tension();
-        self.note_step(h);
-        self.note_pace(h);
-        self.land(h, a);
-        self.land_on_itself(PLASTIC_SPEED_LIMIT, [h, a]);
-        self.close_account();
-        self.contacts.carriage = None;
-        if !self.meshing.never_slides {
-            self.answers.keeps = self.motion.time >= self.pacing.due * (1.0 - f64::EPSILON);
-            self.remesh(Inertia::Dynamic);
-            self.answers.keeps = false;
-            self.answers.stepped = self.answers.kept.take();
-            if let Some(node) = self.crossing() {
-                return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerCrossed });
-            }
-        }
-        Ok(done)
-    }
-
     /// Keeps what friction acts between at each sliding node.
     fn note_balanced(&mut self, pose: &Pose) {
         for k in 0..self.mesh.nodes() {
@@ -309,71 +213,6 @@ impl Dynamics {
         }
     }
 
-    /// The present pose moved on at its velocities for `h` (s), where nothing can be in the way.
-    /// Newton then starts nearer by a factor of the step, and what it leaves is smaller and not
-    /// always on the same side.
-    fn moving_pose(&mut self, h: f64) -> Pose {
-        let mut pose = self.still_pose();
-        for (k, (x, v)) in pose.x.iter_mut().zip(&self.motion.v).enumerate() {
-            if self.mesh.is_free(k) {
-                *x += v * h;
-            } else if self.mesh.held[k] {
-                // Short bars beside a support would have to turn by large angles if it stayed
-                // behind.
-                *x = self.task.target[k];
-            }
-        }
-        if self.is_out_of_reach(&pose.x) {
-            pose
-        } else {
-            self.solver.pose = pose;
-            self.still_pose()
-        }
-    }
-
-    /// Minimises until contacts rub by the normal forces that the step itself has. By those at its
-    /// start an impact would rub in the step after it, by a force that is no longer there: up to
-    /// nine times the cone, along the cable.
-    fn rub_and_minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
-        let mut done = self.grip_and_minimise(pose)?;
-        for _ in 0..RUB_ROUNDS {
-            let same = |change: f64, most: f64| change <= larger(RUB_CHANGE * most, self.meshing.bar_weight);
-            if !self.contacts.renew(&self.problem, &self.mesh, [&pose.x, &self.motion.x], same) {
-                break;
-            }
-            let more = self.grip_and_minimise(pose)?;
-            done = Converged { iterations: done.iterations + more.iterations, ..more };
-        }
-        Ok(done)
-    }
-
-    /// Minimises until the law holds at every sliding node: what slips, and with what friction, is
-    /// part of the step, not found out after it.
-    ///
-    /// All grips that are wrong are changed at once while that makes them fewer; then one at a time
-    /// (J. Júdice, F. Pires, "A block principal pivoting algorithm for large-scale strictly
-    /// monotone linear complementarity problems", Computers & Operations Research 21, 1994).
-    fn grip_and_minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
-        let mut done = self.minimise(pose)?;
-        let sliding = self.mesh.sliding.iter().flatten().count();
-        let (mut fewest, mut spare) = (usize::MAX, GRIP_ROUNDS);
-        for _ in 0..GRIP_ROUNDS + ROUNDS_EACH * sliding {
-            let grips = self.update_grips(pose, spare == 0);
-            if grips.hold() {
-                return Ok(done);
-            }
-            if grips.wrong < fewest {
-                (fewest, spare) = (grips.wrong, GRIP_ROUNDS);
-            } else {
-                spare = spare.saturating_sub(1);
-            }
-            let more = self.minimise(pose)?;
-            done = Converged { iterations: done.iterations + more.iterations, ..more };
-        }
-        let node = self.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
-        Err(Failure { node, residual: done.residual, cause: FailureCause::StickSlipUndecided })
-    }
-
     /// Unbalanced force to reach in a step with inertia, N: not below the rounding of m a² (x −
     /// x̃). That grows as the step shrinks: 5 kg at 20 m and 1/4000 s know their force to 1e-6 N
     /// only.
@@ -388,6 +227,19 @@ impl Dynamics {
         tolerance
     }
 
+    /// Lets the material slide through the sliding nodes, m of arc length each.
+    pub(in crate::model::fem) fn slide(&mut self, slide: &[f64]) {
+        let mesh = &mut self.mesh;
+        for (s, by) in mesh.arc_length.iter_mut().zip(slide) {
+            *s += by;
+        }
+        for e in 0..mesh.rest_length.len() {
+            if slide[e] != 0.0 || slide[e + 1] != 0.0 {
+                mesh.rest_length[e] = mesh.thermal_stretch * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
+            }
+        }
+    }
+
     /// Inertia and damping of a step of `h` (s).
     ///
     /// Where velocities jump between two steps (a plastic impulse, a change of the mesh) the rate
@@ -395,7 +247,7 @@ impl Dynamics {
     /// the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may touch something
     /// is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a small force,
     /// ¾ τ/h of that which BDF2 makes of a vibration.
-    fn set_inertia(&mut self, weights: Weights, h: f64) {
+    fn set_inertia(&mut self, weights: Weights, h: f64, decay: &mut Vec<f64>) {
         let Weights { now, past, a, .. } = weights;
         let rubs = !(self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none());
         let jumps = !self.meets_nothing();
@@ -441,29 +293,85 @@ impl Dynamics {
                 length(&m.x) * now - length(&m.x_before) * past + older
             };
         }
-        self.add_branches(h, rate);
+        self.add_branches(h, rate, decay);
+    }
+}
+
+impl Dynamics {
+    /// Sets the task of a step of `h` (s); returns the weights of its history.
+    pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Weights {
+        self.hand_drive.follow(&mut self.cable, self.pacing.due, h, dragged);
+        self.cable.prepare_way([self.cable.motion.time, self.cable.motion.time + h], Some(dragged));
+        self.cable.contacts.set_slip(SLIDE);
+        self.cable.adapt_stiffness(STIFFNESS_CHANGE, 1.0);
+        let weights = self.cable.weights(h);
+        self.cable.set_inertia(weights, h, &mut self.solver.decay);
+        let (m, task, mesh) = (&self.cable.motion, &self.cable.task, &self.cable.mesh);
+        self.cable.contacts.look_around(&self.cable.problem, mesh, &m.x, |k| {
+            if mesh.held[k] { (task.target[k] - m.x[k]).norm() } else { m.v[k].norm() * h }
+        });
+        weights
     }
 
-    /// The present pose.
-    pub(in crate::model::fem) fn still_pose(&mut self) -> Pose {
-        let mut pose = std::mem::take(&mut self.solver.pose);
-        pose.x.clear();
-        pose.x.extend_from_slice(self.task.begins());
-        pose.slide.clear();
-        pose.slide.resize(self.mesh.nodes(), 0.0);
-        pose
-    }
-
-    /// Lets the material slide through the sliding nodes, m of arc length each.
-    pub(in crate::model::fem) fn slide(&mut self, slide: &[f64]) {
-        let mesh = &mut self.mesh;
-        for (s, by) in mesh.arc_length.iter_mut().zip(slide) {
-            *s += by;
+    pub(in crate::model::fem) fn dynamic_step(
+        &mut self,
+        h: f64,
+        dragged: &[Option<Vec2>],
+    ) -> Result<Converged, Failure> {
+        let weights = self.begin_step(h, dragged);
+        let Weights { now, past, a, .. } = weights;
+        let (mut pose, exact) = (self.solver.moving_pose(&self.cable, h), self.cable.task.tolerance);
+        self.cable.contacts.prepare(&self.cable.problem, &self.cable.mesh, &pose.x, &self.cable.motion.x);
+        self.cable.task.tolerance = self.cable.rounded_tolerance();
+        let done = self.solver.rub_and_minimise(&mut self.cable, &mut pose);
+        self.cable.task.tolerance = exact;
+        let done = done?;
+        if let Some(node) = self.cable.pulled(&pose.x) {
+            return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
         }
-        for e in 0..mesh.rest_length.len() {
-            if slide[e] != 0.0 || slide[e + 1] != 0.0 {
-                mesh.rest_length[e] = mesh.thermal_stretch * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
+        self.cable.note_lag(&pose);
+        self.cable.note_hands(&pose);
+        self.cable.note_balanced(&pose);
+        let given = self.cable.forces_in_step(&pose, self.solver.touches());
+        let slid = self.cable.sliding_momentum();
+        self.cable.relax_branches(h, &pose.x);
+        self.cable.contacts.commit(&self.cable.problem, &self.cable.mesh, &pose.x, &self.cable.motion.x, &pose.slide);
+        let (m, mesh) = (&mut self.cable.motion, &self.cable.mesh);
+        for k in 0..pose.x.len() {
+            let v = (pose.x[k] - weights.place(m, k)) * a;
+            let s = mesh.arc_length[k];
+            let w = (s + pose.slide[k] - s * now + m.s_before[k] * past) * a;
+            if let (Some(x), Some(v)) = (m.x_older.get_mut(k), m.v_older.get_mut(k)) {
+                (*x, *v) = (m.x_before[k], m.v_before[k]);
+            }
+            m.x_before[k] = m.x[k];
+            m.v_before[k] = m.v[k];
+            m.s_before[k] = s;
+            m.w_before[k] = m.w[k];
+            m.x[k] = pose.x[k];
+            m.v[k] = v;
+            m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
+        }
+        self.cable.slide(&pose.slide);
+        self.cable.account_for_step(weights, given, slid, &pose.slide);
+        self.solver.pose = pose;
+        self.cable.motion.time += h;
+        self.cable.gauge_tension();
+        self.cable.note_step(h);
+        self.pacing.pace.observe(&self.cable, h);
+        self.cable.land(h, a);
+        self.cable.land_on_itself(PLASTIC_SPEED_LIMIT, [h, a]);
+        self.cable.close_account();
+        self.cable.contacts.carriage = None;
+        if !self.cable.meshing.never_slides {
+            self.cable.answers.keeps = self.cable.motion.time >= self.pacing.due * (1.0 - f64::EPSILON);
+            self.cable.remesh(Inertia::Dynamic);
+            self.cable.answers.keeps = false;
+            self.cable.answers.stepped = self.cable.answers.kept.take();
+            if let Some(node) = self.cable.crossing() {
+                return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerCrossed });
             }
         }
+        Ok(done)
     }
 }

@@ -2,13 +2,13 @@
 
 use crate::contact::friction;
 use crate::math::Vec2;
-use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::time::bdf2::{carried_on, plastic};
 use crate::model::fem::time::momentum::mass_with;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
-impl Dynamics {
+impl CableState {
     /// Whether there is nothing to touch: no obstacle, and the cable can pass itself.
     pub(in crate::model::fem) fn meets_nothing(&self) -> bool {
         self.problem.world.is_empty() && !self.contacts.own.shape.is_on()

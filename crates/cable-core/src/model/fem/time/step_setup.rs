@@ -2,15 +2,20 @@
 //! instant.
 
 use crate::math::Vec2;
-use crate::model::fem::dynamics::{Dynamics, INNER_STEP, REACH};
 use crate::model::fem::mesh::sliding_node::Seat;
-use crate::model::fem::newton::minimize::{StepContext, Workspace};
+use crate::model::fem::newton::minimize::StepContext;
+use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable::REACH;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::floor_friction;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose};
+use crate::model::fem::system::step_input::Pose;
 use crate::model::input_filter::MAX_SPEED;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
+
+/// Greatest move of a node in a Newton iteration, m: two longest inner steps at 100 m/s. Smaller:
+/// fast motion takes more iterations; larger: a wild step goes farther before it is cut.
+const MAX_NEWTON_MOVE_M: f64 = 2.0 / 240.0 * 100.0;
 
 /// Newton iterations of a dynamic step.
 const STEP_ITERATIONS: usize = 120;
@@ -53,7 +58,7 @@ impl StickSlipChanges {
     }
 }
 
-impl Dynamics {
+impl CableState {
     /// What the solve of the present step reads.
     pub(in crate::model::fem) fn step_context(&self) -> StepContext<'_> {
         StepContext { problem: &self.problem, mesh: &self.mesh, contacts: &self.contacts, task: &self.task }
@@ -138,7 +143,7 @@ impl Dynamics {
         task.may_lag = to > from;
         task.outlined = self.rider.is_some();
         task.max_iterations = STEP_ITERATIONS;
-        task.max_move = 2.0 * INNER_STEP * 100.0;
+        task.max_move = MAX_NEWTON_MOVE_M;
         task.moves = false;
         task.shift = 0.0;
         task.loss.clear();
@@ -262,7 +267,7 @@ impl Dynamics {
 
     /// Whether the cable is flexible and nothing but its supports can touch it on the way to places
     /// `to` (m).
-    fn moves_freely(&self, to: &[Vec2]) -> bool {
+    pub(in crate::model::fem) fn moves_freely(&self, to: &[Vec2]) -> bool {
         let slides = !self.meshing.never_slides && self.mesh.sliding.iter().any(Option::is_some);
         !slides
             && self.problem.floor_friction.is_none()
@@ -274,40 +279,6 @@ impl Dynamics {
     pub(in crate::model::fem) fn is_out_of_reach(&self, to: &[Vec2]) -> bool {
         self.meets_nothing()
             || (!self.contacts.own.shape.is_on() && self.contacts.out_of_reach(&self.mesh, [&self.task.start, to]))
-    }
-
-    pub(in crate::model::fem) fn minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
-        if self.moves_freely(&pose.x)
-            && let Some(done) = self.solver.free.solve(&self.mesh, &self.task, pose)
-        {
-            if self.is_out_of_reach(&pose.x) {
-                for (k, reaction) in self.answers.reaction.iter_mut().enumerate() {
-                    *reaction = -self.solver.free.gradient_at(k);
-                }
-                self.meshing.freely = true;
-                return Ok(done);
-            }
-            // It would have met something: from the start again, with contact.
-            *pose = self.still_pose();
-        }
-        let mut memory = match self.solver.memory.0.take() {
-            Some(m) if m.nodes() == self.mesh.nodes() => m,
-            _ => Box::new(Workspace::new(&self.mesh).map_err(|_| Failure {
-                node: 0,
-                residual: f64::NAN,
-                cause: FailureCause::OutOfMemory,
-            })?),
-        };
-        memory.work_left = self.solver.work_left;
-        self.meshing.freely = false;
-        let done = memory.minimise(&self.step_context(), pose);
-        self.solver.work_left = memory.work_left;
-        for k in 0..self.mesh.nodes() {
-            let scale = self.task.scale.get(k.saturating_sub(1)).copied().unwrap_or(1.0);
-            self.answers.reaction[k] = -memory.gradient_at(k) / scale;
-        }
-        self.solver.memory.0 = Some(memory);
-        done
     }
 }
 
