@@ -6,12 +6,12 @@ use super::{Inertia, Model};
 use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 
-/// What is asked of a scene.
+/// A question about a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
-    /// Where does it rest?
+    /// The equilibrium.
     Rest,
-    /// What happens over time?
+    /// The motion over time.
     History(Inertia),
 }
 

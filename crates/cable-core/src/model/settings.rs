@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::input_filter;
 use crate::error::SolveError;
 
-/// How finely and how exactly a model works.
+/// The mesh and the accuracy of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Relative accuracy asked of the tension; models choose their mesh by it where the scene does
@@ -13,7 +13,7 @@ pub struct Settings {
     pub tolerance: f64,
     /// Elements per cable; overrides the scene's `segments`.
     pub segments: Option<usize>,
-    /// How `mass-spring` takes dynamic steps.
+    /// Integrator of dynamic steps of `mass-spring`.
     #[serde(default)]
     pub stepping: Stepping,
     /// Longest inner step of `fem` with inertia, s, 1e-9 to 1, of the cable at the scale at which
@@ -103,7 +103,7 @@ impl Settings {
     }
 }
 
-/// How mass-spring takes dynamic steps.
+/// The integrator of dynamic steps of `mass-spring`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stepping {

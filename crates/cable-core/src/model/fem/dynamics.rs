@@ -1,5 +1,5 @@
-//! `Dynamics` is a cable in contact: what its motion, its quasi-static steps and its equilibria
-//! share.
+//! `Dynamics` advances the state of a cable in contact: its motion, quasi-static steps and
+//! equilibria.
 
 use std::sync::Arc;
 
@@ -56,7 +56,7 @@ pub struct Dynamics {
     pub(super) pacing: Pacing,
     pub(super) solver: SolverMemory,
     pub(super) rollback: Rollback,
-    /// Whether it has come to rest, or moves from a state that did.
+    /// True if it has come to rest, or moves from a state that did.
     pub(super) rested: bool,
 }
 
@@ -190,7 +190,7 @@ impl Dynamics {
     ) -> Result<Converged, SolveError> {
         let (mut left, mut size, mut depth) = (h, h, 0);
         let mut total = Converged::default();
-        // What was left when a motion without history began.
+        // Time that was left when a motion without history began.
         let mut began = None;
         loop {
             let begins =

@@ -34,16 +34,16 @@ const MOST_BARS: usize = 800;
 /// that of the first order.
 const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
 
-/// Who goes on beside the cable, and what is said.
+/// The model beside which the errors of the cable are estimated, and the estimate.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct TwoMeshes {
     exact: Option<Box<SpansModel>>,
     coarse: Option<Box<Dynamics>>,
-    /// What is known of the errors now.
+    /// The errors as far as they are known now.
     pub errors: ErrorEstimates,
 }
 
-/// Whether the comparison may change the mesh.
+/// True if the comparison may change the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refinement {
     /// The scene leaves the number of bars open.
@@ -70,7 +70,8 @@ impl TwoMeshes {
         }
         if problem.cable.self_contact {
             self.errors = match exact {
-                // What touches itself nowhere lies as one that cannot; once it moves it may.
+                // A cable that touches itself nowhere rests as one that cannot; once it moves it
+                // may.
                 Some(exact) if !fine.cable.touches_itself() => beside(&fine.cable.solution(), &exact.answer, problem),
                 _ => coarser(problem, settings, fine, dragged).map(|found| found.0).unwrap_or_default(),
             };
@@ -133,7 +134,7 @@ impl TwoMeshes {
             (None, None) => None,
         };
         let Some(coarse) = coarse else { return };
-        // What friction remembers is as wrong as the steps were that it remembers.
+        // Friction is as wrong as the steps that it remembers.
         self.errors = before.errors.or_larger(&ErrorEstimates::between(&coarse.cable.solution(), &answer));
         self.coarse = Some(coarse);
     }

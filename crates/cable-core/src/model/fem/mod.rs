@@ -3,16 +3,16 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | `dynamics` | the cable in contact: its mesh, contacts, history and settings in one place |
+//! | `state` | the state of the cable (`state/cable.rs`), and the parts that control it (`state/control.rs`) |
+//! | `dynamics` | advances that state: steps, halvings, reports |
 //! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
 //! | `equilibrium` | equilibria in contact, and steps without inertia |
 //! | `time` | setup of a step, BDF2, step sizes, sleep, hands, momentum |
-//! | `state` | history, momentum account, sleep, step size, outline: the parts of `dynamics` |
 //! | `newton` | one step: its initial guess, its Newton iterations, and what bounds them |
 //! | `system` | input and energies of a step: value, gradient and banded Hessian |
 //! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
 //! | `obstacle`, `transfer` | the robot's outline; states and answers of other models |
-//! | `results`, `mesh_comparison` | what is read out of a state, and how wrong it is |
+//! | `results`, `mesh_comparison` | the answer of a state, and its errors |
 //!
 //! [`FemModel`] decides which part answers, and hands the state over when the question changes.
 
@@ -86,7 +86,7 @@ const STIFF_ESTIMATE_FRACTION: f64 = 0.5;
 /// for the same.
 const STIFF_SHIFT_LIMIT: f64 = 0.05;
 
-/// Which part holds the present state.
+/// The part that holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Statics,
@@ -97,21 +97,21 @@ enum Part {
 #[derive(Clone, Debug)]
 pub struct FemModel {
     problem: Arc<Problem>,
-    /// Where a support was dragged to by hand, m.
+    /// Points to which supports were dragged by hand, m.
     dragged: Vec<Option<Vec2>>,
     statics: free::statics::Statics,
     dynamics: dynamics::Dynamics,
     present: Part,
-    /// Whether a first rest with contact goes on from that of `spans`, where there is one.
+    /// True if a first rest with contact goes on from that of `spans`, where there is one.
     laid_evenly: bool,
     settings: Settings,
-    /// What another mesh says of the error in contact.
+    /// The estimate of the error in contact by another mesh.
     meshes: TwoMeshes,
-    /// Where the outline of the robot was led.
+    /// Pose to which the outline of the robot was led.
     led: Option<RigidPose>,
     /// The rest of a stiff cable in contact, until something moves.
     bent: Option<CableSolution>,
-    /// What the mesh's rest of a stiff cable may be off by, in parts of the greatest tension, until
+    /// Error of the mesh's equilibrium of a stiff cable, in parts of the greatest tension, until
     /// something moves.
     unbent: Option<f64>,
 }
@@ -222,7 +222,7 @@ impl FemModel {
         let said = match laid {
             Ok(Laid::TakenOver(said)) => said,
             Ok(Laid::Alone | Laid::Unknown) => Vec::new(),
-            // What slides from where it is laid may come to rest elsewhere.
+            // A cable that slides from its first place may come to rest elsewhere.
             Err(slides) => {
                 let answer = self.dynamics.cable.solution();
                 let rises = !(work(&self.problem, &start, &answer, self.dynamics.cable.time()) > 0.0);
@@ -249,7 +249,7 @@ impl FemModel {
         Ok(report)
     }
 
-    /// What the mesh leaves out of the bend of a stiff cable; says so where that is more than was
+    /// A warning of the bend of a stiff cable that the mesh leaves out, where that is more than was
     /// asked for.
     fn bend_warning(&mut self) -> Option<Warning> {
         if !(self.problem.bending_stiffness > 0.0) {
@@ -313,7 +313,8 @@ impl FemModel {
         let bar = self.dynamics.cable.even();
         let found = Elastica::from_mesh(&self.problem, self.dynamics.cable.time(), &self.dragged, &answer, bar)?;
         let cost = self.take_bent(found)?;
-        // What the mesh found is followed, not left: places that differ by more are another rest.
+        // The equilibrium of the mesh is followed: places that differ by more are another
+        // equilibrium.
         let near = |n: &Node| {
             let at = self.bent.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
             at.is_some_and(|at| (at - n.at()).norm() <= STIFF_SHIFT_LIMIT * self.problem.length)
@@ -325,7 +326,7 @@ impl FemModel {
         Some(cost)
     }
 
-    /// What there is to say of a stiff cable's rest whose error is more than was asked for.
+    /// A warning of a stiff cable's equilibrium whose error is more than was asked for.
     fn bent_warning(&self) -> Option<Warning> {
         let (estimate, asked) = (self.bent.as_ref()?.error_estimate?, self.settings.tolerance);
         let cause = WarningCause::BarContacts;
@@ -367,7 +368,7 @@ impl FemModel {
         meshes.compare(&self.problem, self.settings, refinement, dynamics, exact, &self.dragged);
     }
 
-    /// What there is to say of a mesh that is coarser than the tolerance asks for.
+    /// A warning of a mesh that is coarser than the tolerance asks for.
     fn coarse_warning(&self) -> Option<Warning> {
         let (estimate, asked) =
             (self.meshes.errors.relative(&self.dynamics.cable.solution())?, self.settings.tolerance);
@@ -391,7 +392,7 @@ impl FemModel {
     }
 }
 
-/// Whether the cable can touch nothing but its supports.
+/// True if the cable can touch nothing but its supports.
 fn touches_nothing(problem: &Problem) -> bool {
     problem.world.is_empty()
         && problem.outline.is_none()
@@ -443,7 +444,7 @@ impl Mechanics for FemModel {
             let led = !touches_nothing(&self.problem) || self.dynamics.cable.slides_anywhere();
             match if led { self.bend_warning() } else { None } {
                 Some(warning) => report.warnings.push(warning),
-                // What is less than was asked for says nothing of the other errors of a step.
+                // An error below the tolerance tells nothing of the other errors of a step.
                 None => self.unbent = None,
             }
             Ok(report)

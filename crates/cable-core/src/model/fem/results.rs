@@ -84,14 +84,14 @@ impl CableState {
         self.answers.gauged = gauged;
     }
 
-    /// Whether the cable slides through any node.
+    /// True if the cable slides through any node.
     pub(in crate::model::fem) fn slides_anywhere(&self) -> bool {
         self.mesh.sliding.iter().any(Option::is_some)
     }
 
-    /// What the mesh leaves out of a stiff cable's bend at what it is led round, in parts of the
-    /// greatest tension, and where that is most (m of arc length). A sliding node carries no
-    /// moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
+    /// Error of the tension of a stiff cable where it bends round obstacles and pulleys, in parts
+    /// of the greatest tension, and the arc length (m) where it is greatest. A sliding node carries
+    /// no moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
     /// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the
     /// normal force of a contact has any direction in between: along the cable that is ½ψ of it.
     pub(in crate::model::fem) fn bending_error(&self) -> (f64, f64) {
@@ -155,7 +155,7 @@ fn half(d: &CableState, node: usize, side: usize, x: &[Vec2]) -> f64 {
     Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.task.body).carried(material)[1 - side]
 }
 
-/// What the ground does to the half bar at a held end that lies on it.
+/// The force of the ground on the half bar at a held end that lies on it.
 struct Lain {
     /// The end, and the node beside it.
     node: usize,
@@ -178,8 +178,8 @@ fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Optio
     let mut end = |node: usize, next: usize, e: usize, sign: f64| {
         let ground = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach);
         if let Some(hung) = free_end(d, node) {
-            // What presses on the ground there is the ground's, and what friction holds of it: at
-            // the tip itself no more than its cone.
+            // The ground carries the normal force there, and friction a part: at the tip itself no
+            // more than its cone.
             let taken = ground.map_or(Vec2::zeros(), |g| {
                 let pressed = hung.dot(&g.normal).min(0.0);
                 let along = perp(g.normal);
@@ -196,8 +196,8 @@ fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Optio
         let Some(ground) = ground else { return middle + body * sign };
         let grounded = ground_force(d, next, x) * (half / d.mesh.share(next));
         let force = middle + (body + grounded) * sign;
-        // What lies on an edge up to its end presses on the edge alone; the barrier's width would
-        // tilt the last bar.
+        // A cable that lies on an edge up to its end presses on the edge alone; the barrier's width
+        // would tilt the last bar.
         let beyond = d.problem.world.signed_gap(x[next], 3.0 * d.contacts.barrier.reach);
         let along = ground.feature % 2 == 0 && beyond.is_some_and(|g| g.feature == ground.feature);
         // No more than what presses: beyond that the support is pulled off the edge.
@@ -210,7 +210,7 @@ fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Optio
         let rubbed = (grounded - ground.normal * pressed) * (1.0 - kept);
         let lift = ground.normal * (lift * sign);
         let (grounded, force) = (grounded - rubbed, force - rubbed * sign);
-        // What a lump presses with is the ground's as well: its node tells.
+        // The ground carries the normal force of a point mass as well: its node tells.
         lain[usize::from(sign < 0.0)] = d.mesh.held[node].then(|| Lain {
             node,
             next,
@@ -227,8 +227,8 @@ fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Optio
     ([end(0, 1, 0, 1.0), end(n - 1, n - 2, n - 2, -1.0)], lain)
 }
 
-/// What hangs on a free end, N; None for other nodes, and where a lump moves, whose inertia pulls
-/// as well.
+/// The load on a free end, N; None for other nodes, and where a point mass moves, whose inertia
+/// pulls as well.
 fn free_end(d: &CableState, node: usize) -> Option<Vec2> {
     let k = d.meshing.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
     if d.motion.hands[k].is_some() {
@@ -250,10 +250,10 @@ fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
     sum
 }
 
-/// What is left of all forces on a cable that no support holds, N: weight, loads, and what
-/// obstacles and floor do to it. Between its bars nothing is left, whatever their tension: this has
-/// none of the rounding of their forces, and tells what slides from what rests where each node
-/// alone is let off with a little.
+/// Sum of all forces on a cable that no support holds, N: weight, loads, and what obstacles and
+/// floor do to it. Between its bars nothing is left, whatever their tension: this has none of the
+/// rounding of their forces, and tells what slides from what rests where each node alone is let off
+/// with a little.
 pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64) -> Vec2 {
     let problem = &d.problem;
     let hung: Vec2 = (0..problem.supports.len()).map(|k| problem.hung_on(k, time_s)).sum();
@@ -333,7 +333,7 @@ fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 
             k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),
             k => bar(k) + d.task.body * half(d, k, 1, x),
         };
-        // Where a round reaches to it within a step, the round ends there.
+        // A round that reaches to the node within a step ends there.
         while out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
             out.pop();
         }
@@ -347,8 +347,8 @@ fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 
     out
 }
 
-/// What a round does to the cable at a sliding node, N: all that the change of the internal force
-/// asks for, but for what the floor does.
+/// Force of a round on the cable at a sliding node, N: the change of the internal force without the
+/// part of the floor.
 fn by_round(load: &Load) -> Vec2 {
     let [before, after] = load.force.map(|f| f.try_normalize(0.0).unwrap_or_default());
     let on = (before + after).try_normalize(0.0).unwrap_or_default();
@@ -385,8 +385,8 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
     let stretch = [0, 1].map(|j| paths[j].length / (mesh.arc_length[k + j] - mesh.arc_length[k + j - 1]));
     let (mark, sense, radius) = (node.end.mark, node.end.sense, node.end.radius);
-    // What lies between the node and where the cable meets or leaves the round, so far (rad) from
-    // it, has its own weight.
+    // The stretch between the node and the point where the cable meets or leaves the round, at an
+    // angle (rad) from it, has its own weight.
     let force_at =
         |arcs: [f64; 2]| [0, 1].map(|j| load.force[j] - d.task.body * (arcs[j] * radius / stretch[j] * [-1.0, 1.0][j]));
     let sag = |j: usize, from: Vec2, to: Vec2| {
@@ -427,7 +427,7 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     let [a, b] = [0, 1].map(|j| if same[j] { tension[k + j - 1] } else { ends[j].norm() });
     let chords = arc_nodes::parts(radius, whole, d.problem.radius) as f64;
     let count = larger((whole / ARC_STEP).ceil(), chords);
-    // What the floor takes before and after the round is not the round's.
+    // The forces of the floor before and after the round are not the round's.
     let [f0, floor, f2] = load.floor;
     let [a, b] = [a - f0, b + f2];
     // dT = −b·dx without friction.
@@ -441,7 +441,7 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     let small = same == [false; 2] && whole * radius < ONE_MARK_BAR_FRACTION * d.even();
     let most = node.friction * whole;
     let rate = if small && grown.abs() > HANGING_TENSION_GROWTH * most { most.copysign(grown) } else { grown };
-    // What is beside it stands where the weight hangs: before the round and after it by the angle
+    // The load beside it acts where the weight hangs: before the round and after it by the angle
     // there between the cable's force and the end of the arc.
     let tangents = [-before, after].map(|turned| perp(normal(turned)) * sense);
     let hangs = [angle_between(ends[0], tangents[0]), angle_between(tangents[1], ends[1])]
@@ -737,8 +737,8 @@ fn report(
     let before = if first.on_segment { first.node } else { first.node.saturating_sub(1) };
     let after = last.node.min(bars - 1);
     let (mut normal, mut normal_n, mut friction_n) = (Vec2::zeros(), 0.0, 0.0);
-    // What presses on a node that stays where it is, over a round or as an end that lies, is of
-    // that round, or of the end.
+    // The force on a node that stays, over a round or as an end that lies, belongs to that round or
+    // end.
     let stays = |k: usize| d.mesh.sliding[k].is_some() || lain.iter().flatten().any(|l| l.node == k);
     let part = |t: &ContactPair| {
         let [a, b] = t.shares();

@@ -1,11 +1,11 @@
-//! What a cable touches: contacts of the last sub-step, and the points from which friction at rest
-//! is measured.
+//! The contacts of the last sub-step, and the points from which friction at rest is measured.
 
 use crate::contact::Gap;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
+use crate::model::mass_spring::mesh::nodes::Mesh;
 
 part! {
-    /// What the cable touches, and where friction holds it.
+    /// The contacts of the cable, and the points where friction holds it.
     #[derive(Default)]
     ContactMemory {
         /// Distance that each element may still travel before it can touch anything, m.
@@ -70,5 +70,22 @@ impl ContactMemory {
         self.clearance.clear();
         self.clearance.resize(elements, 0.0);
         self.impulses.clear();
+    }
+
+    /// Part of the largest tension that a floor leaves open: where the cable does not slide on it,
+    /// friction is whatever the path there left, up to μ times the normal force. 0 where nothing is
+    /// remembered.
+    pub(in crate::model::mass_spring) fn floor_uncertainty(&self, mesh: &Mesh) -> f64 {
+        let Some((mu, normal)) = mesh.problem.floor_friction else { return 0.0 };
+        let on_floor = self.anchors.iter().take_while(|a| a.surface == Surface::Floor).count();
+        let top = mesh.tension.iter().copied().fold(0.0, larger);
+        if on_floor != mesh.position.len() || !(top > 0.0) {
+            return 0.0;
+        }
+        let tuning = &mesh.tuning.contact;
+        let sticks =
+            |n: &usize| (mesh.position[*n] - self.anchors[*n].at).norm() < tuning.slip_fraction * tuning.slip_m;
+        let held: f64 = (0..on_floor).filter(sticks).map(|n| mu * normal * mesh.half_straight_length(n)).sum();
+        held / top
     }
 }

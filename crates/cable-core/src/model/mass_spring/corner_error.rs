@@ -1,6 +1,6 @@
 //! A bound of the error that a mesh makes in the tension beyond a corner.
 //!
-//! Where the cable turns, forces along an element balance, not along the cable: with a and b the
+//! As the cable turns, forces along an element balance, not along the cable: with a and b the
 //! angles of the strands to the element that lies on a smooth corner, T₁ cos a = T₂ cos b. As the
 //! cable is drawn over it, a and b share the whole turn φ in any way, so T₂/T₁ runs between cos φ
 //! and 1/cos φ: a sawtooth that is geometric. On a sharp corner no mesh removes it, as the turn

@@ -129,7 +129,7 @@ fn slow_motion_takes_mu_w_l_and_turns_round() {
     }
     // A cable cannot push its tail back.
     let back = pull(&sim);
-    // What is left is the half element at the hitch itself.
+    // The half element at the hitch itself is left.
     assert!((back / exact * 40.0 + 1.0).abs() < 0.01, "{back}");
 }
 

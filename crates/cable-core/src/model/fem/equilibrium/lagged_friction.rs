@@ -1,5 +1,5 @@
-//! Equilibria with lagged friction: the energy is minimised with frozen normal forces, which are then
-//! renewed, until nothing changes.
+//! Equilibria with lagged friction: the energy is minimised with frozen normal forces, which are
+//! then renewed, until nothing changes.
 
 use crate::math::{bounded, larger};
 use crate::model::fem::newton::minimize::DRIFT;
@@ -68,7 +68,7 @@ impl SolverMemory {
             cable.contacts.prepare(&cable.problem, &cable.mesh, &pose.x, &cable.motion.x);
             if round > 0 {
                 let now = cable.contacts.ease(&before, part);
-                // What goes to and fro gets no nearer by taking as much of the way.
+                // Forces that go to and fro get no nearer by steps as long as before.
                 if round >= PLAIN_ROUNDS {
                     part = if now < (1.0 - 0.5 * part) * off {
                         bounded(RESISTANCE_GROWTH * part, 0.0, 1.0)

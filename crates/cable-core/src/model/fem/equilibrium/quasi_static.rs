@@ -84,8 +84,8 @@ impl CableState {
         (left > UNHELD_LOAD_FRACTION * scale).then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
     }
 
-    /// How far (m) both ends have moved to `sought` at least, if that is further than the cable is
-    /// long.
+    /// Least distance (m) that both ends have moved to `sought`, if that is more than the length of
+    /// the cable.
     fn ran_away(&self, sought: &[Vec2]) -> Option<f64> {
         let moved = |a: Option<&Vec2>, b: Option<&Vec2>| Some((a? - b?).norm());
         let now = &self.motion.x;
@@ -93,7 +93,8 @@ impl CableState {
         (way > self.problem.length).then_some(way)
     }
 
-    /// What a cable that found no rest at `x` runs through: out of there it cannot get.
+    /// The obstacle through which a cable runs that found no rest at `x`: it cannot get out of
+    /// there.
     fn through(&self, x: &[Vec2]) -> Option<NoEquilibrium> {
         let (mesh, world) = (&self.mesh, &self.problem.world);
         if x.len() != mesh.nodes() {
@@ -109,12 +110,12 @@ impl CableState {
         Some(NoEquilibrium::ThroughObstacle { obstacle, at_m: gap.point, arc_length_m: mesh.arc_length[e] })
     }
 
-    /// Whether the cable is in touch with itself.
+    /// True if the cable is in touch with itself.
     pub(in crate::model::fem) fn touches_itself(&self) -> bool {
         self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, REACH).is_some()
     }
 
-    /// Whether two bars of the cable cross.
+    /// True if two bars of the cable cross.
     fn crosses_itself(&self) -> bool {
         !crate::contact::self_crossings::crossings(&self.motion.x, |_| true).is_empty()
     }
@@ -164,8 +165,8 @@ impl Dynamics {
             let mut pose = self.solver.still_pose(&self.cable);
             let mut done = self.solver.lag_wholly(&mut self.cable, &mut pose);
             if done.is_err_and(|f| f.cause != FailureCause::WorkSpent) && self.cable.contacts.slip < SLIDE {
-                // Where grips change all along the cable, as on a first lay, ground that gives way
-                // is easier to come to rest on.
+                // A cable whose grips change all along it, as at the first shape, comes to rest
+                // more easily on ground that gives way.
                 self.cable.contacts.set_slip(SLIDE);
                 pose = self.solver.still_pose(&self.cable);
                 done = self.solver.lag_wholly(&mut self.cable, &mut pose);
@@ -180,7 +181,7 @@ impl Dynamics {
             let done = done?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
             self.accept_pose(&pose, to);
-            // Where corners are met and left by turns to the last, the mesh stays as it balances.
+            // The mesh stays as it balances if corners are met and left by turns to the last.
             if settled || round + 1 == CORNER_ROUNDS {
                 break;
             }
@@ -258,7 +259,7 @@ impl Dynamics {
 
     /// Follows the way down with ever weaker viscous resistance, then finds the resting place
     /// itself. On the way what rounding hides may be any force: a cable laid in touch begins there.
-    /// Where that ends in no rest, it may not.
+    /// If that finds no equilibrium, it may not.
     pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         let kept = self.rollback.clone();
         self.rollback.save(&self.cable);
@@ -275,7 +276,7 @@ impl Dynamics {
 
     /// The same; `noise` is the greatest force, in tolerances, that rounding may hide on the way.
     fn relax_within(&mut self, noise: f64, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
-        // What the outline moves into goes out of its way before anything slides.
+        // Stretches into which the outline moves go out of its way before anything slides.
         self.cable.prepare_way([to, to], Some(dragged));
         self.cable.motion.x.clone_from_slice(self.cable.task.begins());
         self.cable.contacts.carriage = None;
@@ -308,7 +309,7 @@ impl Dynamics {
                     let done = found.done;
                     total += done.iterations;
                     let (mut moved, mut resists, mut slowest): (f64, f64, usize) = (0.0, 0.0, 0);
-                    // What resists adds up along what creeps.
+                    // Resistance adds up along a creeping stretch.
                     let mut drift = Vec2::zeros();
                     for (k, (a, b)) in pose.x.iter().zip(&self.cable.motion.x).enumerate() {
                         let way = (a - b).norm().max(pose.slide[k].abs());

@@ -48,7 +48,7 @@ const LANDING_GAP_FRACTION: f64 = 0.5;
 /// the step lets it.
 const GAP_LOSS_FRACTION: f64 = 0.45;
 
-/// What a step is about to touch.
+/// The contacts that a step is about to make.
 #[derive(Clone, Debug)]
 pub struct PredictedContacts {
     touches: Vec<ContactPair>,
@@ -65,7 +65,7 @@ pub(in crate::model::fem) struct Equations<'a> {
     pub system: &'a mut System,
     /// The Hessian's factor.
     pub factor: &'a mut BandFactor,
-    /// What couples nodes that are far apart along the cable.
+    /// The coupling of nodes that are far apart along the cable.
     pub coupling: &'a mut Coupling,
 }
 
@@ -166,7 +166,7 @@ impl PredictedContacts {
 }
 
 impl Workspace {
-    /// How fast Φ changes along the direction, J.
+    /// Slope of Φ along the direction, J.
     pub(in crate::model::fem) fn slope(&self) -> f64 {
         self.direction.iter().zip(&self.system.gradient).map(|(d, g)| d * g).sum()
     }
@@ -195,7 +195,7 @@ fn landing(gap: f64, reach: f64) -> f64 {
     if gap > reach { LANDING_GAP_FRACTION * reach } else { (1.0 - GAP_LOSS_FRACTION) * gap }
 }
 
-/// How far the touching point goes in a step.
+/// Displacement of the touching point in a step.
 fn moved(touch: &ContactPair, step: &[f64]) -> Vec2 {
     let shares = touch.shares();
     let at = |k: usize| Vec2::new(step[2 * k], step[2 * k + 1]);

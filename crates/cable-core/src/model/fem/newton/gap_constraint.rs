@@ -13,7 +13,7 @@ const HARDNESS: f64 = 1e5;
 /// Change of the way a constraint leaves, in gaps left, that is not followed.
 const DIRECTION_CHANGE_TOLERANCE: f64 = 0.05;
 
-/// What a bar turns about.
+/// The point or edge about which a bar turns.
 #[derive(Clone, Copy, Debug)]
 enum Pivot {
     /// A corner or the middle of a circle, m.
@@ -73,13 +73,13 @@ impl Stop {
         }
     }
 
-    /// How much the gap opens in a step, m, as its slope says.
+    /// Opening of the gap in a step by its slope, m.
     fn opening(&self, step: &[f64]) -> f64 {
         let at = |k: usize| Vec2::new(step[2 * k], step[2 * k + 1]);
         self.shares.iter().map(|&(k, part)| self.normal.dot(&at(k)) * part).sum()
     }
 
-    /// How much more than that it opens, m: a bar that turns while it slides along a corner comes
+    /// Opening of the gap beyond that, m: a bar that turns while it slides along a corner comes
     /// nearer to it.
     ///
     /// With e = b − a the distance of p from the line is ± e × (p − a)/|e|, whatever the step.
@@ -120,7 +120,7 @@ impl Stop {
         }
         let mut way = self.least - self.gap - bend;
         for &(k, part) in self.shares.iter().filter(|s| s.1 != 0.0 && mesh.held[s.0]) {
-            // What is held goes where it goes; a sliding node stays where it is.
+            // A held node goes to its target; a sliding node stays.
             way -= part * self.normal.dot(&Vec2::new(step[2 * k], step[2 * k + 1]));
         }
         let change = way - self.held_to.unwrap_or(0.0);

@@ -12,7 +12,7 @@ use crate::scene::SupportKind;
 /// diameter.
 const MAX_PASSES: usize = 60;
 
-/// How deep (m) inside an obstacle a first lay is found and pushed out.
+/// Depth (m) inside an obstacle to which a first shape is found and pushed out.
 const DEPENETRATION_DEPTH: f64 = 0.5;
 
 /// Steps in which an end is leaned until it is clear of what is below it, rad, and how many to

@@ -54,7 +54,7 @@ pub(in crate::model::fem) const DRIFT: f64 = 4.0;
 /// that could have got there; more: iterations spent on what the next step does as well.
 const MAX_PUSHES: usize = 12;
 
-/// What the solve of a step reads: cable, mesh, contacts, and the input of the step.
+/// The input of the solve of a step: cable, mesh, contacts, and the input of the step.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct StepContext<'a> {
     /// The cable and its obstacles.
@@ -67,7 +67,7 @@ pub(in crate::model::fem) struct StepContext<'a> {
     pub task: &'a StepInput,
 }
 
-/// What is left unbalanced at the worst node.
+/// The unbalanced force at the worst node.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Residual {
     /// N.
@@ -119,7 +119,7 @@ pub struct Workspace {
     magnitude: f64,
     /// Rounding of contact forces in the last assembly.
     pub(in crate::model::fem) rounding: Rounding,
-    /// Where held nodes go: their targets, or where they had to stop, m.
+    /// Targets of held nodes, or the points where they had to stop, m.
     pub(in crate::model::fem) goal: Vec<Vec2>,
     own_pairs: Vec<SelfPair>,
     pub(in crate::model::fem) order: SortedNodes,
@@ -131,7 +131,7 @@ pub struct Workspace {
     /// Branches of the friction of `rubs`, where that is being found out; empty: those of the
     /// present pose.
     pub(in crate::model::fem) branches: Vec<friction::Branch>,
-    /// How far each has slid before an iteration, m.
+    /// Slide of each node before an iteration, m.
     pub(in crate::model::fem) slid: Vec<f64>,
     pub(in crate::model::fem) begun: Pose,
     pub(in crate::model::fem) near_enough: bool,
@@ -141,12 +141,12 @@ pub struct Workspace {
     pub(in crate::model::fem) undamped_iterations: usize,
 }
 
-/// Where a line search begins.
+/// The start of a line search.
 #[derive(Clone, Copy, Debug)]
 struct Descent {
     /// Φ, J.
     value: f64,
-    /// How fast it changes along the direction, J.
+    /// Slope of the energy along the direction, J.
     slope: f64,
     /// Held nodes are still on the way to their targets: that may cost energy.
     supports_move: bool,
@@ -498,8 +498,8 @@ impl Workspace {
     }
 }
 
-/// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and
-/// Hessian, returns the energy, J.
+/// Adds gradient and Hessian of the inertia that nodes lose by being coupled over the bars (see
+/// `mass`); returns the energy, J.
 #[inline(never)]
 fn add_coupling(s: &mut System, task: &StepInput, x: &[Vec2]) -> f64 {
     let mut value = 0.0;

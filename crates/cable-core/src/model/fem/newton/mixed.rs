@@ -42,7 +42,7 @@ const ROUNDING: f64 = 1e-12;
 /// friction as much.
 const BRANCH_ROUNDING: f64 = 1e-14;
 
-/// Whether a solve goes on where the cable comes within reach of itself.
+/// True if a solve goes on where the cable comes within reach of itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem) enum SelfTouch {
     /// It gives up.
@@ -229,7 +229,7 @@ impl Workspace {
         false
     }
 
-    /// Whether the bars that count as stretched are those that are, and friction holds and slips
+    /// True if the bars that count as stretched are those that are, and friction holds and slips
     /// where it is taken to.
     fn flags_hold(&self, mesh: &Mesh, contacts: &ContactSet, x: &[Vec2]) -> bool {
         let rubs = contacts.rubs.iter().zip(&self.branches);
@@ -338,7 +338,7 @@ mod tests {
         assert!(long < 24 && whole < 560, "{whole} {long}");
     }
 
-    /// Which steps the undamped Newton does not solve is chance: over many drops it is not.
+    /// Chance decides which steps the undamped Newton does not solve; over many drops it does not.
     #[test]
     fn bars_that_buckle_where_they_land_take_few_iterations() {
         let (mut whole, mut long) = (0, 0);

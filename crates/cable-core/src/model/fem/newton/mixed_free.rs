@@ -41,7 +41,7 @@ pub struct FreeStep {
     pull: Vec<f64>,
     /// Pull of each bar as long as it is, N.
     present: Vec<f64>,
-    /// Whether each bar counts as stretched.
+    /// True if each bar counts as stretched.
     taut: Vec<bool>,
     /// (k + c) and t of each bar.
     hold: Vec<(f64, Vec2)>,
@@ -54,7 +54,7 @@ pub struct FreeStep {
     start: Vec<Vec2>,
 }
 
-/// How far the equations are from balance.
+/// Residual of the equations.
 struct Balance {
     /// Largest unbalanced force of a free node, N.
     force: f64,

@@ -124,7 +124,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(8))]
-        /// What is taken to be free without a look is free when looked at.
+        /// A path that counts as free without a look is free when it is looked at.
         #[test]
         fn a_short_way_is_free(seed in prop::collection::vec(-0.5f64..0.5, 122), down in 0.0f64..1.0) {
             let mut d = lying();

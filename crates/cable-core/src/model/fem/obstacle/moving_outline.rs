@@ -90,7 +90,7 @@ impl CableState {
         }
     }
 
-    /// Whether it is to move.
+    /// True if it is to move.
     pub(in crate::model::fem) fn outline_moves(&self) -> bool {
         self.rider.as_ref().is_some_and(|r| r.led_before != r.to.1)
     }
@@ -183,7 +183,7 @@ impl CableState {
         self.place_outline();
     }
 
-    /// Where the nodes go out of the way of the outline; `ends` are those of the bars before it
+    /// Positions of the nodes out of the way of the outline; `ends` are those of the bars before it
     /// moved. None where they cannot.
     fn laid(&self, carriage: &OutlineMotion, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
         let Some(rider) = &self.rider else { return Some(Vec::new()) };
@@ -208,7 +208,7 @@ impl CableState {
         self.is_free_way(carriage, ends, &x, &near).then_some(x)
     }
 
-    /// Whether a bar is nearer to the outline than `within`, m.
+    /// True if a bar is nearer to the outline than `within`, m.
     fn is_near(&self, [a, b]: [Vec2; 2], within: f64) -> bool {
         let geometry = self.problem.world.geometry();
         let Some(body) = geometry.bodies().last() else { return false };
@@ -256,7 +256,7 @@ impl CableState {
         }
     }
 
-    /// Whether nothing is passed on the way to `x`: neither what stands nor, seen from it, the
+    /// True if nothing is passed on the way to `x`: neither what stands nor, seen from it, the
     /// outline.
     fn is_free_way(&self, carriage: &OutlineMotion, ends: &[[Vec2; 2]], x: &[Vec2], near: &[bool]) -> bool {
         let (mesh, geometry) = (&self.mesh, self.problem.world.geometry());
@@ -287,7 +287,7 @@ impl CableState {
         clear && own_way(&mut SortedNodes::default()) >= 1.0
     }
 
-    /// What the cable does to the outline, and how far that came of the way it was led.
+    /// Force of the cable on the outline, and the rest of the path on which the outline was led.
     pub(in crate::model::fem) fn outline_report(&self) -> Option<RobotContact> {
         let (rider, at) = (self.rider.as_ref()?, self.motion.placement?);
         let left = rider.shape.max_displacement(&at, &rider.to.1);

@@ -75,7 +75,7 @@ impl CableState {
         let beside = [k - 1, k + 1].map(|j| self.mesh.sliding.get(j).copied().flatten());
         let Some(round) = beside.into_iter().flatten().next() else { return self.merge(k) };
         if self.mesh.is_free(k - 1) || self.mesh.is_free(k + 1) {
-            // What comes to lie on the round has no history.
+            // Material that comes to lie on the round has no history.
             let had = self.sliding_momentum_at(&self.motion.w) - self.sliding_momentum_at(&self.motion.w_before);
             self.merge(k);
             let has = self.sliding_momentum_at(&self.motion.w) - self.sliding_momentum_at(&self.motion.w_before);

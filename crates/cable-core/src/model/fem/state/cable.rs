@@ -210,12 +210,12 @@ impl CableState {
         self.prepare_task(self.motion.time, None);
     }
 
-    /// Where a pulley's centre is, m; None for other supports and pulleys that have let go.
+    /// Centre of a pulley, m; None for other supports and pulleys that have let go.
     fn pulley_center(&self, support: usize) -> Option<Vec2> {
         self.mesh.sliding.iter().flatten().find(|s| s.seat == Seat::Pulley(support)).map(|s| s.end.center)
     }
 
-    /// Where a support is, m.
+    /// Position of a support, m.
     pub(in crate::model::fem) fn support_position(&self, support: usize) -> Option<Vec2> {
         match self.meshing.support_node.get(support).copied().flatten() {
             Some(node) => self.motion.x.get(node).copied(),
@@ -223,7 +223,7 @@ impl CableState {
         }
     }
 
-    /// Where hands draw supports in a part of the way that is left.
+    /// Points to which hands draw supports in a part of the path that is left.
     pub(in crate::model::fem) fn aim(&self, aims: &mut Vec<Option<Vec2>>, dragged: &[Option<Vec2>], part: f64) {
         aims.clear();
         aims.extend(dragged.iter().enumerate().map(|(k, target)| {
@@ -273,14 +273,14 @@ impl CableState {
         releases.fold(h, |least, r| if r - now < least { r - now } else { least })
     }
 
-    /// Where a node is, in the words of the scene.
+    /// The place of a node, in the words of the scene.
     pub(in crate::model::fem) fn place(&self, node: usize) -> Box<Place> {
         let arc_length = self.mesh.arc_length.get(node).copied().unwrap_or(f64::NAN);
         let at = self.motion.x.get(node).copied().unwrap_or(Vec2::repeat(f64::NAN));
         self.problem.place(arc_length, at, self.motion.time)
     }
 
-    /// Whether masses accelerate: it moves, or came here in a step with inertia.
+    /// True if masses accelerate: it moves, or came here in a step with inertia.
     pub(in crate::model::fem) fn inertia_counts(&self) -> bool {
         self.motion.step_before > 0.0 || self.motion.v.iter().any(|v| v.norm_squared() > 0.0)
     }
@@ -291,7 +291,7 @@ impl CableState {
         self.motion.time
     }
 
-    /// Where the cable is.
+    /// Positions and velocities of the cable.
     #[must_use]
     pub fn state(&self) -> State {
         State {

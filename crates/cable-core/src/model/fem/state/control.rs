@@ -1,5 +1,5 @@
-//! The parts of a simulation beside the state of its cable: memory of the solver, hands, the control
-//! of time, and rollback.
+//! The parts of a simulation beside the state of its cable: memory of the solver, hands, the
+//! control of time, and rollback.
 
 use crate::math::Vec2;
 use crate::model::fem::newton::minimize::Workspace;

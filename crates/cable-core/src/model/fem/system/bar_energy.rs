@@ -27,12 +27,12 @@ pub fn stiffness(mesh: &Mesh, stretched: bool) -> f64 {
     if stretched || !mesh.is_flexible() { mesh.axial_stiffness } else { 0.0 }
 }
 
-/// What is carried of a bar from one iteration to the next.
+/// The values of a bar that one iteration passes to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried {
     /// Its pull, N.
     pub pull: f64,
-    /// Whether it counts as stretched.
+    /// True if it counts as stretched.
     pub taut: bool,
 }
 
@@ -42,9 +42,9 @@ pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
     mesh.rest_length[e] + mesh.thermal_stretch * (slide[e + 1] - slide[e])
 }
 
-/// What a bar pulls at the material of the sliding node at its start (`j` 0) or end (1), as the
-/// slope of its energy by the slide of that node sees it (without the factor of its energy), N: Θ,
-/// the loss, and the weight that comes over with the material.
+/// Force of a bar on the material of the sliding node at its start (`j` 0) or end (1), as the slope
+/// of its energy by the slide of that node sees it (without the factor of its energy), N: Θ, the
+/// loss, and the weight that comes over with the material.
 #[must_use]
 pub fn pull_at_slide(mesh: &Mesh, task: &StepInput, e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
@@ -55,7 +55,7 @@ pub fn pull_at_slide(mesh: &Mesh, task: &StepInput, e: usize, j: usize, x: &[Vec
     mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted(mesh, task.body, e, j, x)
 }
 
-/// What a bar with a sliding node at an end pulls with along its way, N.
+/// Tension along its path of a bar with a sliding node at an end, N.
 #[must_use]
 pub fn pull_on(mesh: &Mesh, task: &StepInput, e: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
@@ -64,7 +64,7 @@ pub fn pull_on(mesh: &Mesh, task: &StepInput, e: usize, x: &[Vec2], slide: &[f64
     stiffness(mesh, !(strain < 0.0)) * strain + task.damping(e) / mesh.rest_length[e] * (p - ratio * l)
 }
 
-/// What it takes to lift the weight from the centroid of a bar to its start (`j` 0) or end (1), N.
+/// Force that lifts the weight from the centroid of a bar to its start (`j` 0) or end (1), N.
 #[must_use]
 pub fn lifted(mesh: &Mesh, body: Vec2, e: usize, j: usize, x: &[Vec2]) -> f64 {
     body.dot(&(Weight::of(mesh, e, &mesh.path(e, x), body).center - x[e + j]))

@@ -12,7 +12,7 @@
 //! The pull in the middle of the straight part is T − L b·(m − c)/P, with T the pull of the bar as
 //! a whole. A bar that lies on nothing has c = m and l = P: half at each end.
 //!
-//! Where that pull would be a push the bar is slack, and its material is not spread evenly: only so
+//! If that pull would be a push the bar is slack, and its material is not spread evenly: only so
 //! much of the weight on the round acts there that nothing pushes, and of the rest half at each
 //! end. How much is found from the pose in which a step begins: sought within the step, it goes to
 //! and fro where a bar is nearly slack.
@@ -24,7 +24,7 @@ use crate::model::fem::system::assembly::Mesh;
 /// The weight of one bar with a sliding node at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weight {
-    /// Where it acts, c, m.
+    /// Point where it acts, c, m.
     pub center: Vec2,
     /// ∂(b·c)/∂x at a free end, N/m; nothing at a sliding one.
     pub slope: [Vec2; 2],
@@ -134,7 +134,7 @@ impl Weight {
     }
 }
 
-/// Whether the round of a sliding node has several marks: what lies on a small one is little, and
+/// True if the round of a sliding node has several marks: what lies on a small one is little, and
 /// its friction is found as if it hung beside it. (A mesh of one bar stands for a part of a longer
 /// one.)
 fn is_large(mesh: &Mesh, k: usize) -> bool {

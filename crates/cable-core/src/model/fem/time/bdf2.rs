@@ -5,7 +5,7 @@
 //! ```text
 //! v = a (x − x̂),  a = α₀/h,   v̂ likewise,   m a² (x − x̃) + ∂E/∂x − f = 0,   x̃ = x̂ + v̂/a
 //! ```
-//! Where the cable can touch nothing, steps that are even and smooth take a part β of the next
+//! If the cable can touch nothing, steps that are even and smooth take a part β of the next
 //! order, BDF3: α₀ = (9 + 2β)/6 and x̂ = ((2 + β) x₀ − (½ + β) x₋ + (β/3) x₌)/α₀ at the same cost.
 //! Of a vibration ω BDF2 makes one that is slower by (ωh)²/3 and loses ω⁴h³/4 of its amplitude a
 //! second; this 1 − β and 1 − 2β of that.
@@ -27,13 +27,13 @@ use crate::model::fem::time::momentum::mass_with;
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
 const PLASTIC_SPEED_LIMIT: f64 = 0.05;
 
-/// What a plastic contact takes of the speed along its normal (m/s, positive away from it), of
-/// which its force made so much in the step.
+/// Part of the speed along its normal (m/s, positive away from it) that a plastic contact takes, of
+/// which its force made `made` in the step.
 pub(in crate::model::fem) fn plastic(speed: f64, made: f64) -> f64 {
     if speed > made { made } else { speed }
 }
 
-/// What a contact of this normal and friction goes on giving against what other forces give, the
+/// Impulse that a contact of this normal and friction goes on giving against the other forces, the
 /// opposite of `against`, N s.
 pub(in crate::model::fem) fn carried_on(against: Vec2, normal: Vec2, friction: f64) -> Vec2 {
     let (pressed, along) = (against.dot(&normal), perp(normal));
@@ -60,7 +60,7 @@ const EVEN_STEP_TOLERANCE: f64 = 1e-9;
 /// half of mgL in a fold of 41 bars.
 const STEPS_BEFORE_BDF3: usize = 3;
 
-/// What a step makes of its history: v = a (x − x̂), x̂ = now x₀ − past x₋ + older x₌.
+/// The weights of its history in a step: v = a (x − x̂), x̂ = now x₀ − past x₋ + older x₌.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Weights {
     pub(in crate::model::fem) now: f64,
@@ -163,7 +163,7 @@ impl CableState {
         }
     }
 
-    /// Whether a step of `h` (s) is as long as the one before.
+    /// True if a step of `h` (s) is as long as the one before.
     fn is_even(&self, h: f64) -> bool {
         (h - self.motion.step_before).abs() <= EVEN_STEP_TOLERANCE * h
     }
@@ -242,11 +242,11 @@ impl CableState {
 
     /// Inertia and damping of a step of `h` (s).
     ///
-    /// Where velocities jump between two steps (a plastic impulse, a change of the mesh) the rate
-    /// of a length has no history: two steps extrapolate through the jump and add ½ EA τ Δv/l₀ to
-    /// the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may touch something
-    /// is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a small force,
-    /// ¾ τ/h of that which BDF2 makes of a vibration.
+    /// The rate of a length has no history where velocities jump between two steps (a plastic
+    /// impulse, a change of the mesh): two steps extrapolate through the jump and add ½ EA τ Δv/l₀
+    /// to the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may touch
+    /// something is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a
+    /// small force, ¾ τ/h of that which BDF2 makes of a vibration.
     fn set_inertia(&mut self, weights: Weights, h: f64, decay: &mut Vec<f64>) {
         let Weights { now, past, a, .. } = weights;
         let rubs = !(self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none());

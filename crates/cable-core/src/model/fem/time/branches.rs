@@ -9,7 +9,7 @@ fn strain(d: &CableState, e: usize, x: &[Vec2]) -> f64 {
 }
 
 impl CableState {
-    /// Whether the bars have branches: those of a cable that can touch nothing and slides over
+    /// True if the bars have branches: those of a cable that can touch nothing and slides over
     /// nothing.
     ///
     /// In contact, with the viscous loss in slack bars and those beside sliding nodes only, the
@@ -20,7 +20,7 @@ impl CableState {
         !self.loss.branches.is_empty() && !self.mesh.spread.is_lumped()
     }
 
-    /// Whether a bar so strained at the start of a step has the loss of its branches in it.
+    /// True if a bar so strained at the start of a step has the loss of its branches in it.
     fn relaxes(&self, strain: f64) -> bool {
         strain >= 0.0 || !self.mesh.is_flexible()
     }

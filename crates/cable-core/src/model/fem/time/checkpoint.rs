@@ -5,8 +5,8 @@ use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::Rollback;
 use crate::model::fem::state::history::Checkpoint;
 
-/// Distance (parts of a bar) by which the middle of a fold is moved aside. Less: the fold opens later than it
-/// would; more: its bars are stretched by half of the square of it.
+/// Distance (parts of a bar) by which the middle of a fold is moved aside. Less: the fold opens
+/// later than it would; more: its bars are stretched by half of the square of it.
 const ASIDE: f64 = 1e-4;
 
 /// Sine of the turn off a line below which a fold lies in it.

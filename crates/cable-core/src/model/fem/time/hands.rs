@@ -36,8 +36,8 @@ impl CableState {
 }
 
 impl HandDrive {
-    /// Moves hands and dragged supports on for `h` (s) towards where they are drawn (m); supports that
-    /// the robot leads get there at the time `due` (s).
+    /// Moves hands and dragged supports on for `h` (s) towards where they are drawn (m); supports
+    /// that the robot leads get there at the time `due` (s).
     pub(in crate::model::fem) fn follow(&self, cable: &mut CableState, due: f64, h: f64, dragged: &[Option<Vec2>]) {
         for (k, target) in dragged.iter().enumerate() {
             let (Some(target), Some(at)) = (*target, cable.support_position(k)) else { continue };

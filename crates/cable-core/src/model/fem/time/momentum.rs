@@ -156,7 +156,7 @@ impl CableState {
             let (mesh, m) = (&self.mesh, &self.motion);
             for (k, node) in mesh.sliding.iter().enumerate() {
                 let Some(node) = node else { continue };
-                // What goes over moves as what is there, and has its history.
+                // Material that goes over moves as the material there, and has its history.
                 let of = |v: &[Vec2]| {
                     let at = |j: usize| if mesh.sliding[j].is_none() { v[j] } else { Vec2::zeros() };
                     (at(k - 1) - at(k + 1)) * (0.5 * self.problem.linear_density * slide[k])
@@ -189,7 +189,7 @@ impl CableState {
         account.last[CONTACTS] -= forgotten;
     }
 
-    /// What comes to lie on a round or leaves it takes a part of the history with it, N s.
+    /// Material that comes to lie on a round or leaves it takes a part of the history with it, N s.
     pub(in crate::model::fem) fn account_for_history(&mut self, seat: Seat, impulse: Vec2) {
         self.motion.account.last[kind_of(seat)] += impulse;
     }

@@ -9,7 +9,7 @@ use crate::model::fem::time::momentum::mass_with;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
 impl CableState {
-    /// Whether there is nothing to touch: no obstacle, and the cable can pass itself.
+    /// True if there is nothing to touch: no obstacle, and the cable can pass itself.
     pub(in crate::model::fem) fn meets_nothing(&self) -> bool {
         self.problem.world.is_empty() && !self.contacts.own.shape.is_on()
     }
@@ -47,7 +47,8 @@ impl CableState {
         self.account_for_landing(given, forgotten);
     }
 
-    /// Where the cable touches itself at positions `x` (m): one report for each stretch of nodes.
+    /// Contacts of the cable with itself at positions `x` (m): one report for each stretch of
+    /// nodes.
     pub(in crate::model::fem) fn own_contacts(&self, x: &[Vec2], tension: &[f64], out: &mut Vec<ContactReport>) {
         let own = &self.contacts.own;
         let mut last = None;

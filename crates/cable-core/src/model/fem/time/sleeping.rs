@@ -9,12 +9,13 @@ use crate::math::Vec2;
 use crate::model::fem::state::cable::{CableState, REACH};
 use crate::model::fem::state::stepping::Sleep;
 
-/// Time for which a cable must have been still, s. Shorter: a slow swing that turns round may be caught.
+/// Time for which a cable must have been still, s. Shorter: a slow swing that turns round may be
+/// caught.
 const SLEEP_DELAY_S: f64 = 0.5;
 
 /// Distance (m) by which a node may have moved in that time, five times the reach of the barrier: a
-/// trembling contact moves its neighbours by a few. Smaller: trembling keeps a cable awake; larger: a
-/// slow motion is caught.
+/// trembling contact moves its neighbours by a few. Smaller: trembling keeps a cable awake; larger:
+/// a slow motion is caught.
 const SLEEP_DISTANCE: f64 = 5.0 * REACH;
 
 impl Sleep {

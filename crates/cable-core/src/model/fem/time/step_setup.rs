@@ -37,14 +37,14 @@ const EVEN_FORCE: f64 = 1e-7;
 /// cone (the checker asks for 1e-3 of the normal force).
 const LAWFUL: f64 = 2e-4;
 
-/// What a pose says of the friction of sliding nodes with which it was found.
+/// Comparison of a pose with the friction of sliding nodes with which it was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem) struct StickSlipChanges {
     /// Nodes that hold where they should slip, or slip where they should hold.
     pub(in crate::model::fem) wrong: usize,
-    /// Whether what slips has the friction that belongs to its turn, as nearly as anyone sees.
+    /// True if what slips has the friction that belongs to its turn, as nearly as anyone sees.
     pub(in crate::model::fem) lawful: bool,
-    /// Whether nothing changed but by rounding.
+    /// True if nothing changed but by rounding.
     pub(in crate::model::fem) same: bool,
 }
 
@@ -52,14 +52,14 @@ impl StickSlipChanges {
     /// Nothing slides.
     pub(in crate::model::fem) const FOUND: Self = Self { wrong: 0, lawful: true, same: true };
 
-    /// Whether the law holds at every sliding node.
+    /// True if the law holds at every sliding node.
     pub(in crate::model::fem) fn hold(self) -> bool {
         self.wrong == 0 && self.lawful
     }
 }
 
 impl CableState {
-    /// What the solve of the present step reads.
+    /// The input of the solve of the present step.
     pub(in crate::model::fem) fn step_context(&self) -> StepContext<'_> {
         StepContext { problem: &self.problem, mesh: &self.mesh, contacts: &self.contacts, task: &self.task }
     }
@@ -105,12 +105,12 @@ impl CableState {
             {
                 let drawn = dragged.and_then(|d| d.get(k).copied().flatten());
                 let at = self.motion.followers[k].map_or(drawn.unwrap_or(at), |f| f.position());
-                // What was stopped and is free again catches up no faster than this beyond its own
-                // motion, which is followed exactly.
+                // A support that was stopped and is free again catches up no faster than this
+                // beyond its own motion, which is followed exactly.
                 let own = s.place_at(from).map_or(0.0, |(before, _)| (at - before).norm());
                 let most = if self.motion.followers[k].is_some() { 0.0 } else { own } + MAX_SPEED * (to - from);
                 let at = if to > from { within(self.motion.x[node], at, most) } else { at };
-                // What a hand holds by a spring is a node that moves.
+                // A support that a hand holds by a spring is a node that moves.
                 if self.motion.hands[k].is_none() {
                     mesh.held[node] = true;
                     task.target[node] = clear_way(problem, self.motion.x[node], at);
@@ -208,7 +208,7 @@ impl CableState {
     /// changed, and turns half of the way: nearly slack bars hang from a round, and turn over it by
     /// the more the less they pull.
     ///
-    /// What slid the wrong way until its grip was seen to be wrong has not slid at all.
+    /// A node that slid the wrong way until its grip was seen to be wrong has not slid at all.
     pub(in crate::model::fem) fn update_grips(&mut self, pose: &mut Pose, one: bool) -> StickSlipChanges {
         if self.meshing.never_slides {
             return StickSlipChanges::FOUND;
@@ -223,7 +223,7 @@ impl CableState {
                 continue;
             }
             let mut next = node;
-            // What does not pull presses on nothing.
+            // Bars that do not pull press on nothing.
             let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0;
             let exponent = if presses { node.friction * load.turn } else { 0.0 };
             next.exponent = if one { 0.5 * (node.exponent + exponent) } else { exponent };
@@ -265,7 +265,7 @@ impl CableState {
         })
     }
 
-    /// Whether the cable is flexible and nothing but its supports can touch it on the way to places
+    /// True if the cable is flexible and nothing but its supports can touch it on the way to places
     /// `to` (m).
     pub(in crate::model::fem) fn moves_freely(&self, to: &[Vec2]) -> bool {
         let slides = !self.meshing.never_slides && self.mesh.sliding.iter().any(Option::is_some);
@@ -275,7 +275,7 @@ impl CableState {
             && self.is_out_of_reach(to)
     }
 
-    /// Whether nothing but supports can touch the cable on its way to places `to` (m).
+    /// True if nothing but supports can touch the cable on its way to places `to` (m).
     pub(in crate::model::fem) fn is_out_of_reach(&self, to: &[Vec2]) -> bool {
         self.meets_nothing()
             || (!self.contacts.own.shape.is_on() && self.contacts.out_of_reach(&self.mesh, [&self.task.start, to]))

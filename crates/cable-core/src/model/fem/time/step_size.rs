@@ -23,8 +23,9 @@ const VIBRATION_FRACTION: f64 = 1e-5;
 /// Change of the step from one frame to the next. BDF2 is stable up to 2.4.
 const STEP_CHANGE_LIMIT: f64 = 2.0;
 
-/// What was seen is forgotten with this time, s. Half a period of what needs shorter steps passes
-/// in it: with less the step would be short where a vibration turns and long where it is fastest.
+/// Time constant of the memory of a motion, s. Half a period of a motion that needs shorter steps
+/// passes in it: with less the step would be short where a vibration turns and long where it is
+/// fastest.
 const MEMORY: f64 = 0.25;
 
 impl StepSizeController {
@@ -51,8 +52,8 @@ impl StepSizeController {
         self.seen[2] += h;
     }
 
-    /// Chooses the longest step of the next frame, after one of `dt` (s), of a cable of a length (m)
-    /// whose frequency may be off by a part `tolerance`.
+    /// Chooses the longest step of the next frame, after one of `dt` (s), of a cable of a length
+    /// (m) whose frequency may be off by a part `tolerance`.
     pub(in crate::model::fem) fn choose(&mut self, tolerance: f64, length: f64, dt: f64) {
         let [changes, speeds, time] = self.seen;
         let frequency = (changes / speeds).sqrt();

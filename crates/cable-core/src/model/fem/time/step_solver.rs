@@ -1,5 +1,5 @@
-//! The solution of the step that is set up: by the solver of free cables where nothing can be touched,
-//! else by that of contact, until friction and normal forces agree.
+//! The solution of the step that is set up: by the solver of free cables where nothing can be
+//! touched, else by that of contact, until friction and normal forces agree.
 
 use crate::math::larger;
 use crate::model::fem::newton::minimize::Workspace;

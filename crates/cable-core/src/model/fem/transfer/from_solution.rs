@@ -275,7 +275,7 @@ impl CableState {
             let low = 0.5 * (s[k] + s[k.saturating_sub(1)]);
             let high = 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]);
             let asked = match self.mesh.sliding[k] {
-                // What holds there is the floor first, and the round for the rest.
+                // The floor holds there first, and the round the rest.
                 Some(_) => Some(Vec2::new(curve.tension(low) - curve.tension(high), 0.0)),
                 None => match (curve.force(low, near), curve.force(high, near)) {
                     (Some(before), Some(after)) => Some(after - before + self.task.body * (high - low)),

@@ -130,7 +130,7 @@ impl Dynamics {
         if !same {
             self.cable.thread_pulleys(Some(state));
         }
-        // What moves goes on from where it is; a state at rest is brought to rest on this mesh.
+        // A state in motion goes on as it is; one at rest is brought to rest on this mesh.
         let still = !state.in_motion && self.cable.motion.v.iter().all(|v| v.norm() == 0.0);
         if !same && !still {
             self.cable.follow_corners(state);

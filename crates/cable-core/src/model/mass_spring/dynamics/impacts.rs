@@ -8,7 +8,7 @@ use crate::model::mass_spring::dynamics::momentum::Account;
 use crate::model::mass_spring::mesh::nodes::Mesh;
 
 /// Refuses to go on from where the middle of the cable is inside an obstacle: distances have no
-/// sign there, and what should push it out would hold it in. What lies in less deep is pushed
+/// sign there, and what should push it out would hold it in. A shallow penetration is pushed
 /// out.
 pub(in crate::model::mass_spring) fn refuse_buried(mesh: &Mesh) -> Result<(), SolveError> {
     let world = &mesh.problem.world;
@@ -45,7 +45,7 @@ pub(in crate::model::mass_spring) fn apply(
     }
     let tuning = mesh.tuning.impact;
     for e in 0..mesh.rest_length.len() {
-        if mesh.wheels.bend(e) {
+        if mesh.wheels.is_on_wheel(e) {
             continue;
         }
         let (va, vb) = (mesh.velocity[e].norm(), mesh.velocity[e + 1].norm());

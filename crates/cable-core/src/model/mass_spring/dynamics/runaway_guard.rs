@@ -73,7 +73,7 @@ impl RunawayGuard {
         }
         let limit = tuning.max_energy_ratio * (self.work + 2.0 * mass * drives.max_speed * drives.max_speed);
         if energy > limit && !mesh.supported.contains(&true) {
-            // What flies freely may fall as fast as it likes; only its own motion counts.
+            // A cable that flies freely may fall as fast as it likes; only its own motion counts.
             energy -= 0.5 * momentum.norm_squared() / mass;
         }
         let found = |value, limit| Excess {

@@ -17,7 +17,7 @@ pub(in crate::model::mass_spring) fn add_loads(mesh: &Mesh, system: &mut System,
     let body = p.body_force(time_s);
     let mut value = 0.0;
     for e in 0..mesh.rest_length.len() {
-        let moment = if mesh.wheels.touch(e) {
+        let moment = if mesh.wheels.is_beside(e) {
             let r = mesh.element(e);
             // σ moves half of the weight to the other end's side.
             for (node, other, sign) in [(e, e + 1, 1.0), (e + 1, e, -1.0)] {

@@ -9,7 +9,7 @@
 
 use crate::contact::friction as friction_law;
 use crate::contact::pairs::Pair;
-use crate::math::{Mat2, Vec2, larger, perp};
+use crate::math::{Mat2, Vec2, perp};
 use crate::model::mass_spring::contact_memory::{Anchor, ContactImpulse, Surface};
 use crate::model::mass_spring::equilibrium::system::System;
 use crate::model::mass_spring::mesh::nodes::Mesh;
@@ -119,7 +119,7 @@ impl Contacts {
                     self.pairs.push(ContactPair { element, fraction, signed, inside: false });
                 });
             }
-            if n < last && !mesh.wheels.bend(n) {
+            if n < last && !mesh.wheels.is_on_wheel(n) {
                 geometry.segment_pairs(x[n], x[n + 1], reach, &mut |signed| {
                     self.pairs.push(ContactPair { element: n, fraction: signed.gap.fraction, signed, inside: true });
                 });
@@ -306,20 +306,4 @@ impl FrictionContact {
         let (a, b) = (mesh.position[self.element], mesh.position[self.element + 1]);
         a + (b - a) * self.fraction - self.anchor.at
     }
-}
-
-/// Part of the largest tension that a floor leaves open: where the cable does not slide on it,
-/// friction is whatever the path there left, up to μ times the normal force. 0 where nothing is
-/// remembered.
-pub(in crate::model::mass_spring) fn floor_uncertainty(mesh: &Mesh, anchors: &[Anchor]) -> f64 {
-    let Some((mu, normal)) = mesh.problem.floor_friction else { return 0.0 };
-    let on_floor = anchors.iter().take_while(|a| a.surface == Surface::Floor).count();
-    let top = mesh.tension.iter().copied().fold(0.0, larger);
-    if on_floor != mesh.position.len() || !(top > 0.0) {
-        return 0.0;
-    }
-    let tuning = &mesh.tuning.contact;
-    let sticks = |n: &usize| (mesh.position[*n] - anchors[*n].at).norm() < tuning.slip_fraction * tuning.slip_m;
-    let held: f64 = (0..on_floor).filter(sticks).map(|n| mu * normal * mesh.half_straight_length(n)).sum();
-    held / top
 }

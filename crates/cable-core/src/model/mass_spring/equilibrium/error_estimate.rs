@@ -9,7 +9,6 @@
 use crate::model::fem::FemModel;
 use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::mass_spring::MassSpringModel;
-use crate::model::mass_spring::results::answer;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::solution::CableSolution;
@@ -60,11 +59,11 @@ impl Estimate {
             }
         }
         let Some(coarse) = coarser(model, 2, start) else { return Self::default() };
-        let (fine, half) = (answer(model), answer(&coarse));
+        let (fine, half) = (model.solution(), coarse.solution());
         let rounding = ErrorEstimates::rounding(&fine, problem);
         let mut errors = ErrorEstimates::between(&half, &fine).plus(&rounding);
         if let Some(coarsest) = coarser(model, 4, start) {
-            let change = ErrorEstimates::between(&answer(&coarsest), &half);
+            let change = ErrorEstimates::between(&coarsest.solution(), &half);
             errors = errors.or_larger(&change.times(model.mesh.tuning.estimate.first_order_fraction));
         }
         Self { estimator: ErrorEstimator::Coarse(Box::new(coarse)), errors }
@@ -102,7 +101,7 @@ impl Estimate {
     /// Errors beside a coarser mesh, at least those `before`: friction is as wrong as the steps
     /// were that it remembers.
     fn beside(model: &MassSpringModel, before: ErrorEstimates, coarse: MassSpringModel) -> Self {
-        let errors = before.or_larger(&ErrorEstimates::between(&answer(&coarse), &answer(model)));
+        let errors = before.or_larger(&ErrorEstimates::between(&coarse.solution(), &model.solution()));
         Self { estimator: ErrorEstimator::Coarse(Box::new(coarse)), errors }
     }
 }
@@ -120,12 +119,12 @@ fn errors_beside_fem(model: &MassSpringModel) -> Option<ErrorEstimates> {
     fem.settle().ok()?;
     let better = fem.solution();
     let is_known = better.errors.relative(&better).is_some_and(|e| e <= model.settings.tolerance);
-    is_known.then(|| ErrorEstimates::between(&answer(model), &better).plus(&better.errors))
+    is_known.then(|| ErrorEstimates::between(&model.solution(), &better).plus(&better.errors))
 }
 
 fn errors_beside(model: &MassSpringModel, exact: &CableSolution) -> ErrorEstimates {
     let rounding = ErrorEstimates::rounding(exact, &model.mesh.problem);
-    ErrorEstimates::between(&answer(model), exact).plus(&rounding)
+    ErrorEstimates::between(&model.solution(), exact).plus(&rounding)
 }
 
 /// The same cable at rest on elements `times` as long.

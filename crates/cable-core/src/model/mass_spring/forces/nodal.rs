@@ -10,7 +10,7 @@ pub(in crate::model::mass_spring) fn update(mesh: &mut Mesh, time_s: f64) {
     set_loads(mesh, time_s);
     for e in 0..mesh.rest_length.len() {
         let l0 = mesh.rest_length[e];
-        let (length, t, shortening) = if mesh.wheels.touch(e) {
+        let (length, t, shortening) = if mesh.wheels.is_beside(e) {
             let r = mesh.element(e);
             let rate = |n: usize| mesh.wheels.at(n).map_or(0.0, |k| k.sliding_speed);
             (r.length, r.direction, (rate(e + 1) - rate(e)) * thermal)
@@ -71,7 +71,7 @@ pub(in crate::model::mass_spring) fn set_loads(mesh: &mut Mesh, time_s: f64) {
 
 /// Force of the spring of element `e` on its first node, N.
 pub(in crate::model::mass_spring) fn spring_force(mesh: &Mesh, e: usize) -> Vec2 {
-    if mesh.wheels.touch(e) {
+    if mesh.wheels.is_beside(e) {
         return mesh.element(e).direction * mesh.tension[e];
     }
     let d = mesh.position[e + 1] - mesh.position[e];

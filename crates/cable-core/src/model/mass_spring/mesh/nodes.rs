@@ -70,7 +70,7 @@ impl Mesh {
         Self::on_nodes(problem, tuning, segments, &seats, nodes)
     }
 
-    /// The same with nodes at given arc lengths (m).
+    /// Puts nodes at given arc lengths (m).
     pub(in crate::model::mass_spring) fn with_nodes(
         problem: Arc<Problem>,
         tuning: Arc<Tuning>,
@@ -212,8 +212,7 @@ impl Mesh {
             let i = self.wheels.pulleys[k].node;
             for e in [i - 1, i] {
                 let r = self.element(e);
-                // What lies on a wheel is taken as if unstretched: σ then moves the straight part
-                // alone.
+                // The arcs on wheels count as unstretched: σ then moves the straight part alone.
                 self.straight_length[e] =
                     self.material_length[e] - (r.arc[0] + r.arc[1]) / self.problem.thermal_stretch;
             }

@@ -195,12 +195,12 @@ impl Wheels {
     }
 
     /// True if an end of element `e` is on a pulley.
-    pub(in crate::model::mass_spring) fn touch(&self, e: usize) -> bool {
+    pub(in crate::model::mass_spring) fn is_beside(&self, e: usize) -> bool {
         self.at_node[e].is_some() || self.at_node[e + 1].is_some()
     }
 
     /// True if an end of element `e` is on a wheel with a radius.
-    pub(in crate::model::mass_spring) fn bend(&self, e: usize) -> bool {
+    pub(in crate::model::mass_spring) fn is_on_wheel(&self, e: usize) -> bool {
         [e, e + 1].iter().any(|&n| self.at(n).is_some_and(|p| p.radius > 0.0))
     }
 

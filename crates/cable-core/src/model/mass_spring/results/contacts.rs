@@ -5,7 +5,6 @@ use crate::math::{Vec2, larger, perp};
 use crate::model::Settings;
 use crate::model::mass_spring::contact_memory::{ContactImpulse, ContactMemory};
 use crate::model::mass_spring::corner_error::wrap;
-use crate::model::mass_spring::equilibrium::contact_energy::floor_uncertainty;
 use crate::model::mass_spring::forces::reactions;
 use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::solution::{ContactReport, ContactSample, ContactState, Cost, Warning, WarningCause};
@@ -34,7 +33,7 @@ pub(in crate::model::mass_spring) fn tension_uncertainty(
     tolerance: f64,
 ) -> Option<f64> {
     let corner = least_certain(read(mesh, contacts, cost), tolerance).map_or(0.0, |contact| contact.uncertainty);
-    let worst = larger(corner, floor_uncertainty(mesh, &contacts.anchors));
+    let worst = larger(corner, contacts.floor_uncertainty(mesh));
     (worst > tolerance).then_some(worst)
 }
 

@@ -231,7 +231,7 @@ impl ConstraintSolver {
         let elements = self.diagonal.len();
         self.pivot.resize(elements, 0.0);
         self.lambda.resize(elements, 0.0);
-        // Those let go are 0, and so is what they pass on: 1/pivot = 0.
+        // Elements that are left out have λ = 0 and pass nothing on: 1/pivot = 0.
         let (mut inverse, mut right) = (0.0, 0.0);
         let rows = self.diagonal.iter().zip(&self.lower).zip(&self.upper).zip(&self.violation).zip(&self.active);
         for (((((diagonal, lower), upper), gap), active), (pivot, lambda)) in
