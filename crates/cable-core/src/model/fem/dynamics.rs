@@ -11,7 +11,7 @@ use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::{HandDrive, Memory, Pacing, Rollback, SolverMemory};
 use crate::model::fem::state::stepping::Sleep;
 use crate::model::fem::state::stepping::StepSizeController;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose, WorkBudget};
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, WorkBudget};
 use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::held_warning;
 use crate::model::{Inertia, Model, Settings, StepReport};
@@ -70,7 +70,7 @@ impl Dynamics {
         Ok(Self {
             rollback: Rollback::default(),
             solver: SolverMemory {
-                pose: Pose::default(),
+                unknowns: Unknowns::default(),
                 memory: Memory(None),
                 free: FreeStep::default(),
                 decay: Vec::new(),
@@ -251,7 +251,7 @@ impl Dynamics {
                     });
                     self.rollback.restore(&mut self.cable);
                     if f.cause == FailureCause::CornerPulls && self.cable.settle_down(f.node) {
-                        self.cable.renew_task();
+                        self.cable.renew_input();
                         continue;
                     }
                     // A cable that cannot get out of the way of the robot holds it.
@@ -293,7 +293,7 @@ impl Dynamics {
         };
         let held = self.cable.answers.held_back.iter().filter_map(|&k| {
             let (node, s) = (node_of(k)?, self.cable.problem.supports.get(k)?);
-            let behind = (self.cable.task.target.get(node)? - self.cable.motion.x[node]).norm();
+            let behind = (self.cable.input.target.get(node)? - self.cable.motion.x[node]).norm();
             let cause = WarningCause::Blocked { support: s.name.clone() };
             Some(Warning::new(cause, &self.cable.problem.cable.name, self.cable.mesh.arc_length[node], [behind, 0.0]))
         });

@@ -141,7 +141,7 @@ fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
     let flexible = d.mesh.is_flexible();
     if d.mesh.sliding[e].is_some() || d.mesh.sliding[e + 1].is_some() {
         let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
-        return Weight::of(&d.mesh, e, &path, d.task.body).in_the_middle(t, material, flexible);
+        return Weight::of(&d.mesh, e, &path, d.input.body).in_the_middle(t, material, flexible);
     }
     let t = if t > 0.0 || !flexible { t + d.held_by_branches(e) } else { t };
     if t < 0.0 && flexible { 0.0 } else { t }
@@ -152,7 +152,7 @@ fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
 fn half(d: &CableState, node: usize, side: usize, x: &[Vec2]) -> f64 {
     let e = node + side - 1;
     let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
-    Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.task.body).carried(material)[1 - side]
+    Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.input.body).carried(material)[1 - side]
 }
 
 /// The force of the ground on the half bar at a held end that lies on it.
@@ -244,7 +244,7 @@ fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
     for rub in d.contacts.rubs.iter().filter(|r| r.touch.node == node && !r.touch.on_segment) {
         sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + rub_force(&d.contacts, rub, x);
     }
-    if let Some(&limit) = d.task.floor_limit.get(node) {
+    if let Some(&limit) = d.input.floor_limit.get(node) {
         sum -= friction::at_plane(d.contacts.floor_slid[node], limit, d.contacts.slip).1;
     }
     sum
@@ -271,7 +271,7 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
     }
     for k in 0..x.len() {
         let floor =
-            d.task.floor_limit.get(k).map(|&l| friction::at_plane(d.contacts.floor_slid[k], l, d.contacts.slip).1);
+            d.input.floor_limit.get(k).map(|&l| friction::at_plane(d.contacts.floor_slid[k], l, d.contacts.slip).1);
         if d.mesh.sliding[k].is_some() && k > 0 && k + 1 < x.len() {
             let [before, after] = [k - 1, k].map(|e| {
                 let path = d.mesh.path(e, x);
@@ -331,7 +331,7 @@ fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 
         let force = match k {
             0 => ends[0] + shear(mesh, &moments, 0, x),
             k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),
-            k => bar(k) + d.task.body * half(d, k, 1, x),
+            k => bar(k) + d.input.body * half(d, k, 1, x),
         };
         // A round that reaches to the node within a step ends there.
         while out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
@@ -387,8 +387,9 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     let (mark, sense, radius) = (node.end.mark, node.end.sense, node.end.radius);
     // The stretch between the node and the point where the cable meets or leaves the round, at an
     // angle (rad) from it, has its own weight.
-    let force_at =
-        |arcs: [f64; 2]| [0, 1].map(|j| load.force[j] - d.task.body * (arcs[j] * radius / stretch[j] * [-1.0, 1.0][j]));
+    let force_at = |arcs: [f64; 2]| {
+        [0, 1].map(|j| load.force[j] - d.input.body * (arcs[j] * radius / stretch[j] * [-1.0, 1.0][j]))
+    };
     let sag = |j: usize, from: Vec2, to: Vec2| {
         let sag = sense * angle_between(from, to);
         let longer = radius * sag.abs().powi(3) / 6.0;
@@ -432,7 +433,7 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     let [a, b] = [a - f0, b + f2];
     // dT = −b·dx without friction.
     let first = normal(-before);
-    let unrubbed = |normal: Vec2| a - d.task.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
+    let unrubbed = |normal: Vec2| a - d.input.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
     let last = unrubbed(normal(after));
     let over = OverRound::between([a, b - (last - a)], floor);
     // On a round that is small beside its bars, friction of the weight that hangs over it from them
@@ -551,7 +552,7 @@ fn pulley(d: &CableState, support: usize, x: &[Vec2], tension: &[f64]) -> Option
     let inner = d.mesh.arc_length[last] - d.mesh.arc_length[first];
     let share = half(d, first, 0, x) + inner + half(d, last, 1, x);
     let directions = [d.mesh.path(first - 1, x).direction, d.mesh.path(last, x).direction];
-    let force = directions[1] * tension[last] - directions[0] * tension[first - 1] + d.task.body * share;
+    let force = directions[1] * tension[last] - directions[0] * tension[first - 1] + d.input.body * share;
     let center = d.mesh.sliding[first]?.end.center;
     Some(SupportReaction {
         name: d.problem.supports.get(support)?.name.clone(),

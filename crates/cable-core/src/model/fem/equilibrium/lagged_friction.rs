@@ -5,7 +5,7 @@ use crate::math::{bounded, larger};
 use crate::model::fem::newton::minimize::DRIFT;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::SolverMemory;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose, StepInput};
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, StepInput, Unknowns};
 use crate::model::fem::time::step_setup::StickSlipChanges;
 use crate::model::fem::time::step_solver::ROUNDS_EACH;
 
@@ -34,8 +34,8 @@ pub(in crate::model::fem) struct Lagged {
 
 impl Lagged {
     /// True if friction is what the normal forces allow, at sliding nodes and elsewhere.
-    pub(in crate::model::fem) fn is_lawful(&self, task: &StepInput) -> bool {
-        self.grips.hold() && self.off <= DRIFT * task.tolerance
+    pub(in crate::model::fem) fn is_lawful(&self, input: &StepInput) -> bool {
+        self.grips.hold() && self.off <= DRIFT * input.tolerance
     }
 }
 
@@ -45,17 +45,17 @@ impl SolverMemory {
     pub(in crate::model::fem) fn lag(
         &mut self,
         cable: &mut CableState,
-        pose: &mut Pose,
+        unknowns: &mut Unknowns,
         rounds: usize,
     ) -> Result<Converged, Failure> {
-        self.lag_until(cable, pose, rounds).map(|found| found.done)
+        self.lag_until(cable, unknowns, rounds).map(|found| found.done)
     }
 
     /// The same; says what was found.
     pub(in crate::model::fem) fn lag_until(
         &mut self,
         cable: &mut CableState,
-        pose: &mut Pose,
+        unknowns: &mut Unknowns,
         rounds: usize,
     ) -> Result<Lagged, Failure> {
         let (mut total, mut grips) = (Converged::default(), StickSlipChanges::FOUND);
@@ -63,9 +63,9 @@ impl SolverMemory {
         let (mut off, mut part) = (0.0, 1.0);
         let mut before = Vec::with_capacity(cable.contacts.rubs.capacity());
         for round in 0..rounds {
-            cable.contacts.look_around(&cable.problem, &cable.mesh, &pose.x, |_| 0.0);
+            cable.contacts.look_around(&cable.problem, &cable.mesh, &unknowns.x, |_| 0.0);
             std::mem::swap(&mut before, &mut cable.contacts.rubs);
-            cable.contacts.prepare(&cable.problem, &cable.mesh, &pose.x, &cable.motion.x);
+            cable.contacts.prepare(&cable.problem, &cable.mesh, &unknowns.x, &cable.motion.x);
             if round > 0 {
                 let now = cable.contacts.ease(&before, part);
                 // Forces that go to and fro get no nearer by steps as long as before.
@@ -78,17 +78,17 @@ impl SolverMemory {
                 }
                 off = now;
             }
-            cable.task.shift = cable.soft_shift();
-            let done = self.minimise(cable, pose)?;
+            cable.input.shift = cable.soft_shift();
+            let done = self.minimise(cable, unknowns)?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
-            grips = cable.update_grips(pose, spare == 0);
+            grips = cable.update_grips(unknowns, spare == 0);
             if grips.wrong < fewest {
                 (fewest, spare) = (grips.wrong, PLAIN_ROUNDS);
             } else {
                 spare = spare.saturating_sub(1);
             }
             // A round that needed no iteration found the normal forces it had used.
-            let found = done.iterations == 0 && off <= cable.task.tolerance;
+            let found = done.iterations == 0 && off <= cable.input.tolerance;
             if (found || cable.contacts.rubs.is_empty()) && grips.wrong == 0 && grips.same {
                 return Ok(Lagged { done: total, grips, off: 0.0 });
             }
@@ -100,11 +100,11 @@ impl SolverMemory {
     pub(in crate::model::fem) fn lag_wholly(
         &mut self,
         cable: &mut CableState,
-        pose: &mut Pose,
+        unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
         let sliding = cable.mesh.sliding.iter().flatten().count();
-        let found = self.lag_until(cable, pose, LAG_ROUNDS + ROUNDS_EACH * sliding)?;
-        if found.is_lawful(&cable.task) {
+        let found = self.lag_until(cable, unknowns, LAG_ROUNDS + ROUNDS_EACH * sliding)?;
+        if found.is_lawful(&cable.input) {
             return Ok(found.done);
         }
         let node = cable.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);

@@ -4,13 +4,13 @@ use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::equilibrium::lagged_friction::LAG_ROUNDS;
-use crate::model::fem::newton::initial_guess::push_out;
+use crate::model::fem::newton::initial_guess::depenetrate;
 use crate::model::fem::newton::minimize::DRIFT;
 use crate::model::fem::results;
 use crate::model::fem::state::cable::{CableState, REACH};
 use crate::model::fem::state::moving_outline::MovingOutline;
 use crate::model::fem::system::friction_state::SLIDE;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose};
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 use crate::model::fem::system::step_input::{load_scale, tolerance};
 use crate::model::{Inertia, Model, StepReport};
 use crate::state::State;
@@ -130,7 +130,7 @@ impl CableState {
                 most = most.max((at - now).norm());
             }
         }
-        let carried = self.rider.as_ref().map_or(0.0, MovingOutline::pieces);
+        let carried = self.outline.as_ref().map_or(0.0, MovingOutline::pieces);
         larger(most / (0.5 * even), carried).ceil().clamp(1.0, 1e4)
     }
 }
@@ -160,27 +160,27 @@ impl Dynamics {
             self.cable.prepare_way([to, to], Some(dragged));
             self.cable.adapt_slip();
             self.cable.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
-            self.cable.task.max_iterations = REST_ITERATIONS;
-            self.cable.task.most_noise = RESIDUAL_LIMIT_TOLERANCES * self.cable.task.tolerance;
-            let mut pose = self.solver.still_pose(&self.cable);
-            let mut done = self.solver.lag_wholly(&mut self.cable, &mut pose);
+            self.cable.input.max_iterations = REST_ITERATIONS;
+            self.cable.input.most_noise = RESIDUAL_LIMIT_TOLERANCES * self.cable.input.tolerance;
+            let mut unknowns = self.solver.present_unknowns(&self.cable);
+            let mut done = self.solver.lag_wholly(&mut self.cable, &mut unknowns);
             if done.is_err_and(|f| f.cause != FailureCause::WorkSpent) && self.cable.contacts.slip < SLIDE {
                 // A cable whose grips change all along it, as at the first shape, comes to rest
                 // more easily on ground that gives way.
                 self.cable.contacts.set_slip(SLIDE);
-                pose = self.solver.still_pose(&self.cable);
-                done = self.solver.lag_wholly(&mut self.cable, &mut pose);
+                unknowns = self.solver.present_unknowns(&self.cable);
+                done = self.solver.lag_wholly(&mut self.cable, &mut unknowns);
             }
             if round == 0
                 && pull.is_finite()
-                && let Some(node) = self.cable.pulled_by(&pose.x, pull)
+                && let Some(node) = self.cable.pulled_by(&unknowns.x, pull)
             {
                 let residual = done.map_or_else(|f| f.residual, |d| d.residual);
                 return Err(Failure { node, residual, cause: FailureCause::CornerPulls });
             }
             let done = done?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
-            self.accept_pose(&pose, to);
+            self.accept_unknowns(&unknowns, to);
             // The mesh stays as it balances if corners are met and left by turns to the last.
             if settled || round + 1 == CORNER_ROUNDS {
                 break;
@@ -199,23 +199,23 @@ impl Dynamics {
     /// round-off. It starts from the present shape, and changes nothing where it does not converge.
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
         let kept = self.rollback.clone();
-        let (exact, to) = (self.cable.task.tolerance, self.cable.motion.time);
+        let (exact, to) = (self.cable.input.tolerance, self.cable.motion.time);
         let mut all = found;
         for (part, iterations) in POLISH_STAGES {
             self.rollback.save(&self.cable);
             self.cable.prepare_way([to, to], Some(dragged));
-            self.cable.task.most_noise = exact;
-            (self.cable.task.tolerance, self.cable.task.max_iterations) = (part * exact, iterations);
-            let mut pose = self.solver.still_pose(&self.cable);
-            let Ok(done) = self.solver.lag(&mut self.cable, &mut pose, LAG_ROUNDS) else {
+            self.cable.input.most_noise = exact;
+            (self.cable.input.tolerance, self.cable.input.max_iterations) = (part * exact, iterations);
+            let mut unknowns = self.solver.present_unknowns(&self.cable);
+            let Ok(done) = self.solver.lag(&mut self.cable, &mut unknowns, LAG_ROUNDS) else {
                 self.rollback.restore(&mut self.cable);
                 break;
             };
             all = Converged { iterations: all.iterations + done.iterations, ..done };
             // With the bars it balances on: new ones would have to be brought to rest again.
-            self.accept_pose(&pose, to);
+            self.accept_unknowns(&unknowns, to);
         }
-        self.cable.task.tolerance = exact;
+        self.cable.input.tolerance = exact;
         self.rollback = kept;
         all
     }
@@ -237,22 +237,28 @@ impl Dynamics {
         }
     }
 
-    /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over
-    /// changed.
-    fn accept_rest(&mut self, pose: &Pose, to: f64) -> bool {
-        self.accept_pose(pose, to);
+    /// Takes unknowns as the state at rest at the time `to`; returns whether what the cable runs
+    /// over changed.
+    fn accept_rest(&mut self, unknowns: &Unknowns, to: f64) -> bool {
+        self.accept_unknowns(unknowns, to);
         self.cable.remesh(Inertia::QuasiStatic).seats
     }
 
     /// The same, corners as they are.
-    fn accept_pose(&mut self, pose: &Pose, to: f64) {
-        self.cable.contacts.commit(&self.cable.problem, &self.cable.mesh, &pose.x, &self.cable.motion.x, &pose.slide);
-        self.cable.contacts.carriage = None;
-        self.cable.motion.x.clone_from(&pose.x);
+    fn accept_unknowns(&mut self, unknowns: &Unknowns, to: f64) {
+        self.cable.contacts.commit(
+            &self.cable.problem,
+            &self.cable.mesh,
+            &unknowns.x,
+            &self.cable.motion.x,
+            &unknowns.slide,
+        );
+        self.cable.contacts.outline_motion = None;
+        self.cable.motion.x.clone_from(&unknowns.x);
         self.cable.motion.v.fill(Vec2::zeros());
         self.cable.motion.w.fill(0.0);
         self.cable.motion.time = to;
-        self.cable.slide(&pose.slide);
+        self.cable.slide(&unknowns.slide);
         self.cable.mesh.sliding.iter_mut().flatten().for_each(|s| s.balanced = None);
         self.forget_history();
     }
@@ -265,7 +271,7 @@ impl Dynamics {
         self.rollback.save(&self.cable);
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
         if found.is_err_and(|f| {
-            f.cause != FailureCause::WorkSpent && f.residual > RESIDUAL_LIMIT_TOLERANCES * self.cable.task.tolerance
+            f.cause != FailureCause::WorkSpent && f.residual > RESIDUAL_LIMIT_TOLERANCES * self.cable.input.tolerance
         }) {
             self.rollback.restore(&mut self.cable);
             found = self.relax_within(RESIDUAL_LIMIT_TOLERANCES, to, dragged);
@@ -278,8 +284,8 @@ impl Dynamics {
     fn relax_within(&mut self, noise: f64, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         // Stretches into which the outline moves go out of its way before anything slides.
         self.cable.prepare_way([to, to], Some(dragged));
-        self.cable.motion.x.clone_from_slice(self.cable.task.begins());
-        self.cable.contacts.carriage = None;
+        self.cable.motion.x.clone_from_slice(self.cable.input.begins());
+        self.cable.contacts.outline_motion = None;
         let laid = self.cable.motion.x.clone();
         let mut resistance = self.cable.first_resistance();
         let (full, floor) = (resistance, 1e-5 * resistance);
@@ -289,21 +295,21 @@ impl Dynamics {
         let mut total = 0;
         let mut last = Failure { node: 0, residual: f64::NAN, cause: FailureCause::StillMoves };
         for round in 0..MAX_RELAX {
-            self.cable.prepare_task(to, Some(dragged));
+            self.cable.prepare_input(to, Some(dragged));
             self.cable.adapt_slip();
             let even = self.cable.problem.length / self.cable.meshing.even_bars as f64;
-            self.cable.task.inertia.fill(resistance);
+            self.cable.input.inertia.fill(resistance);
             for k in 0..self.cable.mesh.nodes() {
-                self.cable.task.inertia[k] *= self.cable.mesh.share(k) / even;
+                self.cable.input.inertia[k] *= self.cable.mesh.share(k) / even;
             }
-            let exact = self.cable.task.tolerance;
-            self.cable.task.tolerance = if stubborn { exact } else { 1e2 * exact };
-            self.cable.task.most_noise = noise * exact;
+            let exact = self.cable.input.tolerance;
+            self.cable.input.tolerance = if stubborn { exact } else { 1e2 * exact };
+            self.cable.input.most_noise = noise * exact;
             // A first lay carries no normal force yet: without refreshing, it would slide as if on
             // ice.
-            let mut pose = self.solver.still_pose(&self.cable);
-            let done = self.solver.lag_until(&mut self.cable, &mut pose, RELAX_LAG_ROUNDS);
-            self.cable.task.tolerance = exact;
+            let mut unknowns = self.solver.present_unknowns(&self.cable);
+            let done = self.solver.lag_until(&mut self.cable, &mut unknowns, RELAX_LAG_ROUNDS);
+            self.cable.input.tolerance = exact;
             match done {
                 Ok(found) => {
                     let done = found.done;
@@ -311,10 +317,10 @@ impl Dynamics {
                     let (mut moved, mut resists, mut slowest): (f64, f64, usize) = (0.0, 0.0, 0);
                     // Resistance adds up along a creeping stretch.
                     let mut drift = Vec2::zeros();
-                    for (k, (a, b)) in pose.x.iter().zip(&self.cable.motion.x).enumerate() {
-                        let way = (a - b).norm().max(pose.slide[k].abs());
+                    for (k, (a, b)) in unknowns.x.iter().zip(&self.cable.motion.x).enumerate() {
+                        let way = (a - b).norm().max(unknowns.slide[k].abs());
                         moved = moved.max(way);
-                        let free = if self.cable.mesh.held[k] { 0.0 } else { self.cable.task.inertia[k] };
+                        let free = if self.cable.mesh.held[k] { 0.0 } else { self.cable.input.inertia[k] };
                         drift = if free > 0.0 { drift + (a - b) * free } else { Vec2::zeros() };
                         let force = larger(way * free, drift.norm() / DRIFT);
                         if force > resists {
@@ -323,14 +329,14 @@ impl Dynamics {
                     }
                     last =
                         Failure { node: slowest, residual: done.residual + resists, cause: FailureCause::StillMoves };
-                    let remeshed = self.accept_rest(&pose, self.cable.motion.time);
+                    let remeshed = self.accept_rest(&unknowns, self.cable.motion.time);
                     if self.cable.ran_away(&laid).is_some() {
                         return Err(Failure { node: 0, residual: f64::NAN, cause: FailureCause::SlidesAway });
                     }
                     if remeshed {
                         moved = moved.max(0.1);
                     } else if stubborn
-                        && found.is_lawful(&self.cable.task)
+                        && found.is_lawful(&self.cable.input)
                         && resists <= exact
                         && done.residual <= RESIDUAL_LIMIT_TOLERANCES * exact
                     {
@@ -377,7 +383,7 @@ impl Dynamics {
         self.cable.motion.hands.fill(None);
         if !self.rested && self.cable.put_outline() {
             let mut x = std::mem::take(&mut self.cable.motion.x);
-            push_out(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
+            depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
             self.cable.motion.x = x;
             self.forget_history();
         }
@@ -420,7 +426,7 @@ impl Dynamics {
     /// hangs has bars.
     pub(in crate::model::fem) fn begin_at(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
         let touched = self.cable.problem.floor_friction.is_some() || self.cable.contacts.own.shape.is_on();
-        let alone = self.cable.rider.is_none() && !touched && !self.cable.problem.world.is_empty();
+        let alone = self.cable.outline.is_none() && !touched && !self.cable.problem.world.is_empty();
         if self.rested || !alone || self.cable.mesh.sliding.iter().any(Option::is_some) {
             return;
         }
@@ -440,17 +446,17 @@ impl Dynamics {
         self.forget_history();
         // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so
         // that little force is left over.
-        self.cable.prepare_task(self.cable.motion.time, Some(dragged));
-        self.cable.task.max_iterations = REST_ITERATIONS;
-        let exact = self.cable.task.tolerance;
-        self.cable.task.tolerance = tolerance(&self.cable.problem, 0.0);
-        let mut pose = self.solver.still_pose(&self.cable);
-        if self.solver.free.solve(&self.cable.mesh, &self.cable.task, &mut pose).is_some() {
-            self.cable.motion.x.clone_from(&pose.x);
+        self.cable.prepare_input(self.cable.motion.time, Some(dragged));
+        self.cable.input.max_iterations = REST_ITERATIONS;
+        let exact = self.cable.input.tolerance;
+        self.cable.input.tolerance = tolerance(&self.cable.problem, 0.0);
+        let mut unknowns = self.solver.present_unknowns(&self.cable);
+        if self.solver.free.solve(&self.cable.mesh, &self.cable.input, &mut unknowns).is_some() {
+            self.cable.motion.x.clone_from(&unknowns.x);
             self.forget_history();
         }
-        self.solver.pose = pose;
-        self.cable.task.tolerance = exact;
+        self.solver.unknowns = unknowns;
+        self.cable.input.tolerance = exact;
     }
 
     /// The resting place; one that the cable reaches without ever touching itself is found as if it

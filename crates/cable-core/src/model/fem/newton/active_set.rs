@@ -28,7 +28,7 @@ use crate::model::fem::newton::step_bound::longest;
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::Coupling;
-use crate::model::fem::system::step_input::Pose;
+use crate::model::fem::system::step_input::Unknowns;
 
 /// Rounds of adding constraints. More find nothing new where a front of contact runs along the
 /// cable.
@@ -172,21 +172,21 @@ impl Workspace {
     }
 
     /// Finds the direction again if something is in its way; returns how much of it is free.
-    pub(in crate::model::fem) fn look_ahead(&mut self, step: &StepContext<'_>, pose: &Pose) -> f64 {
-        let free = self.free_from_here(step, pose, 1.0);
+    pub(in crate::model::fem) fn look_ahead(&mut self, step: &StepContext<'_>, unknowns: &Unknowns) -> f64 {
+        let free = self.free_from_here(step, unknowns, 1.0);
         if free >= FREE_STEP_FRACTION {
             return free;
         }
         let downhill = self.slope();
         self.plain.clone_from(&self.direction);
         let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
-        self.ahead.solve(step, equations, &pose.x, &mut self.direction);
+        self.ahead.solve(step, equations, &unknowns.x, &mut self.direction);
         // The undamped Newton does not use the energy.
         if self.carried.is_empty() && !(self.slope() <= LEAST_DESCENT_FRACTION * downhill) {
             self.direction.clone_from(&self.plain);
             return free;
         }
-        self.free_from_here(step, pose, 1.0)
+        self.free_from_here(step, unknowns, 1.0)
     }
 }
 
@@ -241,9 +241,9 @@ mod tests {
     fn a_cable_that_lands_all_along_its_length_in_one_step_takes_few_iterations() {
         let mut d = about_to_land();
         d.begin_step(STEP, &[]);
-        let mut pose = d.solver.still_pose(&d.cable);
+        let mut unknowns = d.solver.present_unknowns(&d.cable);
         let mut memory = Workspace::new(&d.cable.mesh).unwrap();
-        let done = memory.descend(&d.cable.step_context(), &mut pose).unwrap();
+        let done = memory.descend(&d.cable.step_context(), &mut unknowns).unwrap();
         let landed = memory.touches.len();
         println!("{} iterations, {landed} nodes landed", done.iterations);
         assert!(landed > 90 && done.iterations <= 8, "{landed} {}", done.iterations);

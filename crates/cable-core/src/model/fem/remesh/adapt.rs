@@ -146,7 +146,7 @@ impl CableState {
             let x = std::mem::take(&mut self.motion.x);
             self.contacts.prepare(&self.problem, &self.mesh, &x, &x);
             self.motion.x = x;
-            self.renew_task();
+            self.renew_input();
         }
         Remeshed { seats: changed, bars, marks: moved }
     }
@@ -183,19 +183,19 @@ impl CableState {
         });
         // A step balances the pull with its loss.
         let loss = |e: usize, p: f64, l: f64| {
-            let ratio = self.task.predicted_length[e] / mesh.rest_length[e];
-            self.task.damping(e) / mesh.rest_length[e] * (p - ratio * l)
+            let ratio = self.input.predicted_length[e] / mesh.rest_length[e];
+            self.input.damping(e) / mesh.rest_length[e] * (p - ratio * l)
         };
         let tension = [0, 1].map(|j| {
             let t = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);
             let elastic = if t < 0.0 { 0.0 } else { t };
-            if slide.is_some() && self.task.moves {
+            if slide.is_some() && self.input.moves {
                 elastic + loss(k - 1 + j, path[j].length, rest[j])
             } else {
                 elastic
             }
         });
-        let body = self.task.body;
+        let body = self.input.body;
         let weight = [0, 1].map(|j| Weight::of(mesh, k - 1 + j, &path[j], body));
         let material = rest.map(|l| l / mesh.thermal_stretch);
         let share = [0, 1].map(|j| weight[j].carried(material[j])[1 - j]);
@@ -206,10 +206,10 @@ impl CableState {
             floor_friction::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
         });
         let load = Load::new(node, straight, [&path[0], &path[1]], body, share);
-        // Between steps the task may be of another mesh, and nothing is balanced.
+        // Between steps the input may be of another mesh, and nothing is balanced.
         let at_material = slide.map_or(load.pull, |slide| {
             [k - 1, k]
-                .map(|e| crate::model::fem::system::bar_energy::pull_at_slide(mesh, &self.task, e, k - e, x, slide))
+                .map(|e| crate::model::fem::system::bar_energy::pull_at_slide(mesh, &self.input, e, k - e, x, slide))
         });
         let lifted = [0, 1].map(|j| tension[j] + body.dot(&(weight[j].center - x[k])));
         Some(Load { floor, lifted, at_material, ..load })

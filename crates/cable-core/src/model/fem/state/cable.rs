@@ -7,7 +7,7 @@ use crate::contact::barrier::Barrier;
 use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
 use crate::model::fem::mesh::sliding_node::Seat;
-use crate::model::fem::newton::initial_guess::{lay, push_out, way};
+use crate::model::fem::newton::initial_guess::{depenetrate, place_nodes, route};
 use crate::model::fem::state::history::Motion;
 use crate::model::fem::state::moving_outline::MovingOutline;
 use crate::model::fem::system::assembly::Mesh;
@@ -95,17 +95,17 @@ pub(in crate::model::fem) struct CableState {
     /// Loss of taut bars where the cable can touch nothing.
     pub(in crate::model::fem) loss: Loss,
     /// The outline of the robot, if there is one.
-    pub(in crate::model::fem) rider: Option<MovingOutline>,
+    pub(in crate::model::fem) outline: Option<MovingOutline>,
     /// Supports and loads of the present step.
-    pub(in crate::model::fem) task: StepInput,
+    pub(in crate::model::fem) input: StepInput,
     pub(in crate::model::fem) answers: StepAnswers,
 }
 
 impl CableState {
     /// The cable along its route.
     pub(in crate::model::fem) fn new(problem: Arc<Problem>, settings: Settings) -> Self {
-        let (rider, problem) = MovingOutline::of(problem);
-        let way = way(&problem);
+        let (outline, problem) = MovingOutline::of(problem);
+        let route = route(&problem);
         let segments = segments(&problem, settings);
         let even = problem.length / segments as f64;
         let mut breaks = vec![0.0, problem.length];
@@ -114,7 +114,7 @@ impl CableState {
         breaks.sort_by(f64::total_cmp);
         breaks.dedup_by(|a, b| *a - *b < 1e-9 * problem.length);
         if !problem.world.is_empty() || problem.cable.self_contact {
-            for (s, _) in &way {
+            for (s, _) in &route {
                 if breaks.iter().all(|b| (b - s).abs() > 0.3 * even) {
                     breaks.push(*s);
                 }
@@ -128,11 +128,11 @@ impl CableState {
         let loads = problem.loads.iter().filter_map(|l| Some((mesh.node_at(l.arc_length)?, l.force.clone()))).collect();
         let (normal_per_m, whole) = load_scale(&problem);
         let barrier = Barrier { reach: REACH, stiffness: STIFFNESS * normal_per_m * even };
-        let task = StepInput { tolerance: tolerance(&problem, whole), ..StepInput::default() };
+        let input = StepInput { tolerance: tolerance(&problem, whole), ..StepInput::default() };
         let mut cable = Self {
             contacts: ContactSet::new(barrier, SLIDE, n),
             motion: Motion {
-                x: lay(&mesh, &way),
+                x: place_nodes(&mesh, &route),
                 v: vec![Vec2::zeros(); n],
                 x_before: vec![Vec2::zeros(); n],
                 v_before: vec![Vec2::zeros(); n],
@@ -168,9 +168,9 @@ impl CableState {
                 kept: None,
                 gauged: Gauged::default(),
             },
-            rider,
+            outline,
             mesh,
-            task,
+            input,
             problem,
         };
         if cable.problem.cable.self_contact {
@@ -178,15 +178,15 @@ impl CableState {
             cable.contacts.own.friction = cable.problem.cable.friction;
         }
         cable.forget_history();
-        cable.prepare_task(0.0, None);
+        cable.prepare_input(0.0, None);
         for k in 0..n {
             if cable.mesh.held[k] {
-                cable.motion.x[k] = cable.task.target[k];
+                cable.motion.x[k] = cable.input.target[k];
             }
         }
         cable.thread_pulleys(None);
         let mut x = std::mem::take(&mut cable.motion.x);
-        push_out(&cable.problem, &cable.mesh, &mut x, 0.9 * REACH);
+        depenetrate(&cable.problem, &cable.mesh, &mut x, 0.9 * REACH);
         cable.motion.x = x;
         cable.forget_history();
         cable
@@ -205,9 +205,9 @@ impl CableState {
         self.forget_account();
     }
 
-    /// Sets the task anew after a change of the mesh, for what is read off it between steps.
-    pub(in crate::model::fem) fn renew_task(&mut self) {
-        self.prepare_task(self.motion.time, None);
+    /// Sets the input anew after a change of the mesh, for what is read off it between steps.
+    pub(in crate::model::fem) fn renew_input(&mut self) {
+        self.prepare_input(self.motion.time, None);
     }
 
     /// Centre of a pulley, m; None for other supports and pulleys that have let go.

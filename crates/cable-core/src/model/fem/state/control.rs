@@ -6,7 +6,7 @@ use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::mixed_free::FreeStep;
 use crate::model::fem::state::history::Checkpoint;
 use crate::model::fem::state::stepping::{Sleep, StepSizeController};
-use crate::model::fem::system::step_input::{Pose, WorkBudget};
+use crate::model::fem::system::step_input::{Unknowns, WorkBudget};
 
 /// The minimiser's memory; a copy of the model makes its own.
 #[derive(Debug, Default)]
@@ -22,7 +22,7 @@ impl Clone for Memory {
 #[derive(Clone, Debug)]
 pub(in crate::model::fem) struct SolverMemory {
     /// Room for the unknowns of a step.
-    pub(in crate::model::fem) pose: Pose,
+    pub(in crate::model::fem) unknowns: Unknowns,
     /// Room of the solver in contact.
     pub(in crate::model::fem) memory: Memory,
     /// Room of the solver of a cable that touches nothing.

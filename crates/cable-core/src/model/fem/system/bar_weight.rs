@@ -14,8 +14,8 @@
 //!
 //! If that pull would be a push the bar is slack, and its material is not spread evenly: only so
 //! much of the weight on the round acts there that nothing pushes, and of the rest half at each
-//! end. How much is found from the pose in which a step begins: sought within the step, it goes to
-//! and fro where a bar is nearly slack.
+//! end. How much is found from the unknowns in which a step begins: sought within the step, it goes
+//! to and fro where a bar is nearly slack.
 
 use crate::math::{Mat2, Vec2, larger, perp, smaller};
 use crate::model::fem::mesh::tangent_path::Path;
@@ -293,7 +293,7 @@ mod tests {
         ) {
             use crate::model::fem::system::assembly::System;
             use crate::model::fem::system::bar_energy;
-            use crate::model::fem::system::step_input::{Pose, StepInput};
+            use crate::model::fem::system::step_input::{Unknowns, StepInput};
             use crate::energy::Curvature;
             let (j, sense) = (usize::from(first), if round.1 { 1.0 } else { -1.0 });
             let (mut mesh, x) = bar(j, unit(place.1) * place.0, round.0, sense, round.2);
@@ -301,11 +301,11 @@ mod tests {
             mesh.rest_length = vec![0.8 * mesh.path(0, &x).length];
             mesh.arc_length[1] = mesh.rest_length[0];
             prop_assume!(mesh.rest_length[0] > 0.5);
-            let task = StepInput { body: BODY, scale: vec![1.4], predicted_length: mesh.rest_length.clone(), ..StepInput::default() };
+            let input = StepInput { body: BODY, scale: vec![1.4], predicted_length: mesh.rest_length.clone(), ..StepInput::default() };
             let energy = |x: &[Vec2], slide: &[f64]| {
                 let mut s = System::new(&mesh);
-                let pose = Pose { x: x.to_vec(), slide: slide.to_vec() };
-                (bar_energy::add(&mut s, &mesh, &task, 0, &pose, Curvature::Exact, None).0, s)
+                let unknowns = Unknowns { x: x.to_vec(), slide: slide.to_vec() };
+                (bar_energy::add(&mut s, &mesh, &input, 0, &unknowns, Curvature::Exact, None).0, s)
             };
             let mut slides = [0.0; 2];
             slides[1 - j] = slide;

@@ -193,7 +193,7 @@ pub struct ContactSet {
     /// Contacts of the cable with itself.
     pub own: Own,
     /// Motion of the robot's outline in this step.
-    pub carriage: Option<OutlineMotion>,
+    pub outline_motion: Option<OutlineMotion>,
 }
 
 impl ContactSet {
@@ -211,13 +211,13 @@ impl ContactSet {
             near: NeighbourLists::default(),
             floor_slid: vec![Vec2::zeros(); nodes],
             own: Own::default(),
-            carriage: None,
+            outline_motion: None,
         }
     }
 
     /// Becomes a copy without new memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, slip, rubs, memory, floor_slid, own, carriage, .. } = other;
+        let Self { barrier, slip, rubs, memory, floor_slid, own, outline_motion, .. } = other;
         (self.barrier, self.slip) = (*barrier, *slip);
         // With room for as many, so that a front of contact that runs on asks for none; and no
         // more, or each copy would double it.
@@ -229,7 +229,7 @@ impl ContactSet {
         self.memory.extend_from_slice(memory);
         self.floor_slid.clone_from(floor_slid);
         self.own.copy_from(own);
-        self.carriage = *carriage;
+        self.outline_motion = *outline_motion;
     }
 
     /// Friction is from now on fully mobilised at a sliding of `slip` (m); every contact keeps its
@@ -359,7 +359,7 @@ impl ContactSet {
             } else if limit != 0.0 {
                 let slid = self.remembered(touch);
                 let was = touch.interpolate(start);
-                let carried = self.carriage.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+                let carried = self.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
                 let origin = carried.map_or(was, |c| c.carried(was));
                 self.rubs.push(FrictionContact { touch: *touch, tangent: touch.tangent(), limit, slid, origin });
             }

@@ -14,7 +14,7 @@ const TOLERANCE: f64 = 1e-6;
 
 /// The unknowns of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pose {
+pub struct Unknowns {
     /// Position of each node, m; of a sliding one its mark.
     pub x: Vec<Vec2>,
     /// Slide of the arc length at each sliding node in this step, m.
@@ -161,8 +161,8 @@ pub struct Converged {
 }
 
 /// Factor of the equations of a node.
-pub(in crate::model::fem) fn node_scale(task: &StepInput, node: usize) -> f64 {
-    task.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
+pub(in crate::model::fem) fn node_scale(input: &StepInput, node: usize) -> f64 {
+    input.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
 }
 
 /// Load per metre that presses on the ground and the whole load, N/m and N; never 0.

@@ -21,7 +21,7 @@ use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::history::Motion;
 use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::system::loss::damping_time;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose};
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 use crate::model::fem::time::momentum::mass_with;
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
@@ -118,7 +118,7 @@ impl CableState {
         let m = &mut self.motion;
         for (touch, load) in self.contacts.pressing() {
             let n = touch.pair.gap.normal;
-            let carried = self.contacts.carriage.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+            let carried = self.contacts.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
             let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.x)) / h);
             let speed = (touch.interpolate(&m.v) - of_it).dot(&n);
             let shares = touch.shares();
@@ -178,10 +178,10 @@ impl CableState {
     }
 
     /// Keeps what friction acts between at each sliding node.
-    fn note_balanced(&mut self, pose: &Pose) {
+    fn note_balanced(&mut self, unknowns: &Unknowns) {
         for k in 0..self.mesh.nodes() {
-            let Some(load) = self.load_at(k, &pose.x, Some(&pose.slide)) else { continue };
-            let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
+            let Some(load) = self.load_at(k, &unknowns.x, Some(&unknowns.slide)) else { continue };
+            let inertia = self.input.inertia[k] * (unknowns.slide[k] - self.input.predicted_slide[k]);
             if let Some(node) = &mut self.mesh.sliding[k] {
                 let [comes, leaves] = load.at_round();
                 // The step balances slopes by the slide, where inertia counts by what is stretched.
@@ -199,16 +199,16 @@ impl CableState {
 
     /// Supports that could not get where they were to be: said, and their hands start again from
     /// there.
-    fn note_lag(&mut self, pose: &Pose) {
+    fn note_lag(&mut self, unknowns: &Unknowns) {
         for (support, node) in self.meshing.support_node.iter().enumerate() {
             let Some(k) = node.filter(|&k| self.mesh.held[k]) else { continue };
-            if pose.x[k] != self.task.target[k] && !self.answers.held_back.contains(&support) {
+            if unknowns.x[k] != self.input.target[k] && !self.answers.held_back.contains(&support) {
                 self.answers.held_back.push(support);
             }
             if let Some(f) = &mut self.motion.followers[support]
-                && f.position() != pose.x[k]
+                && f.position() != unknowns.x[k]
             {
-                f.stop_at(pose.x[k]);
+                f.stop_at(unknowns.x[k]);
             }
         }
     }
@@ -217,8 +217,8 @@ impl CableState {
     /// x̃). That grows as the step shrinks: 5 kg at 20 m and 1/4000 s know their force to 1e-6 N
     /// only.
     fn rounded_tolerance(&self) -> f64 {
-        let mut tolerance = self.task.tolerance;
-        for (inertia, x) in self.task.inertia.iter().zip(&self.motion.x) {
+        let mut tolerance = self.input.tolerance;
+        for (inertia, x) in self.input.inertia.iter().zip(&self.motion.x) {
             let rounding = ROUNDING * f64::EPSILON * inertia * x.norm();
             if rounding > tolerance {
                 tolerance = rounding;
@@ -251,41 +251,41 @@ impl CableState {
         let Weights { now, past, a, .. } = weights;
         let rubs = !(self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none());
         let jumps = !self.meets_nothing();
-        let (m, task, mesh) = (&self.motion, &mut self.task, &self.mesh);
+        let (m, input, mesh) = (&self.motion, &mut self.input, &self.mesh);
         for k in 0..m.x.len() {
-            task.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
-            task.inertia[k] = self.problem.linear_density * mesh.share(k) * a * a;
+            input.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
+            input.inertia[k] = self.problem.linear_density * mesh.share(k) * a * a;
             if mesh.sliding[k].is_some() {
                 let w_hat = m.w[k] * now - m.w_before[k] * past;
                 let s = mesh.arc_length[k];
-                task.predicted_slide[k] = s * now - m.s_before[k] * past + w_hat / a - s;
+                input.predicted_slide[k] = s * now - m.s_before[k] * past + w_hat / a - s;
             }
         }
         // Of the masses alone: hands draw at their nodes, not at what these are coupled with.
-        let predicted = &task.predicted;
-        task.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
+        let predicted = &input.predicted;
+        input.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
             let chord = predicted[e + 1] - predicted[e];
             (self.problem.linear_density * length * a * a, chord)
         }));
         for (s, node) in self.problem.supports.iter().zip(&self.meshing.support_node) {
             if let Some(k) = node {
-                task.inertia[*k] += s.mass * a * a;
+                input.inertia[*k] += s.mass * a * a;
             }
         }
         for (hand, node) in m.hands.iter().zip(&self.meshing.support_node) {
             let (Some(hand), Some(k)) = (hand, *node) else { continue };
             let (stiffness, at) = hand.pull(h, m.x[k]);
-            let (inertia, both) = (task.inertia[k], task.inertia[k] + stiffness);
-            task.predicted[k] = (task.predicted[k] * inertia + at * stiffness) / both;
-            task.inertia[k] = both;
-            task.hands.push((k, stiffness, at));
+            let (inertia, both) = (input.inertia[k], input.inertia[k] + stiffness);
+            input.predicted[k] = (input.predicted[k] * inertia + at * stiffness) / both;
+            input.inertia[k] = both;
+            input.hands.push((k, stiffness, at));
         }
-        task.moves = true;
+        input.moves = true;
         let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&self.problem, rubs));
-        task.loss.fill([self.problem.axial_stiffness * time * rate; 2]);
-        task.bending_damping = mesh.bending_stiffness * time / h;
+        input.loss.fill([self.problem.axial_stiffness * time * rate; 2]);
+        input.bending_damping = mesh.bending_stiffness * time / h;
         for e in 0..mesh.rest_length.len() {
-            task.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
+            input.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
                 mesh.path(e, &m.x).length
             } else {
                 let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
@@ -298,7 +298,7 @@ impl CableState {
 }
 
 impl Dynamics {
-    /// Sets the task of a step of `h` (s); returns the weights of its history.
+    /// Sets the input of a step of `h` (s); returns the weights of its history.
     pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Weights {
         self.hand_drive.follow(&mut self.cable, self.pacing.due, h, dragged);
         self.cable.prepare_way([self.cable.motion.time, self.cable.motion.time + h], Some(dragged));
@@ -306,9 +306,9 @@ impl Dynamics {
         self.cable.adapt_stiffness(STIFFNESS_CHANGE, 1.0);
         let weights = self.cable.weights(h);
         self.cable.set_inertia(weights, h, &mut self.solver.decay);
-        let (m, task, mesh) = (&self.cable.motion, &self.cable.task, &self.cable.mesh);
+        let (m, input, mesh) = (&self.cable.motion, &self.cable.input, &self.cable.mesh);
         self.cable.contacts.look_around(&self.cable.problem, mesh, &m.x, |k| {
-            if mesh.held[k] { (task.target[k] - m.x[k]).norm() } else { m.v[k].norm() * h }
+            if mesh.held[k] { (input.target[k] - m.x[k]).norm() } else { m.v[k].norm() * h }
         });
         weights
     }
@@ -320,27 +320,33 @@ impl Dynamics {
     ) -> Result<Converged, Failure> {
         let weights = self.begin_step(h, dragged);
         let Weights { now, past, a, .. } = weights;
-        let (mut pose, exact) = (self.solver.moving_pose(&self.cable, h), self.cable.task.tolerance);
-        self.cable.contacts.prepare(&self.cable.problem, &self.cable.mesh, &pose.x, &self.cable.motion.x);
-        self.cable.task.tolerance = self.cable.rounded_tolerance();
-        let done = self.solver.rub_and_minimise(&mut self.cable, &mut pose);
-        self.cable.task.tolerance = exact;
+        let (mut unknowns, exact) = (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.tolerance);
+        self.cable.contacts.prepare(&self.cable.problem, &self.cable.mesh, &unknowns.x, &self.cable.motion.x);
+        self.cable.input.tolerance = self.cable.rounded_tolerance();
+        let done = self.solver.rub_and_minimise(&mut self.cable, &mut unknowns);
+        self.cable.input.tolerance = exact;
         let done = done?;
-        if let Some(node) = self.cable.pulled(&pose.x) {
+        if let Some(node) = self.cable.pulled(&unknowns.x) {
             return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
         }
-        self.cable.note_lag(&pose);
-        self.cable.note_hands(&pose);
-        self.cable.note_balanced(&pose);
-        let given = self.cable.forces_in_step(&pose, self.solver.touches());
+        self.cable.note_lag(&unknowns);
+        self.cable.note_hands(&unknowns);
+        self.cable.note_balanced(&unknowns);
+        let given = self.cable.forces_in_step(&unknowns, self.solver.touches());
         let slid = self.cable.sliding_momentum();
-        self.cable.relax_branches(h, &pose.x);
-        self.cable.contacts.commit(&self.cable.problem, &self.cable.mesh, &pose.x, &self.cable.motion.x, &pose.slide);
+        self.cable.relax_branches(h, &unknowns.x);
+        self.cable.contacts.commit(
+            &self.cable.problem,
+            &self.cable.mesh,
+            &unknowns.x,
+            &self.cable.motion.x,
+            &unknowns.slide,
+        );
         let (m, mesh) = (&mut self.cable.motion, &self.cable.mesh);
-        for k in 0..pose.x.len() {
-            let v = (pose.x[k] - weights.place(m, k)) * a;
+        for k in 0..unknowns.x.len() {
+            let v = (unknowns.x[k] - weights.place(m, k)) * a;
             let s = mesh.arc_length[k];
-            let w = (s + pose.slide[k] - s * now + m.s_before[k] * past) * a;
+            let w = (s + unknowns.slide[k] - s * now + m.s_before[k] * past) * a;
             if let (Some(x), Some(v)) = (m.x_older.get_mut(k), m.v_older.get_mut(k)) {
                 (*x, *v) = (m.x_before[k], m.v_before[k]);
             }
@@ -348,13 +354,13 @@ impl Dynamics {
             m.v_before[k] = m.v[k];
             m.s_before[k] = s;
             m.w_before[k] = m.w[k];
-            m.x[k] = pose.x[k];
+            m.x[k] = unknowns.x[k];
             m.v[k] = v;
             m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
         }
-        self.cable.slide(&pose.slide);
-        self.cable.account_for_step(weights, given, slid, &pose.slide);
-        self.solver.pose = pose;
+        self.cable.slide(&unknowns.slide);
+        self.cable.account_for_step(weights, given, slid, &unknowns.slide);
+        self.solver.unknowns = unknowns;
         self.cable.motion.time += h;
         self.cable.gauge_tension();
         self.cable.note_step(h);
@@ -362,7 +368,7 @@ impl Dynamics {
         self.cable.land(h, a);
         self.cable.land_on_itself(PLASTIC_SPEED_LIMIT, [h, a]);
         self.cable.close_account();
-        self.cable.contacts.carriage = None;
+        self.cable.contacts.outline_motion = None;
         if !self.cable.meshing.never_slides {
             self.cable.answers.keeps = self.cable.motion.time >= self.pacing.due * (1.0 - f64::EPSILON);
             self.cable.remesh(Inertia::Dynamic);

@@ -86,10 +86,10 @@ impl CableState {
                 0.0
             };
             let l = self.mesh.rest_length[e];
-            let late = self.task.predicted_length[e];
+            let late = self.input.predicted_length[e];
             let part = viscous / stiffness;
-            self.task.predicted_length[e] = part * late + (1.0 - part) * l * (1.0 + before) - l * kept / stiffness;
-            self.task.loss[e][0] = stiffness;
+            self.input.predicted_length[e] = part * late + (1.0 - part) * l * (1.0 + before) - l * kept / stiffness;
+            self.input.loss[e][0] = stiffness;
         }
     }
 }

@@ -68,7 +68,7 @@ impl Rollback {
             }
             self.can_restore = false;
             cable.place_outline();
-            cable.renew_task();
+            cable.renew_input();
         }
     }
 }

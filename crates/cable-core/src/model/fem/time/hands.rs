@@ -5,7 +5,7 @@ use crate::math::Vec2;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::HandDrive;
 use crate::model::fem::system::bar_weight;
-use crate::model::fem::system::step_input::Pose;
+use crate::model::fem::system::step_input::Unknowns;
 use crate::model::input_filter::{Hand, SmoothedTarget, is_led};
 use crate::solution::Warning;
 
@@ -27,10 +27,10 @@ impl CableState {
             - self.problem.hung_on(support, time)
     }
 
-    /// Keeps the force of the cable on what hands hold, as a pose balances it.
-    pub(in crate::model::fem) fn note_hands(&mut self, pose: &Pose) {
-        for &(k, stiffness, at) in &self.task.hands {
-            self.answers.reaction[k] = (pose.x[k] - at) * stiffness;
+    /// Keeps the force of the cable on what hands hold, as unknowns balances it.
+    pub(in crate::model::fem) fn note_hands(&mut self, unknowns: &Unknowns) {
+        for &(k, stiffness, at) in &self.input.hands {
+            self.answers.reaction[k] = (unknowns.x[k] - at) * stiffness;
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::friction_state::ContactPair;
-use crate::model::fem::system::step_input::Pose;
+use crate::model::fem::system::step_input::Unknowns;
 use crate::model::fem::time::bdf2::Weights;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -215,16 +215,16 @@ impl CableState {
         done
     }
 
-    /// The forces that a step balanced at a pose, N: on what moves with its material, and the
+    /// The forces that a step balanced at unknowns, N: on what moves with its material, and the
     /// weight of what does not less what carries that. `touches` are the contacts of the solver.
-    pub(in crate::model::fem) fn forces_in_step(&self, pose: &Pose, touches: &[ContactPair]) -> Kinds {
-        let (problem, mesh, task, x) = (&self.problem, &self.mesh, &self.task, &pose.x);
+    pub(in crate::model::fem) fn forces_in_step(&self, unknowns: &Unknowns, touches: &[ContactPair]) -> Kinds {
+        let (problem, mesh, input, x) = (&self.problem, &self.mesh, &self.input, &unknowns.x);
         let gravity =
             if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
         let mut sum = [Vec2::zeros(); 4];
         sum[WEIGHT] = problem.weight * problem.length;
-        sum[LOADS] = (task.body - problem.weight) * problem.length;
-        let to = task.to;
+        sum[LOADS] = (input.body - problem.weight) * problem.length;
+        let to = input.to;
         for (s, _) in problem.supports.iter().zip(&self.meshing.support_node).filter(|(_, node)| node.is_some()) {
             sum[WEIGHT] += gravity * s.mass;
             if s.kind == SupportKind::Load {
@@ -237,7 +237,7 @@ impl CableState {
         for (k, _) in mesh.held.iter().enumerate().filter(|(_, held)| **held) {
             sum[SUPPORTS] -= self.answers.reaction[k];
         }
-        for &(k, stiffness, at) in &task.hands {
+        for &(k, stiffness, at) in &input.hands {
             sum[SUPPORTS] += (at - x[k]) * stiffness;
         }
         if self.meshing.freely {
@@ -251,21 +251,21 @@ impl CableState {
             let (_, slope, _) = friction::at(rub.sliding(x), rub.limit, self.contacts.slip);
             sum[CONTACTS] -= rub.tangent * (slope * rub.touch.felt(moves));
         }
-        for (k, &limit) in task.floor_limit.iter().enumerate().filter(|(k, _)| moves(*k)) {
-            let slid = self.contacts.floor_slid[k] + (x[k] - task.start[k]);
+        for (k, &limit) in input.floor_limit.iter().enumerate().filter(|(k, _)| moves(*k)) {
+            let slid = self.contacts.floor_slid[k] + (x[k] - input.start[k]);
             sum[CONTACTS] -= friction::at_plane(slid, limit, self.contacts.slip).1;
         }
         for k in 1..mesh.nodes().saturating_sub(1) {
             let Some(node) = &mesh.sliding[k] else { continue };
             let round = &mut sum[kind_of(node.seat)];
             if moves(k - 1) {
-                *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, task, k - 1, x, &pose.slide);
+                *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, input, k - 1, x, &unknowns.slide);
             }
             if moves(k + 1) {
-                *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, task, k, x, &pose.slide);
+                *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, input, k, x, &unknowns.slide);
             }
             for (e, side) in [(k - 1, 1), (k, 0)] {
-                *round -= bar_weight::on_ends(mesh, e, x, Some(&pose.slide), task.body)[side];
+                *round -= bar_weight::on_ends(mesh, e, x, Some(&unknowns.slide), input.body)[side];
             }
         }
         sum

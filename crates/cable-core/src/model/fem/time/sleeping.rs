@@ -22,7 +22,7 @@ impl Sleep {
     /// Looks after a step whether the cable has been still since the last look; returns true if it
     /// falls asleep now.
     pub(in crate::model::fem) fn falls_asleep(&mut self, cable: &CableState) -> bool {
-        let (motion, mesh, input) = (&cable.motion, &cable.mesh, &cable.task);
+        let (motion, mesh, input) = (&cable.motion, &cable.mesh, &cable.input);
         let same = self.place.len() == motion.x.len();
         if same && motion.time - self.since < SLEEP_DELAY_S && motion.time >= self.since {
             return false;
@@ -46,8 +46,8 @@ impl Sleep {
 
     /// True if the forces and targets of the cable are those of the last look.
     fn same_input(&self, cable: &CableState) -> bool {
-        let (held, target) = (&cable.mesh.held, &cable.task.target);
-        self.force == cable.task.force
+        let (held, target) = (&cable.mesh.held, &cable.input.target);
+        self.force == cable.input.force
             && self.held == *held
             && self.target.len() == target.len()
             && (0..target.len()).filter(|k| held[*k]).all(|k| self.target[k] == target[k])
@@ -80,7 +80,7 @@ impl Sleep {
             (None, Some(to)) => cable.support_position(k).is_none_or(|at| (at - to).norm() > SLEEP_DISTANCE * 1e-3),
             _ => false,
         });
-        cable.prepare_task(to, Some(dragged));
+        cable.prepare_input(to, Some(dragged));
         self.asleep = !follows && self.same_input(cable);
         self.asleep
     }

@@ -8,7 +8,7 @@ use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::cable::REACH;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::floor_friction;
-use crate::model::fem::system::step_input::Pose;
+use crate::model::fem::system::step_input::Unknowns;
 use crate::model::input_filter::MAX_SPEED;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -37,7 +37,7 @@ const EVEN_FORCE: f64 = 1e-7;
 /// cone (the checker asks for 1e-3 of the normal force).
 const LAWFUL: f64 = 2e-4;
 
-/// Comparison of a pose with the friction of sliding nodes with which it was found.
+/// Comparison of unknowns with the friction of sliding nodes with which it was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem) struct StickSlipChanges {
     /// Nodes that hold where they should slip, or slip where they should hold.
@@ -61,34 +61,34 @@ impl StickSlipChanges {
 impl CableState {
     /// The input of the solve of the present step.
     pub(in crate::model::fem) fn step_context(&self) -> StepContext<'_> {
-        StepContext { problem: &self.problem, mesh: &self.mesh, contacts: &self.contacts, task: &self.task }
+        StepContext { problem: &self.problem, mesh: &self.mesh, contacts: &self.contacts, input: &self.input }
     }
 
     /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go
     /// where `dragged` says.
-    pub(in crate::model::fem) fn prepare_task(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
+    pub(in crate::model::fem) fn prepare_input(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
         self.prepare_step([to, to], dragged);
     }
 
     /// The same for a step from one time to another (s): what holds at its start holds to its end.
     pub(in crate::model::fem) fn prepare_step(&mut self, [from, to]: [f64; 2], dragged: Option<&[Option<Vec2>]>) {
         self.answers.stepped = None;
-        let (problem, mesh, task) = (&self.problem, &mut self.mesh, &mut self.task);
+        let (problem, mesh, input) = (&self.problem, &mut self.mesh, &mut self.input);
         let n = mesh.nodes();
         let body = problem.body_force(to);
         let gravity =
             if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
-        task.body = body;
-        task.to = to;
-        task.force.clear();
-        task.force.extend((0..n).map(|k| body * mesh.share(k)));
+        input.body = body;
+        input.to = to;
+        input.force.clear();
+        input.force.extend((0..n).map(|k| body * mesh.share(k)));
         for (node, force) in &self.meshing.loads {
-            task.force[*node] += force.at(to);
+            input.force[*node] += force.at(to);
         }
-        task.start.clone_from(&self.motion.x);
-        task.target.clone_from(&self.motion.x);
-        task.laid.clear();
-        task.hands.clear();
+        input.start.clone_from(&self.motion.x);
+        input.target.clone_from(&self.motion.x);
+        input.laid.clear();
+        input.hands.clear();
         mesh.held.fill(false);
         mesh.clamps.clear();
         for (k, (s, node)) in problem.supports.iter().zip(&self.meshing.support_node).enumerate() {
@@ -97,9 +97,9 @@ impl CableState {
                 continue;
             }
             if s.kind == SupportKind::Load {
-                task.force[node] += s.force.at(to);
+                input.force[node] += s.force.at(to);
             }
-            task.force[node] += gravity * s.mass;
+            input.force[node] += gravity * s.mass;
             if s.holds_from(from)
                 && let Some((at, _)) = s.place_at(to)
             {
@@ -113,8 +113,8 @@ impl CableState {
                 // A support that a hand holds by a spring is a node that moves.
                 if self.motion.hands[k].is_none() {
                     mesh.held[node] = true;
-                    task.target[node] = clear_way(problem, self.motion.x[node], at);
-                    if task.target[node] != at && !self.answers.held_back.contains(&k) {
+                    input.target[node] = clear_way(problem, self.motion.x[node], at);
+                    if input.target[node] != at && !self.answers.held_back.contains(&k) {
                         self.answers.held_back.push(k);
                     }
                 }
@@ -137,27 +137,27 @@ impl CableState {
                 let follower = self.motion.followers.get(support).copied().flatten();
                 node.end.center = follower.map_or(hand.unwrap_or(at), |f| f.position());
                 self.motion.x[k] = node.position();
-                task.start[k] = self.motion.x[k];
+                input.start[k] = self.motion.x[k];
             }
         }
-        task.may_lag = to > from;
-        task.outlined = self.rider.is_some();
-        task.max_iterations = STEP_ITERATIONS;
-        task.max_move = MAX_NEWTON_MOVE_M;
-        task.moves = false;
-        task.shift = 0.0;
-        task.loss.clear();
-        task.loss.resize(mesh.rest_length.len(), [0.0; 2]);
-        task.bending_damping = 0.0;
-        task.most_noise = f64::INFINITY;
-        task.inertia.clear();
-        task.inertia.resize(n, 0.0);
-        task.predicted.clone_from(&self.motion.x);
-        task.coupling.clear();
-        task.predicted_length.clear();
-        task.predicted_length.extend_from_slice(&mesh.rest_length);
-        task.predicted_slide.clear();
-        task.predicted_slide.resize(n, 0.0);
+        input.may_lag = to > from;
+        input.outlined = self.outline.is_some();
+        input.max_iterations = STEP_ITERATIONS;
+        input.max_move = MAX_NEWTON_MOVE_M;
+        input.moves = false;
+        input.shift = 0.0;
+        input.loss.clear();
+        input.loss.resize(mesh.rest_length.len(), [0.0; 2]);
+        input.bending_damping = 0.0;
+        input.most_noise = f64::INFINITY;
+        input.inertia.clear();
+        input.inertia.resize(n, 0.0);
+        input.predicted.clone_from(&self.motion.x);
+        input.coupling.clear();
+        input.predicted_length.clear();
+        input.predicted_length.extend_from_slice(&mesh.rest_length);
+        input.predicted_slide.clear();
+        input.predicted_slide.resize(n, 0.0);
         self.set_scale();
         let x = std::mem::take(&mut self.motion.x);
         self.press_on_floor(&x, None);
@@ -176,10 +176,10 @@ impl CableState {
     /// whether any of it changed.
     fn press_on_floor(&mut self, x: &[Vec2], slide: Option<&[f64]>) -> bool {
         let Some((friction, normal)) = self.problem.floor_friction else {
-            self.task.floor_limit.clear();
+            self.input.floor_limit.clear();
             return false;
         };
-        let (mesh, limits) = (&self.mesh, &mut self.task.floor_limit);
+        let (mesh, limits) = (&self.mesh, &mut self.input.floor_limit);
         let mut changed = limits.len() != mesh.nodes();
         limits.resize(mesh.nodes(), 0.0);
         for (k, limit) in limits.iter_mut().enumerate() {
@@ -194,29 +194,32 @@ impl CableState {
     /// The factor of each bar's energy from the grips of the sliding nodes before it.
     pub(in crate::model::fem) fn set_scale(&mut self) {
         let mut scale = 1.0;
-        self.task.scale.clear();
+        self.input.scale.clear();
         for e in 0..self.mesh.rest_length.len() {
             if let Some(s) = &self.mesh.sliding[e] {
                 scale *= s.factor;
             }
-            self.task.scale.push(scale);
+            self.input.scale.push(scale);
         }
     }
 
-    /// Reads turn and grip of every sliding node off a pose and says how that differs from what the
-    /// pose was found with. Where `one` is set only the first of the grips that are wrong is
-    /// changed, and turns half of the way: nearly slack bars hang from a round, and turn over it by
-    /// the more the less they pull.
+    /// Reads turn and grip of every sliding node off unknowns and says how that differs from what
+    /// the unknowns was found with. Where `one` is set only the first of the grips that are wrong
+    /// is changed, and turns half of the way: nearly slack bars hang from a round, and turn over it
+    /// by the more the less they pull.
     ///
     /// A node that slid the wrong way until its grip was seen to be wrong has not slid at all.
-    pub(in crate::model::fem) fn update_grips(&mut self, pose: &mut Pose, one: bool) -> StickSlipChanges {
+    pub(in crate::model::fem) fn update_grips(&mut self, unknowns: &mut Unknowns, one: bool) -> StickSlipChanges {
         if self.meshing.never_slides {
             return StickSlipChanges::FOUND;
         }
-        let mut grips =
-            StickSlipChanges { same: !self.press_on_floor(&pose.x, Some(&pose.slide)), ..StickSlipChanges::FOUND };
+        let mut grips = StickSlipChanges {
+            same: !self.press_on_floor(&unknowns.x, Some(&unknowns.slide)),
+            ..StickSlipChanges::FOUND
+        };
         for k in 0..self.mesh.nodes() {
-            let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &pose.x, Some(&pose.slide))) else {
+            let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &unknowns.x, Some(&unknowns.slide)))
+            else {
                 continue;
             };
             if !(node.friction > 0.0) {
@@ -227,11 +230,11 @@ impl CableState {
             let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0;
             let exponent = if presses { node.friction * load.turn } else { 0.0 };
             next.exponent = if one { 0.5 * (node.exponent + exponent) } else { exponent };
-            let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
+            let inertia = self.input.inertia[k] * (unknowns.slide[k] - self.input.predicted_slide[k]);
             let pulls = load.pull[0].abs() + load.pull[1].abs();
-            let slack = self.task.tolerance + EVEN_FORCE * pulls;
+            let slack = self.input.tolerance + EVEN_FORCE * pulls;
             let stiffness = self.mesh.axial_stiffness;
-            let grip = load.grip(&next, pose.slide[k], [inertia, slack], stiffness);
+            let grip = load.grip(&next, unknowns.slide[k], [inertia, slack], stiffness);
             if grip != node.grip {
                 grips.wrong += 1;
                 if !one || grips.wrong == 1 {
@@ -239,10 +242,10 @@ impl CableState {
                 }
             }
             next.factor = load.factor(next.grip, next.exponent, stiffness);
-            let floor = floor_friction::reaches(&self.mesh, k, &pose.x, Some(&pose.slide));
+            let floor = floor_friction::reaches(&self.mesh, k, &unknowns.x, Some(&unknowns.slide));
             next.floor_factor = floor_friction::factor(floor, load.ratio(next.grip, next.exponent));
             if next.sticks() && !node.sticks() {
-                pose.slide[k] = 0.0;
+                unknowns.slide[k] = 0.0;
             }
             let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SCALE_TOLERANCE;
             grips.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);
@@ -261,7 +264,7 @@ impl CableState {
         [k - 1, k].map(|e| {
             let path = mesh.path(e, x);
             let tension = mesh.axial_stiffness * (path.length / mesh.rest_length[e] - 1.0);
-            bar_weight::may_lie(mesh, e, &path, self.task.body, tension)
+            bar_weight::may_lie(mesh, e, &path, self.input.body, tension)
         })
     }
 
@@ -278,7 +281,7 @@ impl CableState {
     /// True if nothing but supports can touch the cable on its way to places `to` (m).
     pub(in crate::model::fem) fn is_out_of_reach(&self, to: &[Vec2]) -> bool {
         self.meets_nothing()
-            || (!self.contacts.own.shape.is_on() && self.contacts.out_of_reach(&self.mesh, [&self.task.start, to]))
+            || (!self.contacts.own.shape.is_on() && self.contacts.out_of_reach(&self.mesh, [&self.input.start, to]))
     }
 }
 

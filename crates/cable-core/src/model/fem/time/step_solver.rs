@@ -6,7 +6,7 @@ use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::SolverMemory;
 use crate::model::fem::system::friction_state::ContactPair;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose};
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 
 /// Rounds of finding that out in which no fewer grips are wrong than before, until they are changed
 /// one at a time; and rounds beside those for each sliding node. Fewer: steps of a few nodes that
@@ -34,25 +34,25 @@ impl SolverMemory {
         self.memory.0.as_ref().map_or(&[], |memory| &memory.touches)
     }
 
-    /// The present pose moved on at its velocities for `h` (s), where nothing can be in the way.
-    /// Newton then starts nearer by a factor of the step, and what it leaves is smaller and not
-    /// always on the same side.
-    pub(in crate::model::fem) fn moving_pose(&mut self, cable: &CableState, h: f64) -> Pose {
-        let mut pose = self.still_pose(cable);
-        for (k, (x, v)) in pose.x.iter_mut().zip(&cable.motion.v).enumerate() {
+    /// The present unknowns moved on at its velocities for `h` (s), where nothing can be in the
+    /// way. Newton then starts nearer by a factor of the step, and what it leaves is smaller and
+    /// not always on the same side.
+    pub(in crate::model::fem) fn predicted_unknowns(&mut self, cable: &CableState, h: f64) -> Unknowns {
+        let mut unknowns = self.present_unknowns(cable);
+        for (k, (x, v)) in unknowns.x.iter_mut().zip(&cable.motion.v).enumerate() {
             if cable.mesh.is_free(k) {
                 *x += v * h;
             } else if cable.mesh.held[k] {
                 // Short bars beside a support would have to turn by large angles if it stayed
                 // behind.
-                *x = cable.task.target[k];
+                *x = cable.input.target[k];
             }
         }
-        if cable.is_out_of_reach(&pose.x) {
-            pose
+        if cable.is_out_of_reach(&unknowns.x) {
+            unknowns
         } else {
-            self.pose = pose;
-            self.still_pose(cable)
+            self.unknowns = unknowns;
+            self.present_unknowns(cable)
         }
     }
 
@@ -62,15 +62,15 @@ impl SolverMemory {
     pub(in crate::model::fem) fn rub_and_minimise(
         &mut self,
         cable: &mut CableState,
-        pose: &mut Pose,
+        unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
-        let mut done = self.grip_and_minimise(cable, pose)?;
+        let mut done = self.grip_and_minimise(cable, unknowns)?;
         for _ in 0..RUB_ROUNDS {
             let same = |change: f64, most: f64| change <= larger(RUB_CHANGE * most, cable.meshing.bar_weight);
-            if !cable.contacts.renew(&cable.problem, &cable.mesh, [&pose.x, &cable.motion.x], same) {
+            if !cable.contacts.renew(&cable.problem, &cable.mesh, [&unknowns.x, &cable.motion.x], same) {
                 break;
             }
-            let more = self.grip_and_minimise(cable, pose)?;
+            let more = self.grip_and_minimise(cable, unknowns)?;
             done = Converged { iterations: done.iterations + more.iterations, ..more };
         }
         Ok(done)
@@ -82,12 +82,12 @@ impl SolverMemory {
     /// All grips that are wrong are changed at once while that makes them fewer; then one at a time
     /// (J. Júdice, F. Pires, "A block principal pivoting algorithm for large-scale strictly
     /// monotone linear complementarity problems", Computers & Operations Research 21, 1994).
-    fn grip_and_minimise(&mut self, cable: &mut CableState, pose: &mut Pose) -> Result<Converged, Failure> {
-        let mut done = self.minimise(cable, pose)?;
+    fn grip_and_minimise(&mut self, cable: &mut CableState, unknowns: &mut Unknowns) -> Result<Converged, Failure> {
+        let mut done = self.minimise(cable, unknowns)?;
         let sliding = cable.mesh.sliding.iter().flatten().count();
         let (mut fewest, mut spare) = (usize::MAX, GRIP_ROUNDS);
         for _ in 0..GRIP_ROUNDS + ROUNDS_EACH * sliding {
-            let grips = cable.update_grips(pose, spare == 0);
+            let grips = cable.update_grips(unknowns, spare == 0);
             if grips.hold() {
                 return Ok(done);
             }
@@ -96,33 +96,33 @@ impl SolverMemory {
             } else {
                 spare = spare.saturating_sub(1);
             }
-            let more = self.minimise(cable, pose)?;
+            let more = self.minimise(cable, unknowns)?;
             done = Converged { iterations: done.iterations + more.iterations, ..more };
         }
         let node = cable.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
         Err(Failure { node, residual: done.residual, cause: FailureCause::StickSlipUndecided })
     }
 
-    /// The present pose.
-    pub(in crate::model::fem) fn still_pose(&mut self, cable: &CableState) -> Pose {
-        let mut pose = std::mem::take(&mut self.pose);
-        pose.x.clear();
-        pose.x.extend_from_slice(cable.task.begins());
-        pose.slide.clear();
-        pose.slide.resize(cable.mesh.nodes(), 0.0);
-        pose
+    /// The present unknowns.
+    pub(in crate::model::fem) fn present_unknowns(&mut self, cable: &CableState) -> Unknowns {
+        let mut unknowns = std::mem::take(&mut self.unknowns);
+        unknowns.x.clear();
+        unknowns.x.extend_from_slice(cable.input.begins());
+        unknowns.slide.clear();
+        unknowns.slide.resize(cable.mesh.nodes(), 0.0);
+        unknowns
     }
 
-    /// Minimises the energy of the step that is set up, from a pose.
+    /// Minimises the energy of the step that is set up, from unknowns.
     pub(in crate::model::fem) fn minimise(
         &mut self,
         cable: &mut CableState,
-        pose: &mut Pose,
+        unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
-        if cable.moves_freely(&pose.x)
-            && let Some(done) = self.free.solve(&cable.mesh, &cable.task, pose)
+        if cable.moves_freely(&unknowns.x)
+            && let Some(done) = self.free.solve(&cable.mesh, &cable.input, unknowns)
         {
-            if cable.is_out_of_reach(&pose.x) {
+            if cable.is_out_of_reach(&unknowns.x) {
                 for (k, reaction) in cable.answers.reaction.iter_mut().enumerate() {
                     *reaction = -self.free.gradient_at(k);
                 }
@@ -130,7 +130,7 @@ impl SolverMemory {
                 return Ok(done);
             }
             // It would have met something: from the start again, with contact.
-            *pose = self.still_pose(cable);
+            *unknowns = self.present_unknowns(cable);
         }
         let mut memory = match self.memory.0.take() {
             Some(m) if m.nodes() == cable.mesh.nodes() => m,
@@ -142,10 +142,10 @@ impl SolverMemory {
         };
         memory.work_left = self.work_left;
         cable.meshing.freely = false;
-        let done = memory.minimise(&cable.step_context(), pose);
+        let done = memory.minimise(&cable.step_context(), unknowns);
         self.work_left = memory.work_left;
         for k in 0..cable.mesh.nodes() {
-            let scale = cable.task.scale.get(k.saturating_sub(1)).copied().unwrap_or(1.0);
+            let scale = cable.input.scale.get(k.saturating_sub(1)).copied().unwrap_or(1.0);
             cable.answers.reaction[k] = -memory.gradient_at(k) / scale;
         }
         self.memory.0 = Some(memory);

@@ -15,7 +15,7 @@ use crate::model::fem::mesh::sliding_node::{MARKED_ARC_LIMIT, ONE_MARK_BAR_FRACT
 use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::rotate;
 use crate::model::fem::mesh::tangent_path::{End, angle_between};
-use crate::model::fem::newton::initial_guess::push_out;
+use crate::model::fem::newton::initial_guess::depenetrate;
 use crate::model::fem::remesh::adapt::LEAST_TURN;
 use crate::model::fem::state::cable::{CableState, REACH};
 use crate::model::fem::system::friction_state::ContactPair;
@@ -271,14 +271,14 @@ impl CableState {
         }
         let s = &self.mesh.arc_length;
         let near = NEAR * self.even();
-        for (k, limit) in self.task.floor_limit.iter().enumerate().filter(|(k, l)| **l > 0.0 && !self.mesh.held[*k]) {
+        for (k, limit) in self.input.floor_limit.iter().enumerate().filter(|(k, l)| **l > 0.0 && !self.mesh.held[*k]) {
             let low = 0.5 * (s[k] + s[k.saturating_sub(1)]);
             let high = 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]);
             let asked = match self.mesh.sliding[k] {
                 // The floor holds there first, and the round the rest.
                 Some(_) => Some(Vec2::new(curve.tension(low) - curve.tension(high), 0.0)),
                 None => match (curve.force(low, near), curve.force(high, near)) {
-                    (Some(before), Some(after)) => Some(after - before + self.task.body * (high - low)),
+                    (Some(before), Some(after)) => Some(after - before + self.input.body * (high - low)),
                     _ => None,
                 },
             };
@@ -303,7 +303,7 @@ impl CableState {
                 (0.5 * (s[k] + s[k.saturating_sub(1)]), 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]))
             };
             let (Some(before), Some(after)) = (curve.force(low, near), curve.force(high, near)) else { continue };
-            let pushed = before - after - self.task.body * (high - low);
+            let pushed = before - after - self.input.body * (high - low);
             let normal = pushed.dot(&touch.pair.gap.normal);
             let limit = touch.pair.gap.friction * normal;
             if limit > 0.0 {
@@ -339,10 +339,10 @@ impl Dynamics {
         self.cable.restore_positions(&state);
         self.cable.adopt_sliding_nodes(&curve);
         let mut x = std::mem::take(&mut self.cable.motion.x);
-        push_out(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
+        depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
         self.cable.motion.x = x;
         self.cable.adopt_stretch(&curve);
-        self.cable.renew_task();
+        self.cable.renew_input();
         self.cable.adopt_friction(&curve);
         self.cable.adopt_floor_friction(&curve);
         // Bars that stick from node to node are far from their balance by hardly any way: where

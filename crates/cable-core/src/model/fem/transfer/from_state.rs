@@ -9,7 +9,7 @@ use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::free::stations::{Hold, Layout};
 use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::End;
-use crate::model::fem::newton::initial_guess::push_out;
+use crate::model::fem::newton::initial_guess::depenetrate;
 use crate::model::fem::state::cable::{CableState, REACH};
 use crate::scene::PulleySide;
 use crate::state::State;
@@ -38,7 +38,7 @@ impl CableState {
             self.insert(k, at, Some(SlidingNode::new(end, wheel.friction, Seat::Pulley(support))));
         }
         self.even_out();
-        self.renew_task();
+        self.renew_input();
     }
 
     /// Bars that cut off by more than the cable's radius what the state leads round get a node
@@ -137,14 +137,14 @@ impl Dynamics {
         }
         if !same || self.cable.refuse_buried().is_err() {
             let mut x = std::mem::take(&mut self.cable.motion.x);
-            push_out(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
+            depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
             self.cable.motion.x = x;
         }
         self.cable.refuse_buried()?;
         self.forget_history();
         // A state at rest on another mesh is brought to rest on this one before it moves.
         self.rested = same || !still;
-        self.cable.renew_task();
+        self.cable.renew_input();
         Ok(())
     }
 }
