@@ -27,7 +27,7 @@ pub(in crate::model) fn parts(radius: f64, turn: f64, cable_radius: f64) -> usiz
     let sagitta = smaller(SAGITTA_M, 2.0 * SAGITTA_DIAMETERS * cable_radius);
     let most = if radius > sagitta { smaller(TURN, 4.0 * (0.5 * sagitta / radius).sqrt().asin()) } else { TURN };
     let parts = if radius > 0.0 { (turn.abs() / most).ceil() } else { 1.0 };
-    // What is not a number gives 1.
+    // NaN gives 1.
     if parts > MOST_PARTS {
         MOST_PARTS as usize
     } else if parts > 1.0 {

@@ -7,12 +7,12 @@ use crate::problem::{Problem, SupportPoint};
 use crate::scene::SupportKind;
 use crate::solution::ModelReason;
 
-/// What is asked of a scene.
+/// A question about a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
-    /// Where does it rest?
+    /// The equilibrium.
     Rest,
-    /// What happens over time?
+    /// The motion over time.
     History(Inertia),
 }
 

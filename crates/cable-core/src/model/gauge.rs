@@ -22,7 +22,7 @@ const LOOKS_PER_MEAN: usize = 4;
 /// Two times (s) that differ by less are the same: sums of steps round.
 const SAME_TIME_S: f64 = 1e-9;
 
-/// What a gauge watches for: a mean of this much, from a time on, between two arc lengths.
+/// A mean that a gauge looks for: a mean of this much, from a time on, between two arc lengths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
     /// Mean tension, N.
@@ -54,7 +54,7 @@ pub struct TensionGauge {
     time_s: f64,
     /// Tension at the points then, N.
     now: Vec<f64>,
-    /// What was noted of a step that may still be discarded.
+    /// Notes of a step that may still be discarded.
     next_s: f64,
     next: Vec<f64>,
     /// Time of the last look at the mean, in parts of `over_s / LOOKS_PER_MEAN`.

@@ -18,7 +18,7 @@ const ROBOT_CLEARANCE_M: f64 = 0.02;
 /// An answer of `spans` at rest that is this deep in an obstacle is none, m. Less: chords across
 /// round things are; more: a slack cable that hangs in the ground is shown.
 const MAX_BURIAL_M: f64 = 0.02;
-/// How deep is looked, m: what is deeper came in somewhere.
+/// Depth of the search, m: a node deeper inside came in elsewhere.
 const BURIAL_SEARCH_M: f64 = 0.5;
 
 /// A first rest.
@@ -26,7 +26,7 @@ const BURIAL_SEARCH_M: f64 = 0.5;
 pub struct InitialEquilibrium {
     /// The cable there.
     pub answer: CableSolution,
-    /// What there is to say of it.
+    /// Warnings about it.
     pub warnings: Vec<Warning>,
     /// The model that has it, to go on from there.
     pub spans: Box<SpansModel>,
@@ -55,7 +55,7 @@ pub fn initial_equilibrium(
         Err(_) => return Ok(None),
     };
     if problem.bending_stiffness > 0.0 {
-        // What lies loose tells a stiff one nothing: no tension draws it straight.
+        // A cable that lies loose tells a stiff one nothing: no tension draws it straight.
         if spans.lies_loose() {
             return Ok(None);
         }

@@ -26,7 +26,7 @@ use crate::solution::{HandReport, Warning, WarningCause};
 /// support trails the hand by 3τ. Chosen so that the trailing (45 ms) is under three frames.
 const LAG_S: f64 = 0.015;
 
-/// How long a support trails a target that moves evenly, s.
+/// Time by which a support trails a target that moves evenly, s.
 #[cfg(test)]
 const TRAILING_S: f64 = 3.0 * LAG_S;
 
@@ -173,7 +173,7 @@ impl Hand {
 pub struct SmoothedTarget {
     stages: [Vec2; 4],
     velocity: Vec2,
-    /// How far from its target it was left because it may be no faster, m.
+    /// Distance to its target at which it was left because it may be no faster, m.
     behind_m: f64,
 }
 
@@ -236,7 +236,7 @@ impl SmoothedTarget {
         *self = Self { stages: [to; 4], velocity: (to - before) / dt_s, behind_m: 0.0 };
     }
 
-    /// Where it was stopped instead (m): it starts again from there, at rest.
+    /// Takes the point where it was stopped instead (m): it starts again from there, at rest.
     pub(crate) fn stop_at(&mut self, at: Vec2) {
         *self = Self::at_rest(at);
     }

@@ -11,7 +11,7 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, ModelReason, Warning};
 use crate::state::State;
 
-/// Whether inertia takes part in a step.
+/// True if inertia takes part in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inertia {
     /// Masses accelerate.
@@ -20,28 +20,28 @@ pub enum Inertia {
     QuasiStatic,
 }
 
-/// What a step did.
+/// The outcome of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {
-    /// What it took.
+    /// Work of the step.
     pub cost: Cost,
-    /// What the user should know about this step (velocity capped, support held …).
+    /// Warnings about this step (velocity capped, support held …).
     pub warnings: Vec<Warning>,
 }
 
-/// What a cable does to the outline of the robot.
+/// The contact of a cable with the outline of the robot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RobotContact {
     /// Its force on it, N.
     pub force_n: Vec2,
-    /// Where it is: where it was led unless the cable was in its way.
+    /// Its pose: that to which it was led unless the cable was in its way.
     pub placement: RigidPose,
-    /// How far that is from where it was led, m.
+    /// Distance of that from the pose to which it was led, m.
     pub left_m: f64,
 }
 
-/// What a model has for itself alone: the memory it works in, and its obstacles, among which it
-/// moves the outline of the robot.
+/// The resources that a model has for itself alone: the memory it works in, and its obstacles,
+/// among which it moves the outline of the robot.
 #[derive(Debug)]
 pub struct OwnedResources {
     /// Its working memory, of a type that it alone knows.
@@ -50,9 +50,9 @@ pub struct OwnedResources {
     pub(super) problem: Arc<Problem>,
 }
 
-/// What every model does. One cable; time and positions in SI units.
+/// The interface of every model. One cable; time and positions in SI units.
 pub trait Mechanics: Send {
-    /// Which model this is.
+    /// The kind of this model.
     fn model(&self) -> Model;
 
     /// Why it is this model, where that changed on the way.

@@ -12,7 +12,7 @@ use crate::error::{SolveError, Unsupported};
 use crate::model_id::Model;
 use crate::problem::Problem;
 
-/// What a model can do, as far as anybody else must know.
+/// The capabilities of a model, as far as others must know them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(clippy::struct_excessive_bools, reason = "independent abilities, each asked for by itself")]
 pub struct Capabilities {
@@ -59,9 +59,9 @@ type Built = Result<Box<dyn Mechanics>, SolveError>;
 pub struct ModelInfo {
     /// Its name.
     pub model: Model,
-    /// What it is, in one line.
+    /// Its description in one line.
     pub summary: &'static str,
-    /// What it can do.
+    /// Its capabilities.
     pub capabilities: Capabilities,
     /// Relative accuracy of its shape, which the mesh limits, and of its equilibrium, by which the
     /// iteration stops: what [`crate::conformance`] asks of it.
@@ -170,7 +170,7 @@ impl Model {
 /// A function that builds a model of the program's own.
 pub type Constructor = dyn Fn(Arc<Problem>, Settings) -> Built + Send + Sync;
 
-/// Where the mechanics of a cable, and of each piece it breaks into, come from.
+/// The source of the mechanics of a cable, and of each piece into which it breaks.
 #[derive(Clone)]
 pub enum ModelSource {
     /// A model of the registry.

@@ -6,7 +6,7 @@ use super::input_filter;
 use crate::error::SolveError;
 use crate::units::Quantity;
 
-/// How finely and how exactly a model works.
+/// The mesh and the accuracy of a model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Relative accuracy asked of the tension; models choose their mesh by it where the scene does
@@ -14,7 +14,7 @@ pub struct Settings {
     pub tolerance: f64,
     /// Elements per cable; overrides the scene's `segments`.
     pub segments: Option<usize>,
-    /// How `mass-spring` takes dynamic steps.
+    /// Integrator of dynamic steps of `mass-spring`.
     #[serde(default)]
     pub stepping: Stepping,
     /// Longest inner step of `fem` with inertia, s, 1e-9 to 1, of the cable at the scale at which
@@ -113,7 +113,7 @@ fn ends(range: &std::ops::RangeInclusive<f64>) -> [f64; 2] {
     [*range.start(), *range.end()]
 }
 
-/// How mass-spring takes dynamic steps.
+/// The integrator of dynamic steps of `mass-spring`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stepping {

@@ -23,7 +23,7 @@ pub struct Similar {
     problem: Arc<Problem>,
     by: Similarity,
     inner: Box<dyn Mechanics>,
-    /// What the inner model says of itself, at this scale.
+    /// The reason that the inner model gives, at this scale.
     reason: Option<ModelReason>,
     refusal: Option<SolveError>,
 }

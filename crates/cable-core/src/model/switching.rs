@@ -39,12 +39,12 @@ pub struct SwitchingModel {
     spans: SpansModel,
     /// Holds the present state where it is there.
     fem: Option<FemModel>,
-    /// Where the cable was put, until it is known to rest or to move.
+    /// State in which the cable was put, until it is known to rest or to move.
     adopted: Option<State>,
     dragged: Vec<Option<Vec2>>,
-    /// Which of them a hand holds by a spring.
+    /// True for those that a hand holds by a spring.
     pulled: Vec<bool>,
-    /// Where the outline of the robot was led.
+    /// Pose to which the outline of the robot was led.
     robot_pose: Option<RigidPose>,
     reason: Option<ModelReason>,
     /// Why `spans` has no rest, where `fem` found one.
@@ -235,7 +235,7 @@ impl Mechanics for SwitchingModel {
             (Err(error), Some(before)) => Err(SolveError::clearer(before, error)),
             (found, _) => found,
         };
-        // What slides from where it is laid may come to rest elsewhere.
+        // A cable that slides from its first place may come to rest elsewhere.
         if let (Some(slides), Some(fem)) = (slides, &self.fem) {
             let (problem, settings) = (&self.problem, self.settings);
             found = found

@@ -34,16 +34,16 @@ const MOST_BARS: usize = 800;
 /// that of the first order.
 const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
 
-/// Who goes on beside the cable, and what is said.
+/// The model beside which the errors of the cable are estimated, and the estimate.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct TwoMeshes {
     exact: Option<Box<SpansModel>>,
     coarse: Option<Box<Dynamics>>,
-    /// What is known of the errors now.
+    /// The errors as far as they are known now.
     pub errors: ErrorEstimates,
 }
 
-/// Whether the comparison may change the mesh.
+/// True if the comparison may change the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refinement {
     /// The scene leaves the number of bars open.
@@ -70,25 +70,26 @@ impl TwoMeshes {
         }
         if problem.cable.self_contact {
             self.errors = match exact {
-                // What touches itself nowhere lies as one that cannot; once it moves it may.
-                Some(exact) if !fine.touches_itself() => beside(&fine.solution(), &exact.answer, problem),
+                // A cable that touches itself nowhere rests as one that cannot; once it moves it
+                // may.
+                Some(exact) if !fine.cable.touches_itself() => beside(&fine.cable.solution(), &exact.answer, problem),
                 _ => coarser(problem, settings, fine, dragged).map(|found| found.0).unwrap_or_default(),
             };
             return;
         }
-        if !fine.meshing.slides {
+        if !fine.cable.meshing.slides {
             return;
         }
         if let Some(exact) = exact {
-            let mut answer = fine.solution();
+            let mut answer = fine.cable.solution();
             self.errors = beside(&answer, &exact.answer, problem);
             while refinement == Refinement::Allowed
                 && exceeds(&self.errors, &answer, settings)
-                && 2 * fine.meshing.even_bars <= MOST_BARS
+                && 2 * fine.cable.meshing.even_bars <= MOST_BARS
             {
-                let bars = 2 * fine.meshing.even_bars;
+                let bars = 2 * fine.cable.meshing.even_bars;
                 let Some(finer) = laid_over(problem, settings, fine, bars, &exact.answer, dragged) else { break };
-                let next = finer.solution();
+                let next = finer.cable.solution();
                 let errors = beside(&next, &exact.answer, problem);
                 if !(errors.relative(&next) < self.errors.relative(&answer)) {
                     break;
@@ -118,7 +119,7 @@ impl TwoMeshes {
         if inertia != Inertia::QuasiStatic {
             return;
         }
-        let answer = fine.solution();
+        let answer = fine.cable.solution();
         let coarse = match (before.exact, before.coarse) {
             (Some(mut exact), _) => {
                 if let Some(other) = go_on(&mut exact, dt_s, dragged) {
@@ -127,14 +128,14 @@ impl TwoMeshes {
                     return;
                 }
                 // The cable has no answer without a mesh from here on.
-                laid_over(problem, settings, fine, fine.meshing.even_bars / 2, &answer, dragged).map(Box::new)
+                laid_over(problem, settings, fine, fine.cable.meshing.even_bars / 2, &answer, dragged).map(Box::new)
             }
             (None, Some(mut coarse)) => coarse.advance(dt_s, inertia, dragged).is_ok().then_some(coarse),
             (None, None) => None,
         };
         let Some(coarse) = coarse else { return };
-        // What friction remembers is as wrong as the steps were that it remembers.
-        self.errors = before.errors.or_larger(&ErrorEstimates::between(&coarse.solution(), &answer));
+        // Friction is as wrong as the steps that it remembers.
+        self.errors = before.errors.or_larger(&ErrorEstimates::between(&coarse.cable.solution(), &answer));
         self.coarse = Some(coarse);
     }
 }
@@ -158,15 +159,16 @@ fn coarser(
     fine: &Dynamics,
     dragged: &[Option<Vec2>],
 ) -> Option<(ErrorEstimates, Dynamics)> {
-    if fine.meshing.even_bars < LEAST_BARS {
+    if fine.cable.meshing.even_bars < LEAST_BARS {
         return None;
     }
-    let answer = fine.solution();
-    let coarse = laid_over(problem, settings, fine, fine.meshing.even_bars / 2, &answer, dragged)?;
-    let other = coarse.solution();
+    let answer = fine.cable.solution();
+    let coarse = laid_over(problem, settings, fine, fine.cable.meshing.even_bars / 2, &answer, dragged)?;
+    let other = coarse.cable.solution();
     let errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
-    let coarsest = laid_over(problem, settings, fine, fine.meshing.even_bars / 4, &answer, dragged);
-    let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(FIRST_ORDER_ERROR_FRACTION));
+    let coarsest = laid_over(problem, settings, fine, fine.cable.meshing.even_bars / 4, &answer, dragged);
+    let change =
+        coarsest.map(|c| ErrorEstimates::between(&c.cable.solution(), &other).times(FIRST_ORDER_ERROR_FRACTION));
     Some((change.map_or(errors, |change| errors.or_larger(&change)), coarse))
 }
 
@@ -189,8 +191,8 @@ fn laid_over(
     dragged: &[Option<Vec2>],
 ) -> Option<Dynamics> {
     let mut other = Dynamics::new(problem.clone(), Settings { segments: Some(bars), ..settings }).ok()?;
-    other.meshing.slides = like.meshing.slides;
-    other.warm_start(answer, like.time(), dragged).ok()?;
+    other.cable.meshing.slides = like.cable.meshing.slides;
+    other.warm_start(answer, like.cable.time(), dragged).ok()?;
     if !other.rested {
         other.settle(dragged).ok()?;
     }

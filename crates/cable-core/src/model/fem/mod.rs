@@ -3,16 +3,16 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | `dynamics` | the cable in contact: its mesh, contacts, history and settings in one place |
+//! | `state` | the state of the cable (`state/cable.rs`), and the parts that control it (`state/control.rs`) |
+//! | `dynamics` | advances that state: steps, halvings, reports |
 //! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
 //! | `equilibrium` | equilibria in contact, and steps without inertia |
 //! | `time` | setup of a step, BDF2, step sizes, sleep, hands, momentum |
-//! | `state` | history, momentum account, sleep, step size, outline: the parts of `dynamics` |
 //! | `newton` | one step: its initial guess, its Newton iterations, and what bounds them |
 //! | `system` | input and energies of a step: value, gradient and banded Hessian |
 //! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
 //! | `obstacle`, `transfer` | the robot's outline; states and answers of other models |
-//! | `results`, `mesh_comparison` | what is read out of a state, and how wrong it is |
+//! | `results`, `mesh_comparison` | the answer of a state, and its errors |
 //!
 //! [`FemModel`] decides which part answers, and hands the state over when the question changes.
 
@@ -86,7 +86,7 @@ const STIFF_ESTIMATE_FRACTION: f64 = 0.5;
 /// for the same.
 const STIFF_SHIFT_LIMIT: f64 = 0.05;
 
-/// Which part holds the present state.
+/// The part that holds the present state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Part {
     Statics,
@@ -97,21 +97,21 @@ enum Part {
 #[derive(Clone, Debug)]
 pub struct FemModel {
     problem: Arc<Problem>,
-    /// Where a support was dragged to by hand, m.
+    /// Points to which supports were dragged by hand, m.
     dragged: Vec<Option<Vec2>>,
     statics: free::statics::Statics,
     dynamics: dynamics::Dynamics,
     present: Part,
-    /// Whether a first rest with contact goes on from that of `spans`, where there is one.
+    /// True if a first rest with contact goes on from that of `spans`, where there is one.
     laid_evenly: bool,
     settings: Settings,
-    /// What another mesh says of the error in contact.
+    /// The estimate of the error in contact by another mesh.
     meshes: TwoMeshes,
-    /// Where the outline of the robot was led.
+    /// Pose to which the outline of the robot was led.
     led: Option<RigidPose>,
     /// The rest of a stiff cable in contact, until something moves.
     bent: Option<CableSolution>,
-    /// What the mesh's rest of a stiff cable may be off by, in parts of the greatest tension, until
+    /// Error of the mesh's equilibrium of a stiff cable, in parts of the greatest tension, until
     /// something moves.
     unbent: Option<f64>,
 }
@@ -159,9 +159,10 @@ impl FemModel {
         // A stiff cable is laid as a flexible one: that is where it begins, not how it lies.
         let flexible = self.problem.bending_stiffness == 0.0;
         let before = self.dynamics.clone();
-        let taken = self.dynamics.warm_start(&lay.answer, before.time(), &self.dragged).is_ok() && self.dynamics.rested;
+        let taken =
+            self.dynamics.warm_start(&lay.answer, before.cable.time(), &self.dragged).is_ok() && self.dynamics.rested;
         let greatest = lay.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
-        let found = self.dynamics.solution();
+        let found = self.dynamics.cable.solution();
         let pairs = lay.answer.supports.iter().zip(&found.supports);
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
         let jammed = if self.problem.bending_stiffness > 0.0 {
@@ -198,7 +199,7 @@ impl FemModel {
 
     /// The resting place where something may be touched.
     fn rest_in_touch(&mut self) -> Result<StepReport, SolveError> {
-        let begins = !self.dynamics.rested && self.dynamics.time() == 0.0;
+        let begins = !self.dynamics.rested && self.dynamics.cable.time() == 0.0;
         let (laid, exact) = match begins && self.laid_evenly {
             true => self.lay().map_or_else(|slides| (Err(slides), None), |(laid, exact)| (Ok(laid), exact)),
             false => (Ok(Laid::Unknown), None),
@@ -211,20 +212,20 @@ impl FemModel {
             self.begin_coarse();
         }
         let known = matches!(laid, Ok(Laid::TakenOver(_) | Laid::Alone));
-        let start = self.dynamics.state();
+        let start = self.dynamics.cable.state();
         let before = if known { None } else { Some(self.dynamics.clone()) };
         let mut found = self.dynamics.settle(&self.dragged);
-        let slid = if known || found.is_err() { None } else { self.dynamics.slides_as_a_whole() };
+        let slid = if known || found.is_err() { None } else { self.dynamics.cable.slides_as_a_whole() };
         if let Some(why) = slid {
             found = Err(SolveError::NoRestingPlace { why });
         }
         let said = match laid {
             Ok(Laid::TakenOver(said)) => said,
             Ok(Laid::Alone | Laid::Unknown) => Vec::new(),
-            // What slides from where it is laid may come to rest elsewhere.
+            // A cable that slides from its first place may come to rest elsewhere.
             Err(slides) => {
-                let answer = self.dynamics.solution();
-                let rises = !(work(&self.problem, &start, &answer, self.dynamics.time()) > 0.0);
+                let answer = self.dynamics.cable.solution();
+                let rises = !(work(&self.problem, &start, &answer, self.dynamics.cable.time()) > 0.0);
                 if found.is_err() || rises || slides_on(&self.problem, self.settings, &answer) {
                     found = Err(slides);
                     Vec::new()
@@ -248,19 +249,19 @@ impl FemModel {
         Ok(report)
     }
 
-    /// What the mesh leaves out of the bend of a stiff cable; says so where that is more than was
+    /// A warning of the bend of a stiff cable that the mesh leaves out, where that is more than was
     /// asked for.
     fn bend_warning(&mut self) -> Option<Warning> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let (off, s) = self.dynamics.bending_error();
+        let (off, s) = self.dynamics.cable.bending_error();
         self.unbent = Some(off);
         let limit = self.settings.tolerance;
         if off <= limit {
             return None;
         }
-        let cause = WarningCause::CoarseBend { bars: self.dynamics.meshing.even_bars };
+        let cause = WarningCause::CoarseBend { bars: self.dynamics.cable.meshing.even_bars };
         Some(Warning::new(cause, &self.problem.cable.name, s, [off, limit]))
     }
 
@@ -281,7 +282,7 @@ impl FemModel {
             return;
         }
         let before = self.dynamics.clone();
-        let time_s = before.time();
+        let time_s = before.cable.time();
         if self.dynamics.warm_start(&coarse.solution(), time_s, &self.dragged).is_err() {
             self.dynamics = before;
         }
@@ -294,7 +295,7 @@ impl FemModel {
             return None;
         }
         let lay = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.led).ok()?;
-        let (time_s, tolerance) = (self.dynamics.time(), STIFF_ESTIMATE_FRACTION * self.settings.tolerance);
+        let (time_s, tolerance) = (self.dynamics.cable.time(), STIFF_ESTIMATE_FRACTION * self.settings.tolerance);
         let flexible = lay.as_ref().map(|l| &l.answer);
         let (answer, cost) = elastica::rest(&self.problem, time_s, &self.dragged, flexible, tolerance)?;
         self.bent = Some(answer);
@@ -308,11 +309,12 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let answer = self.dynamics.solution();
-        let bar = self.dynamics.even();
-        let found = Elastica::from_mesh(&self.problem, self.dynamics.time(), &self.dragged, &answer, bar)?;
+        let answer = self.dynamics.cable.solution();
+        let bar = self.dynamics.cable.even();
+        let found = Elastica::from_mesh(&self.problem, self.dynamics.cable.time(), &self.dragged, &answer, bar)?;
         let cost = self.take_bent(found)?;
-        // What the mesh found is followed, not left: places that differ by more are another rest.
+        // The equilibrium of the mesh is followed: places that differ by more are another
+        // equilibrium.
         let near = |n: &Node| {
             let at = self.bent.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
             at.is_some_and(|at| (at - n.at()).norm() <= STIFF_SHIFT_LIMIT * self.problem.length)
@@ -324,7 +326,7 @@ impl FemModel {
         Some(cost)
     }
 
-    /// What there is to say of a stiff cable's rest whose error is more than was asked for.
+    /// A warning of a stiff cable's equilibrium whose error is more than was asked for.
     fn bent_warning(&self) -> Option<Warning> {
         let (estimate, asked) = (self.bent.as_ref()?.error_estimate?, self.settings.tolerance);
         let cause = WarningCause::BarContacts;
@@ -345,7 +347,7 @@ impl FemModel {
     /// models that take over its nodes.
     #[must_use]
     pub fn with_material_nodes(mut self) -> Self {
-        self.dynamics.meshing.slides = false;
+        self.dynamics.cable.meshing.slides = false;
         self
     }
 
@@ -353,7 +355,7 @@ impl FemModel {
     /// moved, to this one.
     pub(super) fn kept(&self) -> Self {
         let mut copy = self.clone();
-        copy.dynamics.problem = self.problem.clone();
+        copy.dynamics.cable.problem = self.problem.clone();
         copy
     }
 
@@ -366,10 +368,11 @@ impl FemModel {
         meshes.compare(&self.problem, self.settings, refinement, dynamics, exact, &self.dragged);
     }
 
-    /// What there is to say of a mesh that is coarser than the tolerance asks for.
+    /// A warning of a mesh that is coarser than the tolerance asks for.
     fn coarse_warning(&self) -> Option<Warning> {
-        let (estimate, asked) = (self.meshes.errors.relative(&self.dynamics.solution())?, self.settings.tolerance);
-        let cause = WarningCause::CoarseForces { elements: self.dynamics.meshing.even_bars };
+        let (estimate, asked) =
+            (self.meshes.errors.relative(&self.dynamics.cable.solution())?, self.settings.tolerance);
+        let cause = WarningCause::CoarseForces { elements: self.dynamics.cable.meshing.even_bars };
         (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
     }
 
@@ -377,7 +380,7 @@ impl FemModel {
     fn ask(&mut self, part: Part) -> Result<(), SolveError> {
         if self.present != part {
             match part {
-                Part::Statics => self.statics.set_state(&self.dynamics.state())?,
+                Part::Statics => self.statics.set_state(&self.dynamics.cable.state())?,
                 Part::Dynamics => {
                     self.dynamics.set_state(&self.statics.state())?;
                     self.dynamics.come_to_rest(&self.dragged);
@@ -389,7 +392,7 @@ impl FemModel {
     }
 }
 
-/// Whether the cable can touch nothing but its supports.
+/// True if the cable can touch nothing but its supports.
 fn touches_nothing(problem: &Problem) -> bool {
     problem.world.is_empty()
         && problem.outline.is_none()
@@ -434,14 +437,14 @@ impl Mechanics for FemModel {
             self.ask(Part::Dynamics)?;
             self.unbent = None;
             if let Some(answer) = self.bent.take() {
-                self.dynamics.warm_start(&answer, self.dynamics.time(), &self.dragged)?;
+                self.dynamics.warm_start(&answer, self.dynamics.cable.time(), &self.dragged)?;
             }
             let mut report = self.dynamics.advance_gauged(dt_s, inertia, &self.dragged, gauge)?;
             self.meshes.follow(&self.problem, self.settings, &self.dynamics, dt_s, inertia, &self.dragged);
-            let led = !touches_nothing(&self.problem) || self.dynamics.slides_anywhere();
+            let led = !touches_nothing(&self.problem) || self.dynamics.cable.slides_anywhere();
             match if led { self.bend_warning() } else { None } {
                 Some(warning) => report.warnings.push(warning),
-                // What is less than was asked for says nothing of the other errors of a step.
+                // An error below the tolerance tells nothing of the other errors of a step.
                 None => self.unbent = None,
             }
             Ok(report)
@@ -450,11 +453,11 @@ impl Mechanics for FemModel {
 
     fn state(&self) -> State {
         if let Some(answer) = &self.bent {
-            return State::of_nodes(&answer.nodes, self.dynamics.time());
+            return State::of_nodes(&answer.nodes, self.dynamics.cable.time());
         }
         match self.present {
             Part::Statics => self.statics.state(),
-            Part::Dynamics => self.dynamics.state(),
+            Part::Dynamics => self.dynamics.cable.state(),
         }
     }
 
@@ -504,11 +507,11 @@ impl Mechanics for FemModel {
 
     fn set_robot_pose(&mut self, to: RigidPose) {
         self.led = Some(to);
-        self.dynamics.set_robot_pose(to);
+        self.dynamics.cable.set_robot_pose(to);
     }
 
     fn robot_contact(&self) -> Option<RobotContact> {
-        self.dynamics.outline_report()
+        self.dynamics.cable.outline_report()
     }
 
     fn solution(&self) -> CableSolution {
@@ -518,7 +521,7 @@ impl Mechanics for FemModel {
         match self.present {
             Part::Statics => self.statics.solution(),
             Part::Dynamics => {
-                let answer = self.dynamics.solution();
+                let answer = self.dynamics.cable.solution();
                 let meshes = self.meshes.errors;
                 let estimates = [self.unbent, meshes.relative(&answer)].into_iter().flatten();
                 let errors = match self.unbent {
@@ -545,7 +548,7 @@ impl Mechanics for FemModel {
     fn lend(&mut self) -> Option<OwnedResources> {
         Some(OwnedResources {
             memory: self.dynamics.solver.memory.0.take().map(|memory| memory as Box<dyn std::any::Any + Send>),
-            problem: self.dynamics.problem.clone(),
+            problem: self.dynamics.cable.problem.clone(),
         })
     }
 
@@ -555,8 +558,8 @@ impl Mechanics for FemModel {
             problem: state::moving_outline::with_outline(self.problem.clone()),
         });
         self.dynamics.solver.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
-        self.dynamics.problem = own.problem;
-        self.dynamics.place_outline();
+        self.dynamics.cable.problem = own.problem;
+        self.dynamics.cable.place_outline();
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

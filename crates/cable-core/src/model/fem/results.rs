@@ -4,9 +4,9 @@ use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Balanced, Load, ONE_MARK_BAR_FRACTION, Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::angle_between;
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::bar_weight::Weight;
@@ -30,7 +30,7 @@ const PATH_EXCESS_DIAMETERS: f64 = 0.005;
 
 /// The answer at positions `x` and velocities `v`.
 #[must_use]
-pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
+pub fn solution(d: &CableState, x: &[Vec2], v: &[Vec2]) -> CableSolution {
     let problem = &d.problem;
     let tension = bar_tensions(d, x);
     let (ends, lain) = end_forces(d, x, &tension);
@@ -49,7 +49,7 @@ pub fn solution(d: &Dynamics, x: &[Vec2], v: &[Vec2]) -> CableSolution {
     }
 }
 
-impl Dynamics {
+impl CableState {
     /// The answer with the mesh as it is.
     pub(in crate::model::fem) fn solution_now(&self) -> CableSolution {
         solution(self, &self.motion.x, &self.motion.v)
@@ -84,14 +84,14 @@ impl Dynamics {
         self.answers.gauged = gauged;
     }
 
-    /// Whether the cable slides through any node.
+    /// True if the cable slides through any node.
     pub(in crate::model::fem) fn slides_anywhere(&self) -> bool {
         self.mesh.sliding.iter().any(Option::is_some)
     }
 
-    /// What the mesh leaves out of a stiff cable's bend at what it is led round, in parts of the
-    /// greatest tension, and where that is most (m of arc length). A sliding node carries no
-    /// moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
+    /// Error of the tension of a stiff cable where it bends round obstacles and pulleys, in parts
+    /// of the greatest tension, and the arc length (m) where it is greatest. A sliding node carries
+    /// no moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
     /// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the
     /// normal force of a contact has any direction in between: along the cable that is ½ψ of it.
     pub(in crate::model::fem) fn bending_error(&self) -> (f64, f64) {
@@ -131,17 +131,17 @@ impl Dynamics {
 
 /// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than
 /// zero.
-fn bar_tensions(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
+fn bar_tensions(d: &CableState, x: &[Vec2]) -> Vec<f64> {
     (0..d.mesh.rest_length.len()).map(|e| bar_tension(d, x, e)).collect()
 }
 
-fn bar_tension(d: &Dynamics, x: &[Vec2], e: usize) -> f64 {
+fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
     let path = d.mesh.path(e, x);
     let t = d.mesh.bar(e).tension(path.length);
     let flexible = d.mesh.is_flexible();
     if d.mesh.sliding[e].is_some() || d.mesh.sliding[e + 1].is_some() {
         let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
-        return Weight::of(&d.mesh, e, &path, d.task.body).in_the_middle(t, material, flexible);
+        return Weight::of(&d.mesh, e, &path, d.input.body).in_the_middle(t, material, flexible);
     }
     let t = if t > 0.0 || !flexible { t + d.held_by_branches(e) } else { t };
     if t < 0.0 && flexible { 0.0 } else { t }
@@ -149,13 +149,13 @@ fn bar_tension(d: &Dynamics, x: &[Vec2], e: usize) -> f64 {
 
 /// Arc length from a node to the middle of the straight part of the bar before it (`side` 0) or
 /// after it (1), m.
-fn half(d: &Dynamics, node: usize, side: usize, x: &[Vec2]) -> f64 {
+fn half(d: &CableState, node: usize, side: usize, x: &[Vec2]) -> f64 {
     let e = node + side - 1;
     let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
-    Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.task.body).carried(material)[1 - side]
+    Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.input.body).carried(material)[1 - side]
 }
 
-/// What the ground does to the half bar at a held end that lies on it.
+/// The force of the ground on the half bar at a held end that lies on it.
 struct Lain {
     /// The end, and the node beside it.
     node: usize,
@@ -172,14 +172,14 @@ struct Lain {
 /// a free end, else that of the middle plus what acts on the half between. On the ground what acts
 /// on the half is guessed from the next node. With it what the ground does to the halves that lie
 /// along an edge.
-fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<Lain>; 2]) {
+fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<Lain>; 2]) {
     let n = x.len();
     let mut lain = [None, None];
     let mut end = |node: usize, next: usize, e: usize, sign: f64| {
         let ground = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach);
         if let Some(hung) = free_end(d, node) {
-            // What presses on the ground there is the ground's, and what friction holds of it: at
-            // the tip itself no more than its cone.
+            // The ground carries the normal force there, and friction a part: at the tip itself no
+            // more than its cone.
             let taken = ground.map_or(Vec2::zeros(), |g| {
                 let pressed = hung.dot(&g.normal).min(0.0);
                 let along = perp(g.normal);
@@ -196,8 +196,8 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
         let Some(ground) = ground else { return middle + body * sign };
         let grounded = ground_force(d, next, x) * (half / d.mesh.share(next));
         let force = middle + (body + grounded) * sign;
-        // What lies on an edge up to its end presses on the edge alone; the barrier's width would
-        // tilt the last bar.
+        // A cable that lies on an edge up to its end presses on the edge alone; the barrier's width
+        // would tilt the last bar.
         let beyond = d.problem.world.signed_gap(x[next], 3.0 * d.contacts.barrier.reach);
         let along = ground.feature % 2 == 0 && beyond.is_some_and(|g| g.feature == ground.feature);
         // No more than what presses: beyond that the support is pulled off the edge.
@@ -210,7 +210,7 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
         let rubbed = (grounded - ground.normal * pressed) * (1.0 - kept);
         let lift = ground.normal * (lift * sign);
         let (grounded, force) = (grounded - rubbed, force - rubbed * sign);
-        // What a lump presses with is the ground's as well: its node tells.
+        // The ground carries the normal force of a point mass as well: its node tells.
         lain[usize::from(sign < 0.0)] = d.mesh.held[node].then(|| Lain {
             node,
             next,
@@ -227,9 +227,9 @@ fn end_forces(d: &Dynamics, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<
     ([end(0, 1, 0, 1.0), end(n - 1, n - 2, n - 2, -1.0)], lain)
 }
 
-/// What hangs on a free end, N; None for other nodes, and where a lump moves, whose inertia pulls
-/// as well.
-fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
+/// The load on a free end, N; None for other nodes, and where a point mass moves, whose inertia
+/// pulls as well.
+fn free_end(d: &CableState, node: usize) -> Option<Vec2> {
     let k = d.meshing.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
     if d.motion.hands[k].is_some() {
         return Some(d.problem.hung_on(k, d.time()) - d.answers.reaction[node]);
@@ -239,22 +239,22 @@ fn free_end(d: &Dynamics, node: usize) -> Option<Vec2> {
 }
 
 /// Normal and friction force of edges and floor on a node, N.
-fn ground_force(d: &Dynamics, node: usize, x: &[Vec2]) -> Vec2 {
+fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
     let mut sum = Vec2::zeros();
     for rub in d.contacts.rubs.iter().filter(|r| r.touch.node == node && !r.touch.on_segment) {
         sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + rub_force(&d.contacts, rub, x);
     }
-    if let Some(&limit) = d.task.floor_limit.get(node) {
+    if let Some(&limit) = d.input.floor_limit.get(node) {
         sum -= friction::at_plane(d.contacts.floor_slid[node], limit, d.contacts.slip).1;
     }
     sum
 }
 
-/// What is left of all forces on a cable that no support holds, N: weight, loads, and what
-/// obstacles and floor do to it. Between its bars nothing is left, whatever their tension: this has
-/// none of the rounding of their forces, and tells what slides from what rests where each node
-/// alone is let off with a little.
-pub(in crate::model::fem) fn unbalanced(d: &Dynamics, x: &[Vec2], time_s: f64) -> Vec2 {
+/// Sum of all forces on a cable that no support holds, N: weight, loads, and what obstacles and
+/// floor do to it. Between its bars nothing is left, whatever their tension: this has none of the
+/// rounding of their forces, and tells what slides from what rests where each node alone is let off
+/// with a little.
+pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64) -> Vec2 {
     let problem = &d.problem;
     let hung: Vec2 = (0..problem.supports.len()).map(|k| problem.hung_on(k, time_s)).sum();
     let at_support =
@@ -271,7 +271,7 @@ pub(in crate::model::fem) fn unbalanced(d: &Dynamics, x: &[Vec2], time_s: f64) -
     }
     for k in 0..x.len() {
         let floor =
-            d.task.floor_limit.get(k).map(|&l| friction::at_plane(d.contacts.floor_slid[k], l, d.contacts.slip).1);
+            d.input.floor_limit.get(k).map(|&l| friction::at_plane(d.contacts.floor_slid[k], l, d.contacts.slip).1);
         if d.mesh.sliding[k].is_some() && k > 0 && k + 1 < x.len() {
             let [before, after] = [k - 1, k].map(|e| {
                 let path = d.mesh.path(e, x);
@@ -290,7 +290,7 @@ pub(in crate::model::fem) fn rub_force(contacts: &ContactSet, rub: &FrictionCont
     -rub.tangent * friction::at(rub.sliding(x), rub.limit, contacts.slip).1
 }
 
-fn nodes(d: &Dynamics, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
+fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
     let (mesh, n) = (&d.mesh, x.len());
     let area = d.problem.cable.area_m2();
     let moments = moments(d, x);
@@ -331,9 +331,9 @@ fn nodes(d: &Dynamics, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]
         let force = match k {
             0 => ends[0] + shear(mesh, &moments, 0, x),
             k if k + 1 == n => ends[1] + shear(mesh, &moments, k - 1, x),
-            k => bar(k) + d.task.body * half(d, k, 1, x),
+            k => bar(k) + d.input.body * half(d, k, 1, x),
         };
-        // Where a round reaches to it within a step, the round ends there.
+        // A round that reaches to the node within a step ends there.
         while out.last().is_some_and(|l: &Node| l.arc_length_m >= mesh.arc_length[k]) {
             out.pop();
         }
@@ -347,8 +347,8 @@ fn nodes(d: &Dynamics, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]
     out
 }
 
-/// What a round does to the cable at a sliding node, N: all that the change of the internal force
-/// asks for, but for what the floor does.
+/// Force of a round on the cable at a sliding node, N: the change of the internal force without the
+/// part of the floor.
 fn by_round(load: &Load) -> Vec2 {
     let [before, after] = load.force.map(|f| f.try_normalize(0.0).unwrap_or_default());
     let on = (before + after).try_normalize(0.0).unwrap_or_default();
@@ -379,7 +379,7 @@ struct OnRound {
 /// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the
 /// sliding node before, to where it leaves it, or halfway to the next. Its tension is that of its
 /// weight, and beyond that grows evenly in its logarithm, as friction makes it.
-fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
+fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
     let mesh = &d.mesh;
     let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
@@ -387,10 +387,11 @@ fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2],
     let stretch = [0, 1]
         .map(|j| larger(paths[j].length / (mesh.arc_length[k + j] - mesh.arc_length[k + j - 1]), mesh.thermal_stretch));
     let (mark, sense, radius) = (node.end.mark, node.end.sense, node.end.radius);
-    // What lies between the node and where the cable meets or leaves the round, so far (rad) from
-    // it, has its own weight.
-    let force_at =
-        |arcs: [f64; 2]| [0, 1].map(|j| load.force[j] - d.task.body * (arcs[j] * radius / stretch[j] * [-1.0, 1.0][j]));
+    // The stretch between the node and the point where the cable meets or leaves the round, at an
+    // angle (rad) from it, has its own weight.
+    let force_at = |arcs: [f64; 2]| {
+        [0, 1].map(|j| load.force[j] - d.input.body * (arcs[j] * radius / stretch[j] * [-1.0, 1.0][j]))
+    };
     let sag = |j: usize, from: Vec2, to: Vec2| {
         let sag = sense * angle_between(from, to);
         let longer = radius * sag.abs().powi(3) / 6.0;
@@ -429,12 +430,12 @@ fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2],
     let [a, b] = [0, 1].map(|j| if same[j] { tension[k + j - 1] } else { ends[j].norm() });
     let chords = arc_nodes::parts(radius, whole, d.problem.radius) as f64;
     let count = larger((whole / ARC_STEP).ceil(), chords);
-    // What the floor takes before and after the round is not the round's.
+    // The forces of the floor before and after the round are not the round's.
     let [f0, floor, f2] = load.floor;
     let [a, b] = [a - f0, b + f2];
     // dT = −b·dx without friction.
     let first = normal(-before);
-    let unrubbed = |normal: Vec2| a - d.task.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
+    let unrubbed = |normal: Vec2| a - d.input.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
     let last = unrubbed(normal(after));
     let over = OverRound::between([a, b - (last - a)], floor);
     // On a round that is small beside its bars, friction of the weight that hangs over it from them
@@ -443,7 +444,7 @@ fn on_round(d: &Dynamics, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2],
     let small = same == [false; 2] && whole * radius < ONE_MARK_BAR_FRACTION * d.even();
     let most = node.friction * whole;
     let rate = if small && grown.abs() > HANGING_TENSION_GROWTH * most { most.copysign(grown) } else { grown };
-    // What is beside it stands where the weight hangs: before the round and after it by the angle
+    // The load beside it acts where the weight hangs: before the round and after it by the angle
     // there between the cable's force and the end of the arc.
     let tangents = [-before, after].map(|turned| perp(normal(turned)) * sense);
     let hangs = [angle_between(ends[0], tangents[0]), angle_between(tangents[1], ends[1])]
@@ -525,7 +526,7 @@ fn curvature_at(mesh: &Mesh, k: usize, x: &[Vec2]) -> f64 {
 }
 
 /// Bending moment at each node, N·m; empty for a flexible cable.
-fn moments(d: &Dynamics, x: &[Vec2]) -> Vec<f64> {
+fn moments(d: &CableState, x: &[Vec2]) -> Vec<f64> {
     let mesh = &d.mesh;
     if !(mesh.bending_stiffness > 0.0) {
         return Vec::new();
@@ -544,7 +545,7 @@ fn shear(mesh: &Mesh, moments: &[f64], e: usize, x: &[Vec2]) -> Vec2 {
 }
 
 /// The force of the cable on a pulley with its tensions and arc length.
-fn pulley(d: &Dynamics, support: usize, x: &[Vec2], tension: &[f64]) -> Option<SupportReaction> {
+fn pulley(d: &CableState, support: usize, x: &[Vec2], tension: &[f64]) -> Option<SupportReaction> {
     let seat = Seat::Pulley(support);
     let on = |k: &usize| d.mesh.sliding[*k].is_some_and(|s| s.seat == seat);
     let first = (1..x.len() - 1).find(on)?;
@@ -553,7 +554,7 @@ fn pulley(d: &Dynamics, support: usize, x: &[Vec2], tension: &[f64]) -> Option<S
     let inner = d.mesh.arc_length[last] - d.mesh.arc_length[first];
     let share = half(d, first, 0, x) + inner + half(d, last, 1, x);
     let directions = [d.mesh.path(first - 1, x).direction, d.mesh.path(last, x).direction];
-    let force = directions[1] * tension[last] - directions[0] * tension[first - 1] + d.task.body * share;
+    let force = directions[1] * tension[last] - directions[0] * tension[first - 1] + d.input.body * share;
     let center = d.mesh.sliding[first]?.end.center;
     Some(SupportReaction {
         name: d.problem.supports.get(support)?.name.clone(),
@@ -568,7 +569,7 @@ fn pulley(d: &Dynamics, support: usize, x: &[Vec2], tension: &[f64]) -> Option<S
     })
 }
 
-fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<SupportReaction> {
+fn supports(d: &CableState, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<SupportReaction> {
     let problem: &Problem = &d.problem;
     problem
         .supports
@@ -609,7 +610,7 @@ fn supports(d: &Dynamics, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<
 }
 
 /// One report for each stretch of neighbouring contacts with one obstacle.
-fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2]) -> Vec<ContactReport> {
+fn contacts(d: &CableState, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2]) -> Vec<ContactReport> {
     let mut touches: Vec<ContactPair> = Vec::new();
     d.contacts.find(&d.problem, &d.mesh, x, &mut touches);
     let mut obstacles: Vec<usize> = touches.iter().map(|t| t.pair.gap.obstacle).collect();
@@ -667,7 +668,7 @@ fn contacts(d: &Dynamics, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2])
 }
 
 /// One report for each corner, post or circle with sliding nodes.
-fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
+fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
     let n = x.len();
     let mut k = 1;
     while k + 1 < n {
@@ -726,7 +727,7 @@ fn rounds(d: &Dynamics, x: &[Vec2], out: &mut Vec<ContactReport>) {
 }
 
 fn report(
-    d: &Dynamics,
+    d: &CableState,
     x: &[Vec2],
     tension: &[f64],
     lain: &[Option<Lain>; 2],
@@ -739,8 +740,8 @@ fn report(
     let before = if first.on_segment { first.node } else { first.node.saturating_sub(1) };
     let after = last.node.min(bars - 1);
     let (mut normal, mut normal_n, mut friction_n) = (Vec2::zeros(), 0.0, 0.0);
-    // What presses on a node that stays where it is, over a round or as an end that lies, is of
-    // that round, or of the end.
+    // The force on a node that stays, over a round or as an end that lies, belongs to that round or
+    // end.
     let stays = |k: usize| d.mesh.sliding[k].is_some() || lain.iter().flatten().any(|l| l.node == k);
     let part = |t: &ContactPair| {
         let [a, b] = t.shares();

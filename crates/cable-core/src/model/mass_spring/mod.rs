@@ -3,13 +3,15 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | `mesh` | nodes, masses and the first shape |
-//! | `integrator` | how dynamic steps are taken: explicit, or as a preview |
-//! | `dynamics` | one explicit sub-step: forces, impacts, limits, rollback, momentum, hands |
+//! | `settings` | the tuned constants |
+//! | `mesh` | nodes, springs and pulleys; nodes that are added and removed beside pulleys |
+//! | `forces` | springs, bending, weight, wind and loads; reactions of supports |
+//! | `contact_memory` | the contacts of the last sub-step, and the anchors of friction |
+//! | `integrator` | the choice of the integrator of dynamic steps: explicit, or a preview |
+//! | `dynamics` | one explicit sub-step: supports, sliding, impacts, momentum, limits, rollback |
 //! | `xpbd` | the preview's sub-steps of compliant constraints |
-//! | `equilibrium` | equilibria, steps without inertia, and how wrong their figures are |
-//! | `pulleys`, `bending` | material that slides through pulleys; bending forces |
-//! | `results`, `corner_error` | the answer, and what a mesh cannot know of tension beyond a corner |
+//! | `equilibrium` | equilibria, steps without inertia, and estimates of their errors |
+//! | `results`, `corner_error` | the answer, and a bound of the error of tension beyond a corner |
 //!
 //! The leapfrog keeps velocities half a sub-step behind places. The discretisation error is of
 //! second order in the element; at equilibrium and without inertia it is estimated, in motion only
@@ -27,7 +29,7 @@
 macro_rules! part {
     ($(#[$doc:meta])* $name:ident { $($(#[$about:meta])* $field:ident: $kind:ty,)+ }) => {
         $(#[$doc])*
-        #[derive(Debug, Default)]
+        #[derive(Debug)]
         pub(in crate::model::mass_spring) struct $name {
             $($(#[$about])* pub(in crate::model::mass_spring) $field: $kind,)+
         }
@@ -44,169 +46,224 @@ macro_rules! part {
     };
 }
 
-mod bending;
+mod contact_memory;
 mod corner_error;
 mod dynamics;
 mod equilibrium;
+mod forces;
 mod integrator;
 mod mesh;
-mod pulleys;
 mod results;
+pub mod settings;
 mod xpbd;
 
 use std::sync::Arc;
 
-use crate::contact::Gap;
 use crate::error::{SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::fem::FemModel;
 use crate::model::gauge::TensionGauge;
-use crate::model::input_filter::{SmoothedTarget, held_warning};
 pub use crate::model::settings::Stepping;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::ErrorEstimates;
-use crate::solution::{CableSolution, Cost, Warning, WarningKind};
+use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
 use crate::state::State;
+use contact_memory::ContactMemory;
 use dynamics::momentum::Account;
-use dynamics::rollback::Rollback;
-use dynamics::{Clock, SupportDrives};
-use equilibrium::contact_energy::{Anchors, ContactMemory};
-use equilibrium::error_estimate::ErrorEstimator;
-use mesh::Chain;
-use pulleys::pulley::Wheels;
+use dynamics::rollback::{Rollback, transaction};
+use dynamics::supports::SupportDrives;
+use dynamics::{Clock, hands, impacts};
+use equilibrium::contact_energy::Anchors;
+use equilibrium::error_estimate::{Estimate, Start};
+use forces::{nodal, tension};
+use integrator::is_preview;
+use mesh::edit::{even_out, remesh};
+use mesh::nodes::{Mesh, first_support_arc_lengths};
+use settings::Tuning;
 
 part! {
-    /// What is said of the present instant and of the last step.
+    /// The report of the present instant and of the last step.
+    #[derive(Default)]
     Report {
-        /// What it took.
+        /// Work of the last step.
         cost: Cost,
-        /// What the user should know.
+        /// Warnings that have not been given to the user yet.
         warnings: Vec<Warning>,
-        /// What became of the momentum since the caller's step began.
+        /// Account of momentum since the caller's step began.
         account: Account,
-        /// The model that goes on beside it to tell its errors.
-        beside: ErrorEstimator,
-        /// What these are.
-        errors: ErrorEstimates,
+        /// Errors, and the model beside which they are estimated.
+        estimate: Estimate,
     }
 }
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
 pub struct MassSpringModel {
-    problem: Arc<Problem>,
     settings: Settings,
     clock: Clock,
-    chain: Chain,
+    mesh: Mesh,
     drives: SupportDrives,
     contacts: ContactMemory,
-    wheels: Wheels,
     report: Report,
     /// True if it has left the route for a shape found by a solve, a step or another model.
-    laid: bool,
-    kept: Rollback,
+    has_shape: bool,
+    rollback: Rollback,
 }
 
-/// What an anchor holds the cable to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Surface {
-    /// The floor of a plan view, which rubs everywhere.
-    Floor,
-    /// The obstacle of this index.
-    Obstacle(usize),
-}
-
-/// Where friction holds the cable: the material point, m, and where it lies.
-#[derive(Clone, Copy, Debug)]
-struct Anchor {
-    surface: Surface,
-    s: f64,
-    at: Vec2,
-}
-
-/// A contact in the last sub-step.
-#[derive(Clone, Copy, Debug)]
-struct Touch {
-    element: usize,
-    gap: Gap,
-    /// Normal and friction impulse (along growing arc length), N·s.
-    normal: f64,
-    friction: f64,
-    slips: bool,
-}
-
-/// The longest step, s: longer is a mistake in the caller's clock.
+/// Longest step, s: a longer one is a mistake in the caller's clock.
 const MAX_STEP_S: f64 = 60.0;
+/// Nodes of which one is farther from a point by less than this, of the even length, are as near.
+const NEAREST_TOLERANCE: f64 = 1e-6;
 
 fn unsupported(feature: Unsupported) -> SolveError {
     SolveError::Unsupported { model: Model::MassSpring, feature }
 }
 
-/// The resting shape of the corrected bars and where the supports sit on it.
-fn shape_of(problem: Arc<Problem>, settings: Settings) -> Option<Shape> {
-    let mut fem = FemModel::new(problem, settings).ok()?.with_material_nodes();
-    let warnings = fem.settle().ok()?.warnings;
-    let (state, answer) = (fem.state(), fem.solution());
-    let slid = answer.supports.iter().map(|s| s.arc_length_m).collect();
-    let tension = answer.nodes.iter().map(|n| (n.arc_length_m, n.tension_n)).collect();
-    let warnings = warnings.into_iter().filter(|w| w.kind == WarningKind::NotUnique).collect();
-    Some(Shape { state, slid, tension, warnings })
-}
-
-/// A resting shape of another model.
-struct Shape {
+/// An equilibrium of `fem`.
+struct FemEquilibrium {
     state: State,
-    /// Where the supports sit, m.
-    slid: Vec<f64>,
-    /// Arc length, m, and tension there, N.
-    tension: Vec<(f64, f64)>,
-    /// Why it might be another one.
+    /// Arc lengths of the supports, m.
+    supports: Vec<f64>,
+    /// Tensions along the cable.
+    tensions: Vec<TensionAt>,
+    /// Warnings that other equilibria exist.
     warnings: Vec<Warning>,
 }
 
+/// A tension at a point of the cable.
+struct TensionAt {
+    arc_length: f64,
+    tension: f64,
+}
+
+impl FemEquilibrium {
+    /// The equilibrium of a cable, if `fem` finds one.
+    fn find(problem: Arc<Problem>, settings: Settings) -> Option<Self> {
+        let mut fem = FemModel::new(problem, settings).ok()?.with_material_nodes();
+        let warnings = fem.settle().ok()?.warnings;
+        let (state, answer) = (fem.state(), fem.solution());
+        let tension = |n: &Node| TensionAt { arc_length: n.arc_length_m, tension: n.tension_n };
+        Some(Self {
+            state,
+            supports: answer.supports.iter().map(|s| s.arc_length_m).collect(),
+            tensions: answer.nodes.iter().map(tension).collect(),
+            warnings: warnings.into_iter().filter(|w| w.kind == WarningKind::NotUnique).collect(),
+        })
+    }
+
+    /// Tension at an arc length (m), N.
+    fn tension_at(&self, arc_length: f64) -> f64 {
+        let next = self.tensions.partition_point(|n| n.arc_length < arc_length);
+        self.tensions.get(next.min(self.tensions.len().saturating_sub(1))).map_or(0.0, |n| n.tension)
+    }
+}
+
+/// This block makes models: along the route, on a shape, and in the equilibrium of `fem`.
 impl MassSpringModel {
     /// Builds it at the route.
     ///
     /// # Errors
-    /// `Unsupported` when the scene needs what the model lacks.
+    /// `Unsupported` when the scene needs a feature that the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        Self::with_tuning(problem, settings, Arc::new(Tuning::default()))
+    }
+
+    /// The same with other tuned constants.
+    ///
+    /// # Errors
+    /// `Unsupported` when the scene needs a feature that the model lacks.
+    pub fn with_tuning(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Result<Self, SolveError> {
         if problem.cable.self_contact {
             return Err(unsupported(Unsupported::SelfContact));
         }
-        let slid = mesh::lay_supports(&problem);
-        Ok(Self::mesh(problem, settings, &slid))
+        let supports = first_support_arc_lengths(&problem, &tuning.mesh);
+        let segments = segments(&problem, &settings, &tuning);
+        Ok(Self::of_mesh(Mesh::new(problem, tuning, segments, &supports), settings))
     }
 
-    /// Takes the first shape from the corrected bars, if they find one.
-    fn lay(&mut self) {
-        let settings = Settings { segments: Some(self.chain.rest.len()), ..self.settings };
-        let found = shape_of(self.problem.clone(), settings).or_else(|| shape_of(Arc::new(self.pinned()), settings));
-        if let Some(shape) = found
-            && let Some(mut next) = self.shaped(&shape.state, &shape.slid)
+    fn of_mesh(mut mesh: Mesh, settings: Settings) -> Self {
+        let clock = Clock::default();
+        let mut drives = SupportDrives::new(mesh.support_node.len());
+        drives.place_nodes(&mut mesh, clock.time_s);
+        even_out(&mut mesh, clock.time_s);
+        nodal::update(&mut mesh, clock.time_s);
+        Self {
+            settings,
+            clock,
+            contacts: ContactMemory::new(mesh.rest_length.len()),
+            mesh,
+            drives,
+            report: Report::default(),
+            has_shape: false,
+            rollback: Rollback::default(),
+        }
+    }
+
+    /// The same cable along a shape, its supports at given arc lengths (m); None if the shape has
+    /// no place for it.
+    fn on_shape(&self, shape: &State, supports: &[f64]) -> Option<Self> {
+        let (problem, tuning) = (self.mesh.problem.clone(), self.mesh.tuning.clone());
+        let segments = segments(&problem, &self.settings, &tuning);
+        let mesh = match self.mesh.usable_nodes(shape) {
+            Some(nodes) => Mesh::with_nodes(problem, tuning, segments, supports, nodes),
+            None => Mesh::new(problem, tuning, segments, supports),
+        };
+        let mut next = Self::of_mesh(mesh, self.settings);
+        let time_s = shape.time_s;
+        next.clock.time_s = time_s;
+        next.drives.take_drags(&self.drives);
+        next.has_shape = true;
+        let mesh = &mut next.mesh;
+        let speeds = State { position_m: shape.velocity_m_per_s.clone(), ..shape.clone() };
+        // A cable whose length was edited keeps its shape: material is spread over it evenly.
+        let scale = shape.arc_length_m.last().copied().unwrap_or(0.0) / mesh.problem.length;
+        for n in 0..mesh.position.len() {
+            mesh.position[n] = shape.position_at(mesh.arc_length[n] * scale)?;
+            mesh.velocity[n] = speeds.position_at(mesh.arc_length[n] * scale)?;
+        }
+        next.drives.place_pulleys(mesh, time_s);
+        for k in 0..mesh.wheels.pulleys.len() {
+            // The arc length of a support is that of the middle of the arc, σ is that of the mark.
+            let i = mesh.wheels.pulleys[k].node;
+            let ahead = mesh.element(i - 1).arc[0] - mesh.element(i).arc[1];
+            mesh.arc_length[i] += 0.5 * ahead / mesh.problem.thermal_stretch;
+            mesh.wheels.pulleys[k].anchor = mesh.arc_length[i];
+        }
+        even_out(mesh, time_s);
+        nodal::update(mesh, time_s);
+        next.contacts = ContactMemory::new(next.mesh.rest_length.len());
+        Some(next)
+    }
+
+    /// Starts from the equilibrium of `fem`, if that finds one.
+    fn start_from_fem(&mut self) {
+        let settings = Settings { segments: Some(self.mesh.rest_length.len()), ..self.settings };
+        let found = FemEquilibrium::find(self.mesh.problem.clone(), settings)
+            .or_else(|| FemEquilibrium::find(Arc::new(self.without_pulleys()), settings));
+        if let Some(found) = found
+            && let Some(mut next) = self.on_shape(&found.state, &found.supports)
         {
             next.clock.time_s = self.clock.time_s;
-            for e in 0..next.chain.tension.len() {
-                let middle = 0.5 * (next.chain.s[e] + next.chain.s[e + 1]);
-                let k = shape.tension.partition_point(|n| n.0 < middle).min(shape.tension.len().saturating_sub(1));
-                next.chain.tension[e] = shape.tension.get(k).map_or(0.0, |n| n.1);
+            for e in 0..next.mesh.tension.len() {
+                let middle = 0.5 * (next.mesh.arc_length[e] + next.mesh.arc_length[e + 1]);
+                next.mesh.tension[e] = found.tension_at(middle);
             }
-            next.report.warnings.extend(shape.warnings);
+            next.report.warnings.extend(found.warnings);
             *self = next;
         }
-        self.laid = true;
+        self.has_shape = true;
     }
 
-    /// The problem with its pulleys gripping the cable where it was laid: for models that have none
-    /// beside obstacles.
-    fn pinned(&self) -> Problem {
-        let mut problem = (*self.problem).clone();
-        for p in &self.wheels.pulleys {
+    /// The problem with pulleys that grip the cable at its first shape: for models that have no
+    /// pulleys beside obstacles.
+    fn without_pulleys(&self) -> Problem {
+        let mut problem = (*self.mesh.problem).clone();
+        for p in &self.mesh.wheels.pulleys {
             let support = &mut problem.supports[p.support];
-            let out = Vec2::new(-p.mark.sin(), p.mark.cos()) * (p.facing * p.radius);
+            let out = Vec2::new(-p.mark_angle.sin(), p.mark_angle.cos()) * (p.sense * p.radius);
             support.kind = SupportKind::Fixed;
-            support.arc_length = Some(self.chain.s[p.node]);
+            support.arc_length = Some(self.mesh.arc_length[p.node]);
             support.at = support.at.map(|a| a + out);
             if let Some(m) = &mut support.motion {
                 m.shift(out);
@@ -215,84 +272,67 @@ impl MassSpringModel {
         problem
     }
 
-    /// A chain of the same cable along a shape, its supports where `slid` says; None if the shape
-    /// has no place for it.
-    fn shaped(&self, shape: &State, slid: &[f64]) -> Option<Self> {
-        let own = self.nodes_of(shape);
-        let mut next = Self::mesh_on(self.problem.clone(), self.settings, slid, own);
-        let speeds = State { position_m: shape.velocity_m_per_s.clone(), ..shape.clone() };
-        // A cable whose length was edited keeps its shape: material is spread over it evenly.
-        let scale = shape.arc_length_m.last().copied().unwrap_or(0.0) / self.problem.length;
-        for n in 0..next.chain.x.len() {
-            next.chain.x[n] = shape.position_at(next.chain.s[n] * scale)?;
-            next.chain.v[n] = speeds.position_at(next.chain.s[n] * scale)?;
-        }
-        next.clock.time_s = shape.time_s;
-        next.drives.driven = self.drives.driven;
-        next.drives.drag.clone_from(&self.drives.drag);
-        next.drives.followers.clone_from(&self.drives.followers);
-        next.drives.pulled.clone_from(&self.drives.pulled);
-        next.drives.hands.clone_from(&self.drives.hands);
-        next.place_pulleys();
-        for k in 0..next.wheels.pulleys.len() {
-            // What `slid` says is the middle of the arc, σ is where the mark is.
-            let i = next.wheels.pulleys[k].node;
-            let ahead = next.reach(i - 1).arc[0] - next.reach(i).arc[1];
-            next.chain.s[i] += 0.5 * ahead / self.problem.thermal_stretch;
-            next.wheels.pulleys[k].anchor = next.chain.s[i];
-        }
-        next.tidy();
-        next.laid = true;
-        next.forces();
-        Some(next)
-    }
-
-    fn touches_something(&self) -> bool {
-        !self.problem.world.is_empty() || self.problem.floor_friction.is_some()
-    }
-
-    /// Returns what a sub-step cannot go beyond.
-    fn non_finite(&self) -> Option<SolveError> {
-        let bad =
-            (0..self.chain.x.len()).find(|&i| !(self.chain.x[i] + self.chain.v[i]).iter().all(|c| c.is_finite()))?;
-        Some(SolveError::NonFinite {
-            quantity: "position or velocity",
-            arc_length_m: self.chain.s[bad],
-            time_s: self.clock.time_s,
-        })
-    }
-
     /// Comes to rest; on an error nothing has changed.
     fn settle_alone(&mut self) -> Result<(), SolveError> {
-        self.report.account = dynamics::momentum::Account::default();
-        let kept = self.clone();
-        if !self.laid {
-            self.lay();
+        self.report.account = Account::default();
+        let before = self.clone();
+        if !self.has_shape {
+            self.start_from_fem();
         }
         let found = self.equilibrium(Anchors::Forgotten);
         if found.is_err() {
-            *self = kept;
+            *self = before;
         }
         found
     }
 
-    fn report(&mut self) -> StepReport {
-        self.warn_of_corners();
-        for (k, f) in self.drives.followers.iter().enumerate() {
-            if let Some(f) = f.as_ref().filter(|f| f.behind_m() > 0.0) {
-                let fastest = self.settings.hand_speed_m_per_s;
-                self.report.warnings.push(held_warning(
-                    &self.problem,
-                    k,
-                    self.chain.s[self.chain.node_of[k]],
-                    f,
-                    fastest,
-                ));
-            }
+    /// Keeps the elements beside pulleys near the even length.
+    fn remesh(&mut self) {
+        if remesh(&mut self.mesh, self.clock.time_s) {
+            self.contacts.renew(self.mesh.rest_length.len());
         }
-        self.warn_of_hands();
-        StepReport { cost: self.report.cost, warnings: std::mem::take(&mut self.report.warnings) }
     }
+
+    /// Arc lengths of the supports on a shape, m: that of a pulley is of the material nearest to
+    /// it, in order.
+    pub(in crate::model::mass_spring) fn support_arc_lengths(&self, shape: &State) -> Vec<f64> {
+        let scale = self.mesh.problem.length / shape.arc_length_m.last().copied().unwrap_or(1.0);
+        let mut least = 0.0;
+        let mut out = vec![0.0; self.mesh.problem.supports.len()];
+        for (k, s) in self.mesh.problem.supports.iter().enumerate() {
+            out[k] = match (s.arc_length, s.position_at(shape.time_s)) {
+                (Some(known), _) => known,
+                (None, Some((at, _))) => {
+                    let at = self.drives.targets[k].unwrap_or(at);
+                    let off = |j: &usize| (shape.position_m[*j] - at).norm();
+                    let later = (0..shape.position_m.len()).filter(|&j| shape.arc_length_m[j] * scale > least);
+                    // Of several nodes as near the middle one counts: they are those on the wheel.
+                    let nearest = later.clone().map(|j| off(&j)).fold(f64::INFINITY, f64::min);
+                    let near: Vec<usize> =
+                        later.filter(|j| off(j) <= nearest + NEAREST_TOLERANCE * self.mesh.even_length).collect();
+                    near.get(near.len() / 2).map_or(least, |&j| shape.arc_length_m[j] * scale)
+                }
+                (None, None) => least,
+            };
+            least = out[k];
+        }
+        out
+    }
+
+    fn step_report(&mut self) -> StepReport {
+        let fastest = self.settings.hand_speed_m_per_s;
+        let corner = results::contacts::corner_warning(&self.mesh, &self.contacts, &self.report.cost, &self.settings);
+        let mut warnings = std::mem::take(&mut self.report.warnings);
+        warnings.extend(corner);
+        warnings.extend(self.drives.warnings(&self.mesh, fastest));
+        warnings.extend(hands::warnings(&self.drives, &self.mesh, fastest));
+        StepReport { cost: self.report.cost, warnings }
+    }
+}
+
+/// Elements of a cable where they are even.
+fn segments(problem: &Problem, settings: &Settings, tuning: &Tuning) -> usize {
+    settings.segments.or(problem.cable.segments).unwrap_or(tuning.mesh.segments).max(1)
 }
 
 impl Mechanics for MassSpringModel {
@@ -301,10 +341,11 @@ impl Mechanics for MassSpringModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let first = !self.laid && self.clock.time_s == 0.0;
+        let is_first = !self.has_shape && self.clock.time_s == 0.0;
         self.settle_alone()?;
-        self.look_beside(first);
-        Ok(self.report())
+        self.report.estimate = Estimate::default();
+        self.report.estimate = Estimate::at_rest(self, if is_first { Start::Scene } else { Start::Present });
+        Ok(self.step_report())
     }
 
     fn advance_gauged(
@@ -316,69 +357,75 @@ impl Mechanics for MassSpringModel {
         if !(dt_s > 0.0 && dt_s <= MAX_STEP_S) {
             return Err(SolveError::TimeStep { dt_s, longest_s: 60.0 });
         }
-        self.laid = true;
+        self.has_shape = true;
         let end_s = self.clock.time_s + dt_s;
         self.clock.due_s = end_s;
         if inertia == Inertia::Dynamic && gauge.asks(self.clock.time_s) {
-            let at_rest = self.chain.v.iter().all(|v| *v == Vec2::zeros());
-            gauge.begin(self.clock.time_s, at_rest, &self.chain.s, |i| self.gauged(i));
+            let at_rest = self.mesh.velocity.iter().all(|v| *v == Vec2::zeros());
+            gauge.begin(self.clock.time_s, at_rest, &self.mesh.arc_length, |i| tension::at_node(&self.mesh, i));
         }
-        // Not copied with each of its parts.
-        let beside = std::mem::take(&mut self.report.beside);
-        let counts = inertia == Inertia::Dynamic && !self.previews();
-        let done = self.or_as_before(|this| {
-            this.begin_account(dt_s, counts);
+        // The model beside this one is not copied with each part of a step.
+        let estimate = std::mem::take(&mut self.report.estimate);
+        let done = transaction(self, |model| {
+            model.report.account = Account::default();
             match inertia {
-                Inertia::Dynamic if this.previews() => this.preview(dt_s, gauge),
-                Inertia::Dynamic => this.integrate(dt_s, gauge),
-                Inertia::QuasiStatic => this.creep(dt_s),
+                Inertia::Dynamic if is_preview(&model.mesh, model.settings.stepping) => model.preview(dt_s, gauge),
+                Inertia::Dynamic => {
+                    model.report.account = Account::of_step(&model.mesh, dt_s);
+                    model.integrate(dt_s, gauge)
+                }
+                Inertia::QuasiStatic => model.quasi_static_step(dt_s),
             }
         });
-        self.report.beside = beside;
-        done?;
+        if let Err(error) = done {
+            self.report.estimate = estimate;
+            return Err(error);
+        }
         self.clock.time_s = end_s;
-        self.follow_beside(dt_s, inertia);
-        Ok(self.report())
+        if inertia == Inertia::QuasiStatic {
+            self.report.estimate = estimate.follow(self, dt_s);
+        }
+        Ok(self.step_report())
     }
 
     fn state(&self) -> State {
-        self.present()
+        results::state(self)
     }
 
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         if let Some(e) = state.refuse_non_finite() {
             return Err(e);
         }
-        let slid = self.slid_in(state);
-        let next = self.shaped(state, &slid).ok_or_else(|| unsupported(Unsupported::EmptyState))?;
-        next.refuse_buried()?;
+        let supports = self.support_arc_lengths(state);
+        let next = self.on_shape(state, &supports).ok_or_else(|| unsupported(Unsupported::EmptyState))?;
+        impacts::refuse_buried(&next.mesh)?;
         *self = next;
         Ok(())
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
         if target_m.iter().all(|c| c.is_finite())
-            && let Some(d) = self.drives.drag.get_mut(support)
+            && let Some(d) = self.drives.targets.get_mut(support)
         {
             *d = Some(target_m);
-            self.drives.pulled[support] = false;
+            self.drives.by_spring[support] = false;
         }
     }
 
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {
         self.drag_support(support, hand_m);
         let holds = |kind| matches!(kind, SupportKind::Fixed | SupportKind::Clamped);
-        if self.problem.supports.get(support).is_some_and(|s| holds(s.kind)) {
-            self.drives.pulled[support] = true;
+        if self.mesh.problem.supports.get(support).is_some_and(|s| holds(s.kind)) {
+            self.drives.by_spring[support] = true;
         }
     }
 
     fn solution(&self) -> CableSolution {
-        self.answer()
+        results::answer(self)
     }
 
     fn problem(&self) -> &Arc<Problem> {
-        &self.problem
+        &self.mesh.problem
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

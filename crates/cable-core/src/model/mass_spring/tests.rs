@@ -129,7 +129,7 @@ fn slow_motion_takes_mu_w_l_and_turns_round() {
     }
     // A cable cannot push its tail back.
     let back = pull(&sim);
-    // What is left is the half element at the hitch itself.
+    // The half element at the hitch itself is left.
     assert!((back / exact * 40.0 + 1.0).abs() < 0.01, "{back}");
 }
 
@@ -177,21 +177,21 @@ fn mechanics(scene: &Scene) -> MassSpringModel {
 
 /// Kinetic energy, stretch and height, J.
 fn energy(m: &MassSpringModel) -> f64 {
-    let p = &m.problem;
+    let p = &m.mesh.problem;
     let body = p.body_force(m.clock.time_s);
     let mut out = 0.0;
-    for e in 0..m.chain.rest.len() {
-        let r = m.reach(e);
-        let stretch = (r.length - m.chain.rest[e]).max(0.0);
-        out += 0.5 * p.axial_stiffness * stretch * stretch / m.chain.rest[e]
-            - body.dot(&(r.middle * m.chain.share[e] + r.hung));
+    for e in 0..m.mesh.rest_length.len() {
+        let r = m.mesh.element(e);
+        let stretch = (r.length - m.mesh.rest_length[e]).max(0.0);
+        out += 0.5 * p.axial_stiffness * stretch * stretch / m.mesh.rest_length[e]
+            - body.dot(&(r.middle * m.mesh.straight_length[e] + r.arc_moment));
     }
-    for i in 0..m.chain.x.len() {
-        if !m.drives.held[i] {
-            out += 0.5 * m.chain.mass[i] * m.chain.v[i].norm_squared();
+    for i in 0..m.mesh.position.len() {
+        if !m.mesh.supported[i] {
+            out += 0.5 * m.mesh.mass[i] * m.mesh.velocity[i].norm_squared();
         }
     }
-    out + m.wheels.pulleys.iter().map(|p| 0.5 * p.mass * p.rate * p.rate).sum::<f64>()
+    out + m.mesh.wheels.pulleys.iter().map(|p| 0.5 * p.mass * p.sliding_speed * p.sliding_speed).sum::<f64>()
 }
 
 #[test]
@@ -201,21 +201,21 @@ fn a_smooth_pulley_makes_no_energy_and_loses_no_material() {
         scene.cables[0].supports[1].friction = Some(2.0);
         let mut m = mechanics(&scene);
         m.settle().unwrap();
-        m.wheels.pulleys[0].friction = 0.0;
+        m.mesh.wheels.pulleys[0].friction = 0.0;
         let start = energy(&m);
         let mut slid = [f64::INFINITY, f64::NEG_INFINITY];
         let (mut most, mut last, mut counts) = (0.0f64, start, std::collections::BTreeSet::new());
         for _ in 0..200 {
             m.advance(0.02, Inertia::Dynamic).unwrap();
-            let node = m.wheels.pulleys[0].node;
+            let node = m.mesh.wheels.pulleys[0].node;
             counts.insert(node);
-            slid = [slid[0].min(m.chain.s[node]), slid[1].max(m.chain.s[node])];
+            slid = [slid[0].min(m.mesh.arc_length[node]), slid[1].max(m.mesh.arc_length[node])];
             last = energy(&m);
             most = most.max(last - start);
-            assert_eq!(m.chain.span.iter().sum::<f64>().to_bits() & !0xff, 11.0f64.to_bits() & !0xff);
-            let mass = m.chain.mass.iter().sum::<f64>() / (11.0 * 1.246) - 1.0;
+            assert_eq!(m.mesh.material_length.iter().sum::<f64>().to_bits() & !0xff, 11.0f64.to_bits() & !0xff);
+            let mass = m.mesh.mass.iter().sum::<f64>() / (11.0 * 1.246) - 1.0;
             assert!(mass.abs() < 1e-12, "mass {mass:e}");
-            assert!(m.chain.s.windows(2).all(|w| w[1] > w[0]));
+            assert!(m.mesh.arc_length.windows(2).all(|w| w[1] > w[0]));
         }
         println!("R {radius}: made {most:.2e} J, end {:.2e} J, slid {slid:?}, nodes {counts:?}", last - start);
         assert!(slid[1] - slid[0] > 0.3 && counts.len() > 1, "it slides, nodes come and go");
@@ -294,7 +294,7 @@ fn a_preview_rests_where_the_springs_rest() {
 fn a_preview_that_runs_away_is_cut_and_said() {
     let mut m = mechanics(&swinging(0.0, 1e8));
     m.settings.stepping = Stepping::Preview;
-    m.chain.v.fill(crate::math::Vec2::new(0.0, 1e4));
+    m.mesh.velocity.fill(crate::math::Vec2::new(0.0, 1e4));
     let report = m.advance(0.02, Inertia::Dynamic).unwrap();
     let said: Vec<_> = report.warnings.iter().map(|w| w.to_string()).collect();
     assert!(said.iter().any(|s| s.contains("velocity was cut")), "{said:?}");

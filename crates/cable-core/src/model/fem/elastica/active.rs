@@ -249,7 +249,7 @@ impl Elastica {
         }
     }
 
-    /// What a place on a contact lies deeper in than in that contact.
+    /// The contact in which a place on a contact lies deeper than in that one.
     fn better(&self, problem: &Problem, c: &Contact, x: Vec2, t: Vec2) -> Option<Contact> {
         let deep = OVERLAP_TOLERANCE * problem.radius;
         let gap = problem.world.signed_gap(x, 0.0).filter(|g| g.gap_m < -deep)?;
@@ -291,7 +291,7 @@ impl Elastica {
         let x = gap.point + gap.normal * (gap.gap_m + self.offset(problem, &gap));
         let mut contact = contact_at(problem, &gap, x, tangent(&u))?;
         if gap.friction > 0.0 {
-            // What the cable did not lie on while it was flexible slips as its neighbours do.
+            // A contact on which the flexible cable did not lie slips as its neighbours do.
             let known = self.contacts.iter().find(|c| c.slips).map_or(0.0, |c| c.mobilised.signum());
             contact.mobilised = gap.friction * known;
             contact.slips = known != 0.0;

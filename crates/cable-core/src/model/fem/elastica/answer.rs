@@ -96,7 +96,7 @@ impl Elastica {
                     ..Node::default()
                 };
                 match out.last_mut() {
-                    // Where two pieces meet the greater tension counts, and the force beyond.
+                    // The greater tension counts where two pieces meet, and the force beyond.
                     Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * self.length => {
                         if node.tension_n > l.tension_n {
                             *l = node;
@@ -262,8 +262,7 @@ impl Elastica {
             places.extend(self.peak(piece, [g[0], g[1]]).filter(clear));
             places.sort_by(f64::total_cmp);
             out.extend(places.into_iter().map(|x| self.read(piece, x)));
-            // What is spread along it and the point force at its end are told apart by a node just
-            // before that.
+            // A node just before the end tells the spread force from the point force at the end.
             if piece.lies.is_some() && g[1] >= 1.0 {
                 out.push(self.read(piece, 1.0 - END_NODE_OFFSET));
             }
@@ -272,8 +271,8 @@ impl Elastica {
         out
     }
 
-    /// Where between two places of a piece its tension is greatest, if not at one of them: between
-    /// nodes it is read too small by as much as their distance squared.
+    /// The place of the greatest tension between two places of a piece, if it is at neither:
+    /// between nodes it is read too small by the square of their distance.
     fn peak(&self, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
         let rises = |x: f64| {
             let u = self.read(piece, x);
@@ -290,7 +289,7 @@ impl Elastica {
         Some(from)
     }
 
-    /// What a contact does to a piece that lies on it, from place to place.
+    /// Force of a contact on a piece that lies on it, from place to place.
     fn along(&self, problem: &Problem, piece: &Piece) -> Vec<ContactSample> {
         let of = |pair: &[[f64; STATES]]| {
             let (a, b) = (&pair[0], &pair[1]);

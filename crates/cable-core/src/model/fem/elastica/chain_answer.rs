@@ -114,7 +114,7 @@ impl Chain<'_> {
             let before = if i > 0 { forces[i - 1] } else { Vec2::zeros() };
             let after = if i < last { forces[i] } else { Vec2::zeros() };
             let loaded = matches!(s.kind, SupportKind::Load | SupportKind::Free);
-            // What bars that lie on corners pass on to it is not its own.
+            // Forces that bars on corners pass on to it are not its own.
             let near = self.touches.iter().filter(|t| t.active);
             let led = near.flat_map(|t| t.shares().map(|(k, a)| (k, self.force_of(t) * a)));
             let led = led.filter(|(k, _)| *k == i).fold(Vec2::zeros(), |sum, (_, f)| sum + f);

@@ -76,7 +76,7 @@ const STEP_TOLERANCE: f64 = 1e-10;
 /// error is its square.
 const DIFFERENCE_STEP: f64 = 1e-6;
 
-/// What the cable can lie on, at one place.
+/// A surface on which the cable can lie, at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Contact {
     /// Index of the obstacle in the scene, or of the pulley among the supports.
@@ -91,11 +91,11 @@ struct Contact {
     sense: f64,
     /// Friction mobilised: force along growing arc length over normal force.
     mobilised: f64,
-    /// Whether that is all there is.
+    /// True if that is all there is.
     slips: bool,
 }
 
-/// Who a contact belongs to.
+/// The owner of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Owner {
     Obstacle(usize),
@@ -123,7 +123,7 @@ impl Contact {
         self.radius.filter(|r| *r > 0.0).map_or(0.0, |r| self.sense / r)
     }
 
-    /// Whether it is a point that the cable slides over, which no cable can lie on.
+    /// True if it is a point that the cable slides over, which no cable can lie on.
     fn is_point(&self) -> bool {
         self.radius == Some(0.0)
     }
@@ -139,7 +139,7 @@ struct Piece {
     nodes: Vec<[f64; STATES]>,
 }
 
-/// Where two pieces meet.
+/// A point where two pieces meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Joint {
     /// A contact in one point.
@@ -249,7 +249,7 @@ pub fn rest(
     Some((if rests { finer } else { coarse }.known_to(errors), cost))
 }
 
-/// Whether a cable can have come from one shape to an answer without passing through an obstacle.
+/// True if a cable can have come from one shape to an answer without passing through an obstacle.
 /// Newton's method can: where a contact of the way up in stiffness would have to pull it is let go,
 /// and what springs off a post may come to rest on its other side.
 fn keeps_sides(problem: &Problem, from: &[Node], to: &CableSolution) -> bool {
@@ -300,7 +300,7 @@ impl Elastica {
         [l * stretch * t.x, l * stretch * t.y, l * turn.x, l * moment.x, l * df.x, l * df.y, l, 0.0]
     }
 
-    /// What an element lacks to Simpson's rule with the middle of Hermite's cubic.
+    /// Residual of Simpson's rule in an element, with the middle of Hermite's cubic.
     fn element(&self, lies: Option<usize>, h: f64, a: &[f64; STATES], b: &[f64; STATES]) -> [f64; STATES] {
         let (fa, fb) = (self.slope(lies, a), self.slope(lies, b));
         let middle = std::array::from_fn(|i| 0.5 * (a[i] + b[i]) + 0.125 * h * (fa[i] - fb[i]));
@@ -317,8 +317,8 @@ impl Elastica {
             self.lie(c, u, out);
         }
         match (self.ends[which], contact) {
-            // What lies is led: where along it, or how hard it is pulled, is all that is left to
-            // say.
+            // An end that lies on a contact is led: only its place along the contact or its pull is
+            // free.
             (End::Held(at, _), Some(_)) => out.push((place(u) - at).dot(&tangent(u))),
             (End::Loaded(load), Some(c)) => {
                 out.push(tension(u) - sign * (load.dot(&tangent(u)) + c.mobilised * self.tip_push(which, c, u)));
@@ -334,7 +334,7 @@ impl Elastica {
         }
     }
 
-    /// What a contact does to an end that lies on it, along its normal, N: the load of that end
+    /// Force of a contact on an end that lies on it, along its normal, N: the load of that end
     /// presses there in one point.
     fn tip_push(&self, which: usize, c: &Contact, u: &[f64; STATES]) -> f64 {
         match self.ends[which] {

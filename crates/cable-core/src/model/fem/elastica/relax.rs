@@ -135,9 +135,9 @@ pub(super) struct Chain<'a> {
     /// Length of a bar, m.
     pub bar: f64,
     pub steps: usize,
-    /// Whether nothing is left that it could give way to.
+    /// True if nothing is left that it could give way to.
     pub stable: bool,
-    /// How many times more bars it has than the coarsest.
+    /// Number of its bars over that of the coarsest chain.
     finer: f64,
 }
 
@@ -147,7 +147,7 @@ fn first_lay(problem: &Problem) -> Vec<Node> {
     leaning_way(problem).into_iter().map(node).collect()
 }
 
-/// Whether the material of an answer lies in heaps.
+/// True if the material of an answer lies in heaps.
 fn has_pockets(problem: &Problem, answer: &CableSolution) -> bool {
     let most = 1e-3 * problem.length;
     answer.nodes.windows(2).any(|p| {
@@ -174,7 +174,7 @@ pub(super) fn relaxed<'a>(
     (chain.settle(1.0) && chain.stable).then_some(chain)
 }
 
-/// What becomes of a chain that is let go from an answer.
+/// The outcome of a chain that is let go from an answer.
 pub(super) enum LetGo<'a> {
     /// It stays.
     Stays,
@@ -237,7 +237,7 @@ impl<'a> Chain<'a> {
         let gravity =
             if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
         let last = problem.supports.len().checked_sub(1)?;
-        // Where on the cable something acts: place, hold, direction, load.
+        // Points of the cable where supports and loads act: place, hold, direction, load.
         let mut stops: Vec<(f64, Option<Vec2>, Option<f64>, Vec2)> = Vec::new();
         for (k, s) in problem.supports.iter().enumerate() {
             if s.kind == SupportKind::Pulley {
@@ -353,7 +353,7 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// How deep the centre line's surface is in anything, m.
+    /// Greatest depth of the cable's surface in an obstacle, m.
     fn depth(&self, x: &[Vec2]) -> f64 {
         let mut deepest: f64 = 0.0;
         let world = &self.problem.world;
@@ -364,7 +364,7 @@ impl<'a> Chain<'a> {
         };
         x.iter().zip(&self.held).filter(|(_, held)| !**held).for_each(|(p, _)| look(*p));
         for (a, b) in x.iter().zip(x.iter().skip(1)) {
-            // Where a bar is nearest to a corner it may have cut that off.
+            // A bar may cut off the corner that it is nearest to.
             world.geometry().segment_pairs(*a, *b, self.bar, &mut |p| look(a + (b - a) * p.gap.fraction));
         }
         deepest
@@ -572,7 +572,7 @@ impl<'a> Chain<'a> {
                 // Two that are let go and taken back by turns would go on for ever: later on none
                 // is let go.
                 t.active = gap < 0.0 || (t.active && set >= RELEASE_ROUNDS);
-                // What is new pushes from the next solution on.
+                // A new contact pushes from the next solution on.
                 t.push = if gap < 0.0 { -stiff * gap } else { 0.0 };
             }
             if !changed {
@@ -733,7 +733,7 @@ impl<'a> Chain<'a> {
             .collect()
     }
 
-    /// What pushes, in order along the cable.
+    /// The contacts that push, in order along the cable.
     pub fn pushes(&self) -> Vec<ContactPair> {
         let least = 1e-7 * self.scale;
         let mut out: Vec<ContactPair> = self.touches.iter().filter(|t| t.active && t.push > least).copied().collect();

@@ -40,7 +40,7 @@ const CONTACT_DISTANCE_FRACTION: f64 = 1e-3;
 /// Part of an arc that is given up where two contacts leave no cable between them.
 const SURRENDERED_ARC_FRACTION: f64 = 0.25;
 
-/// What happens along the cable, between two arc lengths (m).
+/// A state of the cable between two arc lengths (m).
 #[derive(Clone, Copy, Debug)]
 struct Event {
     from: f64,
@@ -68,8 +68,8 @@ pub(super) fn contact_at(problem: &Problem, gap: &Gap, x: Vec2, t: Vec2) -> Opti
     Some(Contact { at: center, radius: Some(radius), ..line })
 }
 
-/// How much of its friction an obstacle mobilises at `s` (m) in an answer, and whether that is all
-/// there is.
+/// Part of its friction that an obstacle mobilises at `s` (m) in an answer, and true if that is all
+/// of it.
 pub(super) fn mobilised(problem: &Problem, answer: &CableSolution, obstacle: usize, s: f64) -> (f64, bool) {
     let name = problem.world.obstacle_name(obstacle);
     let far = |c: &&crate::solution::ContactReport| {
@@ -312,7 +312,7 @@ impl Elastica {
             let k = self.contacts.len();
             self.contacts.push(contact);
             let long = to - from > 3.0 * bar;
-            // What lies to the end of the cable lies there whole.
+            // A stretch that lies to the end of the cable lies there whole.
             let to = if long && self.length - to < bar { self.length } else { to };
             let from = if long && from < bar { 0.0 } else { from };
             let [from, to] = if long { [from, to] } else { [s, s] };
@@ -442,8 +442,8 @@ impl Elastica {
         None
     }
 
-    /// How much of its friction a contact mobilises: what it did when the cable was laid as a
-    /// flexible one. All of it where it slipped.
+    /// Part of its friction that a contact mobilises, as when the cable was laid as a flexible one;
+    /// all of it where it slipped.
     fn mobilise(&self, problem: &Problem, answer: &CableSolution, contact: &mut Contact, s: f64) {
         match contact.owner {
             Owner::Obstacle(obstacle) => {
@@ -699,7 +699,7 @@ impl Elastica {
         })
     }
 
-    /// How the slope `f` of a state changes along a piece, by central differences over a part of an
+    /// Change of the slope `f` of a state along a piece, by central differences over a part of an
     /// element of length `h`.
     fn second_slope(&self, lies: Option<usize>, u: &[f64; STATES], f: &[f64; STATES], h: f64) -> [f64; STATES] {
         let step = DIFFERENCE * h;

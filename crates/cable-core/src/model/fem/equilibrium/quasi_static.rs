@@ -1,17 +1,17 @@
 //! This module finds equilibria in contact, and takes quasi-static steps.
 
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
-use crate::math::{Vec2, bounded, larger};
-use crate::model::fem::dynamics::{Dynamics, REACH};
-use crate::model::fem::newton::initial_guess::push_out;
+use crate::math::{Vec2, larger};
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::equilibrium::lagged_friction::LAG_ROUNDS;
+use crate::model::fem::newton::initial_guess::depenetrate;
 use crate::model::fem::newton::minimize::DRIFT;
 use crate::model::fem::results;
+use crate::model::fem::state::cable::{CableState, REACH};
 use crate::model::fem::state::moving_outline::MovingOutline;
 use crate::model::fem::system::friction_state::SLIDE;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose, StepInput};
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 use crate::model::fem::system::step_input::{load_scale, tolerance};
-use crate::model::fem::time::bdf2::ROUNDS_EACH;
-use crate::model::fem::time::step_setup::StickSlipChanges;
 use crate::model::{Inertia, Model, StepReport};
 use crate::state::State;
 
@@ -22,20 +22,6 @@ pub(in crate::model::fem) const REST_WORK: usize = 4_000_000;
 
 /// Newton iterations of a step without inertia.
 const REST_ITERATIONS: usize = 150;
-
-/// Rounds of refreshing the normal forces that friction uses, in a step without inertia.
-const LAG_ROUNDS: usize = 25;
-
-/// Rounds after which normal forces are taken halfway to the new ones only: where a contact that
-/// rubs more lifts its neighbour, which then rubs less, they go round and round. Fewer: what
-/// converges by itself takes longer; more: fewer rounds are left to halve what is off.
-const PLAIN_ROUNDS: usize = 8;
-
-/// Least part of the way that friction is taken towards its new normal forces, and by what that
-/// part changes from round to round.
-const LEAST_PART: f64 = 0.03;
-const RESISTANCE_GROWTH: f64 = 1.1;
-const RESISTANCE_SHRINKAGE: f64 = 0.6;
 
 /// The same in a step of relaxation.
 const RELAX_LAG_ROUNDS: usize = 8;
@@ -73,19 +59,79 @@ const CORNER_ROUNDS: usize = 8;
 /// that. Smaller: more steps are taken twice.
 const LEAST_PULL: f64 = 1e-4;
 
-/// What was found with refreshed normal forces, grips and factors.
-#[derive(Clone, Copy, Debug)]
-struct Lagged {
-    done: Converged,
-    grips: StickSlipChanges,
-    /// By how much the friction of a contact changed in the last round, N.
-    off: f64,
-}
+impl CableState {
+    /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
+    pub(in crate::model::fem) fn soft_shift(&self) -> f64 {
+        self.meshing.bar_weight / 0.1
+    }
 
-impl Lagged {
-    /// Whether friction is what the normal forces allow, at sliding nodes and elsewhere.
-    fn is_lawful(&self, task: &StepInput) -> bool {
-        self.grips.hold() && self.off <= DRIFT * task.tolerance
+    /// The resistance that a way down begins with, N/m: what acts on an element over a tenth of a
+    /// metre, dead loads with it where they are what counts. With the weight alone a cable of 5 g/m
+    /// under 100 N, laid through a post, was thrown about and found no rest.
+    fn first_resistance(&self) -> f64 {
+        let whole = load_scale(&self.problem).1 / self.meshing.even_bars as f64;
+        if whole > DEAD_LOAD_RATIO * self.meshing.bar_weight { whole / 0.1 } else { self.soft_shift() }
+    }
+
+    /// Why a cable that nothing but friction holds does not rest where it was brought: what each
+    /// node alone is let off with adds up.
+    pub(in crate::model::fem) fn slides_as_a_whole(&self) -> Option<NoEquilibrium> {
+        if self.problem.supports.iter().any(|s| s.at.is_some()) || self.contacts.own.shape.is_on() {
+            return None;
+        }
+        let left = results::unbalanced(self, &self.motion.x, self.motion.time).norm();
+        let scale = load_scale(&self.problem).1;
+        (left > UNHELD_LOAD_FRACTION * scale).then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
+    }
+
+    /// Least distance (m) that both ends have moved to `sought`, if that is more than the length of
+    /// the cable.
+    fn ran_away(&self, sought: &[Vec2]) -> Option<f64> {
+        let moved = |a: Option<&Vec2>, b: Option<&Vec2>| Some((a? - b?).norm());
+        let now = &self.motion.x;
+        let way = moved(sought.first(), now.first())?.min(moved(sought.last(), now.last())?);
+        (way > self.problem.length).then_some(way)
+    }
+
+    /// The obstacle through which a cable runs that found no rest at `x`: it cannot get out of
+    /// there.
+    fn through(&self, x: &[Vec2]) -> Option<NoEquilibrium> {
+        let (mesh, world) = (&self.mesh, &self.problem.world);
+        if x.len() != mesh.nodes() {
+            return None;
+        }
+        // Its centre line is in the thing itself, or nearly: what only touches is not through.
+        let least = -0.9 * self.problem.radius;
+        let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
+        let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
+        let [a, b] = mesh.straight(e, x);
+        let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
+        let obstacle = world.obstacle_name(gap.obstacle).to_owned();
+        Some(NoEquilibrium::ThroughObstacle { obstacle, at_m: gap.point, arc_length_m: mesh.arc_length[e] })
+    }
+
+    /// True if the cable is in touch with itself.
+    pub(in crate::model::fem) fn touches_itself(&self) -> bool {
+        self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, REACH).is_some()
+    }
+
+    /// True if two bars of the cable cross.
+    fn crosses_itself(&self) -> bool {
+        !crate::contact::self_crossings::crossings(&self.motion.x, |_| true).is_empty()
+    }
+
+    /// Steps without inertia that keep every support's move below half an element.
+    pub(in crate::model::fem) fn pieces(&self, end: f64, dragged: &[Option<Vec2>]) -> f64 {
+        let even = self.problem.length / self.meshing.even_bars as f64;
+        let mut most: f64 = 0.0;
+        for (k, s) in self.problem.supports.iter().enumerate() {
+            if let (Some((at, _)), Some(now)) = (s.position_at(end), self.support_position(k)) {
+                let at = dragged.get(k).copied().flatten().unwrap_or(at);
+                most = most.max((at - now).norm());
+            }
+        }
+        let carried = self.outline.as_ref().map_or(0.0, MovingOutline::pieces);
+        larger(most / (0.5 * even), carried).ceil().clamp(1.0, 1e4)
     }
 }
 
@@ -111,35 +157,35 @@ impl Dynamics {
     fn rest_rounds(&mut self, to: f64, dragged: &[Option<Vec2>], pull: f64) -> Result<Converged, Failure> {
         let (mut total, mut settled) = (Converged::default(), false);
         for round in 0..CORNER_ROUNDS {
-            self.prepare_way([to, to], Some(dragged));
-            self.adapt_slip();
-            self.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
-            self.task.max_iterations = REST_ITERATIONS;
-            self.task.most_noise = RESIDUAL_LIMIT_TOLERANCES * self.task.tolerance;
-            let mut pose = self.still_pose();
-            let mut done = self.lag_wholly(&mut pose);
-            if done.is_err_and(|f| f.cause != FailureCause::WorkSpent) && self.contacts.slip < SLIDE {
-                // Where grips change all along the cable, as on a first lay, ground that gives way
-                // is easier to come to rest on.
-                self.contacts.set_slip(SLIDE);
-                pose = self.still_pose();
-                done = self.lag_wholly(&mut pose);
+            self.cable.prepare_way([to, to], Some(dragged));
+            self.cable.adapt_slip();
+            self.cable.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
+            self.cable.input.max_iterations = REST_ITERATIONS;
+            self.cable.input.most_noise = RESIDUAL_LIMIT_TOLERANCES * self.cable.input.tolerance;
+            let mut unknowns = self.solver.present_unknowns(&self.cable);
+            let mut done = self.solver.lag_wholly(&mut self.cable, &mut unknowns);
+            if done.is_err_and(|f| f.cause != FailureCause::WorkSpent) && self.cable.contacts.slip < SLIDE {
+                // A cable whose grips change all along it, as at the first shape, comes to rest
+                // more easily on ground that gives way.
+                self.cable.contacts.set_slip(SLIDE);
+                unknowns = self.solver.present_unknowns(&self.cable);
+                done = self.solver.lag_wholly(&mut self.cable, &mut unknowns);
             }
             if round == 0
                 && pull.is_finite()
-                && let Some(node) = self.pulled_by(&pose.x, pull)
+                && let Some(node) = self.cable.pulled_by(&unknowns.x, pull)
             {
                 let residual = done.map_or_else(|f| f.residual, |d| d.residual);
                 return Err(Failure { node, residual, cause: FailureCause::CornerPulls });
             }
             let done = done?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
-            self.accept_pose(&pose, to);
-            // Where corners are met and left by turns to the last, the mesh stays as it balances.
+            self.accept_unknowns(&unknowns, to);
+            // The mesh stays as it balances if corners are met and left by turns to the last.
             if settled || round + 1 == CORNER_ROUNDS {
                 break;
             }
-            let found = self.remesh(Inertia::QuasiStatic);
+            let found = self.cable.remesh(Inertia::QuasiStatic);
             // Marks that are moved take strain from bar to bar, which has to be balanced once more.
             settled = !found.bars;
             if settled && !found.marks {
@@ -152,25 +198,25 @@ impl Dynamics {
     /// Reduces the residual of an equilibrium, which adds up along the cable, to the level of
     /// round-off. It starts from the present shape, and changes nothing where it does not converge.
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
-        let kept = (self.rollback.saved.clone(), self.rollback.can_restore);
-        let (exact, to) = (self.task.tolerance, self.motion.time);
+        let kept = self.rollback.clone();
+        let (exact, to) = (self.cable.input.tolerance, self.cable.motion.time);
         let mut all = found;
         for (part, iterations) in POLISH_STAGES {
-            self.save();
-            self.prepare_way([to, to], Some(dragged));
-            self.task.most_noise = exact;
-            (self.task.tolerance, self.task.max_iterations) = (part * exact, iterations);
-            let mut pose = self.still_pose();
-            let Ok(done) = self.lag(&mut pose, LAG_ROUNDS) else {
-                self.restore();
+            self.rollback.save(&self.cable);
+            self.cable.prepare_way([to, to], Some(dragged));
+            self.cable.input.most_noise = exact;
+            (self.cable.input.tolerance, self.cable.input.max_iterations) = (part * exact, iterations);
+            let mut unknowns = self.solver.present_unknowns(&self.cable);
+            let Ok(done) = self.solver.lag(&mut self.cable, &mut unknowns, LAG_ROUNDS) else {
+                self.rollback.restore(&mut self.cable);
                 break;
             };
             all = Converged { iterations: all.iterations + done.iterations, ..done };
             // With the bars it balances on: new ones would have to be brought to rest again.
-            self.accept_pose(&pose, to);
+            self.accept_unknowns(&unknowns, to);
         }
-        self.task.tolerance = exact;
-        (self.rollback.saved, self.rollback.can_restore) = kept;
+        self.cable.input.tolerance = exact;
+        self.rollback = kept;
         all
     }
 
@@ -181,131 +227,67 @@ impl Dynamics {
         if !self.rested {
             return;
         }
-        self.save();
-        let reach = self.problem.length / self.meshing.even_bars as f64;
-        let laid = self.motion.x.clone();
-        let found = self.rest_step(self.motion.time, dragged).is_ok();
+        self.rollback.save(&self.cable);
+        let reach = self.cable.problem.length / self.cable.meshing.even_bars as f64;
+        let laid = self.cable.motion.x.clone();
+        let found = self.rest_step(self.cable.motion.time, dragged).is_ok();
         let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= reach;
-        if !(found && laid.len() == self.motion.x.len() && laid.iter().zip(&self.motion.x).all(near)) {
-            self.restore();
+        if !(found && laid.len() == self.cable.motion.x.len() && laid.iter().zip(&self.cable.motion.x).all(near)) {
+            self.rollback.restore(&mut self.cable);
         }
     }
 
-    /// Minimises again and again with refreshed normal forces, grips and factors until nothing
-    /// changes.
-    fn lag(&mut self, pose: &mut Pose, rounds: usize) -> Result<Converged, Failure> {
-        self.lag_until(pose, rounds).map(|found| found.done)
-    }
-
-    /// The same; says what was found.
-    fn lag_until(&mut self, pose: &mut Pose, rounds: usize) -> Result<Lagged, Failure> {
-        let (mut total, mut grips) = (Converged::default(), StickSlipChanges::FOUND);
-        let (mut fewest, mut spare) = (usize::MAX, PLAIN_ROUNDS);
-        let (mut off, mut part) = (0.0, 1.0);
-        let mut before = Vec::with_capacity(self.contacts.rubs.capacity());
-        for round in 0..rounds {
-            self.contacts.look_around(&self.problem, &self.mesh, &pose.x, |_| 0.0);
-            std::mem::swap(&mut before, &mut self.contacts.rubs);
-            self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
-            if round > 0 {
-                let now = self.contacts.ease(&before, part);
-                // What goes to and fro gets no nearer by taking as much of the way.
-                if round >= PLAIN_ROUNDS {
-                    part = if now < (1.0 - 0.5 * part) * off {
-                        bounded(RESISTANCE_GROWTH * part, 0.0, 1.0)
-                    } else {
-                        larger(RESISTANCE_SHRINKAGE * part, LEAST_PART)
-                    };
-                }
-                off = now;
-            }
-            self.task.shift = self.soft_shift();
-            let done = self.minimise(pose)?;
-            total = Converged { iterations: total.iterations + done.iterations, ..done };
-            grips = self.update_grips(pose, spare == 0);
-            if grips.wrong < fewest {
-                (fewest, spare) = (grips.wrong, PLAIN_ROUNDS);
-            } else {
-                spare = spare.saturating_sub(1);
-            }
-            // A round that needed no iteration found the normal forces it had used.
-            let found = done.iterations == 0 && off <= self.task.tolerance;
-            if (found || self.contacts.rubs.is_empty()) && grips.wrong == 0 && grips.same {
-                return Ok(Lagged { done: total, grips, off: 0.0 });
-            }
-        }
-        Ok(Lagged { done: total, grips, off })
-    }
-
-    /// The same, until the law holds at every sliding node.
-    fn lag_wholly(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
-        let sliding = self.mesh.sliding.iter().flatten().count();
-        let found = self.lag_until(pose, LAG_ROUNDS + ROUNDS_EACH * sliding)?;
-        if found.is_lawful(&self.task) {
-            return Ok(found.done);
-        }
-        let node = self.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
-        Err(Failure { node, residual: found.done.residual, cause: FailureCause::StickSlipUndecided })
-    }
-
-    /// Takes a pose as the state at rest at the time `to`; returns whether what the cable runs over
-    /// changed.
-    fn accept_rest(&mut self, pose: &Pose, to: f64) -> bool {
-        self.accept_pose(pose, to);
-        self.remesh(Inertia::QuasiStatic).seats
+    /// Takes unknowns as the state at rest at the time `to`; returns whether what the cable runs
+    /// over changed.
+    fn accept_rest(&mut self, unknowns: &Unknowns, to: f64) -> bool {
+        self.accept_unknowns(unknowns, to);
+        self.cable.remesh(Inertia::QuasiStatic).seats
     }
 
     /// The same, corners as they are.
-    fn accept_pose(&mut self, pose: &Pose, to: f64) {
-        self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
-        self.contacts.carriage = None;
-        self.motion.x.clone_from(&pose.x);
-        self.motion.v.fill(Vec2::zeros());
-        self.motion.w.fill(0.0);
-        self.motion.time = to;
-        self.slide(&pose.slide);
-        self.mesh.sliding.iter_mut().flatten().for_each(|s| s.balanced = None);
+    fn accept_unknowns(&mut self, unknowns: &Unknowns, to: f64) {
+        self.cable.contacts.commit(
+            &self.cable.problem,
+            &self.cable.mesh,
+            &unknowns.x,
+            &self.cable.motion.x,
+            &unknowns.slide,
+        );
+        self.cable.contacts.outline_motion = None;
+        self.cable.motion.x.clone_from(&unknowns.x);
+        self.cable.motion.v.fill(Vec2::zeros());
+        self.cable.motion.w.fill(0.0);
+        self.cable.motion.time = to;
+        self.cable.slide(&unknowns.slide);
+        self.cable.mesh.sliding.iter_mut().flatten().for_each(|s| s.balanced = None);
         self.forget_history();
-    }
-
-    /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
-    fn soft_shift(&self) -> f64 {
-        self.meshing.bar_weight / 0.1
-    }
-
-    /// The resistance that a way down begins with, N/m: what acts on an element over a tenth of a
-    /// metre, dead loads with it where they are what counts. With the weight alone a cable of 5 g/m
-    /// under 100 N, laid through a post, was thrown about and found no rest.
-    fn first_resistance(&self) -> f64 {
-        let whole = load_scale(&self.problem).1 / self.meshing.even_bars as f64;
-        if whole > DEAD_LOAD_RATIO * self.meshing.bar_weight { whole / 0.1 } else { self.soft_shift() }
     }
 
     /// Follows the way down with ever weaker viscous resistance, then finds the resting place
     /// itself. On the way what rounding hides may be any force: a cable laid in touch begins there.
-    /// Where that ends in no rest, it may not.
+    /// If that finds no equilibrium, it may not.
     pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
-        let kept = (self.rollback.saved.clone(), self.rollback.can_restore);
-        self.save();
+        let kept = self.rollback.clone();
+        self.rollback.save(&self.cable);
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
         if found.is_err_and(|f| {
-            f.cause != FailureCause::WorkSpent && f.residual > RESIDUAL_LIMIT_TOLERANCES * self.task.tolerance
+            f.cause != FailureCause::WorkSpent && f.residual > RESIDUAL_LIMIT_TOLERANCES * self.cable.input.tolerance
         }) {
-            self.restore();
+            self.rollback.restore(&mut self.cable);
             found = self.relax_within(RESIDUAL_LIMIT_TOLERANCES, to, dragged);
         }
-        (self.rollback.saved, self.rollback.can_restore) = kept;
+        self.rollback = kept;
         found
     }
 
     /// The same; `noise` is the greatest force, in tolerances, that rounding may hide on the way.
     fn relax_within(&mut self, noise: f64, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
-        // What the outline moves into goes out of its way before anything slides.
-        self.prepare_way([to, to], Some(dragged));
-        self.motion.x.clone_from_slice(self.task.begins());
-        self.contacts.carriage = None;
-        let laid = self.motion.x.clone();
-        let mut resistance = self.first_resistance();
+        // Stretches into which the outline moves go out of its way before anything slides.
+        self.cable.prepare_way([to, to], Some(dragged));
+        self.cable.motion.x.clone_from_slice(self.cable.input.begins());
+        self.cable.contacts.outline_motion = None;
+        let laid = self.cable.motion.x.clone();
+        let mut resistance = self.cable.first_resistance();
         let (full, floor) = (resistance, 1e-5 * resistance);
         // Set where Newton without resistance has failed: then steps are solved exactly, until what
         // resists is nothing.
@@ -313,32 +295,32 @@ impl Dynamics {
         let mut total = 0;
         let mut last = Failure { node: 0, residual: f64::NAN, cause: FailureCause::StillMoves };
         for round in 0..MAX_RELAX {
-            self.prepare_task(to, Some(dragged));
-            self.adapt_slip();
-            let even = self.problem.length / self.meshing.even_bars as f64;
-            self.task.inertia.fill(resistance);
-            for k in 0..self.mesh.nodes() {
-                self.task.inertia[k] *= self.mesh.share(k) / even;
+            self.cable.prepare_input(to, Some(dragged));
+            self.cable.adapt_slip();
+            let even = self.cable.problem.length / self.cable.meshing.even_bars as f64;
+            self.cable.input.inertia.fill(resistance);
+            for k in 0..self.cable.mesh.nodes() {
+                self.cable.input.inertia[k] *= self.cable.mesh.share(k) / even;
             }
-            let exact = self.task.tolerance;
-            self.task.tolerance = if stubborn { exact } else { 1e2 * exact };
-            self.task.most_noise = noise * exact;
+            let exact = self.cable.input.tolerance;
+            self.cable.input.tolerance = if stubborn { exact } else { 1e2 * exact };
+            self.cable.input.most_noise = noise * exact;
             // A first lay carries no normal force yet: without refreshing, it would slide as if on
             // ice.
-            let mut pose = self.still_pose();
-            let done = self.lag_until(&mut pose, RELAX_LAG_ROUNDS);
-            self.task.tolerance = exact;
+            let mut unknowns = self.solver.present_unknowns(&self.cable);
+            let done = self.solver.lag_until(&mut self.cable, &mut unknowns, RELAX_LAG_ROUNDS);
+            self.cable.input.tolerance = exact;
             match done {
                 Ok(found) => {
                     let done = found.done;
                     total += done.iterations;
                     let (mut moved, mut resists, mut slowest): (f64, f64, usize) = (0.0, 0.0, 0);
-                    // What resists adds up along what creeps.
+                    // Resistance adds up along a creeping stretch.
                     let mut drift = Vec2::zeros();
-                    for (k, (a, b)) in pose.x.iter().zip(&self.motion.x).enumerate() {
-                        let way = (a - b).norm().max(pose.slide[k].abs());
+                    for (k, (a, b)) in unknowns.x.iter().zip(&self.cable.motion.x).enumerate() {
+                        let way = (a - b).norm().max(unknowns.slide[k].abs());
                         moved = moved.max(way);
-                        let free = if self.mesh.held[k] { 0.0 } else { self.task.inertia[k] };
+                        let free = if self.cable.mesh.held[k] { 0.0 } else { self.cable.input.inertia[k] };
                         drift = if free > 0.0 { drift + (a - b) * free } else { Vec2::zeros() };
                         let force = larger(way * free, drift.norm() / DRIFT);
                         if force > resists {
@@ -347,18 +329,18 @@ impl Dynamics {
                     }
                     last =
                         Failure { node: slowest, residual: done.residual + resists, cause: FailureCause::StillMoves };
-                    let remeshed = self.accept_rest(&pose, self.motion.time);
-                    if self.ran_away(&laid).is_some() {
+                    let remeshed = self.accept_rest(&unknowns, self.cable.motion.time);
+                    if self.cable.ran_away(&laid).is_some() {
                         return Err(Failure { node: 0, residual: f64::NAN, cause: FailureCause::SlidesAway });
                     }
                     if remeshed {
                         moved = moved.max(0.1);
                     } else if stubborn
-                        && found.is_lawful(&self.task)
+                        && found.is_lawful(&self.cable.input)
                         && resists <= exact
                         && done.residual <= RESIDUAL_LIMIT_TOLERANCES * exact
                     {
-                        self.motion.time = to;
+                        self.cable.motion.time = to;
                         return Ok(Converged { iterations: total, residual: done.residual + resists });
                     }
                     resistance *= if moved < 0.3 { 0.6 } else { 1.0 };
@@ -393,16 +375,16 @@ impl Dynamics {
     /// # Errors
     /// A typed reason when there is none, or none was found.
     pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
-        self.refuse()?;
-        self.wake();
-        self.answers.held_back.clear();
-        self.save();
-        self.motion.followers.fill(None);
-        self.motion.hands.fill(None);
-        if !self.rested && self.put_outline() {
-            let mut x = std::mem::take(&mut self.motion.x);
-            push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
-            self.motion.x = x;
+        self.cable.refuse()?;
+        self.pacing.sleep.wake();
+        self.cable.answers.held_back.clear();
+        self.rollback.save(&self.cable);
+        self.cable.motion.followers.fill(None);
+        self.cable.motion.hands.fill(None);
+        if !self.rested && self.cable.put_outline() {
+            let mut x = std::mem::take(&mut self.cable.motion.x);
+            depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
+            self.cable.motion.x = x;
             self.forget_history();
         }
         match self.find_rest(dragged)? {
@@ -412,23 +394,23 @@ impl Dynamics {
                 Ok(self.report(done, 0, 0.0))
             }
             Err(f) => {
-                let at_m = self.motion.x.get(f.node).copied().unwrap_or_default();
-                let sought = self.motion.x.clone();
-                self.restore();
-                if self.ran_away(&sought).is_some() {
+                let at_m = self.cable.motion.x.get(f.node).copied().unwrap_or_default();
+                let sought = self.cable.motion.x.clone();
+                self.rollback.restore(&mut self.cable);
+                if self.cable.ran_away(&sought).is_some() {
                     return Err(SolveError::NoRestingPlace { why: NoEquilibrium::SlidesOff });
                 }
                 if f.cause == FailureCause::WorkSpent {
-                    let (model, segments) = (Model::Fem, self.mesh.rest_length.len());
-                    let iterations = REST_WORK / self.mesh.nodes().max(1);
-                    let (residual_n, place) = (f.residual, self.place(f.node));
+                    let (model, segments) = (Model::Fem, self.cable.mesh.rest_length.len());
+                    let iterations = REST_WORK / self.cable.mesh.nodes().max(1);
+                    let (residual_n, place) = (f.residual, self.cable.place(f.node));
                     return Err(SolveError::TooMuchWork { model, iterations, segments, residual_n, place });
                 }
-                if let Some(why) = self.through(&sought) {
+                if let Some(why) = self.cable.through(&sought) {
                     return Err(SolveError::NoRestingPlace { why });
                 }
-                let arc_length = self.mesh.arc_length.get(f.node).copied().unwrap_or(f64::NAN);
-                let place = self.problem.place(arc_length, at_m, self.motion.time);
+                let arc_length = self.cable.mesh.arc_length.get(f.node).copied().unwrap_or(f64::NAN);
+                let place = self.cable.problem.place(arc_length, at_m, self.cable.motion.time);
                 Err(SolveError::NotConverged {
                     model: Model::Fem,
                     iterations: MAX_RELAX,
@@ -443,123 +425,64 @@ impl Dynamics {
     /// coming near to anything. The way down with contact takes as many rounds as a cable that
     /// hangs has bars.
     pub(in crate::model::fem) fn begin_at(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
-        let touched = self.problem.floor_friction.is_some() || self.contacts.own.shape.is_on();
-        let alone = self.rider.is_none() && !touched && !self.problem.world.is_empty();
-        if self.rested || !alone || self.mesh.sliding.iter().any(Option::is_some) {
+        let touched = self.cable.problem.floor_friction.is_some() || self.cable.contacts.own.shape.is_on();
+        let alone = self.cable.outline.is_none() && !touched && !self.cable.problem.world.is_empty();
+        if self.rested || !alone || self.cable.mesh.sliding.iter().any(Option::is_some) {
             return;
         }
-        let Some(to) = self.mesh.arc_length.iter().map(|&s| shape.position_at(s)).collect::<Option<Vec<Vec2>>>() else {
+        let Some(to) = self.cable.mesh.arc_length.iter().map(|&s| shape.position_at(s)).collect::<Option<Vec<Vec2>>>()
+        else {
             return;
         };
-        let (x, geometry) = (&self.motion.x, self.problem.world.geometry());
-        let clear = (0..self.mesh.rest_length.len()).all(|e| {
-            let [[a, b], [c, d]] = [self.mesh.straight(e, x), self.mesh.straight(e, &to)];
+        let (x, geometry) = (&self.cable.motion.x, self.cable.problem.world.geometry());
+        let clear = (0..self.cable.mesh.rest_length.len()).all(|e| {
+            let [[a, b], [c, d]] = [self.cable.mesh.straight(e, x), self.cable.mesh.straight(e, &to)];
             geometry.parts(a.inf(&b).inf(&c.inf(&d)), a.sup(&b).sup(&c.sup(&d)), REACH).next().is_none()
         });
         if !clear {
             return;
         }
-        self.motion.x = to;
+        self.cable.motion.x = to;
         self.forget_history();
         // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so
         // that little force is left over.
-        self.prepare_task(self.motion.time, Some(dragged));
-        self.task.max_iterations = REST_ITERATIONS;
-        let exact = self.task.tolerance;
-        self.task.tolerance = tolerance(&self.problem, 0.0);
-        let mut pose = self.still_pose();
-        if self.solver.free.solve(&self.mesh, &self.task, &mut pose).is_some() {
-            self.motion.x.clone_from(&pose.x);
+        self.cable.prepare_input(self.cable.motion.time, Some(dragged));
+        self.cable.input.max_iterations = REST_ITERATIONS;
+        let exact = self.cable.input.tolerance;
+        self.cable.input.tolerance = tolerance(&self.cable.problem, 0.0);
+        let mut unknowns = self.solver.present_unknowns(&self.cable);
+        if self.solver.free.solve(&self.cable.mesh, &self.cable.input, &mut unknowns).is_some() {
+            self.cable.motion.x.clone_from(&unknowns.x);
             self.forget_history();
         }
-        self.solver.pose = pose;
-        self.task.tolerance = exact;
+        self.solver.unknowns = unknowns;
+        self.cable.input.tolerance = exact;
     }
 
     /// The resting place; one that the cable reaches without ever touching itself is found as if it
     /// could pass itself, for its first lay is no shape it could have.
     fn find_rest(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
-        let time = self.motion.time;
-        let shape = self.contacts.own.shape;
+        let time = self.cable.motion.time;
+        let shape = self.cable.contacts.own.shape;
         if !shape.is_on() {
             return Ok(self.relax(time, dragged));
         }
         if !self.rested {
-            self.contacts.own.shape.diameter = 0.0;
+            self.cable.contacts.own.shape.diameter = 0.0;
             let found = self.relax(time, dragged);
-            self.contacts.own.shape = shape;
-            if found.is_ok() && !self.touches_itself() && !self.crosses_itself() {
+            self.cable.contacts.own.shape = shape;
+            if found.is_ok() && !self.cable.touches_itself() && !self.cable.crosses_itself() {
                 return Ok(found);
             }
-            self.restore();
-            self.save();
+            self.rollback.restore(&mut self.cable);
+            self.rollback.save(&self.cable);
         }
-        let overlap = self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, 0.0);
-        if overlap.is_some() || self.crosses_itself() {
-            let arc_length_m = self.mesh.arc_length[overlap.map_or(0, |o| o.1)];
+        let overlap = self.cable.contacts.own.smallest_gap(&self.cable.mesh, &self.cable.motion.x, 0.0);
+        if overlap.is_some() || self.cable.crosses_itself() {
+            let arc_length_m = self.cable.mesh.arc_length[overlap.map_or(0, |o| o.1)];
             let feature = Unsupported::SelfContactAtStart { arc_length_m };
             return Err(SolveError::Unsupported { model: Model::Fem, feature });
         }
         Ok(self.relax(time, dragged))
-    }
-
-    /// Why a cable that nothing but friction holds does not rest where it was brought: what each
-    /// node alone is let off with adds up.
-    pub(in crate::model::fem) fn slides_as_a_whole(&self) -> Option<NoEquilibrium> {
-        if self.problem.supports.iter().any(|s| s.at.is_some()) || self.contacts.own.shape.is_on() {
-            return None;
-        }
-        let left = results::unbalanced(self, &self.motion.x, self.motion.time).norm();
-        let scale = load_scale(&self.problem).1;
-        (left > UNHELD_LOAD_FRACTION * scale).then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
-    }
-
-    /// How far (m) both ends have moved to `sought` at least, if that is further than the cable is
-    /// long.
-    fn ran_away(&self, sought: &[Vec2]) -> Option<f64> {
-        let moved = |a: Option<&Vec2>, b: Option<&Vec2>| Some((a? - b?).norm());
-        let now = &self.motion.x;
-        let way = moved(sought.first(), now.first())?.min(moved(sought.last(), now.last())?);
-        (way > self.problem.length).then_some(way)
-    }
-
-    /// What a cable that found no rest at `x` runs through: out of there it cannot get.
-    fn through(&self, x: &[Vec2]) -> Option<NoEquilibrium> {
-        let (mesh, world) = (&self.mesh, &self.problem.world);
-        if x.len() != mesh.nodes() {
-            return None;
-        }
-        // Its centre line is in the thing itself, or nearly: what only touches is not through.
-        let least = -0.9 * self.problem.radius;
-        let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
-        let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
-        let [a, b] = mesh.straight(e, x);
-        let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
-        let obstacle = world.obstacle_name(gap.obstacle).to_owned();
-        Some(NoEquilibrium::ThroughObstacle { obstacle, at_m: gap.point, arc_length_m: mesh.arc_length[e] })
-    }
-
-    /// Whether the cable is in touch with itself.
-    pub(in crate::model::fem) fn touches_itself(&self) -> bool {
-        self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, REACH).is_some()
-    }
-
-    /// Whether two bars of the cable cross.
-    fn crosses_itself(&self) -> bool {
-        !crate::contact::self_crossings::crossings(&self.motion.x, |_| true).is_empty()
-    }
-
-    /// Steps without inertia that keep every support's move below half an element.
-    pub(in crate::model::fem) fn pieces(&self, end: f64, dragged: &[Option<Vec2>]) -> f64 {
-        let even = self.problem.length / self.meshing.even_bars as f64;
-        let mut most: f64 = 0.0;
-        for (k, s) in self.problem.supports.iter().enumerate() {
-            if let (Some((at, _)), Some(now)) = (s.position_at(end), self.support_position(k)) {
-                let at = dragged.get(k).copied().flatten().unwrap_or(at);
-                most = most.max((at - now).norm());
-            }
-        }
-        let carried = self.rider.as_ref().map_or(0.0, MovingOutline::pieces);
-        larger(most / (0.5 * even), carried).ceil().clamp(1.0, 1e4)
     }
 }

@@ -11,7 +11,7 @@
 //! span; in a slack one, whose horizontal force is a small part of its tension, what is left after
 //! one is no longer small beside that.
 //!
-//! What is estimated is the error of the whole force vector beside every stop, in parts of the
+//! The estimate is of the error of the whole force vector beside every stop, in parts of the
 //! greatest tension: a slack span may have its greatest tension right to many digits and its
 //! horizontal force wrong in the third.
 
@@ -105,7 +105,7 @@ pub fn apart(some: &[Point], others: &[Point]) -> f64 {
     most
 }
 
-/// What rounding of lengths does to the stiffest span, N.
+/// Round-off of lengths in the force of the stiffest span, N.
 fn rounding(network: &Network) -> f64 {
     let mut most = 0.0;
     for (&SpanEnds { first, last }, span) in network.ends.iter().zip(&network.spans) {
@@ -155,7 +155,7 @@ fn closing_force(network: &Network, ends: SpanEnds, span: &Span) -> Vec2 {
             return (force + off - span.force) * (1.0 + CORRECTION_TOLERANCE);
         }
     }
-    // What is known is how far the finest is from it.
+    // The known difference is that of the finest from it.
     (force - span.force) * 2.0
 }
 

@@ -22,7 +22,7 @@
 
 use crate::math::{GAUSS_2_HALF_DISTANCE, Mat2, Vec2, cross};
 
-/// What all elements of a cable share.
+/// The values that all elements of a cable share.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// EA, N.
@@ -86,8 +86,8 @@ impl Material {
         (side(1.0) + side(-1.0)) * half + force * (self.thermal_stretch / self.axial_stiffness)
     }
 
-    /// What the chord lacks to that of the exact elastic catenary, m: the element's local error.
-    /// With e = −q/|q|, H = F across e, V = F along e and both ends a, b:
+    /// Difference of the chord from that of the exact elastic catenary, m: the element's local
+    /// error. With e = −q/|q|, H = F across e, V = F along e and both ends a, b:
     /// ```text
     /// across: (H/|q|)(asinh(V_b/H) − asinh(V_a/H)) = H Δs · 2/(T_a + T_b) · atanh(r)/r,   r = |q| Δs/(T_a + T_b)
     /// along:  (T_b − T_a)/|q|                      = Δs (V_a + V_b)/(T_a + T_b)

@@ -54,7 +54,7 @@ pub enum Failure {
 pub struct Network {
     /// The stops.
     pub layout: Layout,
-    /// What the elements share.
+    /// Values that the elements share.
     pub material: Material,
     /// The stops at each span's ends.
     pub ends: Vec<SpanEnds>,
@@ -220,13 +220,13 @@ impl Network {
         Balance { ratio, law: [-bound, 0.0, bound] }
     }
 
-    /// How far the arc length at a pulley has moved since friction last held, m (the middle of a
-    /// wheel's arc).
+    /// Slide of the arc length at a pulley since friction last held, m (the middle of a wheel's
+    /// arc).
     fn slid(&self, stop: usize) -> f64 {
         self.layout.stops[stop].arc_length + 0.5 * self.layout.stops[stop].lap - self.held_at[stop]
     }
 
-    /// What is wrong at a pulley: 0 where it rests, else positive where the arc length must shrink.
+    /// Imbalance at a pulley: 0 where it rests, else positive where the arc length must shrink.
     /// `None`: held.
     pub(in crate::model::fem) fn fault(&self, stop: usize, wheel: &Wheel) -> Option<f64> {
         let b = self.law(stop, wheel);
@@ -407,7 +407,7 @@ impl Network {
         rates
     }
 
-    /// How the fault at a pulley changes when the forces beside it change by `rates`.
+    /// Change of the imbalance at a pulley when the forces beside it change by `rates`.
     pub(in crate::model::fem) fn fault_rate(
         &self,
         wheel: &Wheel,

@@ -1,6 +1,6 @@
 //! This module balances all pulleys with friction together, with what friction remembers of each.
 //!
-//! What is unknown at a wheel are the angles p₁, p₂ at which the cable meets and leaves it and the
+//! The unknowns at a wheel are the angles p₁, p₂ at which the cable meets and leaves it and the
 //! material s₁, s₂ there; at a point only the material. The spans between follow from these
 //! (`span`), so the equations are few:
 //!
@@ -50,14 +50,14 @@ const STEP_TOLERANCE: f64 = 1e-13;
 /// A node of an answer that is no farther than this from a wheel, of its radius, lies on it.
 const ON_WHEEL: f64 = 1e-9;
 
-/// How a point pulley stands.
+/// State of a point pulley.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Point {
     Holds,
     Slides(f64),
 }
 
-/// What friction does at a pulley.
+/// State of friction at a pulley.
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant)] // A handful of them in a scene.
 enum Law {
@@ -76,8 +76,8 @@ pub struct Rubbing {
     s: [f64; 2],
 }
 
-/// What can be varied at a pulley: the angle and the material at its side 0 or 1; the material of a
-/// point at both.
+/// An unknown at a pulley: the angle and the material at its side 0 or 1; the material of a point
+/// at both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Unknown {
     Angle(usize),
@@ -127,7 +127,7 @@ impl Network {
         OnWheel { load: m.body, thermal: m.thermal_stretch, stiffness: m.axial_stiffness }
     }
 
-    /// Whether friction at a pulley remembers.
+    /// True if friction at a pulley remembers.
     pub fn rubs(&self) -> bool {
         self.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.friction > 0.0))
     }
@@ -203,7 +203,7 @@ impl Network {
         Some(Rubbing { support: stop.support, law, p: [0.0; 2], s: [stop.arc_length, stop.leaves()] })
     }
 
-    /// Whether another network has the same pulleys; then their memory is taken over.
+    /// True if another network has the same pulleys; then their memory is taken over.
     pub fn remember_from(&mut self, other: &Self) -> bool {
         let support = |n: &Self, k: usize| n.layout.stops[k].support;
         let own: Vec<Option<usize>> = self.pulleys().into_iter().map(|k| support(self, k)).collect();
@@ -244,7 +244,7 @@ impl Network {
         Err(Failure::Unbalanced(pulleys.first().copied().unwrap_or(0), self.residual))
     }
 
-    /// What came of a step becomes what friction remembers.
+    /// Takes the state after a step into the memory of friction.
     pub fn commit_friction(&mut self) {
         let on = self.on_wheel();
         let mut rubbing = std::mem::take(&mut self.rubbing);
@@ -342,7 +342,7 @@ impl Network {
         e
     }
 
-    /// How the forces beside the stops change with an unknown of pulley `k`: stop, side, slope.
+    /// Changes of the forces beside the stops with an unknown of pulley `k`: stop, side, slope.
     fn force_slopes(&self, k: usize, r: &Rubbing, unknown: Unknown) -> Vec<(usize, usize, Vec2)> {
         let mut out = Vec::with_capacity(4);
         let both = unknown == Unknown::Both;

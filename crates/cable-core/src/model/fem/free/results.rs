@@ -14,7 +14,7 @@ use crate::solution::{Node, SupportReaction};
 pub struct Point {
     /// Arc length, m.
     pub arc_length: f64,
-    /// Where it is, m.
+    /// Its position, m.
     pub at: Vec2,
     /// Tension, N: the larger of those beside it, the one that breaks the cable. A stiff cable may
     /// push: less than zero.

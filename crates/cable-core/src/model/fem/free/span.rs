@@ -29,7 +29,7 @@ const CLOSURE_LIMIT: f64 = 1e-10;
 /// A step this small, in parts of the force, changes nothing any more.
 const FORCE_ROUNDING: f64 = 1e-15;
 
-/// What a span looks like under a start force.
+/// The shape of a span under a start force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Walk {
     /// From its first to its last node, m.
@@ -47,7 +47,7 @@ pub struct Walk {
 pub struct Span {
     /// Tension force just after its first node, N.
     pub force: Vec2,
-    /// What it looks like.
+    /// Its shape.
     pub walk: Walk,
     /// Newton steps taken.
     pub steps: usize,
@@ -56,7 +56,7 @@ pub struct Span {
 }
 
 impl Span {
-    /// How the forces at both ends change with the arc length at an end (`by_end`: the last stop,
+    /// Changes of the forces at both ends with the arc length at an end (`by_end`: the last stop,
     /// else the first).
     #[must_use]
     pub fn force_rates(&self, material: &Material, layout: &Layout, ends: SpanEnds, by_end: bool) -> [Vec2; 2] {

@@ -49,7 +49,7 @@ const SMOOTHING: f64 = 1e-7;
 const SLOW_MOVE: f64 = 0.01;
 /// Most slow steps in one call.
 const MAX_SLOW_STEPS: f64 = 400.0;
-/// How often a slow step may be halved.
+/// Greatest number of halvings of a slow step.
 const MAX_HALVINGS: usize = 8;
 
 /// The balance of pulleys without friction. On wheels it is found with the material on them by a
@@ -86,7 +86,7 @@ pub struct Statics {
     estimate: Option<f64>,
     /// Estimated error of the shape, m.
     moved: Option<f64>,
-    /// Whether it was put where it is: then it is not as it was laid.
+    /// True if it was put where it is: then it is not as it was laid.
     adopted: bool,
 }
 
@@ -195,7 +195,7 @@ impl Statics {
         Ok(report)
     }
 
-    /// How many slow steps the moves of the supports ask for.
+    /// Number of slow steps for the moves of the supports.
     fn slow_steps(&self, start: f64, end: f64, dragged: &[Option<Vec2>]) -> f64 {
         let mut longest: f64 = 0.0;
         for k in 0..self.problem.supports.len() {
@@ -249,7 +249,7 @@ impl Statics {
         if rubs {
             estimate += self.follow_finer(&network, time, dragged, first);
             network.commit_friction();
-            // What friction remembers is as wrong as the steps it remembers were.
+            // Friction is as wrong as the steps that it remembers.
             let before = if first { None } else { self.estimate };
             estimate = before.map_or(estimate, |e| larger(e, estimate));
         }
@@ -348,7 +348,7 @@ impl Statics {
         Some(finer)
     }
 
-    /// Where a support was in the last answer, of a wheel its centre (where the cable meets it is
+    /// Position of a support in the last answer, of a wheel its centre (where the cable meets it is
     /// no move of the support), m.
     fn support_at(&self, support: usize) -> Option<Vec2> {
         let stop = self.network.as_ref()?.layout.stops.iter().find(|s| s.support == Some(support))?;
@@ -395,7 +395,7 @@ impl Statics {
             Outcome::Failed => return Err(self.error(&network, Failure::Span(0, coarse.residual))),
         }
         self.time = time;
-        // Who gives the mesh is answered at its nodes.
+        // A mesh that the user gives is answered at its nodes.
         self.points = coarse.points(!given);
         self.rested = Some((coarse.layout().clone(), coarse.stop_forces()));
         (self.estimate, self.moved) = (estimate, moved);
@@ -404,7 +404,7 @@ impl Statics {
         Ok(StepReport { cost, warnings: self.warnings(hinted) })
     }
 
-    /// What the elements share, and whether a weightless cable was given a hint of weight.
+    /// Values that the elements share, and true if a weightless cable was given a hint of weight.
     fn material(&self, time: f64, layout: &Layout) -> (Material, bool) {
         let problem = &self.problem;
         let mut body = problem.body_force(time);
@@ -507,7 +507,7 @@ impl Statics {
         Ok(())
     }
 
-    /// Where the cable is.
+    /// Positions and velocities of the cable.
     #[must_use]
     pub fn state(&self) -> State {
         State {

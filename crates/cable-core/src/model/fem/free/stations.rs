@@ -10,7 +10,7 @@ use crate::model::fem::system::assembly::bars_between;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
-/// How a stop holds the cable.
+/// The way in which a stop holds the cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hold {
     /// Not at all.
@@ -30,7 +30,7 @@ pub struct Wheel {
     pub radius: f64,
     /// Coulomb friction.
     pub friction: f64,
-    /// Which side of the wheel the cable runs on.
+    /// Side of the wheel on which the cable runs.
     pub side: PulleySide,
     /// Unit vectors from the centre to where the cable meets and leaves the wheel.
     pub contact: [Vec2; 2],
@@ -39,11 +39,11 @@ pub struct Wheel {
 /// A support or a point load.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stop {
-    /// Where on the cable it is (a wheel: where the cable meets it), m.
+    /// Its arc length (of a wheel: where the cable meets it), m.
     pub arc_length: f64,
     /// Material on the wheel, m.
     pub lap: f64,
-    /// How it holds the cable.
+    /// The way in which it holds the cable.
     pub hold: Hold,
     /// Dead load, N.
     pub load: Vec2,
@@ -56,19 +56,19 @@ pub struct Stop {
 }
 
 impl Stop {
-    /// Where the cable leaves the stop, m of arc length.
+    /// Arc length at which the cable leaves the stop, m.
     #[must_use]
     pub fn leaves(&self) -> f64 {
         self.arc_length + self.lap
     }
 
-    /// Whether it holds the cable in place.
+    /// True if it holds the cable in place.
     #[must_use]
     pub fn anchors(&self) -> bool {
         self.hold != Hold::Free
     }
 
-    /// Where the cable arrives (`0`) and leaves (`1`), m; None for a free point.
+    /// Points where the cable arrives (`0`) and leaves (`1`), m; None for a free point.
     #[must_use]
     pub fn point(&self, side: usize) -> Option<Vec2> {
         match self.hold {
@@ -182,7 +182,7 @@ fn point_load(arc_length: f64, load: Vec2) -> Stop {
     Stop { arc_length, lap: 0.0, hold: Hold::Free, load, support: None, clamp: None, cells: 0 }
 }
 
-/// Where a support is at a time, dragged there by hand or not, m.
+/// Position of a support at a time, dragged there by hand or not, m.
 #[must_use]
 pub fn place(problem: &Problem, support: usize, time_s: f64, dragged: &[Option<Vec2>]) -> Option<Vec2> {
     let own = problem.supports.get(support)?.position_at(time_s)?.0;
@@ -258,7 +258,7 @@ fn way_along(points: &[Vec2]) -> Vec<f64> {
     way
 }
 
-/// How far along a line the point nearest to `p` lies, m.
+/// Distance along a line of the point nearest to `p`, m.
 pub(in crate::model::fem) fn nearest(line: &[Vec2], way: &[f64], p: Vec2) -> f64 {
     let mut best = (f64::INFINITY, 0.0);
     for (k, pair) in line.windows(2).enumerate() {

@@ -25,7 +25,7 @@ pub(in crate::model::fem) const MARKED_ARC_LIMIT: f64 = 0.8;
 /// Rounds with less than this part of an even bar on them keep one mark.
 pub(in crate::model::fem) const ONE_MARK_BAR_FRACTION: f64 = 0.3;
 
-/// What a sliding node runs over.
+/// The corner, post or pulley of a sliding node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seat {
     /// The pulley that is this support.
@@ -39,7 +39,7 @@ pub enum Seat {
     },
 }
 
-/// What friction does at a sliding node.
+/// State of friction at a sliding node.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StickSlip {
     /// It holds.
@@ -58,9 +58,9 @@ pub struct SlidingNode {
     pub end: End,
     /// Coulomb friction.
     pub friction: f64,
-    /// What it runs over.
+    /// The corner, post or pulley over which it runs.
     pub seat: Seat,
-    /// What friction does.
+    /// State of its friction.
     pub grip: StickSlip,
     /// γ.
     pub factor: f64,
@@ -72,7 +72,8 @@ pub struct SlidingNode {
     /// Parts of the weight of the bars before and after it on rounds that act there; less than 1
     /// where they are nearly slack (see `bar_weight.rs`).
     pub lies: [f64; 2],
-    /// What friction acted between in the last step with inertia. None at rest and of a new node.
+    /// Tensions between which friction acted in the last step with inertia. None at rest and of a
+    /// new node.
     pub balanced: Option<Balanced>,
 }
 
@@ -93,13 +94,13 @@ impl SlidingNode {
         }
     }
 
-    /// Where it is, m.
+    /// Its position, m.
     #[must_use]
     pub fn position(&self) -> Vec2 {
         self.end.center + self.end.mark * self.end.radius
     }
 
-    /// Whether its arc length is held in the present step.
+    /// True if its arc length is held in the present step.
     #[must_use]
     pub fn sticks(&self) -> bool {
         self.friction > 0.0 && self.grip == StickSlip::Stick
@@ -114,15 +115,15 @@ impl SlidingNode {
         }
     }
 
-    /// Whether both sit on one round.
+    /// True if both sit on one round.
     #[must_use]
     pub fn shares_round(&self, other: &Self) -> bool {
         self.seat == other.seat
     }
 }
 
-/// What friction acted between at a sliding node in a step with inertia: tensions as they are
-/// reported lack the loss of the bars, and nothing says how what slides speeds up.
+/// Tensions between which friction acted at a sliding node in a step with inertia: tensions as they
+/// are reported lack the loss of the bars, and nothing says how what slides speeds up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Balanced {
     /// Pull where the cable comes on to the round, less the inertia of what slides, and where it
@@ -132,7 +133,7 @@ pub struct Balanced {
     pub turn: f64,
 }
 
-/// How a sliding node is loaded.
+/// The load of a sliding node.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Load {
     /// Tension just before and just after, N.
@@ -204,7 +205,7 @@ impl Load {
         [self.lifted[0] - self.floor[0], self.lifted[1] + self.floor[2]]
     }
 
-    /// What the law says of the grip: `slid` is how far the arc length moved in this step (m),
+    /// The grip by the law of friction: `slid` is the slide of the arc length in this step (m),
     /// `inertia` the force (N) that its inertia adds to the slope, `stiffness` is EA (N). A node
     /// holds or slips by the very slope that the step balances: with another, however near to it,
     /// one that is about to slip is said to slip where it holds and to hold where it slips, for

@@ -28,7 +28,7 @@ use crate::model::fem::newton::step_bound::longest;
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::Coupling;
-use crate::model::fem::system::step_input::Pose;
+use crate::model::fem::system::step_input::Unknowns;
 
 /// Rounds of adding constraints. More find nothing new where a front of contact runs along the
 /// cable.
@@ -48,7 +48,7 @@ const LANDING_GAP_FRACTION: f64 = 0.5;
 /// the step lets it.
 const GAP_LOSS_FRACTION: f64 = 0.45;
 
-/// What a step is about to touch.
+/// The contacts that a step is about to make.
 #[derive(Clone, Debug)]
 pub struct PredictedContacts {
     touches: Vec<ContactPair>,
@@ -65,7 +65,7 @@ pub(in crate::model::fem) struct Equations<'a> {
     pub system: &'a mut System,
     /// The Hessian's factor.
     pub factor: &'a mut BandFactor,
-    /// What couples nodes that are far apart along the cable.
+    /// The coupling of nodes that are far apart along the cable.
     pub coupling: &'a mut Coupling,
 }
 
@@ -166,27 +166,27 @@ impl PredictedContacts {
 }
 
 impl Workspace {
-    /// How fast Φ changes along the direction, J.
+    /// Slope of Φ along the direction, J.
     pub(in crate::model::fem) fn slope(&self) -> f64 {
         self.direction.iter().zip(&self.system.gradient).map(|(d, g)| d * g).sum()
     }
 
     /// Finds the direction again if something is in its way; returns how much of it is free.
-    pub(in crate::model::fem) fn look_ahead(&mut self, step: &StepContext<'_>, pose: &Pose) -> f64 {
-        let free = self.free_from_here(step, pose, 1.0);
+    pub(in crate::model::fem) fn look_ahead(&mut self, step: &StepContext<'_>, unknowns: &Unknowns) -> f64 {
+        let free = self.free_from_here(step, unknowns, 1.0);
         if free >= FREE_STEP_FRACTION {
             return free;
         }
         let downhill = self.slope();
         self.plain.clone_from(&self.direction);
         let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
-        self.ahead.solve(step, equations, &pose.x, &mut self.direction);
+        self.ahead.solve(step, equations, &unknowns.x, &mut self.direction);
         // The undamped Newton does not use the energy.
         if self.carried.is_empty() && !(self.slope() <= LEAST_DESCENT_FRACTION * downhill) {
             self.direction.clone_from(&self.plain);
             return free;
         }
-        self.free_from_here(step, pose, 1.0)
+        self.free_from_here(step, unknowns, 1.0)
     }
 }
 
@@ -195,7 +195,7 @@ fn landing(gap: f64, reach: f64) -> f64 {
     if gap > reach { LANDING_GAP_FRACTION * reach } else { (1.0 - GAP_LOSS_FRACTION) * gap }
 }
 
-/// How far the touching point goes in a step.
+/// Displacement of the touching point in a step.
 fn moved(touch: &ContactPair, step: &[f64]) -> Vec2 {
     let shares = touch.shares();
     let at = |k: usize| Vec2::new(step[2 * k], step[2 * k + 1]);
@@ -206,7 +206,8 @@ fn moved(touch: &ContactPair, step: &[f64]) -> Vec2 {
 mod tests {
     use super::Workspace;
     use crate::math::Vec2;
-    use crate::model::fem::dynamics::{Dynamics, REACH};
+    use crate::model::fem::dynamics::Dynamics;
+    use crate::model::fem::state::cable::REACH;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, Support, catalog};
@@ -228,7 +229,7 @@ mod tests {
         let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap();
         d.settle(&[]).unwrap();
         d.advance(STEP, Inertia::Dynamic, &[]).unwrap();
-        for (k, (x, v)) in d.motion.x.iter_mut().zip(&mut d.motion.v).enumerate() {
+        for (k, (x, v)) in d.cable.motion.x.iter_mut().zip(&mut d.cable.motion.v).enumerate() {
             let gap = 5.0 * REACH + 8e-3 * (1.0 + (0.13 * k as f64).sin());
             (*x, *v) = (Vec2::new(0.1 * k as f64, radius + gap), Vec2::new(0.0, -5.0));
         }
@@ -240,9 +241,9 @@ mod tests {
     fn a_cable_that_lands_all_along_its_length_in_one_step_takes_few_iterations() {
         let mut d = about_to_land();
         d.begin_step(STEP, &[]);
-        let mut pose = d.still_pose();
-        let mut memory = Workspace::new(&d.mesh).unwrap();
-        let done = memory.descend(&d.step_context(), &mut pose).unwrap();
+        let mut unknowns = d.solver.present_unknowns(&d.cable);
+        let mut memory = Workspace::new(&d.cable.mesh).unwrap();
+        let done = memory.descend(&d.cable.step_context(), &mut unknowns).unwrap();
         let landed = memory.touches.len();
         println!("{} iterations, {landed} nodes landed", done.iterations);
         assert!(landed > 90 && done.iterations <= 8, "{landed} {}", done.iterations);

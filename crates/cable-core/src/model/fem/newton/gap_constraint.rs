@@ -13,7 +13,7 @@ const HARDNESS: f64 = 1e5;
 /// Change of the way a constraint leaves, in gaps left, that is not followed.
 const DIRECTION_CHANGE_TOLERANCE: f64 = 0.05;
 
-/// What a bar turns about.
+/// The point or edge about which a bar turns.
 #[derive(Clone, Copy, Debug)]
 enum Pivot {
     /// A corner or the middle of a circle, m.
@@ -73,13 +73,13 @@ impl Stop {
         }
     }
 
-    /// How much the gap opens in a step, m, as its slope says.
+    /// Opening of the gap in a step by its slope, m.
     fn opening(&self, step: &[f64]) -> f64 {
         let at = |k: usize| Vec2::new(step[2 * k], step[2 * k + 1]);
         self.shares.iter().map(|&(k, part)| self.normal.dot(&at(k)) * part).sum()
     }
 
-    /// How much more than that it opens, m: a bar that turns while it slides along a corner comes
+    /// Opening of the gap beyond that, m: a bar that turns while it slides along a corner comes
     /// nearer to it.
     ///
     /// With e = b − a the distance of p from the line is ± e × (p − a)/|e|, whatever the step.
@@ -120,7 +120,7 @@ impl Stop {
         }
         let mut way = self.least - self.gap - bend;
         for &(k, part) in self.shares.iter().filter(|s| s.1 != 0.0 && mesh.held[s.0]) {
-            // What is held goes where it goes; a sliding node stays where it is.
+            // A held node goes to its target; a sliding node stays.
             way -= part * self.normal.dot(&Vec2::new(step[2 * k], step[2 * k + 1]));
         }
         let change = way - self.held_to.unwrap_or(0.0);
@@ -176,12 +176,12 @@ mod tests {
         fn a_gap_changes_by_its_slope_and_its_bend(moves in prop::collection::vec(-0.02f64..0.02, 10)) {
             let post = Shape::Circle { center_m: [0.35, -0.2], radius_m: 0.1 };
             let d = mesh(vec![Obstacle { name: "post".to_owned(), shape: post, friction: None }]);
-            let radius = d.problem.radius;
+            let radius = d.cable.problem.radius;
             let x: Vec<Vec2> = (0..5).map(|k| Vec2::new(0.1 + 0.2 * f64::from(k), -0.1 + radius + 5e-3)).collect();
             let then: Vec<Vec2> = x.iter().zip(moves.chunks(2)).map(|(x, go)| x + Vec2::new(go[0], go[1])).collect();
             let touch = |x: &[Vec2]| {
                 let mut found = Vec::new();
-                d.contacts.find_within(&d.problem, &d.mesh, x, 0.1, &mut found);
+                d.cable.contacts.find_within(&d.cable.problem, &d.cable.mesh, x, 0.1, &mut found);
                 found.into_iter().find(|t| t.on_segment && t.node == 1)
             };
             let before = touch(&x).unwrap();
@@ -189,7 +189,7 @@ mod tests {
             let after = touch(&then).unwrap();
             // The gap has no sign: what is crossed is left to the sweep.
             prop_assume!(after.pair.gap.normal.dot(&before.pair.gap.normal) > 0.0);
-            let stop = Stop::of(&before, &d.mesh, &System::new(&d.mesh), 0.0);
+            let stop = Stop::of(&before, &d.cable.mesh, &System::new(&d.cable.mesh), 0.0);
             let change = stop.opening(&moves) + stop.bend(&x, &moves);
             prop_assert!((after.pair.gap.gap_m - before.pair.gap.gap_m - change).abs() < 1e-12);
         }
@@ -207,7 +207,7 @@ mod tests {
                 found.into_iter().find(|p| (p.node, p.segment) == (4, 0)).unwrap()
             };
             let (before, after) = (pair(&x), pair(&then));
-            let stop = Stop::of_own(&before, &System::new(&d.mesh), 0.0);
+            let stop = Stop::of_own(&before, &System::new(&d.cable.mesh), 0.0);
             let change = stop.opening(&moves) + stop.bend(&x, &moves);
             prop_assert!((after.gap_m - before.gap_m - change).abs() < 1e-12);
         }

@@ -12,7 +12,7 @@ use crate::scene::SupportKind;
 /// diameter.
 const MAX_PASSES: usize = 60;
 
-/// How deep (m) inside an obstacle a first lay is found and pushed out.
+/// Depth (m) inside an obstacle to which a first shape is found and pushed out.
 const DEPENETRATION_DEPTH: f64 = 0.5;
 
 /// Steps in which an end is leaned until it is clear of what is below it, rad, and how many to
@@ -24,7 +24,7 @@ const MOST_LEANS: i32 = 36;
 
 /// Corners of the way of a cable with the arc length at each, m.
 #[must_use]
-pub fn way(problem: &Problem) -> Vec<(f64, Vec2)> {
+pub fn route(problem: &Problem) -> Vec<(f64, Vec2)> {
     let points = if problem.route.len() >= 2 {
         problem.route.clone()
     } else {
@@ -63,7 +63,7 @@ pub fn way(problem: &Problem) -> Vec<(f64, Vec2)> {
 /// a heap there, a stiff one leans.
 #[must_use]
 pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
-    let mut points = way(problem);
+    let mut points = route(problem);
     let last = problem.supports.len().saturating_sub(1);
     if problem.route.len() >= 2 {
         return points;
@@ -193,7 +193,7 @@ fn obstacle_tops(problem: &Problem) -> Vec<Vec2> {
 
 /// Positions of the nodes of a mesh along a way, m.
 #[must_use]
-pub fn lay(mesh: &Mesh, way: &[(f64, Vec2)]) -> Vec<Vec2> {
+pub fn place_nodes(mesh: &Mesh, way: &[(f64, Vec2)]) -> Vec<Vec2> {
     let at = |s: f64| {
         let k = way.partition_point(|w| w.0 <= s).clamp(1, way.len().max(2) - 1);
         match (way.get(k - 1), way.get(k)) {
@@ -207,7 +207,7 @@ pub fn lay(mesh: &Mesh, way: &[(f64, Vec2)]) -> Vec<Vec2> {
 
 /// Pushes free nodes and segments out of obstacles until every gap is at least half of `clear` (m)
 /// or it gives up.
-pub fn push_out(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
+pub fn depenetrate(problem: &Problem, mesh: &Mesh, x: &mut [Vec2], clear: f64) {
     push_chain_out(problem, &mesh.held, &|e, feature| mesh.rounds(e).contains(&Some(feature)), x, clear);
 }
 

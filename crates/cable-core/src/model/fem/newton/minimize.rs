@@ -23,7 +23,7 @@ use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
 use crate::model::fem::system::self_contact;
 use crate::model::fem::system::self_contact::Coupling;
 use crate::model::fem::system::step_input::{
-    Converged, Failure, FailureCause, Pose, StepInput, WORK_MAGNITUDE_FRACTION, WorkBudget, node_scale,
+    Converged, Failure, FailureCause, StepInput, Unknowns, WORK_MAGNITUDE_FRACTION, WorkBudget, node_scale,
 };
 use crate::problem::Problem;
 
@@ -54,7 +54,7 @@ pub(in crate::model::fem) const DRIFT: f64 = 4.0;
 /// that could have got there; more: iterations spent on what the next step does as well.
 const MAX_PUSHES: usize = 12;
 
-/// What the solve of a step reads: cable, mesh, contacts, and the input of the step.
+/// The input of the solve of a step: cable, mesh, contacts, and the input of the step.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct StepContext<'a> {
     /// The cable and its obstacles.
@@ -64,10 +64,10 @@ pub(in crate::model::fem) struct StepContext<'a> {
     /// The barrier, and friction as it is frozen for the step.
     pub contacts: &'a ContactSet,
     /// Forces, inertia and targets of the step.
-    pub task: &'a StepInput,
+    pub input: &'a StepInput,
 }
 
-/// What is left unbalanced at the worst node.
+/// The unbalanced force at the worst node.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Residual {
     /// N.
@@ -113,13 +113,13 @@ pub struct Workspace {
     pub(in crate::model::fem) direction: Vec<f64>,
     /// The direction before contacts ahead were looked at.
     pub(in crate::model::fem) plain: Vec<f64>,
-    pub(in crate::model::fem) trial: Pose,
+    pub(in crate::model::fem) trial: Unknowns,
     /// The contacts of the last assembly.
     pub(in crate::model::fem) touches: Vec<ContactPair>,
     magnitude: f64,
     /// Rounding of contact forces in the last assembly.
     pub(in crate::model::fem) rounding: Rounding,
-    /// Where held nodes go: their targets, or where they had to stop, m.
+    /// Targets of held nodes, or the points where they had to stop, m.
     pub(in crate::model::fem) goal: Vec<Vec2>,
     own_pairs: Vec<SelfPair>,
     pub(in crate::model::fem) order: SortedNodes,
@@ -129,11 +129,11 @@ pub struct Workspace {
     /// Pulls carried as unknowns; empty: those of the present lengths.
     pub(in crate::model::fem) carried: Vec<bar_energy::Carried>,
     /// Branches of the friction of `rubs`, where that is being found out; empty: those of the
-    /// present pose.
+    /// present unknowns.
     pub(in crate::model::fem) branches: Vec<friction::Branch>,
-    /// How far each has slid before an iteration, m.
+    /// Slide of each node before an iteration, m.
     pub(in crate::model::fem) slid: Vec<f64>,
-    pub(in crate::model::fem) begun: Pose,
+    pub(in crate::model::fem) begun: Unknowns,
     pub(in crate::model::fem) near_enough: bool,
     /// Iterations times nodes that may still be spent.
     pub(in crate::model::fem) work_left: WorkBudget,
@@ -141,12 +141,12 @@ pub struct Workspace {
     pub(in crate::model::fem) undamped_iterations: usize,
 }
 
-/// Where a line search begins.
+/// The start of a line search.
 #[derive(Clone, Copy, Debug)]
 struct Descent {
     /// Φ, J.
     value: f64,
-    /// How fast it changes along the direction, J.
+    /// Slope of the energy along the direction, J.
     slope: f64,
     /// Held nodes are still on the way to their targets: that may cost energy.
     supports_move: bool,
@@ -163,7 +163,7 @@ impl Workspace {
         Ok(Self {
             direction: vec![0.0; 2 * mesh.nodes()],
             plain: Vec::with_capacity(2 * mesh.nodes()),
-            trial: Pose { x: vec![Vec2::zeros(); mesh.nodes()], slide: vec![0.0; mesh.nodes()] },
+            trial: Unknowns { x: vec![Vec2::zeros(); mesh.nodes()], slide: vec![0.0; mesh.nodes()] },
             touches: Vec::with_capacity(mesh.nodes()),
             magnitude: 0.0,
             rounding: Rounding::default(),
@@ -175,7 +175,7 @@ impl Workspace {
             carried: Vec::with_capacity(mesh.nodes()),
             branches: Vec::with_capacity(mesh.nodes()),
             slid: Vec::with_capacity(mesh.nodes()),
-            begun: Pose::default(),
+            begun: Unknowns::default(),
             near_enough: false,
             work_left: WorkBudget::Unlimited,
             undamped_iterations: 0,
@@ -197,10 +197,15 @@ impl Workspace {
         self.trial.x.len()
     }
 
-    /// Φ with gradient and Hessian at a pose.
-    pub(in crate::model::fem) fn assemble(&mut self, step: &StepContext<'_>, pose: &Pose, curvature: Curvature) -> f64 {
-        let StepContext { problem, mesh, contacts, task } = *step;
-        let x = &pose.x;
+    /// Φ with gradient and Hessian at unknowns.
+    pub(in crate::model::fem) fn assemble(
+        &mut self,
+        step: &StepContext<'_>,
+        unknowns: &Unknowns,
+        curvature: Curvature,
+    ) -> f64 {
+        let StepContext { problem, mesh, contacts, input } = *step;
+        let x = &unknowns.x;
         let mut touches = std::mem::take(&mut self.touches);
         contacts.find(problem, mesh, x, &mut touches);
         let s = &mut self.system;
@@ -208,57 +213,57 @@ impl Workspace {
         s.gradient.fill(0.0);
         let mut value = 0.0;
         self.magnitude = 0.0;
-        let mut round = Rounding { tolerance: task.tolerance, ..Rounding::default() };
+        let mut round = Rounding { tolerance: input.tolerance, ..Rounding::default() };
         // The undamped Newton does not use the energy, so its round-off is not estimated.
         let measured = self.carried.is_empty();
         for e in 0..mesh.rest_length.len() {
             let carried = self.carried.get(e).copied();
-            let (energy, size) = bar_energy::add(s, mesh, task, e, pose, curvature, carried);
+            let (energy, size) = bar_energy::add(s, mesh, input, e, unknowns, curvature, carried);
             value += energy;
             self.magnitude += size;
         }
-        if !task.coupling.is_empty() {
-            value += add_coupling(s, task, x);
+        if !input.coupling.is_empty() {
+            value += add_coupling(s, input, x);
         }
         if mesh.bending_stiffness > 0.0 {
             value += s.add_bending(mesh, x, curvature);
-            if task.bending_damping > 0.0 {
-                value += s.add_bends(mesh, task.bending_damping, Some(&task.start), x, curvature);
+            if input.bending_damping > 0.0 {
+                value += s.add_bends(mesh, input.bending_damping, Some(&input.start), x, curvature);
             }
         }
         self.magnitude += value.abs();
         for i in 0..x.len() {
-            let (k, scale) = (task.inertia[i], node_scale(task, i));
+            let (k, scale) = (input.inertia[i], node_scale(input, i));
             let (kinetic, work) = if mesh.sliding[i].is_some() {
-                let away = pose.slide[i] - task.predicted_slide[i];
+                let away = unknowns.slide[i] - input.predicted_slide[i];
                 s.gradient[2 * i] += scale * k * away;
                 s.hessian.add(2 * i, 2 * i, scale * k);
                 (0.5 * k * away * away, 0.0)
             } else {
-                let away = x[i] - task.predicted[i];
+                let away = x[i] - input.predicted[i];
                 if measured {
                     self.magnitude +=
-                        scale * WORK_MAGNITUDE_FRACTION * (k * away.norm() + task.force[i].norm()) * x[i].norm();
+                        scale * WORK_MAGNITUDE_FRACTION * (k * away.norm() + input.force[i].norm()) * x[i].norm();
                 }
-                s.add_gradient(i, (away * k - task.force[i]) * scale);
+                s.add_gradient(i, (away * k - input.force[i]) * scale);
                 s.hessian.add(2 * i, 2 * i, k * scale);
                 s.hessian.add(2 * i + 1, 2 * i + 1, k * scale);
                 // Work is measured from the start of the step, so that its size is that of the
                 // change.
-                (0.5 * k * away.norm_squared(), task.force[i].dot(&(x[i] - task.start[i])))
+                (0.5 * k * away.norm_squared(), input.force[i].dot(&(x[i] - input.start[i])))
             };
             value += scale * (kinetic - work);
             self.magnitude += scale * (kinetic + work.abs());
         }
         for touch in &touches {
-            let scale = task.scale.get(touch.node).copied().unwrap_or(node_scale(task, touch.node));
+            let scale = input.scale.get(touch.node).copied().unwrap_or(node_scale(input, touch.node));
             let (energy, stiffness) = add_touch(s, mesh, touch, scale, contacts, x, curvature);
             value += energy;
             let rounding = GAP_ROUNDING * x[touch.node].norm();
             round.add(&contacts.barrier, touch.pair.gap.gap_m, stiffness, rounding);
         }
-        value += add_rubs(s, mesh, task, contacts, &self.branches, x);
-        value += add_floor(s, mesh, task, contacts, pose);
+        value += add_rubs(s, mesh, input, contacts, &self.branches, x);
+        value += add_floor(s, mesh, input, contacts, unknowns);
         self.touches = touches;
         if contacts.own.shape.is_on() {
             contacts.own.shape.pairs(x, &mesh.arc_length, contacts.barrier.reach, &mut self.order, &mut self.own_pairs);
@@ -279,23 +284,23 @@ impl Workspace {
     /// The unbalanced force (N) that is farthest beyond what is accepted, where, and by how many
     /// times: the tolerance, or where contact forces are known no better their rounding. At rest
     /// what is left at the nodes of a stretch adds up to a force of its own.
-    pub(in crate::model::fem) fn residual(&self, mesh: &Mesh, task: &StepInput) -> Residual {
+    pub(in crate::model::fem) fn residual(&self, mesh: &Mesh, input: &StepInput) -> Residual {
         let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
         // On the way to a rest any force may be hidden, for what is laid in touch begins there, and
         // where an outline squeezes the cable.
-        let hidden = if task.moves && !task.outlined { self.rounding.relief } else { self.rounding.noise };
-        let known = smaller(hidden, task.most_noise);
-        let accepted = larger(task.tolerance, known);
+        let hidden = if input.moves && !input.outlined { self.rounding.relief } else { self.rounding.noise };
+        let known = smaller(hidden, input.most_noise);
+        let accepted = larger(input.tolerance, known);
         let mut drift = Vec2::zeros();
         for node in 0..mesh.nodes() {
             if mesh.held[node] || mesh.sliding[node].is_some_and(|s| s.sticks()) {
                 drift = Vec2::zeros();
                 continue;
             }
-            let left = self.system.gradient_at(node) / node_scale(task, node);
+            let left = self.system.gradient_at(node) / node_scale(input, node);
             let slides = mesh.sliding[node].is_some();
             let r = if slides { left.x.abs() } else { left.norm() };
-            drift = if slides || task.moves { Vec2::zeros() } else { drift + left };
+            drift = if slides || input.moves { Vec2::zeros() } else { drift + left };
             let adds_up = drift.norm() / DRIFT;
             let most = larger(adds_up, worst.drift);
             let excess = larger(r, adds_up) / accepted;
@@ -308,7 +313,7 @@ impl Workspace {
     }
 
     /// Sets `direction` to the Newton step; false if the matrix is not positive definite.
-    pub(in crate::model::fem) fn solve(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2], shift: f64) -> bool {
+    pub(in crate::model::fem) fn solve(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2], shift: f64) -> bool {
         let s = &mut self.system;
         for (d, g) in self.direction.iter_mut().zip(&s.gradient) {
             *d = -g;
@@ -326,7 +331,7 @@ impl Workspace {
                     }
                 }
             } else if shift > 0.0 {
-                s.add_block(node, node, &(Mat2::identity() * (shift * node_scale(task, node))));
+                s.add_block(node, node, &(Mat2::identity() * (shift * node_scale(input, node))));
             }
         }
         for node in 0..mesh.nodes() {
@@ -358,44 +363,44 @@ impl Workspace {
         self.direction.iter().all(|d| d.is_finite())
     }
 
-    /// Minimises Φ from `pose`, which becomes the answer; on failure it is where it got to.
+    /// Minimises Φ from `unknowns`, which becomes the answer; on failure it is where it got to.
     ///
     /// # Errors
     /// With the worst node and its unbalanced force.
     pub(in crate::model::fem) fn descend(
         &mut self,
         step: &StepContext<'_>,
-        pose: &mut Pose,
+        unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
-        let StepContext { mesh, task, .. } = *step;
-        self.goal.clone_from(&task.target);
-        let mut shift = task.shift;
+        let StepContext { mesh, input, .. } = *step;
+        self.goal.clone_from(&input.target);
+        let mut shift = input.shift;
         let mut pushes = 0;
         let mut done = Converged::default();
-        let mut value = self.assemble(step, pose, Curvature::Exact);
+        let mut value = self.assemble(step, unknowns, Curvature::Exact);
         loop {
-            let Residual { force: residual, node, excess, drift } = self.residual(mesh, task);
+            let Residual { force: residual, node, excess, drift } = self.residual(mesh, input);
             let failed = |cause| Err(Failure { node, residual, cause });
             if !value.is_finite() || !residual.is_finite() {
                 return failed(FailureCause::EnergyNotFinite);
             }
-            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != pose.x[k]);
+            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.x[k]);
             // A support that squeezes the cable harder than numbers can tell has come as far as it
             // can.
-            let squeezed = left && task.may_lag && self.rounding.noise > task.tolerance;
+            let squeezed = left && input.may_lag && self.rounding.noise > input.tolerance;
             if squeezed {
-                self.goal.clone_from(&pose.x);
+                self.goal.clone_from(&unknowns.x);
             }
             let left = left && !squeezed;
             done.residual = residual;
             if excess <= 1.0 && !left {
                 return Ok(done);
             }
-            let enough = larger(residual, drift) <= STALLED_RESIDUAL_TOLERANCES * task.tolerance && !left;
-            if done.iterations >= task.max_iterations && enough {
+            let enough = larger(residual, drift) <= STALLED_RESIDUAL_TOLERANCES * input.tolerance && !left;
+            if done.iterations >= input.max_iterations && enough {
                 return Ok(done);
             }
-            if done.iterations >= task.max_iterations {
+            if done.iterations >= input.max_iterations {
                 return failed(FailureCause::TooManyIterations);
             }
             if self.work_left.is_spent() {
@@ -404,44 +409,44 @@ impl Workspace {
             self.work_left.spend(mesh.nodes());
             done.iterations += 1;
             // The gradient is needed after pinning overwrote the Hessian only, so it stays valid.
-            if !self.solve(mesh, task, &pose.x, shift) {
+            if !self.solve(mesh, input, &unknowns.x, shift) {
                 let mut tries = 0;
                 loop {
-                    self.assemble(step, pose, Curvature::Clipped);
-                    if self.solve(mesh, task, &pose.x, shift) {
+                    self.assemble(step, unknowns, Curvature::Clipped);
+                    if self.solve(mesh, input, &unknowns.x, shift) {
                         break;
                     }
-                    shift = grow(shift, task);
+                    shift = grow(shift, input);
                     tries += 1;
                     if tries > 40 {
                         return failed(FailureCause::TangentIndefinite);
                     }
                 }
             }
-            if task.moves {
-                self.look_ahead(step, pose);
+            if input.moves {
+                self.look_ahead(step, unknowns);
             }
             let mut slope = self.slope();
             if !(slope < 0.0) && !left {
                 slope = 0.0;
             }
-            match self.search(step, pose, Descent { value, slope, supports_move: left }) {
+            match self.search(step, unknowns, Descent { value, slope, supports_move: left }) {
                 Some((new_value, fraction)) => {
                     value = new_value;
                     if fraction > 0.5 {
                         shift *= 0.25;
-                        if shift < 1e-3 * task.shift {
+                        if shift < 1e-3 * input.shift {
                             shift = 0.0;
                         }
-                    } else if fraction < 0.1 && task.shift > 0.0 {
-                        shift = grow(shift, task);
+                    } else if fraction < 0.1 && input.shift > 0.0 {
+                        shift = grow(shift, input);
                     }
                     if left && fraction < 0.5 {
                         pushes += 1;
-                        if pushes > MAX_PUSHES && !task.may_lag {
+                        if pushes > MAX_PUSHES && !input.may_lag {
                             return failed(FailureCause::SupportShort);
                         } else if pushes > MAX_PUSHES {
-                            self.goal.clone_from(&pose.x);
+                            self.goal.clone_from(&unknowns.x);
                         }
                     }
                 }
@@ -450,36 +455,36 @@ impl Workspace {
                     if enough {
                         return Ok(done);
                     }
-                    if shift > 1e12 * task.shift.max(1e-6) {
+                    if shift > 1e12 * input.shift.max(1e-6) {
                         return failed(FailureCause::NoDescent);
                     }
-                    shift = grow(shift, task);
-                    value = self.assemble(step, pose, Curvature::Clipped);
+                    shift = grow(shift, input);
+                    value = self.assemble(step, unknowns, Curvature::Clipped);
                 }
             }
         }
     }
 
-    /// Moves `pose` along the direction as far as is free and lowers Φ; None if nothing does.
+    /// Moves `unknowns` along the direction as far as is free and lowers Φ; None if nothing does.
     /// Returns Φ and the part of the step taken; the system is assembled there.
-    fn search(&mut self, step: &StepContext<'_>, pose: &mut Pose, descent: Descent) -> Option<(f64, f64)> {
-        let StepContext { mesh, task, .. } = *step;
+    fn search(&mut self, step: &StepContext<'_>, unknowns: &mut Unknowns, descent: Descent) -> Option<(f64, f64)> {
+        let StepContext { mesh, input, .. } = *step;
         let Descent { value, slope, supports_move } = descent;
         let n = mesh.nodes();
-        let whole = self.whole(task);
-        let mut fraction = self.free_from_here(step, pose, whole);
+        let whole = self.whole(input);
+        let mut fraction = self.free_from_here(step, unknowns, whole);
         let noise = ENERGY_NOISE * (self.magnitude.abs() + value.abs());
         for _ in 0..MAX_HALVINGS {
             let mut trial = std::mem::take(&mut self.trial);
             for k in 0..n {
                 let moves = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * fraction;
                 if mesh.sliding[k].is_some() {
-                    trial.slide[k] = pose.slide[k] + moves.x;
-                    trial.x[k] = pose.x[k];
+                    trial.slide[k] = unknowns.slide[k] + moves.x;
+                    trial.x[k] = unknowns.x[k];
                     continue;
                 }
                 trial.slide[k] = 0.0;
-                trial.x[k] = pose.x[k] + moves;
+                trial.x[k] = unknowns.x[k] + moves;
                 // A full step ends exactly on target.
                 if mesh.held[k] && fraction == 1.0 {
                     trial.x[k] = self.goal[k];
@@ -489,7 +494,7 @@ impl Workspace {
             self.trial = trial;
             let lower = new_value <= value + DECREASE * fraction * slope + noise;
             if new_value.is_finite() && (supports_move || lower) {
-                std::mem::swap(pose, &mut self.trial);
+                std::mem::swap(unknowns, &mut self.trial);
                 return Some((new_value, fraction));
             }
             fraction *= 0.5;
@@ -498,13 +503,13 @@ impl Workspace {
     }
 }
 
-/// What the inertia of nodes loses by being coupled over the bars (see `mass`): adds gradient and
-/// Hessian, returns the energy, J.
+/// Adds gradient and Hessian of the inertia that nodes lose by being coupled over the bars (see
+/// `mass`); returns the energy, J.
 #[inline(never)]
-fn add_coupling(s: &mut System, task: &StepInput, x: &[Vec2]) -> f64 {
+fn add_coupling(s: &mut System, input: &StepInput, x: &[Vec2]) -> f64 {
     let mut value = 0.0;
-    for (e, (coupling, chord)) in task.coupling.iter().enumerate() {
-        let (late, k) = (x[e + 1] - x[e] - chord, coupling * task.scale[e]);
+    for (e, (coupling, chord)) in input.coupling.iter().enumerate() {
+        let (late, k) = (x[e + 1] - x[e] - chord, coupling * input.scale[e]);
         s.add_gradient(e, late * k);
         s.add_gradient(e + 1, late * -k);
         s.hessian.add_spring(2 * e, [-k, 0.0, -k]);
@@ -513,7 +518,7 @@ fn add_coupling(s: &mut System, task: &StepInput, x: &[Vec2]) -> f64 {
     value
 }
 
-fn grow(shift: f64, task: &StepInput) -> f64 {
-    let least = if task.shift > 0.0 { task.shift } else { 1.0 };
+fn grow(shift: f64, input: &StepInput) -> f64 {
+    let least = if input.shift > 0.0 { input.shift } else { 1.0 };
     if shift > 0.0 { 4.0 * shift } else { least }
 }

@@ -19,7 +19,7 @@ use crate::model::fem::newton::minimize::{StepContext, Workspace};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::friction_state::ContactSet;
-use crate::model::fem::system::step_input::{Converged, Failure, Pose, StepInput};
+use crate::model::fem::system::step_input::{Converged, Failure, StepInput, Unknowns};
 
 /// Iterations before the minimiser is asked. Fewer: one of its iterations costs as much as five of
 /// these, and with 24 eleven steps of a cable of 1000 bars dropped on a floor came to it, of 336;
@@ -42,7 +42,7 @@ const ROUNDING: f64 = 1e-12;
 /// friction as much.
 const BRANCH_ROUNDING: f64 = 1e-14;
 
-/// Whether a solve goes on where the cable comes within reach of itself.
+/// True if a solve goes on where the cable comes within reach of itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem) enum SelfTouch {
     /// It gives up.
@@ -52,30 +52,30 @@ pub(in crate::model::fem) enum SelfTouch {
 }
 
 impl Workspace {
-    /// Minimises Φ from `pose`, which becomes the answer; on failure it is where it got to.
+    /// Minimises Φ from `unknowns`, which becomes the answer; on failure it is where it got to.
     ///
     /// # Errors
     /// With the worst node and its unbalanced force.
     pub(in crate::model::fem) fn minimise(
         &mut self,
         step: &StepContext<'_>,
-        pose: &mut Pose,
+        unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
-        if !step.task.moves {
-            return self.descend(step, pose);
+        if !step.input.moves {
+            return self.descend(step, unknowns);
         }
-        if let Some(done) = self.undamped_newton(step, SelfTouch::Avoid, pose) {
+        if let Some(done) = self.undamped_newton(step, SelfTouch::Avoid, unknowns) {
             return Ok(done);
         }
         let mut undamped = self.undamped_iterations;
-        let mut done = self.descend(step, pose);
+        let mut done = self.descend(step, unknowns);
         if done.is_err() && self.near_enough {
-            self.go_back(pose);
-            done = self.descend(step, pose);
+            self.go_back(unknowns);
+            done = self.descend(step, unknowns);
         }
         if done.is_err() && step.contacts.own.shape.is_on() {
-            self.go_back(pose);
-            if let Some(found) = self.undamped_newton(step, SelfTouch::Allow, pose) {
+            self.go_back(unknowns);
+            if let Some(found) = self.undamped_newton(step, SelfTouch::Allow, unknowns) {
                 done = Ok(found);
             } else {
                 undamped += self.undamped_iterations;
@@ -84,105 +84,110 @@ impl Workspace {
         done.map(|d| Converged { iterations: d.iterations + undamped, ..d })
     }
 
-    /// The pose at the end of a step; None where this does not find it, the pose then as it was or
-    /// not far from it. Unless that is allowed the cable must not come within reach of itself on
-    /// the way.
-    fn undamped_newton(&mut self, step: &StepContext<'_>, self_touch: SelfTouch, pose: &mut Pose) -> Option<Converged> {
-        self.begun.x.clone_from(&pose.x);
-        self.begun.slide.clone_from(&pose.slide);
-        self.goal.clone_from(&step.task.target);
-        self.carry_pulls(step.mesh, pose);
-        let done = self.iterate_undamped(step, self_touch, pose);
+    /// The unknowns at the end of a step; None where this does not find it, the unknowns then as it
+    /// was or not far from it. Unless that is allowed the cable must not come within reach of
+    /// itself on the way.
+    fn undamped_newton(
+        &mut self,
+        step: &StepContext<'_>,
+        self_touch: SelfTouch,
+        unknowns: &mut Unknowns,
+    ) -> Option<Converged> {
+        self.begun.x.clone_from(&unknowns.x);
+        self.begun.slide.clone_from(&unknowns.slide);
+        self.goal.clone_from(&step.input.target);
+        self.carry_pulls(step.mesh, unknowns);
+        let done = self.iterate_undamped(step, self_touch, unknowns);
         self.carried.clear();
         self.branches.clear();
         if done.is_none() && !self.near_enough {
-            self.go_back(pose);
+            self.go_back(unknowns);
         }
         done
     }
 
     /// To where the step began.
-    fn go_back(&self, pose: &mut Pose) {
-        pose.x.clone_from(&self.begun.x);
-        pose.slide.clone_from(&self.begun.slide);
+    fn go_back(&self, unknowns: &mut Unknowns) {
+        unknowns.x.clone_from(&self.begun.x);
+        unknowns.slide.clone_from(&self.begun.slide);
     }
 
-    fn carry_pulls(&mut self, mesh: &Mesh, pose: &Pose) {
+    fn carry_pulls(&mut self, mesh: &Mesh, unknowns: &Unknowns) {
         self.carried.clear();
         for (e, l) in mesh.rest_length.iter().enumerate() {
-            let strain = (pose.x[e + 1] - pose.x[e]).norm() / l - 1.0;
+            let strain = (unknowns.x[e + 1] - unknowns.x[e]).norm() / l - 1.0;
             let taut = strain >= 0.0;
             let pull = bar_energy::stiffness(mesh, taut) * strain;
             self.carried.push(bar_energy::Carried { pull, taut });
         }
     }
 
-    /// Moves a pose that is still where the step began to where its speed carries it, as far as
+    /// Moves unknowns that is still where the step began to where its speed carries it, as far as
     /// nothing is in the way.
-    fn move_on(&mut self, step: &StepContext<'_>, pose: &mut Pose) {
-        let StepContext { mesh, task, .. } = *step;
-        if pose.x != task.begins() {
+    fn move_on(&mut self, step: &StepContext<'_>, unknowns: &mut Unknowns) {
+        let StepContext { mesh, input, .. } = *step;
+        if unknowns.x != input.begins() {
             return;
         }
         for (k, d) in self.direction.chunks_exact_mut(2).enumerate() {
             let to = match (mesh.held[k], mesh.is_free(k)) {
                 (true, _) => self.goal[k],
-                (_, true) => task.predicted[k],
-                _ => pose.x[k],
+                (_, true) => input.predicted[k],
+                _ => unknowns.x[k],
             };
-            (d[0], d[1]) = (to.x - pose.x[k].x, to.y - pose.x[k].y);
+            (d[0], d[1]) = (to.x - unknowns.x[k].x, to.y - unknowns.x[k].y);
         }
-        self.ahead.stop(step, &pose.x, &mut self.direction);
-        let whole = self.whole(task);
-        let free = self.free_way(step, pose, whole);
-        self.place(mesh, pose, free);
+        self.ahead.stop(step, &unknowns.x, &mut self.direction);
+        let whole = self.whole(input);
+        let free = self.free_way(step, unknowns, whole);
+        self.place(mesh, unknowns, free);
     }
 
     fn iterate_undamped(
         &mut self,
         step: &StepContext<'_>,
         self_touch: SelfTouch,
-        pose: &mut Pose,
+        unknowns: &mut Unknowns,
     ) -> Option<Converged> {
-        let StepContext { mesh, contacts, task, .. } = *step;
-        self.move_on(step, pose);
+        let StepContext { mesh, contacts, input, .. } = *step;
+        self.move_on(step, unknowns);
         self.branches.clear();
-        self.branches.extend(contacts.rubs.iter().map(|r| Branch::at(r.sliding(&pose.x), contacts.slip)));
+        self.branches.extend(contacts.rubs.iter().map(|r| Branch::at(r.sliding(&unknowns.x), contacts.slip)));
         let mut first = f64::NAN;
         self.near_enough = false;
         for iterations in 0..=MAX_STEPS {
             self.undamped_iterations = iterations;
-            let value = self.assemble(step, pose, Curvature::Exact);
+            let value = self.assemble(step, unknowns, Curvature::Exact);
             if self_touch == SelfTouch::Avoid && !self.coupling.is_empty() {
                 self.near_enough = false;
                 return None;
             }
-            let residual = self.residual(mesh, task).force;
-            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != pose.x[k]);
+            let residual = self.residual(mesh, input).force;
+            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.x[k]);
             if iterations == 0 {
                 first = residual;
             }
-            let sound = value.is_finite() && residual.is_finite() && self.rounding.noise <= task.tolerance;
-            if sound && residual <= task.tolerance && !left && self.flags_hold(mesh, contacts, &pose.x) {
+            let sound = value.is_finite() && residual.is_finite() && self.rounding.noise <= input.tolerance;
+            if sound && residual <= input.tolerance && !left && self.flags_hold(mesh, contacts, &unknowns.x) {
                 return Some(Converged { iterations, residual });
             }
             self.near_enough = sound && residual < HANDED_ON_RESIDUAL_FRACTION * first;
             if iterations == MAX_STEPS || !sound {
                 return None;
             }
-            if !self.solve(mesh, task, &pose.x, task.shift) && !self.ease(mesh, task, &pose.x) {
-                self.assemble(step, pose, Curvature::Clipped);
-                if !self.solve(mesh, task, &pose.x, task.shift) {
+            if !self.solve(mesh, input, &unknowns.x, input.shift) && !self.ease(mesh, input, &unknowns.x) {
+                self.assemble(step, unknowns, Curvature::Clipped);
+                if !self.solve(mesh, input, &unknowns.x, input.shift) {
                     return None;
                 }
             }
-            let free = self.look_ahead(step, pose);
-            let whole = self.whole(task);
+            let free = self.look_ahead(step, unknowns);
+            let whole = self.whole(input);
             self.slid.clear();
-            self.slid.extend(contacts.rubs.iter().map(|r| r.sliding(&pose.x)));
-            self.walk(mesh, task, pose, if free < whole { free } else { whole });
+            self.slid.extend(contacts.rubs.iter().map(|r| r.sliding(&unknowns.x)));
+            self.walk(mesh, input, unknowns, if free < whole { free } else { whole });
             for (b, (from, r)) in self.branches.iter_mut().zip(self.slid.iter().zip(&contacts.rubs)) {
-                *b = b.next([*from, r.sliding(&pose.x)], contacts.slip);
+                *b = b.next([*from, r.sliding(&unknowns.x)], contacts.slip);
             }
         }
         None
@@ -192,7 +197,7 @@ impl Workspace {
     /// their push counted, until it is definite. None of it is what the minimiser takes, but that
     /// is a different matrix, far from the equations, and what it finds goes to and fro. False
     /// where that does not help; the system is pinned, and what it held is lost.
-    fn ease(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2]) -> bool {
+    fn ease(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2]) -> bool {
         if !self.coupling.is_empty() || mesh.bending_stiffness > 0.0 {
             return false;
         }
@@ -204,7 +209,7 @@ impl Workspace {
                 if !(p > 0.0) || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
                     continue;
                 }
-                let (t, less) = (d / p, task.scale[e] * (part - counted) * carried.pull / p);
+                let (t, less) = (d / p, input.scale[e] * (part - counted) * carried.pull / p);
                 let across = [less * (1.0 - t.x * t.x), -less * t.x * t.y, less * (1.0 - t.y * t.y)];
                 match [mesh.held[e], mesh.held[e + 1]] {
                     [false, false] => self.system.hessian.add_spring(2 * e, across),
@@ -229,7 +234,7 @@ impl Workspace {
         false
     }
 
-    /// Whether the bars that count as stretched are those that are, and friction holds and slips
+    /// True if the bars that count as stretched are those that are, and friction holds and slips
     /// where it is taken to.
     fn flags_hold(&self, mesh: &Mesh, contacts: &ContactSet, x: &[Vec2]) -> bool {
         let rubs = contacts.rubs.iter().zip(&self.branches);
@@ -242,30 +247,30 @@ impl Workspace {
             })
     }
 
-    /// Moves pose and pulls by a part of the direction.
-    fn walk(&mut self, mesh: &Mesh, task: &StepInput, pose: &mut Pose, part: f64) {
+    /// Moves unknowns and pulls by a part of the direction.
+    fn walk(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &mut Unknowns, part: f64) {
         let direction = &self.direction;
         let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]) * part;
         for (e, carried) in self.carried.iter_mut().enumerate() {
-            let d = pose.x[e + 1] - pose.x[e];
+            let d = unknowns.x[e + 1] - unknowns.x[e];
             let p = d.norm();
-            let (now, slope) = bar_energy::pull(mesh, task, e, carried.taut, p);
+            let (now, slope) = bar_energy::pull(mesh, input, e, carried.taut, p);
             let along = if p > 0.0 { d.dot(&(step(e + 1) - step(e))) / p } else { 0.0 };
             *carried = bar_energy::Carried { pull: now + slope * along, taut: p + along >= mesh.rest_length[e] };
         }
-        self.place(mesh, pose, part);
+        self.place(mesh, unknowns, part);
     }
 
-    /// Moves a pose by a part of the direction.
-    fn place(&self, mesh: &Mesh, pose: &mut Pose, part: f64) {
+    /// Moves unknowns by a part of the direction.
+    fn place(&self, mesh: &Mesh, unknowns: &mut Unknowns, part: f64) {
         for k in 0..mesh.nodes() {
             let step = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * part;
             if mesh.sliding[k].is_some() {
-                pose.slide[k] += step.x;
+                unknowns.slide[k] += step.x;
             } else if mesh.held[k] && part == 1.0 {
-                pose.x[k] = self.goal[k];
+                unknowns.x[k] = self.goal[k];
             } else {
-                pose.x[k] += step;
+                unknowns.x[k] += step;
             }
         }
     }
@@ -296,8 +301,8 @@ mod tests {
         let settings = Settings { segments: Some(40), ..Settings::default() };
         let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap();
         d.settle(&[]).unwrap();
-        let n = d.mesh.nodes() - 1;
-        for (k, v) in d.motion.v.iter_mut().enumerate() {
+        let n = d.cable.mesh.nodes() - 1;
+        for (k, v) in d.cable.motion.v.iter_mut().enumerate() {
             let s = std::f64::consts::PI * k as f64 / n as f64;
             *v = Vec2::new(waves[0] * s.sin(), waves[1] * s.sin() + waves[2] * (3.0 * s).sin() - 3.0);
         }
@@ -338,7 +343,7 @@ mod tests {
         assert!(long < 24 && whole < 560, "{whole} {long}");
     }
 
-    /// Which steps the undamped Newton does not solve is chance: over many drops it is not.
+    /// Chance decides which steps the undamped Newton does not solve; over many drops it does not.
     #[test]
     fn bars_that_buckle_where_they_land_take_few_iterations() {
         let (mut whole, mut long) = (0, 0);
@@ -366,10 +371,10 @@ mod tests {
             for _ in 0..80 {
                 let mut trial = d.clone();
                 trial.begin_step(STEP, &[]);
-                let mut expected = trial.still_pose();
-                trial.contacts.prepare(&trial.problem, &trial.mesh, &expected.x, &trial.motion.x);
-                let mut memory = Workspace::new(&trial.mesh).unwrap();
-                let (step, mut found) = (trial.step_context(), expected.clone());
+                let mut expected = trial.solver.present_unknowns(&trial.cable);
+                trial.cable.contacts.prepare(&trial.cable.problem, &trial.cable.mesh, &expected.x, &trial.cable.motion.x);
+                let mut memory = Workspace::new(&trial.cable.mesh).unwrap();
+                let (step, mut found) = (trial.cable.step_context(), expected.clone());
                 let found_undamped = memory.undamped_newton(&step, SelfTouch::Avoid, &mut found).is_some();
                 if found_undamped && memory.descend(&step, &mut expected).is_ok() {
                     let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm());

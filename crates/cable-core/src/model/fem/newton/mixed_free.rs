@@ -22,7 +22,7 @@ use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
-use crate::model::fem::system::step_input::{Converged, Pose, StepInput};
+use crate::model::fem::system::step_input::{Converged, StepInput, Unknowns};
 
 /// Iterations before the minimiser is asked. Measured: 2 to 5 in a swing, up to 12 where a slack
 /// chain snaps taut.
@@ -41,7 +41,7 @@ pub struct FreeStep {
     pull: Vec<f64>,
     /// Pull of each bar as long as it is, N.
     present: Vec<f64>,
-    /// Whether each bar counts as stretched.
+    /// True if each bar counts as stretched.
     taut: Vec<bool>,
     /// (k + c) and t of each bar.
     hold: Vec<(f64, Vec2)>,
@@ -54,7 +54,7 @@ pub struct FreeStep {
     start: Vec<Vec2>,
 }
 
-/// How far the equations are from balance.
+/// Residual of the equations.
 struct Balance {
     /// Largest unbalanced force of a free node, N.
     force: f64,
@@ -63,14 +63,14 @@ struct Balance {
 }
 
 impl FreeStep {
-    /// Finds the pose at the end of a step; None (and the pose as it was) where it does not
+    /// Finds the unknowns at the end of a step; None (and the unknowns as it was) where it does not
     /// converge.
-    pub fn solve(&mut self, mesh: &Mesh, task: &StepInput, pose: &mut Pose) -> Option<Converged> {
-        self.start.clone_from(&pose.x);
+    pub fn solve(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &mut Unknowns) -> Option<Converged> {
+        self.start.clone_from(&unknowns.x);
         self.make_room(mesh);
-        let done = self.newton(mesh, task, &mut pose.x);
+        let done = self.newton(mesh, input, &mut unknowns.x);
         if done.is_none() {
-            pose.x.clone_from(&self.start);
+            unknowns.x.clone_from(&self.start);
         }
         done
     }
@@ -94,38 +94,38 @@ impl FreeStep {
         self.step.resize(nodes, Vec2::zeros());
     }
 
-    fn newton(&mut self, mesh: &Mesh, task: &StepInput, x: &mut [Vec2]) -> Option<Converged> {
+    fn newton(&mut self, mesh: &Mesh, input: &StepInput, x: &mut [Vec2]) -> Option<Converged> {
         for iterations in 0..=MAX_STEPS {
             if iterations == 0 {
-                self.begin(mesh, task);
+                self.begin(mesh, input);
             }
-            let balance = self.assemble(mesh, task, x, Curvature::Exact);
-            let left = mesh.held.iter().zip(x.iter().zip(&task.target)).any(|(held, (x, to))| *held && x != to);
+            let balance = self.assemble(mesh, input, x, Curvature::Exact);
+            let left = mesh.held.iter().zip(x.iter().zip(&input.target)).any(|(held, (x, to))| *held && x != to);
             if !(balance.force.is_finite() && balance.pull.is_finite()) {
                 return None;
             }
-            if balance.force <= task.tolerance && balance.pull <= task.tolerance && !left {
+            if balance.force <= input.tolerance && balance.pull <= input.tolerance && !left {
                 return Some(Converged { iterations, residual: balance.force });
             }
             if iterations == MAX_STEPS {
                 return None;
             }
-            if !self.factor_and_solve(mesh, task, x) {
-                self.assemble(mesh, task, x, Curvature::Clipped);
-                if !self.factor_and_solve(mesh, task, x) {
+            if !self.factor_and_solve(mesh, input, x) {
+                self.assemble(mesh, input, x, Curvature::Clipped);
+                if !self.factor_and_solve(mesh, input, x) {
                     return None;
                 }
             }
-            self.walk(mesh, task, x);
+            self.walk(mesh, input, x);
         }
         None
     }
 
     /// The pulls with which the step begins: nearer to those it ends with than those of bars moved
     /// on each by itself.
-    fn begin(&mut self, mesh: &Mesh, task: &StepInput) {
+    fn begin(&mut self, mesh: &Mesh, input: &StepInput) {
         for (e, (pull, taut)) in self.pull.iter_mut().zip(&mut self.taut).enumerate() {
-            let strain = (task.start[e + 1] - task.start[e]).norm() / mesh.rest_length[e] - 1.0;
+            let strain = (input.start[e + 1] - input.start[e]).norm() / mesh.rest_length[e] - 1.0;
             *taut = strain >= 0.0;
             *pull = bar_energy::stiffness(mesh, *taut) * strain;
         }
@@ -133,10 +133,10 @@ impl FreeStep {
 
     /// Gradient with the pulls carried into `gradient`, matrix into the blocks, the force of the
     /// present lengths (the right side) into `step`.
-    fn assemble(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2], curvature: Curvature) -> Balance {
+    fn assemble(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2], curvature: Curvature) -> Balance {
         for i in 0..x.len() {
-            let (k, away) = (task.inertia[i], x[i] - task.predicted[i]);
-            let rest = away * k - task.force[i];
+            let (k, away) = (input.inertia[i], x[i] - input.predicted[i]);
+            let rest = away * k - input.force[i];
             self.gradient[i] = rest;
             self.step[i] = -rest;
             self.diagonal[i] = [k, 0.0, k];
@@ -146,13 +146,13 @@ impl FreeStep {
             let (d, l) = (x[e + 1] - x[e], mesh.rest_length[e]);
             let p = d.norm();
             let elastic = bar_energy::stiffness(mesh, self.taut[e]) / l;
-            let (loss, slope) = task.loss_at(e, self.taut[e] || !mesh.is_flexible(), l, p);
+            let (loss, slope) = input.loss_at(e, self.taut[e] || !mesh.is_flexible(), l, p);
             let (stiffness, now) = (elastic + slope, elastic * (p - l) + loss);
             let t = if p > 0.0 { d / p } else { Vec2::x() };
             let pull = self.pull[e];
             let off = (now - pull).abs() - ROUNDING * f64::EPSILON * stiffness * x[e].norm();
             balance.pull = larger(balance.pull, off);
-            let (coupling, chord) = task.coupling.get(e).copied().unwrap_or_default();
+            let (coupling, chord) = input.coupling.get(e).copied().unwrap_or_default();
             let inertia = (d - chord) * coupling;
             self.gradient[e] -= t * pull - inertia;
             self.gradient[e + 1] += t * pull - inertia;
@@ -179,11 +179,11 @@ impl FreeStep {
 
     /// Block elimination from the first node on: D ← D − C D₋⁻¹ C, then back. False where a block
     /// is not positive definite.
-    fn factor_and_solve(&mut self, mesh: &Mesh, task: &StepInput, x: &[Vec2]) -> bool {
+    fn factor_and_solve(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2]) -> bool {
         let n = x.len();
         for k in 0..n {
             if mesh.held[k] {
-                let go = task.target[k] - x[k];
+                let go = input.target[k] - x[k];
                 if k > 0 {
                     self.step[k - 1] -= times(&self.between[k - 1], go);
                     self.between[k - 1] = [0.0; 3];
@@ -228,12 +228,12 @@ impl FreeStep {
     }
 
     /// Moves the nodes and the pulls by the step, or by the part of it that moves no node too far.
-    fn walk(&mut self, mesh: &Mesh, task: &StepInput, x: &mut [Vec2]) {
+    fn walk(&mut self, mesh: &Mesh, input: &StepInput, x: &mut [Vec2]) {
         let mut longest = 0.0;
         for s in &self.step {
             longest = larger(longest, s.norm());
         }
-        let part = if longest > task.max_move { task.max_move / longest } else { 1.0 };
+        let part = if longest > input.max_move { input.max_move / longest } else { 1.0 };
         for (e, &(stiffness, t)) in self.hold.iter().enumerate() {
             let by = t.dot(&(self.step[e + 1] - self.step[e])) * part;
             let l = mesh.rest_length[e];
@@ -243,7 +243,7 @@ impl FreeStep {
         for (k, x) in x.iter_mut().enumerate() {
             *x += self.step[k] * part;
             if mesh.held[k] && part == 1.0 {
-                *x = task.target[k];
+                *x = input.target[k];
             }
         }
     }
@@ -291,20 +291,20 @@ mod tests {
             for _ in 0..3 {
                 d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
             }
-            let (n, mut task) = (d.mesh.nodes(), d.task.clone());
-            task.tolerance = 1e-7;
+            let (n, mut input) = (d.cable.mesh.nodes(), d.cable.input.clone());
+            input.tolerance = 1e-7;
             for k in 0..n {
                 let s = k as f64 / (n - 1) as f64 * std::f64::consts::PI;
                 let push = Vec2::new(waves[0] * s.sin() + waves[1] * (2.0 * s).sin(), waves[2] * s.sin() + waves[3] * (3.0 * s).sin());
-                task.predicted[k] = d.motion.x[k] + push * 0.004;
-                task.inertia[k] = d.mesh.share(k) * a * a;
+                input.predicted[k] = d.cable.motion.x[k] + push * 0.004;
+                input.inertia[k] = d.cable.mesh.share(k) * a * a;
             }
-            let start = Pose { x: d.motion.x.clone(), slide: vec![0.0; n] };
+            let start = Unknowns { x: d.cable.motion.x.clone(), slide: vec![0.0; n] };
             let (mut free, mut found) = (FreeStep::default(), start.clone());
-            let Some(done) = free.solve(&d.mesh, &task, &mut found) else { return Err(TestCaseError::fail("not solved")) };
+            let Some(done) = free.solve(&d.cable.mesh, &input, &mut found) else { return Err(TestCaseError::fail("not solved")) };
             prop_assert!(done.residual <= 1e-7 && done.iterations <= 12, "{done:?}");
-            let (mut general, mut expected) = (Workspace::new(&d.mesh).unwrap(), start);
-            let step = StepContext { task: &task, ..d.step_context() };
+            let (mut general, mut expected) = (Workspace::new(&d.cable.mesh).unwrap(), start);
+            let step = StepContext { input: &input, ..d.cable.step_context() };
             prop_assert!(general.minimise(&step, &mut expected).is_ok());
             let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
             prop_assert!(off < 1e-7, "{off}");
@@ -317,11 +317,11 @@ mod tests {
     fn what_it_cannot_solve_is_left_as_it_was() {
         let mut d = dynamics(1e5, false);
         d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
-        let mut task = d.task.clone();
-        task.predicted[7].x = f64::NAN;
-        let start = Pose { x: d.motion.x.clone(), slide: vec![0.0; d.mesh.nodes()] };
-        let mut pose = start.clone();
-        assert_eq!(FreeStep::default().solve(&d.mesh, &task, &mut pose), None);
-        assert_eq!(pose, start);
+        let mut input = d.cable.input.clone();
+        input.predicted[7].x = f64::NAN;
+        let start = Unknowns { x: d.cable.motion.x.clone(), slide: vec![0.0; d.cable.mesh.nodes()] };
+        let mut unknowns = start.clone();
+        assert_eq!(FreeStep::default().solve(&d.cable.mesh, &input, &mut unknowns), None);
+        assert_eq!(unknowns, start);
     }
 }

@@ -9,16 +9,16 @@
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
 use crate::model::Model;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::Path;
+use crate::model::fem::state::cable::CableState;
 
 /// Gap (parts of the barrier's reach) that a bar must have when a node is taken out: less, and the
 /// barrier throws it.
 const LEAST_GAP: f64 = 0.05;
 
-impl Dynamics {
-    /// Whether a bar meets nothing.
+impl CableState {
+    /// True if a bar meets nothing.
     pub(in crate::model::fem) fn is_clear(&self, e: usize) -> bool {
         self.way_is_clear(&self.mesh.path(e, &self.motion.x), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))
     }
@@ -30,7 +30,7 @@ impl Dynamics {
         (0..self.mesh.rest_length.len()).all(|e| !(moves(e) && moves(e + 1)) || self.is_clear(e))
     }
 
-    /// Whether the cable meets or leaves the round of a corner where that is over one of the
+    /// True if the cable meets or leaves the round of a corner where that is over one of the
     /// corner's edges: it has folded back and would run through the edge.
     pub(in crate::model::fem) fn beyond_its_corner(&self, k: usize, x: &[Vec2]) -> bool {
         let Some(node) = self.mesh.sliding[k] else { return false };
@@ -38,7 +38,7 @@ impl Dynamics {
         meets.into_iter().any(|p| self.is_over_an_edge(&node, p, 0.0))
     }
 
-    /// Whether a point on the round of a corner lies over one of the corner's edges, nearer to it
+    /// True if a point on the round of a corner lies over one of the corner's edges, nearer to it
     /// than `least` (parts of the barrier's reach): a way that is tangent there runs through the
     /// edge.
     pub(in crate::model::fem) fn is_over_an_edge(&self, node: &SlidingNode, p: Vec2, least: f64) -> bool {
@@ -52,7 +52,7 @@ impl Dynamics {
         into.into_iter().flatten().any(|(t, n)| from.dot(&t) > 0.0 && from.dot(&n).abs() < least)
     }
 
-    /// Whether the straight part of a way between two nodes meets nothing, nor the edges of the
+    /// True if the straight part of a way between two nodes meets nothing, nor the edges of the
     /// corners it is tangent to.
     pub(in crate::model::fem) fn way_is_clear(&self, way: &Path, nodes: [Option<&SlidingNode>; 2]) -> bool {
         let geometry = self.problem.world.geometry();
@@ -61,7 +61,7 @@ impl Dynamics {
             && geometry.is_clear(way.ends, LEAST_GAP * self.contacts.barrier.reach, rounds)
     }
 
-    /// Whether the straight way past node `k` meets nothing.
+    /// True if the straight way past node `k` meets nothing.
     pub(in crate::model::fem) fn clear_without(&self, k: usize) -> bool {
         if self.problem.world.is_empty() {
             return true;
@@ -83,7 +83,7 @@ impl Dynamics {
             }
             let way = mesh.path(e, &self.motion.x);
             let over = (0..2).any(|j| nodes[j].is_some_and(|s| self.is_over_an_edge(s, way.ends[j], 0.0)));
-            // Where supports and pulleys are is the scene's business.
+            // The scene answers for the places of supports and pulleys.
             let own = (0..2).all(|j| slides(nodes[j]) || mesh.is_free(e + j));
             over || (own && !geometry.is_clear(way.ends, 0.0, mesh.rounds(e)))
         })

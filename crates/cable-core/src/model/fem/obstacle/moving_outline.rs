@@ -25,8 +25,8 @@ use crate::contact::sweep::Sweep;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::model::RobotContact;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::results::rub_force;
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::friction_state::{ContactPair, OutlineMotion};
 use crate::model::fem::time::step_setup::clear_way;
@@ -69,35 +69,35 @@ fn is_passed_by(geometry: &Geometry, part: Part, from: [Vec2; 2], to: [Vec2; 2])
     heights.iter().all(|h| *h > body.offset) || heights.iter().all(|h| *h < -body.offset)
 }
 
-impl Dynamics {
+impl CableState {
     /// Leads the outline: it goes there in the next advance.
     pub(in crate::model::fem) fn set_robot_pose(&mut self, to: RigidPose) {
-        if let Some(rider) = &mut self.rider
+        if let Some(outline) = &mut self.outline
             && to.at.iter().all(|c| c.is_finite())
             && to.angle.is_finite()
         {
-            rider.led_before = std::mem::replace(&mut rider.to.1, to);
+            outline.led_before = std::mem::replace(&mut outline.to.1, to);
         }
     }
 
     /// Its way for an advance to the time `end`, s.
     pub(in crate::model::fem) fn begin_way(&mut self, end: f64) {
         let now = self.motion.time;
-        if let (Some(rider), Some(at)) = (&mut self.rider, self.motion.placement) {
-            rider.from = (now, at);
-            rider.to.0 = end;
-            rider.waits = false;
+        if let (Some(outline), Some(at)) = (&mut self.outline, self.motion.placement) {
+            outline.from = (now, at);
+            outline.to.0 = end;
+            outline.waits = false;
         }
     }
 
-    /// Whether it is to move.
+    /// True if it is to move.
     pub(in crate::model::fem) fn outline_moves(&self) -> bool {
-        self.rider.as_ref().is_some_and(|r| r.led_before != r.to.1)
+        self.outline.as_ref().is_some_and(|r| r.led_before != r.to.1)
     }
 
     /// Puts the outline where it is led at once, whatever lies there; returns whether it moved.
     pub(in crate::model::fem) fn put_outline(&mut self) -> bool {
-        let Some(to) = self.rider.as_ref().map(|r| r.to.1) else { return false };
+        let Some(to) = self.outline.as_ref().map(|r| r.to.1) else { return false };
         let moves = self.motion.placement != Some(to);
         if moves {
             self.motion.placement = Some(to);
@@ -108,10 +108,10 @@ impl Dynamics {
 
     /// The obstacles with the outline where the motion has it.
     pub(in crate::model::fem) fn place_outline(&mut self) {
-        self.contacts.carriage = None;
-        if let (Some(rider), Some(at)) = (&self.rider, self.motion.placement) {
+        self.contacts.outline_motion = None;
+        if let (Some(outline), Some(at)) = (&self.outline, self.motion.placement) {
             let world = &mut Arc::make_mut(&mut self.problem).world;
-            Arc::make_mut(world).place_outline(&rider.shape, at);
+            Arc::make_mut(world).place_outline(&outline.shape, at);
             self.contacts.near.clear();
         }
     }
@@ -119,33 +119,33 @@ impl Dynamics {
     /// Lets it wait where it is until the end of this advance; returns whether it was moving.
     pub(in crate::model::fem) fn outline_waits(&mut self) -> bool {
         let at = self.motion.placement;
-        let Some(rider) = self.rider.as_mut().filter(|r| !r.waits && at != Some(r.to.1)) else { return false };
-        rider.waits = true;
+        let Some(outline) = self.outline.as_mut().filter(|r| !r.waits && at != Some(r.to.1)) else { return false };
+        outline.waits = true;
         true
     }
 
-    /// Sets the task of a step from one time to another (s), the outline where it will then be.
+    /// Sets the input of a step from one time to another (s), the outline where it will then be.
     pub(in crate::model::fem) fn prepare_way(&mut self, times: [f64; 2], dragged: Option<&[Option<Vec2>]>) {
         self.prepare_step(times, dragged);
-        let (Some(rider), Some(from)) = (&self.rider, self.motion.placement) else { return };
-        let (goal, obstacle) = (rider.goal(times[1]), rider.obstacle);
-        if rider.waits || !(rider.shape.max_displacement(&from, &goal) > STANDS_M) {
+        let (Some(outline), Some(from)) = (&self.outline, self.motion.placement) else { return };
+        let (goal, obstacle) = (outline.goal(times[1]), outline.obstacle);
+        if outline.waits || !(outline.shape.max_displacement(&from, &goal) > STANDS_M) {
             self.hitch_on(&OutlineMotion { obstacle, from, to: from });
             return;
         }
         let ends: Vec<[Vec2; 2]> =
             (0..self.mesh.rest_length.len()).map(|e| self.mesh.straight(e, &self.motion.x)).collect();
         for part in PARTS {
-            let carriage = OutlineMotion { obstacle, from, to: from.towards(&goal, part) };
-            self.ride(&carriage);
+            let outline_motion = OutlineMotion { obstacle, from, to: from.towards(&goal, part) };
+            self.move_outline(&outline_motion);
             self.prepare_step(times, dragged);
-            let comes = self.hitch_on(&carriage);
-            if let Some(laid) = self.laid(&carriage, &ends).filter(|_| comes) {
-                self.task.laid = laid;
-                self.contacts.carriage = Some(carriage);
+            let comes = self.hitch_on(&outline_motion);
+            if let Some(laid) = self.laid(&outline_motion, &ends).filter(|_| comes) {
+                self.input.laid = laid;
+                self.contacts.outline_motion = Some(outline_motion);
                 return;
             }
-            self.ride(&OutlineMotion { from: carriage.to, to: from, ..carriage });
+            self.move_outline(&OutlineMotion { from: outline_motion.to, to: from, ..outline_motion });
         }
         self.prepare_step(times, dragged);
         self.hitch_on(&OutlineMotion { obstacle, from, to: from });
@@ -159,56 +159,56 @@ impl Dynamics {
     }
 
     /// Puts the hitch where it is on the outline. Returns whether it can come along.
-    fn hitch_on(&mut self, carriage: &OutlineMotion) -> bool {
-        let (Some(k), Some(rider)) = (self.hitch(), &self.rider) else { return true };
-        let on_it = carriage.to.place(rider.shape.hitch);
-        if (self.task.target[k] - on_it).norm() > STANDS_M {
-            self.task.target[k] = clear_way(&self.problem, self.task.start[k], on_it);
+    fn hitch_on(&mut self, outline_motion: &OutlineMotion) -> bool {
+        let (Some(k), Some(outline)) = (self.hitch(), &self.outline) else { return true };
+        let on_it = outline_motion.to.place(outline.shape.hitch);
+        if (self.input.target[k] - on_it).norm() > STANDS_M {
+            self.input.target[k] = clear_way(&self.problem, self.input.start[k], on_it);
         }
         let far = |p: Vec2| (p - on_it).norm();
-        let now = self.task.start[k];
+        let now = self.input.start[k];
         // One that was stopped by a wall stays there until the robot is as far from it as it may be
         // left behind.
         let gap =
             |p: Vec2| self.problem.world.signed_gap(p, self.problem.radius).map_or(self.problem.radius, |g| g.gap_m);
-        if far(now) <= LEFT_BEHIND_M && gap(self.task.target[k]) < gap(now) {
-            self.task.target[k] = now;
+        if far(now) <= LEFT_BEHIND_M && gap(self.input.target[k]) < gap(now) {
+            self.input.target[k] = now;
         }
-        far(now) <= LEFT_BEHIND_M || far(now) <= (now - carriage.from.place(rider.shape.hitch)).norm()
+        far(now) <= LEFT_BEHIND_M || far(now) <= (now - outline_motion.from.place(outline.shape.hitch)).norm()
     }
 
     /// Moves the outline and nothing else.
-    fn ride(&mut self, carriage: &OutlineMotion) {
-        self.motion.placement = Some(carriage.to);
+    fn move_outline(&mut self, outline_motion: &OutlineMotion) {
+        self.motion.placement = Some(outline_motion.to);
         self.place_outline();
     }
 
-    /// Where the nodes go out of the way of the outline; `ends` are those of the bars before it
+    /// Positions of the nodes out of the way of the outline; `ends` are those of the bars before it
     /// moved. None where they cannot.
-    fn laid(&self, carriage: &OutlineMotion, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
-        let Some(rider) = &self.rider else { return Some(Vec::new()) };
-        let way = rider.shape.max_displacement(&carriage.from, &carriage.to);
+    fn laid(&self, outline_motion: &OutlineMotion, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
+        let Some(outline) = &self.outline else { return Some(Vec::new()) };
+        let way = outline.shape.max_displacement(&outline_motion.from, &outline_motion.to);
         let near: Vec<bool> =
-            ends.iter().map(|e| self.is_near(e.map(|p| carriage.carried(p)), GOES_ALONG_M + 4.0 * way)).collect();
+            ends.iter().map(|e| self.is_near(e.map(|p| outline_motion.carried(p)), GOES_ALONG_M + 4.0 * way)).collect();
         if !near.contains(&true) {
             return Some(Vec::new());
         }
-        let start = &self.task.start;
+        let start = &self.input.start;
         let goes = |k: usize| (k > 0 && near.get(k - 1) == Some(&true)) || near.get(k) == Some(&true);
         let mut x = start.clone();
         for (k, p) in x.iter_mut().enumerate().filter(|(k, _)| goes(*k)) {
             if self.mesh.is_free(k) {
-                *p = carriage.carried(*p);
+                *p = outline_motion.carried(*p);
             }
         }
         if let Some(k) = self.hitch() {
-            x[k] = self.task.target[k];
+            x[k] = self.input.target[k];
         }
-        self.give_back(carriage, larger(2.0 * way, self.contacts.barrier.reach), &mut x);
-        self.is_free_way(carriage, ends, &x, &near).then_some(x)
+        self.restore_gaps(outline_motion, larger(2.0 * way, self.contacts.barrier.reach), &mut x);
+        self.is_free_way(outline_motion, ends, &x, &near).then_some(x)
     }
 
-    /// Whether a bar is nearer to the outline than `within`, m.
+    /// True if a bar is nearer to the outline than `within`, m.
     fn is_near(&self, [a, b]: [Vec2; 2], within: f64) -> bool {
         let geometry = self.problem.world.geometry();
         let Some(body) = geometry.bodies().last() else { return false };
@@ -219,15 +219,16 @@ impl Dynamics {
     }
 
     /// Gives back the gaps that were lost; see the module.
-    fn give_back(&self, carriage: &OutlineMotion, within: f64, x: &mut [Vec2]) {
-        let (mesh, start) = (&self.mesh, &self.task.start);
-        let gone: Vec<Vec2> = start.iter().map(|p| carriage.carried(*p)).collect();
+    fn restore_gaps(&self, outline_motion: &OutlineMotion, within: f64, x: &mut [Vec2]) {
+        let (mesh, start) = (&self.mesh, &self.input.start);
+        let gone: Vec<Vec2> = start.iter().map(|p| outline_motion.carried(*p)).collect();
         let mut kept: Vec<(ContactPair, Vec2)> = Vec::new();
         let mut found: Vec<ContactPair> = Vec::new();
         for (from, of_outline) in [(&gone, true), (start, false)] {
             self.contacts.find_within(&self.problem, mesh, from, within, &mut found);
-            let wanted =
-                |t: &&ContactPair| t.pair.weight > 0.0 && (t.pair.gap.obstacle == carriage.obstacle) == of_outline;
+            let wanted = |t: &&ContactPair| {
+                t.pair.weight > 0.0 && (t.pair.gap.obstacle == outline_motion.obstacle) == of_outline
+            };
             kept.extend(found.iter().filter(wanted).map(|t| (*t, t.interpolate(from))));
         }
         for _ in 0..ROUNDS {
@@ -256,9 +257,9 @@ impl Dynamics {
         }
     }
 
-    /// Whether nothing is passed on the way to `x`: neither what stands nor, seen from it, the
+    /// True if nothing is passed on the way to `x`: neither what stands nor, seen from it, the
     /// outline.
-    fn is_free_way(&self, carriage: &OutlineMotion, ends: &[[Vec2; 2]], x: &[Vec2], near: &[bool]) -> bool {
+    fn is_free_way(&self, outline_motion: &OutlineMotion, ends: &[[Vec2; 2]], x: &[Vec2], near: &[bool]) -> bool {
         let (mesh, geometry) = (&self.mesh, self.problem.world.geometry());
         let own = geometry.bodies().len().saturating_sub(1);
         let swept = |e: usize, from: [Vec2; 2], of_outline: bool| {
@@ -271,13 +272,13 @@ impl Dynamics {
         let clear = ends.iter().enumerate().all(|(e, from)| {
             let moved = mesh.straight(e, x) != *from;
             (!moved || swept(e, *from, false))
-                && (!(moved || near[e]) || swept(e, from.map(|p| carriage.carried(p)), true))
+                && (!(moved || near[e]) || swept(e, from.map(|p| outline_motion.carried(p)), true))
         });
-        let step = |k: usize| x[k] - self.task.start[k];
+        let step = |k: usize| x[k] - self.input.start[k];
         let arc = mesh.arc_length.as_slice();
         let own_way = |order: &mut SortedNodes| {
             self.contacts.own.shape.free_fraction(
-                &self.task.start,
+                &self.input.start,
                 arc,
                 &step,
                 [KEPT_GAP_FRACTIONS[1], f64::INFINITY, 1.0],
@@ -287,12 +288,12 @@ impl Dynamics {
         clear && own_way(&mut SortedNodes::default()) >= 1.0
     }
 
-    /// What the cable does to the outline, and how far that came of the way it was led.
+    /// Force of the cable on the outline, and the rest of the path on which the outline was led.
     pub(in crate::model::fem) fn outline_report(&self) -> Option<RobotContact> {
-        let (rider, at) = (self.rider.as_ref()?, self.motion.placement?);
-        let left = rider.shape.max_displacement(&at, &rider.to.1);
+        let (outline, at) = (self.outline.as_ref()?, self.motion.placement?);
+        let left = outline.shape.max_displacement(&at, &outline.to.1);
         let left_m = if left > STANDS_M { left } else { 0.0 };
-        Some(RobotContact { force_n: self.force_on(rider.obstacle), placement: at, left_m })
+        Some(RobotContact { force_n: self.force_on(outline.obstacle), placement: at, left_m })
     }
 
     /// Force of the cable on an obstacle, N.

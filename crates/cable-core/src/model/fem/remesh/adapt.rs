@@ -13,9 +13,9 @@
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp, smaller};
 use crate::model::Inertia;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Load, Seat, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::floor_friction;
 use crate::model::fem::system::step_input::load_scale;
@@ -70,7 +70,7 @@ const FOLD_DIRECTION_SUM: f64 = 0.2;
 /// a cable drawn fast over corners jerks at them.
 const IMPACT: f64 = 3.0;
 
-/// How far from a corner (m of arc length) its speed is looked at.
+/// Distance from a corner (m of arc length) within which speeds count.
 const NEIGHBOURHOOD: f64 = 0.3;
 
 /// Part by which a change of the mesh may change tension in motion.
@@ -86,12 +86,12 @@ const LEAST_PART: f64 = 1e-3;
 /// Most changes of one kind after one step.
 pub(in crate::model::fem) const MAX_CHANGES: usize = 400;
 
-/// How two bars share their material where their ways change.
+/// The shares of two bars in their material where their paths change.
 #[derive(Clone, Copy, Debug)]
 struct Share {
     /// Part of the first.
     first: f64,
-    /// What the strain of what is stretched grows by; less than nothing: what is left slack.
+    /// Growth of the strain of stretched bars; less than zero: the slack that is left.
     added_strain: f64,
 }
 
@@ -111,7 +111,7 @@ impl Share {
     }
 }
 
-/// What a change of the mesh did.
+/// The effect of a change of the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::model::fem) struct Remeshed {
     /// The cable runs over other corners and rounds.
@@ -122,7 +122,7 @@ pub(in crate::model::fem) struct Remeshed {
     pub(in crate::model::fem) marks: bool,
 }
 
-impl Dynamics {
+impl CableState {
     /// Adapts the mesh to what the cable runs over, without inertia or with it.
     pub(in crate::model::fem) fn remesh(&mut self, inertia: Inertia) -> Remeshed {
         let rests = inertia == Inertia::QuasiStatic;
@@ -132,9 +132,9 @@ impl Dynamics {
         let mut changed = self.let_go(&[], rests);
         let taken = self.take_hold(rests);
         if !taken.is_empty() {
-            // What took hold may lift its neighbour off. Itself it waits for a step where inertia
-            // does not count: it took over weight of the nodes beside it, which under a corner
-            // pulls it away until they have moved.
+            // A node that took hold may lift its neighbour off. Itself it waits for a step where
+            // inertia does not count: it took over weight of the nodes beside it, which under a
+            // corner pulls it away until they have moved.
             self.let_go(if rests { &taken } else { &[] }, rests);
             changed = true;
         }
@@ -146,7 +146,7 @@ impl Dynamics {
             let x = std::mem::take(&mut self.motion.x);
             self.contacts.prepare(&self.problem, &self.mesh, &x, &x);
             self.motion.x = x;
-            self.renew_task();
+            self.renew_input();
         }
         Remeshed { seats: changed, bars, marks: moved }
     }
@@ -156,8 +156,8 @@ impl Dynamics {
         self.problem.length / self.meshing.even_bars as f64
     }
 
-    /// How far outside of contact the cable runs round a corner or circle, m: as far as the barrier
-    /// reaches, but no farther than an end of the cable that is fixed on that round.
+    /// Distance at which the cable runs round a corner or circle, m: the reach of the barrier, but
+    /// no more than that of an end of the cable that is fixed on that round.
     pub(in crate::model::fem) fn clearance(&self, feature: usize) -> f64 {
         let reach = self.contacts.barrier.reach;
         let Some((center, radius)) = round_of(self.problem.world.geometry(), feature, 0.0, 0.0) else { return reach };
@@ -181,21 +181,21 @@ impl Dynamics {
         let rest = [k - 1, k].map(|e| {
             slide.map_or(mesh.rest_length[e], |s| crate::model::fem::system::bar_energy::rest_length(mesh, e, s))
         });
-        // What a step balances is the pull with its loss.
+        // A step balances the pull with its loss.
         let loss = |e: usize, p: f64, l: f64| {
-            let ratio = self.task.predicted_length[e] / mesh.rest_length[e];
-            self.task.damping(e) / mesh.rest_length[e] * (p - ratio * l)
+            let ratio = self.input.predicted_length[e] / mesh.rest_length[e];
+            self.input.damping(e) / mesh.rest_length[e] * (p - ratio * l)
         };
         let tension = [0, 1].map(|j| {
             let t = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);
             let elastic = if t < 0.0 { 0.0 } else { t };
-            if slide.is_some() && self.task.moves {
+            if slide.is_some() && self.input.moves {
                 elastic + loss(k - 1 + j, path[j].length, rest[j])
             } else {
                 elastic
             }
         });
-        let body = self.task.body;
+        let body = self.input.body;
         let weight = [0, 1].map(|j| Weight::of(mesh, k - 1 + j, &path[j], body));
         let material = rest.map(|l| l / mesh.thermal_stretch);
         let share = [0, 1].map(|j| weight[j].carried(material[j])[1 - j]);
@@ -206,10 +206,10 @@ impl Dynamics {
             floor_friction::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
         });
         let load = Load::new(node, straight, [&path[0], &path[1]], body, share);
-        // Between steps the task may be of another mesh, and nothing is balanced.
+        // Between steps the input may be of another mesh, and nothing is balanced.
         let at_material = slide.map_or(load.pull, |slide| {
             [k - 1, k]
-                .map(|e| crate::model::fem::system::bar_energy::pull_at_slide(mesh, &self.task, e, k - e, x, slide))
+                .map(|e| crate::model::fem::system::bar_energy::pull_at_slide(mesh, &self.input, e, k - e, x, slide))
         });
         let lifted = [0, 1].map(|j| tension[j] + body.dot(&(weight[j].center - x[k])));
         Some(Load { floor, lifted, at_material, ..load })
@@ -318,7 +318,7 @@ impl Dynamics {
         true
     }
 
-    /// Whether a sliding node on an obstacle is pulled away from it, or is in the way of a node
+    /// True if a sliding node on an obstacle is pulled away from it, or is in the way of a node
     /// that has to pass.
     fn lifts_off(&self, k: usize) -> bool {
         let Some(node) = self.mesh.sliding[k] else { return false };
@@ -371,7 +371,7 @@ impl Dynamics {
         }
     }
 
-    /// Whether a bar in the place of node `k` is nearly the way it lies now.
+    /// True if a bar in the place of node `k` is nearly the way it lies now.
     fn runs_straight(&self, k: usize) -> bool {
         self.turn(k).abs() < REMOVED_CORNER_TURN
     }
@@ -387,7 +387,7 @@ impl Dynamics {
         if self.problem.world.is_empty() || !self.meshing.slides {
             return taken;
         }
-        let mut touches = std::mem::take(&mut self.solver.touches);
+        let mut touches = std::mem::take(&mut self.meshing.found);
         for _ in 0..MAX_CHANGES {
             self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
             let found = touches.iter().find_map(|t| {
@@ -418,11 +418,11 @@ impl Dynamics {
             self.clear_around(node.unwrap_or(bar + 1));
             taken.push(sliding.seat);
         }
-        self.solver.touches = touches;
+        self.meshing.found = touches;
         taken
     }
 
-    /// How the material between two nodes is shared by a cable in motion where a sliding node comes
+    /// The share of the material between two nodes of a cable in motion where a sliding node comes
     /// between them; None where the cable is not taut, pulled by less than what its own speed
     /// across, hitting something, would make of it, or where the node would stretch it.
     fn share_of_sliding(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> Option<Share> {
@@ -444,7 +444,7 @@ impl Dynamics {
         (tension > impact && self.may_change(tension, &share)).then_some(share)
     }
 
-    /// Whether a sliding node that becomes a plain one leaves a cable in motion as tense as it is.
+    /// True if a sliding node that becomes a plain one leaves a cable in motion as tense as it is.
     fn settles_unstretched(&self, k: usize) -> bool {
         let (mesh, x) = (&self.mesh, &self.motion.x);
         let Some(end) = mesh.sliding[k].map(|s| s.end) else { return false };
@@ -463,13 +463,13 @@ impl Dynamics {
         if strain > 0.0 { self.mesh.axial_stiffness * strain } else { 0.0 }
     }
 
-    /// Whether a change of the mesh adds so little to a tension (N) that it does not show.
+    /// True if a change of the mesh adds so little to a tension (N) that it does not show.
     fn may_change(&self, tension: f64, share: &Share) -> bool {
         let weight = load_scale(&self.problem).0 * self.problem.length;
         self.mesh.axial_stiffness * share.added_strain < TENSION_CHANGE_LIMIT * (tension + WEIGHT_PART * weight)
     }
 
-    /// Whether a sliding node between two nodes would bend the cable the right way and its bars
+    /// True if a sliding node between two nodes would bend the cable the right way and its bars
     /// would meet nothing.
     fn fits(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> bool {
         let x = &self.motion.x;
@@ -544,7 +544,7 @@ impl Dynamics {
         Some((bar, arc_length, sliding))
     }
 
-    /// Whether the bend of a cable under a tension (N) is longer than bars are: then nodes that
+    /// True if the bend of a cable under a tension (N) is longer than bars are: then nodes that
     /// move with their material show it, and a sliding node, which carries no moment, would leave
     /// it out.
     pub(in crate::model::fem) fn bends_visibly(&self, tension: f64) -> bool {
@@ -625,7 +625,7 @@ impl Dynamics {
         changed
     }
 
-    /// Whether a node is there for nothing but the mesh.
+    /// True if a node is there for nothing but the mesh.
     pub(in crate::model::fem) fn removable(&self, k: usize) -> bool {
         k > 0
             && k + 1 < self.mesh.nodes()

@@ -1,10 +1,10 @@
 //! Marks are the places on a round at which its material is counted.
 
 use crate::math::smaller;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{MARKED_ARC_LIMIT, ONE_MARK_BAR_FRACTION, SlidingNode};
 use crate::model::fem::mesh::tangent_path::{End, rotate};
 use crate::model::fem::remesh::adapt::{MAX_CHANGES, NODE_REMOVAL_FRACTION};
+use crate::model::fem::state::cable::CableState;
 
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
 const MARK_TOLERANCE: f64 = 1e-9;
@@ -12,7 +12,7 @@ const MARK_TOLERANCE: f64 = 1e-9;
 /// Logarithm of two tensions below which the next term of the series (x³/720) is rounding.
 const SERIES_LOG_RATIO: f64 = 1e-4;
 
-impl Dynamics {
+impl CableState {
     /// Moves the mark of a round with one node to where the arc is strained as a whole as friction
     /// would strain it: in its middle where nothing rubs. In motion the material between the old
     /// mark and the new one is that of the bar that it leaves, whose strain stays.

@@ -2,11 +2,11 @@
 //! not change.
 
 use crate::math::Vec2;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::SlidingNode;
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::floor_friction;
 
-impl Dynamics {
+impl CableState {
     /// Puts a node at an arc length (m) between nodes `k` − 1 and `k`.
     pub(in crate::model::fem) fn insert(&mut self, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {
         let beside = [k - 1, k].into_iter().find_map(|j| self.mesh.sliding.get(j).copied().flatten());
@@ -75,7 +75,7 @@ impl Dynamics {
         let beside = [k - 1, k + 1].map(|j| self.mesh.sliding.get(j).copied().flatten());
         let Some(round) = beside.into_iter().flatten().next() else { return self.merge(k) };
         if self.mesh.is_free(k - 1) || self.mesh.is_free(k + 1) {
-            // What comes to lie on the round has no history.
+            // Material that comes to lie on the round has no history.
             let had = self.sliding_momentum_at(&self.motion.w) - self.sliding_momentum_at(&self.motion.w_before);
             self.merge(k);
             let has = self.sliding_momentum_at(&self.motion.w) - self.sliding_momentum_at(&self.motion.w_before);

@@ -20,8 +20,8 @@ pub(in crate::model::fem) struct Motion {
     pub(in crate::model::fem) v_older: Vec<Vec2>,
     /// Arc length at sliding nodes one step ago, m.
     pub(in crate::model::fem) s_before: Vec<f64>,
-    /// What the relaxation branches of each bar pull with, one bar after the other, N; empty:
-    /// nothing (see `loss`).
+    /// Forces of the relaxation branches of each bar, one bar after the other, N; empty: none (see
+    /// `loss`).
     pub(in crate::model::fem) branch: Vec<f64>,
     /// Rate of the arc length at sliding nodes, m/s.
     pub(in crate::model::fem) w: Vec<f64>,

@@ -18,12 +18,12 @@ pub(in crate::model::fem) struct MovingOutline {
     pub(in crate::model::fem) shape: Arc<Outline>,
     /// Its number among the obstacles.
     pub(in crate::model::fem) obstacle: usize,
-    /// Where it was when the way began, and where it is led to, with times in s.
+    /// Poses at the start and the end of its path, with times in s.
     pub(in crate::model::fem) from: (f64, RigidPose),
     pub(in crate::model::fem) to: (f64, RigidPose),
     /// The pose to which it was led before.
     pub(in crate::model::fem) led_before: RigidPose,
-    /// Whether it stays where it is until the end of this advance.
+    /// True if it stays where it is until the end of this advance.
     pub(in crate::model::fem) waits: bool,
 }
 

@@ -19,7 +19,7 @@ impl StepSizeController {
         Self { seen: [0.0; 3], step: longest, longest }
     }
 
-    /// What was seen is forgotten.
+    /// Forgets the motion that was seen.
     pub(in crate::model::fem) fn forget(&mut self) {
         *self = Self::new(self.longest);
     }

@@ -31,11 +31,11 @@ pub struct Mesh {
     pub arc_length: Vec<f64>,
     /// Unstretched length of each bar at the present temperature (thermal stretch · ds), m.
     pub rest_length: Vec<f64>,
-    /// Whether each node is held in place.
+    /// True if each node is held in place.
     pub held: Vec<bool>,
     /// Directions prescribed.
     pub clamps: Vec<Clamp>,
-    /// What each node slides over; None: it moves with the material.
+    /// The corner, post or pulley of each sliding node; None: the node moves with the material.
     pub sliding: Vec<Option<SlidingNode>>,
     /// 1 + αΔT: unstretched length of a metre of arc length.
     pub thermal_stretch: f64,
@@ -43,7 +43,7 @@ pub struct Mesh {
     pub axial_stiffness: f64,
     /// EI, N·m²; 0 = no bending.
     pub bending_stiffness: f64,
-    /// How its mass differs from that lumped at its nodes.
+    /// Difference of its mass from that lumped at its nodes.
     pub spread: Spread,
 }
 
@@ -99,7 +99,7 @@ impl Mesh {
         self.arc_length.len()
     }
 
-    /// Whether nothing resists bending.
+    /// True if nothing resists bending.
     #[must_use]
     pub fn is_flexible(&self) -> bool {
         self.bending_stiffness == 0.0
@@ -138,7 +138,7 @@ impl Mesh {
         [e, e + 1].map(|k| self.sliding[k].as_ref().and_then(SlidingNode::feature))
     }
 
-    /// Whether a node moves with the material and nothing prescribes where it is.
+    /// True if a node moves with the material and nothing prescribes where it is.
     #[must_use]
     pub fn is_free(&self, k: usize) -> bool {
         !self.held[k] && self.sliding[k].is_none()
@@ -170,7 +170,7 @@ impl Mesh {
     }
 }
 
-/// Whether the turn at an inner node bends the cable: not where it or a neighbour slides over
+/// True if the turn at an inner node bends the cable: not where it or a neighbour slides over
 /// something.
 fn bends(mesh: &Mesh, node: usize) -> bool {
     mesh.sliding[node - 1..=node + 1].iter().all(Option::is_none)

@@ -16,7 +16,7 @@ use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::bar_weight::Weight;
-use crate::model::fem::system::step_input::{Pose, StepInput, WORK_MAGNITUDE_FRACTION};
+use crate::model::fem::system::step_input::{StepInput, Unknowns, WORK_MAGNITUDE_FRACTION};
 
 /// EA with which a bar resists at its length, N: a flexible one only pulls, as it gives way
 /// sideways between its nodes instead of pushing. With any part of EA slack cables stand in arches
@@ -27,44 +27,44 @@ pub fn stiffness(mesh: &Mesh, stretched: bool) -> f64 {
     if stretched || !mesh.is_flexible() { mesh.axial_stiffness } else { 0.0 }
 }
 
-/// What is carried of a bar from one iteration to the next.
+/// The values of a bar that one iteration passes to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Carried {
     /// Its pull, N.
     pub pull: f64,
-    /// Whether it counts as stretched.
+    /// True if it counts as stretched.
     pub taut: bool,
 }
 
-/// Unstretched length of a bar at a pose, m.
+/// Unstretched length of a bar at unknowns, m.
 #[must_use]
 pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
     mesh.rest_length[e] + mesh.thermal_stretch * (slide[e + 1] - slide[e])
 }
 
-/// What a bar pulls at the material of the sliding node at its start (`j` 0) or end (1), as the
-/// slope of its energy by the slide of that node sees it (without the factor of its energy), N: Θ,
-/// the loss, and the weight that comes over with the material.
+/// Force of a bar on the material of the sliding node at its start (`j` 0) or end (1), as the slope
+/// of its energy by the slide of that node sees it (without the factor of its energy), N: Θ, the
+/// loss, and the weight that comes over with the material.
 #[must_use]
-pub fn pull_at_slide(mesh: &Mesh, task: &StepInput, e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
+pub fn pull_at_slide(mesh: &Mesh, input: &StepInput, e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
     let strain = p / l - 1.0;
-    let ratio = task.predicted_length[e] / mesh.rest_length[e];
-    let loss = task.damping(e) / mesh.rest_length[e] * (p - ratio * l) * ratio;
+    let ratio = input.predicted_length[e] / mesh.rest_length[e];
+    let loss = input.damping(e) / mesh.rest_length[e] * (p - ratio * l) * ratio;
     let tension = stiffness(mesh, !(strain < 0.0)) * strain;
-    mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted(mesh, task.body, e, j, x)
+    mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted(mesh, input.body, e, j, x)
 }
 
-/// What a bar with a sliding node at an end pulls with along its way, N.
+/// Tension along its path of a bar with a sliding node at an end, N.
 #[must_use]
-pub fn pull_on(mesh: &Mesh, task: &StepInput, e: usize, x: &[Vec2], slide: &[f64]) -> f64 {
+pub fn pull_on(mesh: &Mesh, input: &StepInput, e: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
     let strain = p / l - 1.0;
-    let ratio = task.predicted_length[e] / mesh.rest_length[e];
-    stiffness(mesh, !(strain < 0.0)) * strain + task.damping(e) / mesh.rest_length[e] * (p - ratio * l)
+    let ratio = input.predicted_length[e] / mesh.rest_length[e];
+    stiffness(mesh, !(strain < 0.0)) * strain + input.damping(e) / mesh.rest_length[e] * (p - ratio * l)
 }
 
-/// What it takes to lift the weight from the centroid of a bar to its start (`j` 0) or end (1), N.
+/// Force that lifts the weight from the centroid of a bar to its start (`j` 0) or end (1), N.
 #[must_use]
 pub fn lifted(mesh: &Mesh, body: Vec2, e: usize, j: usize, x: &[Vec2]) -> f64 {
     body.dot(&(Weight::of(mesh, e, &mesh.path(e, x), body).center - x[e + j]))
@@ -73,10 +73,10 @@ pub fn lifted(mesh: &Mesh, body: Vec2, e: usize, j: usize, x: &[Vec2]) -> f64 {
 /// The pull at the present length P of a bar between nodes that move with the material, and its
 /// slope by P, N and N/m.
 #[must_use]
-pub fn pull(mesh: &Mesh, task: &StepInput, e: usize, taut: bool, p: f64) -> (f64, f64) {
+pub fn pull(mesh: &Mesh, input: &StepInput, e: usize, taut: bool, p: f64) -> (f64, f64) {
     let l = mesh.rest_length[e];
     let stiffness = stiffness(mesh, taut);
-    let (loss, slope) = task.loss_at(e, taut || !mesh.is_flexible(), l, p);
+    let (loss, slope) = input.loss_at(e, taut || !mesh.is_flexible(), l, p);
     (stiffness * (p / l - 1.0) + loss, stiffness / l + slope)
 }
 
@@ -86,22 +86,22 @@ pub fn pull(mesh: &Mesh, task: &StepInput, e: usize, taut: bool, p: f64) -> (f64
 pub fn add(
     s: &mut System,
     mesh: &Mesh,
-    task: &StepInput,
+    input: &StepInput,
     e: usize,
-    pose: &Pose,
+    unknowns: &Unknowns,
     curvature: Curvature,
     carried: Option<Carried>,
 ) -> (f64, f64) {
     if mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
-        return add_sliding(s, mesh, task, e, pose, curvature);
+        return add_sliding(s, mesh, input, e, unknowns, curvature);
     }
-    let d = pose.x[e + 1] - pose.x[e];
-    let (p, l, scale) = (d.norm(), mesh.rest_length[e], task.scale[e]);
+    let d = unknowns.x[e + 1] - unknowns.x[e];
+    let (p, l, scale) = (d.norm(), mesh.rest_length[e], input.scale[e]);
     let t = if p > 0.0 { d / p } else { Vec2::x() };
     let taut = carried.map_or(!(p < l), |c| c.taut);
     let stiffness = stiffness(mesh, taut) / l;
     let lossy = taut || !mesh.is_flexible();
-    let (loss, c) = task.loss_at(e, lossy, l, p);
+    let (loss, c) = input.loss_at(e, lossy, l, p);
     let pull = stiffness * (p - l) + loss;
     let across = carried.map_or(pull, |c| c.pull);
     let clip = curvature == Curvature::Clipped && across < 0.0;
@@ -110,10 +110,10 @@ pub fn add(
     s.add_gradient(e, -t * (pull * scale));
     s.add_gradient(e + 1, t * (pull * scale));
     s.hessian.add_spring(2 * e, [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric]);
-    let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + 2.0 * task.loss_energy(e, lossy, l, p));
+    let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + 2.0 * input.loss_energy(e, lossy, l, p));
     // The undamped Newton does not use the energy, so its round-off is not estimated.
     let rounding =
-        if carried.is_some() { 0.0 } else { scale * WORK_MAGNITUDE_FRACTION * pull.abs() * pose.x[e].norm() };
+        if carried.is_some() { 0.0 } else { scale * WORK_MAGNITUDE_FRACTION * pull.abs() * unknowns.x[e].norm() };
     (energy, energy + rounding)
 }
 
@@ -121,20 +121,20 @@ pub fn add(
 fn add_sliding(
     s: &mut System,
     mesh: &Mesh,
-    task: &StepInput,
+    input: &StepInput,
     e: usize,
-    pose: &Pose,
+    unknowns: &Unknowns,
     curvature: Curvature,
 ) -> (f64, f64) {
-    let path = mesh.path(e, &pose.x);
-    let (p, l, scale) = (path.length, rest_length(mesh, e, &pose.slide), task.scale[e]);
+    let path = mesh.path(e, &unknowns.x);
+    let (p, l, scale) = (path.length, rest_length(mesh, e, &unknowns.slide), input.scale[e]);
     let strain = p / l - 1.0;
     let slides = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
     let stiffness = stiffness(mesh, !(strain < 0.0));
     let tension = stiffness * strain;
     // Damping: ½ c (P − p̂ L)², c = EA τ a/L₀, p̂ the predicted ratio P/L.
-    let c = task.damping(e) / mesh.rest_length[e];
-    let ratio = task.predicted_length[e] / mesh.rest_length[e];
+    let c = input.damping(e) / mesh.rest_length[e];
+    let ratio = input.predicted_length[e] / mesh.rest_length[e];
     let late = p - ratio * l;
     let pull = tension + c * late;
     let push = -tension * (1.0 + 0.5 * strain) - c * late * ratio;
@@ -150,24 +150,24 @@ fn add_sliding(
     }
     let elastic = 0.5 * stiffness * l * strain * strain;
     let viscous = 0.5 * c * late * late;
-    let rounding = WORK_MAGNITUDE_FRACTION * pull.abs() * pose.x[e].norm();
+    let rounding = WORK_MAGNITUDE_FRACTION * pull.abs() * unknowns.x[e].norm();
     let carried = mesh.thermal_stretch;
-    let hung = Weight::of(mesh, e, &path, task.body);
+    let hung = Weight::of(mesh, e, &path, input.body);
     let sign = [-1.0, 1.0];
     // Work is measured from the sliding node itself: with friction the two sides of it count
     // differently.
-    let weight = [0, 1].map(|j| if slides[j] { task.body.dot(&(hung.center - pose.x[e + j])) } else { 0.0 });
+    let weight = [0, 1].map(|j| if slides[j] { input.body.dot(&(hung.center - unknowns.x[e + j])) } else { 0.0 });
     // Generalised directions of P and of L, and of the weight's lever, at both ends.
     let along = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { t * sign[j] });
     let length = [0, 1].map(|j| if slides[j] { Vec2::new(carried * sign[j], 0.0) } else { Vec2::zeros() });
     let lever = [0, 1].map(|j| if slides[j] { Vec2::new(sign[j], 0.0) } else { Vec2::zeros() });
-    let change = pose.slide[e + 1] - pose.slide[e];
+    let change = unknowns.slide[e + 1] - unknowns.slide[e];
     // Half of what the bar held at first is among the forces on its nodes.
     let held = mesh.arc_length[e + 1] - mesh.arc_length[e];
-    let half = (pose.x[e] + pose.x[e + 1]) * 0.5;
-    let shifted = task.body.dot(&(hung.center - half)) * held;
+    let half = (unknowns.x[e] + unknowns.x[e + 1]) * 0.5;
+    let shifted = input.body.dot(&(hung.center - half)) * held;
     let hang = [0, 1].map(|j| {
-        if slides[j] { Vec2::zeros() } else { hung.slope[j] * change + (hung.slope[j] - task.body * 0.5) * held }
+        if slides[j] { Vec2::zeros() } else { hung.slope[j] * change + (hung.slope[j] - input.body * 0.5) * held }
     });
     let across = Mat2::identity() - t * t.transpose();
     for j in 0..2 {
@@ -182,12 +182,12 @@ fn add_sliding(
             if curvature == Curvature::Exact {
                 block -= (lever[j] * hung.slope[k].transpose() + hung.slope[j] * lever[k].transpose()) * scale;
                 if j == k && !slides[j] {
-                    block -= Weight::bend(mesh, e, j, &path, pose.x[e + j], task.body) * ((held + change) * scale);
+                    block -= Weight::bend(mesh, e, j, &path, unknowns.x[e + j], input.body) * ((held + change) * scale);
                 }
             }
             s.add_block(e + j, e + k, &block);
         }
     }
-    let fallen = weight[1] * pose.slide[e + 1] - weight[0] * pose.slide[e] + shifted;
+    let fallen = weight[1] * unknowns.slide[e + 1] - weight[0] * unknowns.slide[e] + shifted;
     (scale * (elastic + viscous - fallen), scale * (elastic + viscous + fallen.abs() + rounding))
 }

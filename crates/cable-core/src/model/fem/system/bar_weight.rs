@@ -12,10 +12,10 @@
 //! The pull in the middle of the straight part is T − L b·(m − c)/P, with T the pull of the bar as
 //! a whole. A bar that lies on nothing has c = m and l = P: half at each end.
 //!
-//! Where that pull would be a push the bar is slack, and its material is not spread evenly: only so
+//! If that pull would be a push the bar is slack, and its material is not spread evenly: only so
 //! much of the weight on the round acts there that nothing pushes, and of the rest half at each
-//! end. How much is found from the pose in which a step begins: sought within the step, it goes to
-//! and fro where a bar is nearly slack.
+//! end. How much is found from the unknowns in which a step begins: sought within the step, it goes
+//! to and fro where a bar is nearly slack.
 
 use crate::math::{Mat2, Vec2, larger, perp, smaller};
 use crate::model::fem::mesh::tangent_path::Path;
@@ -24,7 +24,7 @@ use crate::model::fem::system::assembly::Mesh;
 /// The weight of one bar with a sliding node at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weight {
-    /// Where it acts, c, m.
+    /// Point where it acts, c, m.
     pub center: Vec2,
     /// ∂(b·c)/∂x at a free end, N/m; nothing at a sliding one.
     pub slope: [Vec2; 2],
@@ -134,7 +134,7 @@ impl Weight {
     }
 }
 
-/// Whether the round of a sliding node has several marks: what lies on a small one is little, and
+/// True if the round of a sliding node has several marks: what lies on a small one is little, and
 /// its friction is found as if it hung beside it. (A mesh of one bar stands for a part of a longer
 /// one.)
 fn is_large(mesh: &Mesh, k: usize) -> bool {
@@ -293,7 +293,7 @@ mod tests {
         ) {
             use crate::model::fem::system::assembly::System;
             use crate::model::fem::system::bar_energy;
-            use crate::model::fem::system::step_input::{Pose, StepInput};
+            use crate::model::fem::system::step_input::{Unknowns, StepInput};
             use crate::energy::Curvature;
             let (j, sense) = (usize::from(first), if round.1 { 1.0 } else { -1.0 });
             let (mut mesh, x) = bar(j, unit(place.1) * place.0, round.0, sense, round.2);
@@ -301,11 +301,11 @@ mod tests {
             mesh.rest_length = vec![0.8 * mesh.path(0, &x).length];
             mesh.arc_length[1] = mesh.rest_length[0];
             prop_assume!(mesh.rest_length[0] > 0.5);
-            let task = StepInput { body: BODY, scale: vec![1.4], predicted_length: mesh.rest_length.clone(), ..StepInput::default() };
+            let input = StepInput { body: BODY, scale: vec![1.4], predicted_length: mesh.rest_length.clone(), ..StepInput::default() };
             let energy = |x: &[Vec2], slide: &[f64]| {
                 let mut s = System::new(&mesh);
-                let pose = Pose { x: x.to_vec(), slide: slide.to_vec() };
-                (bar_energy::add(&mut s, &mesh, &task, 0, &pose, Curvature::Exact, None).0, s)
+                let unknowns = Unknowns { x: x.to_vec(), slide: slide.to_vec() };
+                (bar_energy::add(&mut s, &mesh, &input, 0, &unknowns, Curvature::Exact, None).0, s)
             };
             let mut slides = [0.0; 2];
             slides[1 - j] = slide;

@@ -5,7 +5,7 @@ use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
-use crate::model::fem::system::step_input::{Pose, StepInput, node_scale};
+use crate::model::fem::system::step_input::{StepInput, Unknowns, node_scale};
 
 /// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.
 pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &ContactPair, gradient: Vec2, block: &Mat2) {
@@ -84,14 +84,14 @@ pub fn add_touch(
 pub fn add_rubs(
     s: &mut System,
     mesh: &Mesh,
-    task: &StepInput,
+    input: &StepInput,
     contacts: &ContactSet,
     branches: &[Branch],
     x: &[Vec2],
 ) -> f64 {
     let mut value = 0.0;
     for (k, rub) in contacts.rubs.iter().enumerate() {
-        let scale = task.scale.get(rub.touch.node).copied().unwrap_or(node_scale(task, rub.touch.node));
+        let scale = input.scale.get(rub.touch.node).copied().unwrap_or(node_scale(input, rub.touch.node));
         let y = rub.sliding(x);
         let (d, mut slope, mut bend) = friction::at(y, rub.limit, contacts.slip);
         if let Some(branch) = branches.get(k) {
@@ -105,18 +105,18 @@ pub fn add_rubs(
 }
 
 /// Plan view: friction of every node on the floor; returns its energy, J.
-pub fn add_floor(s: &mut System, mesh: &Mesh, task: &StepInput, contacts: &ContactSet, pose: &Pose) -> f64 {
+pub fn add_floor(s: &mut System, mesh: &Mesh, input: &StepInput, contacts: &ContactSet, unknowns: &Unknowns) -> f64 {
     let mut value = 0.0;
-    for (i, &limit) in task.floor_limit.iter().enumerate() {
-        let scale = node_scale(task, i);
+    for (i, &limit) in input.floor_limit.iter().enumerate() {
+        let scale = node_scale(input, i);
         if let Some(sliding) = &mesh.sliding[i] {
             let (d, slope, bend) =
-                friction::at(contacts.floor_slid[i].x + pose.slide[i], limit * sliding.floor_factor, contacts.slip);
+                friction::at(contacts.floor_slid[i].x + unknowns.slide[i], limit * sliding.floor_factor, contacts.slip);
             value += d * scale;
             s.gradient[2 * i] += slope * scale;
             s.hessian.add(2 * i, 2 * i, bend * scale);
         } else {
-            let slid = contacts.floor_slid[i] + (pose.x[i] - task.start[i]);
+            let slid = contacts.floor_slid[i] + (unknowns.x[i] - input.start[i]);
             let (d, slope, bend) = friction::at_plane(slid, limit, contacts.slip);
             value += d * scale;
             s.add_gradient(i, slope * scale);

@@ -47,7 +47,7 @@ const SPARE_MOVE: f64 = 2e-3;
 pub struct ContactPair {
     /// Node, or first node of the segment.
     pub node: usize,
-    /// Whether the segment's inside touches (a corner or a circle).
+    /// True if the segment's inside touches (a corner or a circle).
     pub on_segment: bool,
     /// Pair as found.
     pub pair: Pair,
@@ -99,13 +99,13 @@ pub struct OutlineMotion {
 }
 
 impl OutlineMotion {
-    /// Where a point that was at `p` (m) would be now if it had gone with the outline.
+    /// Position now of a point at `p` (m) if it had gone with the outline.
     #[must_use]
     pub fn carried(&self, p: Vec2) -> Vec2 {
         self.from.carried(&self.to, p)
     }
 
-    /// How far the point of the outline that is at `p` (m) came.
+    /// Displacement of the point of the outline that is at `p` (m).
     #[must_use]
     pub fn way(&self, p: Vec2) -> Vec2 {
         p - self.to.carried(&self.from, p)
@@ -122,7 +122,7 @@ impl ContactSet {
     }
 }
 
-/// What friction remembers of a contact after an accepted step.
+/// The memory of a friction contact after an accepted step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Memory {
     node: usize,
@@ -146,12 +146,12 @@ pub struct FrictionContact {
     pub limit: f64,
     /// Sliding remembered at the start of the step, m.
     pub slid: f64,
-    /// Where the touching material was at the start of the step, m.
+    /// Position of the touching material at the start of the step, m.
     pub origin: Vec2,
 }
 
 impl FrictionContact {
-    /// Whether it is the friction of a touch, wherever that is now.
+    /// True if it is the friction of a touch, wherever that is now.
     fn is_of(&self, touch: &ContactPair) -> bool {
         let key = |t: &ContactPair| (t.node, t.on_segment, t.pair.gap.feature);
         key(&self.touch) == key(touch)
@@ -179,21 +179,21 @@ pub struct ContactSet {
     pub slip: f64,
     /// Friction of the present step.
     pub rubs: Vec<FrictionContact>,
-    /// What it was before its normal forces were taken anew.
+    /// The friction before its normal forces were taken anew.
     before: Vec<FrictionContact>,
     /// By node; of one node the newest first.
     memory: Vec<Memory>,
     /// Room for the next memory.
     spare: Vec<Memory>,
     scratch: Vec<ContactPair>,
-    /// What each bar can come near to in this step.
+    /// The obstacles to which each bar can come near in this step.
     pub near: NeighbourLists,
     /// Plan view: sliding of each node remembered, m.
     pub floor_slid: Vec<Vec2>,
     /// Contacts of the cable with itself.
     pub own: Own,
-    /// How the outline of the robot moved in this step.
-    pub carriage: Option<OutlineMotion>,
+    /// Motion of the robot's outline in this step.
+    pub outline_motion: Option<OutlineMotion>,
 }
 
 impl ContactSet {
@@ -211,13 +211,13 @@ impl ContactSet {
             near: NeighbourLists::default(),
             floor_slid: vec![Vec2::zeros(); nodes],
             own: Own::default(),
-            carriage: None,
+            outline_motion: None,
         }
     }
 
     /// Becomes a copy without new memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, slip, rubs, memory, floor_slid, own, carriage, .. } = other;
+        let Self { barrier, slip, rubs, memory, floor_slid, own, outline_motion, .. } = other;
         (self.barrier, self.slip) = (*barrier, *slip);
         // With room for as many, so that a front of contact that runs on asks for none; and no
         // more, or each copy would double it.
@@ -229,7 +229,7 @@ impl ContactSet {
         self.memory.extend_from_slice(memory);
         self.floor_slid.clone_from(floor_slid);
         self.own.copy_from(own);
-        self.carriage = *carriage;
+        self.outline_motion = *outline_motion;
     }
 
     /// Friction is from now on fully mobilised at a sliding of `slip` (m); every contact keeps its
@@ -307,7 +307,7 @@ impl ContactSet {
         }
     }
 
-    /// Whether all bars stay out of reach of everything on the way between places of the nodes (m).
+    /// True if all bars stay out of reach of everything on the way between places of the nodes (m).
     pub fn out_of_reach(&self, mesh: &Mesh, [from, to]: [&[Vec2]; 2]) -> bool {
         (0..mesh.rest_length.len()).all(|e| {
             let ways = [mesh.straight(e, from), mesh.straight(e, to)];
@@ -352,14 +352,14 @@ impl ContactSet {
         self.rubs.clear();
         for touch in &touches {
             let limit = touch.pair.gap.friction * touch.load(&self.barrier);
-            // What is taken away of a normal force that counts twice is taken away of its friction.
+            // The part of a normal force that counts twice is taken away of its friction, too.
             let same = self.rubs.iter_mut().rev().take_while(|r| r.touch.node == touch.node).find(|r| r.is_of(touch));
             if let Some(rub) = same {
                 rub.limit += limit;
             } else if limit != 0.0 {
                 let slid = self.remembered(touch);
                 let was = touch.interpolate(start);
-                let carried = self.carriage.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+                let carried = self.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
                 let origin = carried.map_or(was, |c| c.carried(was));
                 self.rubs.push(FrictionContact { touch: *touch, tangent: touch.tangent(), limit, slid, origin });
             }
@@ -500,7 +500,8 @@ impl ContactSet {
                 *slid = friction::return_map_plane(*slid + by, self.slip);
             }
         }
-        // What is left in `rubs` now tells of the state reached: nothing slides further from here.
+        // The friction that is left in `rubs` is of the state reached: nothing slides further from
+        // here.
         for (rub, memory) in self.rubs.iter_mut().zip(&self.spare) {
             rub.slid = memory.slid;
             rub.origin = rub.touch.interpolate(end);

@@ -33,10 +33,10 @@ const END: f64 = -0.048_166_153_011_381_5;
 /// Part of a bar's mass that couples its nodes: 0 is lumped, 1/6 consistent.
 const MEAN: f64 = 1.0 / 12.0;
 
-/// How the mass of a mesh differs from that lumped at its nodes; empty: not at all.
+/// Difference of the mass of a mesh from that lumped at its nodes; empty: none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// What a node has beyond half of the bars beside it, m of arc length.
+    /// Mass of a node beyond half of the bars beside it, m of arc length.
     pub more: Vec<f64>,
     /// Length (m) whose mass m couples the nodes of each bar: it moves with −½ m |v₁ − v₂|² beside
     /// the masses of the nodes.
@@ -71,7 +71,7 @@ impl Spread {
         self.coupling[last] = MEAN * (1.0 - END) * bar;
     }
 
-    /// Whether it does not differ.
+    /// True if it does not differ.
     #[must_use]
     pub fn is_lumped(&self) -> bool {
         self.coupling.is_empty()
@@ -141,7 +141,7 @@ mod tests {
         assert!((coarse / fine).log2() > 2.9, "{coarse} {fine}");
     }
 
-    /// Which end of a cable is held.
+    /// The held end of a cable.
     #[derive(Clone, Copy, PartialEq)]
     enum Held {
         First,

@@ -20,7 +20,7 @@ pub struct SelfFriction {
     pub limit: f64,
     /// Sliding remembered at the start of the step, m.
     slid: f64,
-    /// Where the node was from the segment at the start of the step, m.
+    /// Position of the node from the segment at the start of the step, m.
     origin: Vec2,
 }
 

@@ -14,14 +14,14 @@ const TOLERANCE: f64 = 1e-6;
 
 /// The unknowns of a step.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pose {
+pub struct Unknowns {
     /// Position of each node, m; of a sliding one its mark.
     pub x: Vec<Vec2>,
-    /// How far the arc length at each sliding node has moved in this step, m.
+    /// Slide of the arc length at each sliding node in this step, m.
     pub slide: Vec<f64>,
 }
 
-/// What a step is about.
+/// The input of a step: supports, loads, inertia and tolerances.
 #[derive(Clone, Debug, Default)]
 pub struct StepInput {
     /// Factor of each bar's energy (see `sliding_node`); 1 without friction at sliding nodes.
@@ -49,16 +49,15 @@ pub struct StepInput {
     pub hands: Vec<(usize, f64, Vec2)>,
     /// External force on each node, N.
     pub force: Vec<Vec2>,
-    /// Where each held node has to go, m (others: ignored).
+    /// Target of each held node, m (others: ignored).
     pub target: Vec<Vec2>,
-    /// Whether held nodes may stop short of it where an obstacle or the cable is in the way.
+    /// True if held nodes may stop short of it where an obstacle or the cable is in the way.
     pub may_lag: bool,
-    /// Whether an outline that is not of the cable may squeeze it against an obstacle.
+    /// True if an outline that is not of the cable may squeeze it against an obstacle.
     pub outlined: bool,
-    /// Where the step began, m.
+    /// Positions at the start of the step, m.
     pub start: Vec<Vec2>,
-    /// Where the iteration begins, m, where that is not where the step begins: an outline moved;
-    /// else empty.
+    /// Positions from which the iteration begins, m, if an outline moved; else empty.
     pub laid: Vec<Vec2>,
     /// Plan view: largest friction force of each node, N (empty otherwise).
     pub floor_limit: Vec<f64>,
@@ -72,16 +71,16 @@ pub struct StepInput {
     pub max_move: f64,
     /// The time that forces are of, s.
     pub to: f64,
-    /// Whether it is a step with inertia.
+    /// True if it is a step with inertia.
     pub moves: bool,
     /// Regularisation to begin with, N/m.
     pub shift: f64,
 }
 
 impl StepInput {
-    /// What the loss of bar `e` of rest length `l` pulls with at a length `p` (m), and its slope by
-    /// that, N and N/m: c (P − P̂)/L, and where it is slack that of P = L with the slope of a slack
-    /// bar from there on.
+    /// Force of the loss of bar `e` of rest length `l` at a length `p` (m), and its slope by that,
+    /// N and N/m: c (P − P̂)/L, and where it is slack that of P = L with the slope of a slack bar
+    /// from there on.
     #[must_use]
     pub fn loss_at(&self, e: usize, taut: bool, l: f64, p: f64) -> (f64, f64) {
         let [c, slack] = self.loss.get(e).copied().unwrap_or_default();
@@ -110,7 +109,7 @@ impl StepInput {
         self.loss.get(e).map_or(0.0, |c| c[0])
     }
 
-    /// Where the iteration begins, m.
+    /// Positions from which the iteration begins, m.
     #[must_use]
     pub fn begins(&self) -> &[Vec2] {
         if self.laid.is_empty() { &self.start } else { &self.laid }
@@ -127,7 +126,7 @@ pub enum WorkBudget {
 }
 
 impl WorkBudget {
-    /// Whether nothing is left.
+    /// True if nothing is left.
     #[must_use]
     pub fn is_spent(self) -> bool {
         self == Self::Left(0)
@@ -152,7 +151,7 @@ pub struct Failure {
     pub cause: FailureCause,
 }
 
-/// What a step did.
+/// The outcome of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Converged {
     /// Newton iterations.
@@ -162,13 +161,13 @@ pub struct Converged {
 }
 
 /// Factor of the equations of a node.
-pub(in crate::model::fem) fn node_scale(task: &StepInput, node: usize) -> f64 {
-    task.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
+pub(in crate::model::fem) fn node_scale(input: &StepInput, node: usize) -> f64 {
+    input.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
 }
 
 /// Load per metre that presses on the ground and the whole load, N/m and N; never 0.
 pub(in crate::model::fem) fn load_scale(problem: &Problem) -> (f64, f64) {
-    // What presses on the floor of a plan view counts by what it rubs.
+    // The normal force on the floor of a plan view counts by its friction.
     let floor = problem.floor_friction.map_or(0.0, |(friction, normal)| friction * normal);
     let whole = problem.force_scale().max(floor * problem.length);
     let per_m = problem.body_force(0.0).norm().max(floor).max(1e-3 * whole / problem.length);

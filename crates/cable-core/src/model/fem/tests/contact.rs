@@ -30,7 +30,7 @@ fn build(scene: &Scene) -> Dynamics {
 /// A cable of 12 m on a floor, its end pulled along it at the height at which the barrier carries
 /// its weight (an end held at the surface itself pulls its neighbour down: +0.3 % at this mesh).
 fn drag(segments: usize) -> Scene {
-    let height = RADIUS + 0.87 * crate::model::fem::dynamics::REACH;
+    let height = RADIUS + 0.87 * crate::model::fem::state::cable::REACH;
     let pull = Motion { times_s: vec![0.0, 6.0], points_m: vec![[12.0, height], [13.5, height]] };
     scene(
         |c| {
@@ -57,11 +57,11 @@ fn dragging_along_a_floor_takes_the_friction_of_its_weight() {
         let mut d = build(&drag(60));
         d.settle(&[]).unwrap();
         let (mut sum, mut count) = (0.0, 0.0);
-        while d.state().time_s < until {
+        while d.cable.state().time_s < until {
             d.advance(1.0 / 60.0, inertia, &[]).unwrap();
-            assert!(d.smallest_gap() > 0.0);
-            if d.state().time_s > from {
-                sum -= d.solution().supports[1].reaction_x_n;
+            assert!(d.cable.smallest_gap() > 0.0);
+            if d.cable.state().time_s > from {
+                sum -= d.cable.solution().supports[1].reaction_x_n;
                 count += 1.0;
             }
         }
@@ -78,16 +78,16 @@ fn a_held_end_does_not_creep() {
         d.advance(1.0 / 60.0, Inertia::QuasiStatic, &[]).unwrap();
     }
     // Dragged support stays where the hand put it: the pull must stay too.
-    let here = d.state().position_m.last().copied();
+    let here = d.cable.state().position_m.last().copied();
     let hand = [None, here];
     d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
-    let (before, start) = (-d.solution().supports[1].reaction_x_n, d.state());
+    let (before, start) = (-d.cable.solution().supports[1].reaction_x_n, d.cable.state());
     for _ in 0..120 {
         d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
     }
-    let after = -d.solution().supports[1].reaction_x_n;
+    let after = -d.cable.solution().supports[1].reaction_x_n;
     assert!((after / before - 1.0).abs() < 1e-2, "{before} N became {after} N");
-    for (a, b) in start.position_m.iter().zip(&d.state().position_m) {
+    for (a, b) in start.position_m.iter().zip(&d.cable.state().position_m) {
         assert!((a - b).norm() < 1e-3);
     }
 }
@@ -114,12 +114,12 @@ fn corner(load: f64) -> Scene {
 fn a_load_over_a_corner_rests_and_stays() {
     let mut d = build(&corner(50.0));
     d.settle(&[]).unwrap();
-    let start = d.state();
+    let start = d.cable.state();
     for _ in 0..60 {
         d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap();
-        assert!(d.smallest_gap() > 0.0);
+        assert!(d.cable.smallest_gap() > 0.0);
     }
-    let moved = (d.state().position_m[0] - start.position_m[0]).norm();
+    let moved = (d.cable.state().position_m[0] - start.position_m[0]).norm();
     assert!(moved < 1e-3, "{moved}");
 }
 
@@ -137,7 +137,7 @@ fn taut_over_a_post() -> Dynamics {
         vec![Obstacle { name: "post".to_owned(), shape: post, friction: Some(0.3) }],
     );
     let mut d = build(&scene);
-    d.meshing.slides = false;
+    d.cable.meshing.slides = false;
     d
 }
 
@@ -148,14 +148,14 @@ fn a_barrier_as_stiff_as_the_cable_is_taut_keeps_a_gap_that_numbers_can_tell() {
     let mut halved = 0;
     for _ in 0..12 {
         halved += d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap().cost.halved_steps;
-        let gap = d.smallest_gap();
-        let pull = d.solution().supports[1].reaction_x_n.abs();
+        let gap = d.cable.smallest_gap();
+        let pull = d.cable.solution().supports[1].reaction_x_n.abs();
         println!("{gap:e} m under {pull:.0} N, {halved} halved");
         assert!(pull > 5e4, "{pull}");
         // A hundredth of the tension turns at a node here: φ'(u) = −0.2 of the barrier's stiffness,
         // at u = 0.7.
         assert!(
-            gap > 0.2 * crate::model::fem::dynamics::REACH && halved == 0,
+            gap > 0.2 * crate::model::fem::state::cable::REACH && halved == 0,
             "{gap:e} m under {pull} N, {halved} halved"
         );
     }
@@ -173,7 +173,7 @@ fn an_end_thrown_ten_metres_in_a_frame_does_not_pass_a_beam() {
     for _ in 0..60 {
         let report = d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
         held |= !report.warnings.is_empty();
-        for p in &d.state().position_m {
+        for p in &d.cable.state().position_m {
             assert!(p.x < 15.0 - RADIUS && p.iter().all(|c| c.is_finite()), "{p}");
         }
     }
@@ -205,9 +205,9 @@ fn a_cable_dropped_on_rubble_loses_no_step_and_never_penetrates() {
     let mut halved = 0;
     for _ in 0..240 {
         halved += d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap().cost.halved_steps;
-        assert!(d.smallest_gap() > 0.0);
+        assert!(d.cable.smallest_gap() > 0.0);
     }
-    let state = d.state();
+    let state = d.cable.state();
     let highest = state.position_m.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
     // Of 960 inner steps one may not find which corners hold and which slip, and is taken again in
     // halves (1 in 1000 of violent scenes is).
@@ -223,7 +223,7 @@ fn the_same_run_gives_the_same_bits() {
         for _ in 0..20 {
             d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap();
         }
-        d.state()
+        d.cable.state()
     };
     assert_eq!(run(), run());
 }
@@ -232,7 +232,7 @@ fn the_same_run_gives_the_same_bits() {
 fn the_answer_lists_the_floor() {
     let mut d = build(&drag(60));
     d.settle(&[]).unwrap();
-    let s = d.solution();
+    let s = d.cable.solution();
     assert_eq!(s.contacts.len(), 1);
     let expected = weight_per_m() * 12.0;
     assert!((s.contacts[0].normal_n / expected - 1.0).abs() < 1e-3, "{:?}", s.contacts[0]);
@@ -259,7 +259,7 @@ fn a_floor_carries_what_lies_on_it_up_to_the_held_ends() {
             d.settle(&[]).unwrap();
             d
         };
-        let answer = d.solution();
+        let answer = d.cable.solution();
         let weight = weight_per_m() * 11.99;
         assert_eq!(answer.contacts.len(), 1, "{:?}", answer.contacts);
         let contact = &answer.contacts[0];
@@ -285,10 +285,10 @@ fn a_cable_dropped_on_rubble_comes_to_rest() {
         for _ in 0..1200 {
             d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap();
         }
-        let start = d.state();
+        let start = d.cable.state();
         let iterations: usize =
             (0..60).map(|_| d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap().cost.iterations).sum();
-        let end = d.state();
+        let end = d.cable.state();
         if iterations == 0 {
             assert_eq!(start.position_m, end.position_m);
             asleep += 1;
@@ -305,7 +305,7 @@ fn a_cable_dropped_on_rubble_comes_to_rest() {
 fn a_cable_that_sleeps_wakes_when_it_is_pulled() {
     let mut d = build(&drag(40));
     d.settle(&[]).unwrap();
-    let height = RADIUS + 0.87 * crate::model::fem::dynamics::REACH;
+    let height = RADIUS + 0.87 * crate::model::fem::state::cable::REACH;
     let mut hand = [None, Some(Vec2::new(12.0, height))];
     let mut iterations = 0;
     for _ in 0..120 {
@@ -316,7 +316,7 @@ fn a_cable_that_sleeps_wakes_when_it_is_pulled() {
     for _ in 0..60 {
         d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
     }
-    let end = *d.state().position_m.last().unwrap();
+    let end = *d.cable.state().position_m.last().unwrap();
     assert!((end - hand[1].unwrap()).norm() < 1e-3, "{end}");
 }
 
@@ -335,11 +335,11 @@ fn a_cable_that_lands_stays_on_the_ground() {
     d.settle(&[]).unwrap();
     // Thrown down flat with 2.4 m/s from 5 cm: a barrier without landing throws it back at half of
     // that, 7 cm up.
-    for (x, v) in d.motion.x.iter_mut().zip(&mut d.motion.v) {
+    for (x, v) in d.cable.motion.x.iter_mut().zip(&mut d.cable.motion.v) {
         (x.y, v.y) = (x.y + 0.05, -2.4);
     }
     d.forget_history();
-    let highest = |d: &Dynamics| d.state().position_m.iter().map(|p| p.y - RADIUS).fold(0.0, f64::max);
+    let highest = |d: &Dynamics| d.cable.state().position_m.iter().map(|p| p.y - RADIUS).fold(0.0, f64::max);
     let (mut landed, mut most) = (false, 0.0f64);
     for _ in 0..60 {
         d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
@@ -364,12 +364,12 @@ fn legs_that_touch() -> Dynamics {
     scene.cables[0].diameter_m = 0.03;
     let mut d = build(&scene);
     d.settle(&[]).unwrap();
-    for k in 1..d.mesh.nodes() - 1 {
-        d.motion.v[k].x = 3.0 * (std::f64::consts::FRAC_PI_2 * d.mesh.arc_length[k]).sin();
+    for k in 1..d.cable.mesh.nodes() - 1 {
+        d.cable.motion.v[k].x = 3.0 * (std::f64::consts::FRAC_PI_2 * d.cable.mesh.arc_length[k]).sin();
     }
     for _ in 0..60 {
         d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
-        if d.contacts.own.rubs.len() > 2 {
+        if d.cable.contacts.own.rubs.len() > 2 {
             break;
         }
     }
@@ -379,18 +379,19 @@ fn legs_that_touch() -> Dynamics {
 #[test]
 fn legs_that_land_on_each_other_go_on_together() {
     let mut d = legs_that_touch();
-    let rubs = d.contacts.own.rubs.clone();
+    let rubs = d.cable.contacts.own.rubs.clone();
     assert!(rubs.len() > 2, "{}", rubs.len());
-    for k in 0..d.mesh.nodes() {
-        let way = if d.mesh.held[k] { 0.0 } else { 1.0 };
-        d.motion.v[k] = Vec2::new(if d.mesh.arc_length[k] < 2.0 { 2.0 } else { -1.0 } * way, 0.3 * way);
+    for k in 0..d.cable.mesh.nodes() {
+        let way = if d.cable.mesh.held[k] { 0.0 } else { 1.0 };
+        d.cable.motion.v[k] = Vec2::new(if d.cable.mesh.arc_length[k] < 2.0 { 2.0 } else { -1.0 } * way, 0.3 * way);
     }
-    let momentum = |d: &Dynamics| (0..d.mesh.nodes()).map(|k| d.motion.v[k] * d.mesh.share(k)).sum::<Vec2>();
+    let momentum =
+        |d: &Dynamics| (0..d.cable.mesh.nodes()).map(|k| d.cable.motion.v[k] * d.cable.mesh.share(k)).sum::<Vec2>();
     let fastest = |d: &Dynamics| {
-        rubs.iter().map(|r| r.pair.normal.dot(&r.pair.difference(&d.motion.v)).abs()).fold(0.0, f64::max)
+        rubs.iter().map(|r| r.pair.normal.dot(&r.pair.difference(&d.cable.motion.v)).abs()).fold(0.0, f64::max)
     };
     let (before, approach) = (momentum(&d), fastest(&d));
-    d.land_on_itself(0.05, [1.0 / 240.0, 240.0]);
+    d.cable.land_on_itself(0.05, [1.0 / 240.0, 240.0]);
     let (after, left) = (momentum(&d), fastest(&d));
     println!("{} contacts: {approach} m/s became {left}, momentum {before:?} {after:?}", rubs.len());
     assert!(approach > 2.5 && left < 0.5 * approach, "{approach} {left}");
@@ -400,14 +401,14 @@ fn legs_that_land_on_each_other_go_on_together() {
 #[test]
 fn legs_rub_on_each_other_and_remember_it() {
     let mut d = legs_that_touch();
-    let (start, by) = (d.motion.x.clone(), 3e-6);
+    let (start, by) = (d.cable.motion.x.clone(), 3e-6);
     let mut slid = start.clone();
-    for k in (0..d.mesh.nodes()).filter(|&k| d.mesh.arc_length[k] > 2.0) {
+    for k in (0..d.cable.mesh.nodes()).filter(|&k| d.cable.mesh.arc_length[k] > 2.0) {
         slid[k].y += by;
     }
-    let (barrier, own) = (d.contacts.barrier, &mut d.contacts.own);
+    let (barrier, own) = (d.cable.contacts.barrier, &mut d.cable.contacts.own);
     own.forget();
-    own.prepare(&barrier, &d.mesh, &start, &start);
+    own.prepare(&barrier, &d.cable.mesh, &start, &start);
     assert!(own.rubs.len() > 2);
     for rub in &own.rubs {
         let load = -barrier.at(rub.pair.gap_m).slope * rub.pair.weight;
@@ -417,7 +418,7 @@ fn legs_rub_on_each_other_and_remember_it() {
     }
     let before: Vec<f64> = own.rubs.iter().map(|r| r.sliding(&slid)).collect();
     own.commit(&slid);
-    own.prepare(&barrier, &d.mesh, &slid, &slid);
+    own.prepare(&barrier, &d.cable.mesh, &slid, &slid);
     let kept = own.rubs.iter().filter(|r| before.contains(&r.sliding(&slid))).count();
     assert!(kept > 2 && kept * 2 > own.rubs.len(), "{kept} of {}", own.rubs.len());
 }

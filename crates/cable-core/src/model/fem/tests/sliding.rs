@@ -56,9 +56,9 @@ fn ratios(scene: &Scene, inertia: Inertia, from: f64) -> Vec<f64> {
     let mut out = Vec::new();
     for k in 1..=120 {
         d.advance(1.0 / 60.0, inertia, &[]).unwrap();
-        assert!(d.smallest_gap() > 0.0);
+        assert!(d.cable.smallest_gap() > 0.0);
         if f64::from(k) / 60.0 > from {
-            let r = &d.solution().supports[1];
+            let r = &d.cable.solution().supports[1];
             out.push(r.reaction_x_n.hypot(r.reaction_y_n) / LOAD);
         }
     }
@@ -69,7 +69,7 @@ fn ratios(scene: &Scene, inertia: Inertia, from: f64) -> Vec<f64> {
 fn a_load_drawn_over_a_corner_follows_the_capstan_without_ripple() {
     for friction in [0.0, 0.1, 0.3, 0.8] {
         let ratios = ratios(&over_a_beam(friction, 42, 0.6), Inertia::QuasiStatic, 0.5);
-        let round = RADIUS + crate::model::fem::dynamics::REACH;
+        let round = RADIUS + crate::model::fem::state::cable::REACH;
         let motion = Motion { times_s: vec![0.0, 2.0], points_m: vec![[0.0, 0.0], [0.6, 0.0]] };
         for (k, ratio) in ratios.iter().enumerate() {
             let by = motion.at(0.5 + (k as f64 + 1.0) / 60.0).0.x;
@@ -163,11 +163,11 @@ fn a_load_held_over_a_corner_for_a_minute_loses_nothing() {
     for _ in 0..120 {
         d.advance(1.0 / 60.0, Inertia::QuasiStatic, &[]).unwrap();
     }
-    let (start, pull) = (d.state(), d.solution().supports[1].clone());
+    let (start, pull) = (d.cable.state(), d.cable.solution().supports[1].clone());
     for _ in 0..3600 {
         d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap();
     }
-    let (end, after) = (d.state(), &d.solution().supports[1]);
+    let (end, after) = (d.cable.state(), &d.cable.solution().supports[1]);
     let change = (after.reaction_x_n - pull.reaction_x_n).hypot(after.reaction_y_n - pull.reaction_y_n);
     assert!(change / pull.reaction_x_n.hypot(pull.reaction_y_n) < 1e-5, "{change} N");
     assert!((end.position_m[0] - start.position_m[0]).norm() < 1e-6);
@@ -179,10 +179,10 @@ fn material_is_neither_made_nor_lost_at_corners() {
     d.settle(&[]).unwrap();
     for _ in 0..60 {
         d.advance(1.0 / 60.0, Inertia::QuasiStatic, &[]).unwrap();
-        let s = d.state().arc_length_m;
+        let s = d.cable.state().arc_length_m;
         assert!(s.first() == Some(&0.0) && (s.last().unwrap() - 4.2).abs() < 1e-12);
         assert!(s.windows(2).all(|p| p[1] > p[0]));
-        let rest: f64 = d.mesh.rest_length.iter().sum();
+        let rest: f64 = d.cable.mesh.rest_length.iter().sum();
         assert!((rest - 4.2).abs() < 1e-12, "{rest}");
     }
 }
@@ -200,10 +200,10 @@ fn thrown_off_a_beam(speed: f64) -> Dynamics {
     );
     let mut d = build(&scene);
     d.settle(&[]).unwrap();
-    assert!(d.mesh.sliding.iter().flatten().count() > 0);
-    for k in 1..d.mesh.nodes() - 1 {
-        if d.mesh.sliding[k].is_none() {
-            d.motion.v[k].y = speed;
+    assert!(d.cable.mesh.sliding.iter().flatten().count() > 0);
+    for k in 1..d.cable.mesh.nodes() - 1 {
+        if d.cable.mesh.sliding[k].is_none() {
+            d.cable.motion.v[k].y = speed;
         }
     }
     d
@@ -215,7 +215,7 @@ fn a_corner_never_pulls_at_what_is_thrown_off_it() {
     d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
     // The node at the corner stood still and is drawn along by its neighbours, 7 cm up by then;
     // held for the step, it would lie at the corner.
-    let nodes = d.solution().nodes;
+    let nodes = d.cable.solution().nodes;
     let i = nodes.partition_point(|n| n.x_m < 0.0);
     let (a, b) = (&nodes[i - 1], &nodes[i]);
     let y = a.y_m + (b.y_m - a.y_m) * (0.0 - a.x_m) / (b.x_m - a.x_m);
@@ -226,26 +226,26 @@ fn a_corner_never_pulls_at_what_is_thrown_off_it() {
 #[test]
 fn a_pose_that_turns_a_corner_the_wrong_way_is_noticed() {
     let d = thrown_off_a_beam(0.0);
-    let mut x = d.motion.x.clone();
-    assert_eq!(d.pulled(&x), None);
-    let first = d.mesh.sliding.iter().position(Option::is_some).unwrap();
-    for (k, at) in x.iter_mut().enumerate().filter(|(k, _)| d.mesh.sliding[*k].is_none()) {
+    let mut x = d.cable.motion.x.clone();
+    assert_eq!(d.cable.pulled(&x), None);
+    let first = d.cable.mesh.sliding.iter().position(Option::is_some).unwrap();
+    for (k, at) in x.iter_mut().enumerate().filter(|(k, _)| d.cable.mesh.sliding[*k].is_none()) {
         at.y += if k < first + 2 { 0.1 } else { 0.0 };
     }
-    assert_eq!(d.pulled(&x), Some(first));
+    assert_eq!(d.cable.pulled(&x), Some(first));
 }
 
 #[test]
 fn a_cable_that_folds_back_at_a_corner_does_not_run_through_its_edge() {
     let mut d = build(&over_a_beam(0.3, 42, 0.3));
     d.settle(&[]).unwrap();
-    let k = d.mesh.sliding.iter().position(Option::is_some).unwrap();
-    let mut x = d.motion.x.clone();
-    assert_eq!(d.pulled(&x), None);
+    let k = d.cable.mesh.sliding.iter().position(Option::is_some).unwrap();
+    let mut x = d.cable.motion.x.clone();
+    assert_eq!(d.cable.pulled(&x), None);
     // It comes up the left side of the beam, and now goes back there: round the corner and through
     // the top.
-    x[k + 1] = d.mesh.sliding[k].unwrap().end.center - crate::math::Vec2::new(0.5, 0.5);
-    assert_eq!(d.pulled(&x), Some(k));
+    x[k + 1] = d.cable.mesh.sliding[k].unwrap().end.center - crate::math::Vec2::new(0.5, 0.5);
+    assert_eq!(d.cable.pulled(&x), Some(k));
 }
 
 /// A mark that is not in the middle of its arc: the node that takes its place must not stretch one
@@ -263,32 +263,33 @@ fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
     };
     let mut d = build(&scene(held, vec![ridge]));
     d.settle(&[]).unwrap();
-    let k = (0..d.mesh.nodes()).find(|&k| d.mesh.sliding[k].is_some()).unwrap();
+    let k = (0..d.cable.mesh.nodes()).find(|&k| d.cable.mesh.sliding[k].is_some()).unwrap();
     let turn = {
-        let path = [d.mesh.path(k - 1, &d.motion.x), d.mesh.path(k, &d.motion.x)];
+        let path = [d.cable.mesh.path(k - 1, &d.cable.motion.x), d.cable.mesh.path(k, &d.cable.motion.x)];
         path[0].arcs[1] + path[1].arcs[0]
     };
-    let node = d.mesh.sliding[k].unwrap();
+    let node = d.cable.mesh.sliding[k].unwrap();
     let (radius, aside) = (node.end.radius, 0.3 * turn);
     // The material that is there, but for what its strain makes of a hundredth of a millimetre.
     let mark = crate::model::fem::mesh::tangent_path::rotate(node.end.mark, node.end.sense * aside);
-    d.mesh.sliding[k] = Some(crate::model::fem::mesh::sliding_node::SlidingNode {
+    d.cable.mesh.sliding[k] = Some(crate::model::fem::mesh::sliding_node::SlidingNode {
         end: crate::model::fem::mesh::tangent_path::End { mark, ..node.end },
         ..node
     });
     let material = aside * radius;
-    d.mesh.arc_length[k] += material;
-    d.mesh.rest_length[k - 1] += material;
-    d.mesh.rest_length[k] -= material;
-    let tensions =
-        |d: &Dynamics| [k - 1, k].map(|e| stiff * (d.mesh.path(e, &d.motion.x).length / d.mesh.rest_length[e] - 1.0));
+    d.cable.mesh.arc_length[k] += material;
+    d.cable.mesh.rest_length[k - 1] += material;
+    d.cable.mesh.rest_length[k] -= material;
+    let tensions = |d: &Dynamics| {
+        [k - 1, k].map(|e| stiff * (d.cable.mesh.path(e, &d.cable.motion.x).length / d.cable.mesh.rest_length[e] - 1.0))
+    };
     let before = tensions(&d);
-    assert!(d.settle_down(k));
+    assert!(d.cable.settle_down(k));
     let after = tensions(&d);
     // Two tangents are longer than the arc between them; both bars share that.
     let longer = radius * (2.0 * (0.5 * turn).tan() - turn);
-    let more = stiff * longer / (d.mesh.rest_length[k - 1] + d.mesh.rest_length[k]);
+    let more = stiff * longer / (d.cable.mesh.rest_length[k - 1] + d.cable.mesh.rest_length[k]);
     println!("{before:?} N, then {after:?}: {more} N more for a turn of {turn}");
-    assert!(turn > 0.03 && stiff * material / d.mesh.rest_length[k] > 500.0);
+    assert!(turn > 0.03 && stiff * material / d.cable.mesh.rest_length[k] > 500.0);
     assert!((0..2).all(|j| (after[j] - before[j] - more).abs() < 1.0), "{before:?} {after:?} {more}");
 }

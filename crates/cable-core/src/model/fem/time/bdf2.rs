@@ -5,7 +5,7 @@
 //! ```text
 //! v = a (x − x̂),  a = α₀/h,   v̂ likewise,   m a² (x − x̃) + ∂E/∂x − f = 0,   x̃ = x̂ + v̂/a
 //! ```
-//! Where the cable can touch nothing, steps that are even and smooth take a part β of the next
+//! If the cable can touch nothing, steps that are even and smooth take a part β of the next
 //! order, BDF3: α₀ = (9 + 2β)/6 and x̂ = ((2 + β) x₀ − (½ + β) x₋ + (β/3) x₌)/α₀ at the same cost.
 //! Of a vibration ω BDF2 makes one that is slower by (ωh)²/3 and loses ω⁴h³/4 of its amplitude a
 //! second; this 1 − β and 1 − 2β of that.
@@ -13,52 +13,33 @@
 //! After each step contacts are made plastic: the barrier is a spring and would throw a landing
 //! cable back at 0.4 to 0.8 of its speed.
 
-use crate::math::{Vec2, bounded, larger, perp};
+use crate::math::{Vec2, bounded, perp};
 use crate::model::Inertia;
 use crate::model::fem::dynamics::{Dynamics, STIFFNESS_CHANGE};
 use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::history::Motion;
 use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::system::loss::damping_time;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose};
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 use crate::model::fem::time::momentum::mass_with;
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
 const PLASTIC_SPEED_LIMIT: f64 = 0.05;
 
-/// What a plastic contact takes of the speed along its normal (m/s, positive away from it), of
-/// which its force made so much in the step.
+/// Part of the speed along its normal (m/s, positive away from it) that a plastic contact takes, of
+/// which its force made `made` in the step.
 pub(in crate::model::fem) fn plastic(speed: f64, made: f64) -> f64 {
     if speed > made { made } else { speed }
 }
 
-/// What a contact of this normal and friction goes on giving against what other forces give, the
+/// Impulse that a contact of this normal and friction goes on giving against the other forces, the
 /// opposite of `against`, N s.
 pub(in crate::model::fem) fn carried_on(against: Vec2, normal: Vec2, friction: f64) -> Vec2 {
     let (pressed, along) = (against.dot(&normal), perp(normal));
     let pressed = if pressed > 0.0 { pressed } else { 0.0 };
     normal * pressed + along * bounded(against.dot(&along), -friction * pressed, friction * pressed)
 }
-
-/// Rounds of finding that out in which no fewer grips are wrong than before, until they are changed
-/// one at a time; and rounds beside those for each sliding node. Fewer: steps of a few nodes that
-/// free each other in turn take longer, or are halved.
-const GRIP_ROUNDS: usize = 6;
-
-/// Rounds for each sliding node. Fewer: steps in which many begin to slip one after the other are
-/// halved; more: what does not end costs more.
-pub(in crate::model::fem) const ROUNDS_EACH: usize = 3;
-
-/// Rounds in which friction follows its normal forces. With none the greatest tension of a stiff
-/// cable (1 N m²) that drops on rubble is 537, 352 and 789 N with 84, 168 and 336 bars at 1/960 s,
-/// with one 427, 399 and 463 N; a second changes that by 2 %, and costs as much as the step (a
-/// pile: 1.5 s, 0.9 with one).
-const RUB_ROUNDS: usize = 1;
-
-/// Change of a friction force that is none, in parts of the greatest; and one of the weight of a
-/// bar is none. Less: sliding costs twice as much and changes by nothing that shows; more: impacts
-/// rub late.
-const RUB_CHANGE: f64 = 0.05;
 
 /// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they
 /// are coarse.
@@ -79,7 +60,7 @@ const EVEN_STEP_TOLERANCE: f64 = 1e-9;
 /// half of mgL in a fold of 41 bars.
 const STEPS_BEFORE_BDF3: usize = 3;
 
-/// What a step makes of its history: v = a (x − x̂), x̂ = now x₀ − past x₋ + older x₌.
+/// The weights of its history in a step: v = a (x − x̂), x̂ = now x₀ − past x₋ + older x₌.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Weights {
     pub(in crate::model::fem) now: f64,
@@ -118,7 +99,7 @@ impl Weights {
     }
 }
 
-impl Dynamics {
+impl CableState {
     /// Makes contacts plastic: what still comes nearer stops, and what goes away goes no faster
     /// than without the force of the contact, as nothing presses on what leaves (J. J. Moreau,
     /// "Unilateral contact and dry friction in finite freedom dynamics", in: Nonsmooth Mechanics
@@ -137,7 +118,7 @@ impl Dynamics {
         let m = &mut self.motion;
         for (touch, load) in self.contacts.pressing() {
             let n = touch.pair.gap.normal;
-            let carried = self.contacts.carriage.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+            let carried = self.contacts.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
             let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.x)) / h);
             let speed = (touch.interpolate(&m.v) - of_it).dot(&n);
             let shares = touch.shares();
@@ -182,7 +163,7 @@ impl Dynamics {
         }
     }
 
-    /// Whether a step of `h` (s) is as long as the one before.
+    /// True if a step of `h` (s) is as long as the one before.
     fn is_even(&self, h: f64) -> bool {
         (h - self.motion.step_before).abs() <= EVEN_STEP_TOLERANCE * h
     }
@@ -196,88 +177,11 @@ impl Dynamics {
         self.motion.step_before = h;
     }
 
-    /// Sets the task of a step of `h` (s); returns the weights of its history.
-    pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Weights {
-        self.follow_hands(h, dragged);
-        self.prepare_way([self.motion.time, self.motion.time + h], Some(dragged));
-        self.contacts.set_slip(SLIDE);
-        self.adapt_stiffness(STIFFNESS_CHANGE, 1.0);
-        let weights = self.weights(h);
-        self.set_inertia(weights, h);
-        let (m, task, mesh) = (&self.motion, &self.task, &self.mesh);
-        self.contacts.look_around(&self.problem, mesh, &m.x, |k| {
-            if mesh.held[k] { (task.target[k] - m.x[k]).norm() } else { m.v[k].norm() * h }
-        });
-        weights
-    }
-
-    pub(in crate::model::fem) fn dynamic_step(
-        &mut self,
-        h: f64,
-        dragged: &[Option<Vec2>],
-    ) -> Result<Converged, Failure> {
-        let weights = self.begin_step(h, dragged);
-        let Weights { now, past, a, .. } = weights;
-        let (mut pose, exact) = (self.moving_pose(h), self.task.tolerance);
-        self.contacts.prepare(&self.problem, &self.mesh, &pose.x, &self.motion.x);
-        self.task.tolerance = self.rounded_tolerance();
-        let done = self.rub_and_minimise(&mut pose);
-        self.task.tolerance = exact;
-        let done = done?;
-        if let Some(node) = self.pulled(&pose.x) {
-            return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
-        }
-        self.note_lag(&pose);
-        self.note_hands(&pose);
-        self.note_balanced(&pose);
-        let given = self.forces_in_step(&pose);
-        let slid = self.sliding_momentum();
-        self.relax_branches(h, &pose.x);
-        self.contacts.commit(&self.problem, &self.mesh, &pose.x, &self.motion.x, &pose.slide);
-        let (m, mesh) = (&mut self.motion, &self.mesh);
-        for k in 0..pose.x.len() {
-            let v = (pose.x[k] - weights.place(m, k)) * a;
-            let s = mesh.arc_length[k];
-            let w = (s + pose.slide[k] - s * now + m.s_before[k] * past) * a;
-            if let (Some(x), Some(v)) = (m.x_older.get_mut(k), m.v_older.get_mut(k)) {
-                (*x, *v) = (m.x_before[k], m.v_before[k]);
-            }
-            m.x_before[k] = m.x[k];
-            m.v_before[k] = m.v[k];
-            m.s_before[k] = s;
-            m.w_before[k] = m.w[k];
-            m.x[k] = pose.x[k];
-            m.v[k] = v;
-            m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
-        }
-        self.slide(&pose.slide);
-        self.account_for_step(weights, given, slid, &pose.slide);
-        self.solver.pose = pose;
-        self.motion.time += h;
-        self.gauge_tension();
-        self.note_step(h);
-        self.note_pace(h);
-        self.land(h, a);
-        self.land_on_itself(PLASTIC_SPEED_LIMIT, [h, a]);
-        self.close_account();
-        self.contacts.carriage = None;
-        if !self.meshing.never_slides {
-            self.answers.keeps = self.motion.time >= self.pacing.due * (1.0 - f64::EPSILON);
-            self.remesh(Inertia::Dynamic);
-            self.answers.keeps = false;
-            self.answers.stepped = self.answers.kept.take();
-            if let Some(node) = self.crossing() {
-                return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerCrossed });
-            }
-        }
-        Ok(done)
-    }
-
     /// Keeps what friction acts between at each sliding node.
-    fn note_balanced(&mut self, pose: &Pose) {
+    fn note_balanced(&mut self, unknowns: &Unknowns) {
         for k in 0..self.mesh.nodes() {
-            let Some(load) = self.load_at(k, &pose.x, Some(&pose.slide)) else { continue };
-            let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
+            let Some(load) = self.load_at(k, &unknowns.x, Some(&unknowns.slide)) else { continue };
+            let inertia = self.input.inertia[k] * (unknowns.slide[k] - self.input.predicted_slide[k]);
             if let Some(node) = &mut self.mesh.sliding[k] {
                 let [comes, leaves] = load.at_round();
                 // The step balances slopes by the slide, where inertia counts by what is stretched.
@@ -295,163 +199,32 @@ impl Dynamics {
 
     /// Supports that could not get where they were to be: said, and their hands start again from
     /// there.
-    fn note_lag(&mut self, pose: &Pose) {
+    fn note_lag(&mut self, unknowns: &Unknowns) {
         for (support, node) in self.meshing.support_node.iter().enumerate() {
             let Some(k) = node.filter(|&k| self.mesh.held[k]) else { continue };
-            if pose.x[k] != self.task.target[k] && !self.answers.held_back.contains(&support) {
+            if unknowns.x[k] != self.input.target[k] && !self.answers.held_back.contains(&support) {
                 self.answers.held_back.push(support);
             }
             if let Some(f) = &mut self.motion.followers[support]
-                && f.position() != pose.x[k]
+                && f.position() != unknowns.x[k]
             {
-                f.stop_at(pose.x[k]);
+                f.stop_at(unknowns.x[k]);
             }
         }
-    }
-
-    /// The present pose moved on at its velocities for `h` (s), where nothing can be in the way.
-    /// Newton then starts nearer by a factor of the step, and what it leaves is smaller and not
-    /// always on the same side.
-    fn moving_pose(&mut self, h: f64) -> Pose {
-        let mut pose = self.still_pose();
-        for (k, (x, v)) in pose.x.iter_mut().zip(&self.motion.v).enumerate() {
-            if self.mesh.is_free(k) {
-                *x += v * h;
-            } else if self.mesh.held[k] {
-                // Short bars beside a support would have to turn by large angles if it stayed
-                // behind.
-                *x = self.task.target[k];
-            }
-        }
-        if self.is_out_of_reach(&pose.x) {
-            pose
-        } else {
-            self.solver.pose = pose;
-            self.still_pose()
-        }
-    }
-
-    /// Minimises until contacts rub by the normal forces that the step itself has. By those at its
-    /// start an impact would rub in the step after it, by a force that is no longer there: up to
-    /// nine times the cone, along the cable.
-    fn rub_and_minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
-        let mut done = self.grip_and_minimise(pose)?;
-        for _ in 0..RUB_ROUNDS {
-            let same = |change: f64, most: f64| change <= larger(RUB_CHANGE * most, self.meshing.bar_weight);
-            if !self.contacts.renew(&self.problem, &self.mesh, [&pose.x, &self.motion.x], same) {
-                break;
-            }
-            let more = self.grip_and_minimise(pose)?;
-            done = Converged { iterations: done.iterations + more.iterations, ..more };
-        }
-        Ok(done)
-    }
-
-    /// Minimises until the law holds at every sliding node: what slips, and with what friction, is
-    /// part of the step, not found out after it.
-    ///
-    /// All grips that are wrong are changed at once while that makes them fewer; then one at a time
-    /// (J. Júdice, F. Pires, "A block principal pivoting algorithm for large-scale strictly
-    /// monotone linear complementarity problems", Computers & Operations Research 21, 1994).
-    fn grip_and_minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
-        let mut done = self.minimise(pose)?;
-        let sliding = self.mesh.sliding.iter().flatten().count();
-        let (mut fewest, mut spare) = (usize::MAX, GRIP_ROUNDS);
-        for _ in 0..GRIP_ROUNDS + ROUNDS_EACH * sliding {
-            let grips = self.update_grips(pose, spare == 0);
-            if grips.hold() {
-                return Ok(done);
-            }
-            if grips.wrong < fewest {
-                (fewest, spare) = (grips.wrong, GRIP_ROUNDS);
-            } else {
-                spare = spare.saturating_sub(1);
-            }
-            let more = self.minimise(pose)?;
-            done = Converged { iterations: done.iterations + more.iterations, ..more };
-        }
-        let node = self.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);
-        Err(Failure { node, residual: done.residual, cause: FailureCause::StickSlipUndecided })
     }
 
     /// Unbalanced force to reach in a step with inertia, N: not below the rounding of m a² (x −
     /// x̃). That grows as the step shrinks: 5 kg at 20 m and 1/4000 s know their force to 1e-6 N
     /// only.
     fn rounded_tolerance(&self) -> f64 {
-        let mut tolerance = self.task.tolerance;
-        for (inertia, x) in self.task.inertia.iter().zip(&self.motion.x) {
+        let mut tolerance = self.input.tolerance;
+        for (inertia, x) in self.input.inertia.iter().zip(&self.motion.x) {
             let rounding = ROUNDING * f64::EPSILON * inertia * x.norm();
             if rounding > tolerance {
                 tolerance = rounding;
             }
         }
         tolerance
-    }
-
-    /// Inertia and damping of a step of `h` (s).
-    ///
-    /// Where velocities jump between two steps (a plastic impulse, a change of the mesh) the rate
-    /// of a length has no history: two steps extrapolate through the jump and add ½ EA τ Δv/l₀ to
-    /// the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may touch something
-    /// is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a small force,
-    /// ¾ τ/h of that which BDF2 makes of a vibration.
-    fn set_inertia(&mut self, weights: Weights, h: f64) {
-        let Weights { now, past, a, .. } = weights;
-        let rubs = !(self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none());
-        let jumps = !self.meets_nothing();
-        let (m, task, mesh) = (&self.motion, &mut self.task, &self.mesh);
-        for k in 0..m.x.len() {
-            task.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
-            task.inertia[k] = self.problem.linear_density * mesh.share(k) * a * a;
-            if mesh.sliding[k].is_some() {
-                let w_hat = m.w[k] * now - m.w_before[k] * past;
-                let s = mesh.arc_length[k];
-                task.predicted_slide[k] = s * now - m.s_before[k] * past + w_hat / a - s;
-            }
-        }
-        // Of the masses alone: hands draw at their nodes, not at what these are coupled with.
-        let predicted = &task.predicted;
-        task.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
-            let chord = predicted[e + 1] - predicted[e];
-            (self.problem.linear_density * length * a * a, chord)
-        }));
-        for (s, node) in self.problem.supports.iter().zip(&self.meshing.support_node) {
-            if let Some(k) = node {
-                task.inertia[*k] += s.mass * a * a;
-            }
-        }
-        for (hand, node) in m.hands.iter().zip(&self.meshing.support_node) {
-            let (Some(hand), Some(k)) = (hand, *node) else { continue };
-            let (stiffness, at) = hand.pull(h, m.x[k]);
-            let (inertia, both) = (task.inertia[k], task.inertia[k] + stiffness);
-            task.predicted[k] = (task.predicted[k] * inertia + at * stiffness) / both;
-            task.inertia[k] = both;
-            task.hands.push((k, stiffness, at));
-        }
-        task.moves = true;
-        let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&self.problem, rubs));
-        task.loss.fill([self.problem.axial_stiffness * time * rate; 2]);
-        task.bending_damping = mesh.bending_stiffness * time / h;
-        for e in 0..mesh.rest_length.len() {
-            task.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
-                mesh.path(e, &m.x).length
-            } else {
-                let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
-                let older = if weights.older > 0.0 { length(&m.x_older) * weights.older } else { 0.0 };
-                length(&m.x) * now - length(&m.x_before) * past + older
-            };
-        }
-        self.add_branches(h, rate);
-    }
-
-    /// The present pose.
-    pub(in crate::model::fem) fn still_pose(&mut self) -> Pose {
-        let mut pose = std::mem::take(&mut self.solver.pose);
-        pose.x.clear();
-        pose.x.extend_from_slice(self.task.begins());
-        pose.slide.clear();
-        pose.slide.resize(self.mesh.nodes(), 0.0);
-        pose
     }
 
     /// Lets the material slide through the sliding nodes, m of arc length each.
@@ -465,5 +238,146 @@ impl Dynamics {
                 mesh.rest_length[e] = mesh.thermal_stretch * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
             }
         }
+    }
+
+    /// Inertia and damping of a step of `h` (s).
+    ///
+    /// The rate of a length has no history where velocities jump between two steps (a plastic
+    /// impulse, a change of the mesh): two steps extrapolate through the jump and add ½ EA τ Δv/l₀
+    /// to the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may touch
+    /// something is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a
+    /// small force, ¾ τ/h of that which BDF2 makes of a vibration.
+    fn set_inertia(&mut self, weights: Weights, h: f64, decay: &mut Vec<f64>) {
+        let Weights { now, past, a, .. } = weights;
+        let rubs = !(self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none());
+        let jumps = !self.meets_nothing();
+        let (m, input, mesh) = (&self.motion, &mut self.input, &self.mesh);
+        for k in 0..m.x.len() {
+            input.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
+            input.inertia[k] = self.problem.linear_density * mesh.share(k) * a * a;
+            if mesh.sliding[k].is_some() {
+                let w_hat = m.w[k] * now - m.w_before[k] * past;
+                let s = mesh.arc_length[k];
+                input.predicted_slide[k] = s * now - m.s_before[k] * past + w_hat / a - s;
+            }
+        }
+        // Of the masses alone: hands draw at their nodes, not at what these are coupled with.
+        let predicted = &input.predicted;
+        input.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
+            let chord = predicted[e + 1] - predicted[e];
+            (self.problem.linear_density * length * a * a, chord)
+        }));
+        for (s, node) in self.problem.supports.iter().zip(&self.meshing.support_node) {
+            if let Some(k) = node {
+                input.inertia[*k] += s.mass * a * a;
+            }
+        }
+        for (hand, node) in m.hands.iter().zip(&self.meshing.support_node) {
+            let (Some(hand), Some(k)) = (hand, *node) else { continue };
+            let (stiffness, at) = hand.pull(h, m.x[k]);
+            let (inertia, both) = (input.inertia[k], input.inertia[k] + stiffness);
+            input.predicted[k] = (input.predicted[k] * inertia + at * stiffness) / both;
+            input.inertia[k] = both;
+            input.hands.push((k, stiffness, at));
+        }
+        input.moves = true;
+        let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&self.problem, rubs));
+        input.loss.fill([self.problem.axial_stiffness * time * rate; 2]);
+        input.bending_damping = mesh.bending_stiffness * time / h;
+        for e in 0..mesh.rest_length.len() {
+            input.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
+                mesh.path(e, &m.x).length
+            } else {
+                let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
+                let older = if weights.older > 0.0 { length(&m.x_older) * weights.older } else { 0.0 };
+                length(&m.x) * now - length(&m.x_before) * past + older
+            };
+        }
+        self.add_branches(h, rate, decay);
+    }
+}
+
+impl Dynamics {
+    /// Sets the input of a step of `h` (s); returns the weights of its history.
+    pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Weights {
+        self.hand_drive.follow(&mut self.cable, self.pacing.due, h, dragged);
+        self.cable.prepare_way([self.cable.motion.time, self.cable.motion.time + h], Some(dragged));
+        self.cable.contacts.set_slip(SLIDE);
+        self.cable.adapt_stiffness(STIFFNESS_CHANGE, 1.0);
+        let weights = self.cable.weights(h);
+        self.cable.set_inertia(weights, h, &mut self.solver.decay);
+        let (m, input, mesh) = (&self.cable.motion, &self.cable.input, &self.cable.mesh);
+        self.cable.contacts.look_around(&self.cable.problem, mesh, &m.x, |k| {
+            if mesh.held[k] { (input.target[k] - m.x[k]).norm() } else { m.v[k].norm() * h }
+        });
+        weights
+    }
+
+    pub(in crate::model::fem) fn dynamic_step(
+        &mut self,
+        h: f64,
+        dragged: &[Option<Vec2>],
+    ) -> Result<Converged, Failure> {
+        let weights = self.begin_step(h, dragged);
+        let Weights { now, past, a, .. } = weights;
+        let (mut unknowns, exact) = (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.tolerance);
+        self.cable.contacts.prepare(&self.cable.problem, &self.cable.mesh, &unknowns.x, &self.cable.motion.x);
+        self.cable.input.tolerance = self.cable.rounded_tolerance();
+        let done = self.solver.rub_and_minimise(&mut self.cable, &mut unknowns);
+        self.cable.input.tolerance = exact;
+        let done = done?;
+        if let Some(node) = self.cable.pulled(&unknowns.x) {
+            return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
+        }
+        self.cable.note_lag(&unknowns);
+        self.cable.note_hands(&unknowns);
+        self.cable.note_balanced(&unknowns);
+        let given = self.cable.forces_in_step(&unknowns, self.solver.touches());
+        let slid = self.cable.sliding_momentum();
+        self.cable.relax_branches(h, &unknowns.x);
+        self.cable.contacts.commit(
+            &self.cable.problem,
+            &self.cable.mesh,
+            &unknowns.x,
+            &self.cable.motion.x,
+            &unknowns.slide,
+        );
+        let (m, mesh) = (&mut self.cable.motion, &self.cable.mesh);
+        for k in 0..unknowns.x.len() {
+            let v = (unknowns.x[k] - weights.place(m, k)) * a;
+            let s = mesh.arc_length[k];
+            let w = (s + unknowns.slide[k] - s * now + m.s_before[k] * past) * a;
+            if let (Some(x), Some(v)) = (m.x_older.get_mut(k), m.v_older.get_mut(k)) {
+                (*x, *v) = (m.x_before[k], m.v_before[k]);
+            }
+            m.x_before[k] = m.x[k];
+            m.v_before[k] = m.v[k];
+            m.s_before[k] = s;
+            m.w_before[k] = m.w[k];
+            m.x[k] = unknowns.x[k];
+            m.v[k] = v;
+            m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
+        }
+        self.cable.slide(&unknowns.slide);
+        self.cable.account_for_step(weights, given, slid, &unknowns.slide);
+        self.solver.unknowns = unknowns;
+        self.cable.motion.time += h;
+        self.cable.gauge_tension();
+        self.cable.note_step(h);
+        self.pacing.pace.observe(&self.cable, h);
+        self.cable.land(h, a);
+        self.cable.land_on_itself(PLASTIC_SPEED_LIMIT, [h, a]);
+        self.cable.close_account();
+        self.cable.contacts.outline_motion = None;
+        if !self.cable.meshing.never_slides {
+            self.cable.answers.keeps = self.cable.motion.time >= self.pacing.due * (1.0 - f64::EPSILON);
+            self.cable.remesh(Inertia::Dynamic);
+            self.cable.answers.keeps = false;
+            self.cable.answers.stepped = self.cable.answers.kept.take();
+            if let Some(node) = self.cable.crossing() {
+                return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerCrossed });
+            }
+        }
+        Ok(done)
     }
 }

@@ -1,17 +1,18 @@
 //! A step that fails returns to the checkpoint before it; folds are opened as a motion begins.
 
 use crate::math::{cross, perp};
-use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::control::Rollback;
 use crate::model::fem::state::history::Checkpoint;
 
-/// How far (parts of a bar) the middle of a fold is moved aside. Less: the fold opens later than it
-/// would; more: its bars are stretched by half of the square of it.
+/// Distance (parts of a bar) by which the middle of a fold is moved aside. Less: the fold opens
+/// later than it would; more: its bars are stretched by half of the square of it.
 const ASIDE: f64 = 1e-4;
 
 /// Sine of the turn off a line below which a fold lies in it.
 const FOLD_LINE_SINE: f64 = 1e-6;
 
-impl Dynamics {
+impl CableState {
     /// Moves the middle of each fold that lies in one line a little aside, as a motion begins. In
     /// the line itself a bar would have to pass through no length to turn over: a weight that fell
     /// beside its slack cable hung in the fold.
@@ -25,47 +26,49 @@ impl Dynamics {
             }
         }
     }
+}
 
+impl Rollback {
     /// Keeps the present state to go back to, in the memory of the one kept before.
-    pub(in crate::model::fem) fn save(&mut self) {
-        match &mut self.rollback.saved {
+    pub(in crate::model::fem) fn save(&mut self, cable: &CableState) {
+        match &mut self.saved {
             Some(s) => {
-                s.motion.copy_from(&self.motion);
-                s.mesh.copy_from(&self.mesh, !self.meshing.never_slides);
-                s.contacts.copy_from(&self.contacts);
-                s.support_node.clone_from(&self.meshing.support_node);
-                s.reaction.clone_from(&self.answers.reaction);
+                s.motion.copy_from(&cable.motion);
+                s.mesh.copy_from(&cable.mesh, !cable.meshing.never_slides);
+                s.contacts.copy_from(&cable.contacts);
+                s.support_node.clone_from(&cable.meshing.support_node);
+                s.reaction.clone_from(&cable.answers.reaction);
                 s.load_node.clear();
-                s.load_node.extend(self.meshing.loads.iter().map(|l| l.0));
+                s.load_node.extend(cable.meshing.loads.iter().map(|l| l.0));
             }
             None => {
-                self.rollback.saved = Some(Box::new(Checkpoint {
-                    motion: self.motion.clone(),
-                    mesh: self.mesh.clone(),
-                    contacts: self.contacts.clone(),
-                    support_node: self.meshing.support_node.clone(),
-                    load_node: self.meshing.loads.iter().map(|l| l.0).collect(),
-                    reaction: self.answers.reaction.clone(),
+                self.saved = Some(Box::new(Checkpoint {
+                    motion: cable.motion.clone(),
+                    mesh: cable.mesh.clone(),
+                    contacts: cable.contacts.clone(),
+                    support_node: cable.meshing.support_node.clone(),
+                    load_node: cable.meshing.loads.iter().map(|l| l.0).collect(),
+                    reaction: cable.answers.reaction.clone(),
                 }));
             }
         }
-        self.rollback.can_restore = true;
+        self.can_restore = true;
     }
 
     /// Goes back to the state kept, once.
-    pub(in crate::model::fem) fn restore(&mut self) {
-        if let Some(s) = self.rollback.saved.as_ref().filter(|_| self.rollback.can_restore) {
-            self.motion.copy_from(&s.motion);
-            self.mesh.copy_from(&s.mesh, !self.meshing.never_slides);
-            self.contacts.copy_from(&s.contacts);
-            self.meshing.support_node.clone_from(&s.support_node);
-            self.answers.reaction.clone_from(&s.reaction);
-            for (load, &node) in self.meshing.loads.iter_mut().zip(&s.load_node) {
+    pub(in crate::model::fem) fn restore(&mut self, cable: &mut CableState) {
+        if let Some(s) = self.saved.as_ref().filter(|_| self.can_restore) {
+            cable.motion.copy_from(&s.motion);
+            cable.mesh.copy_from(&s.mesh, !cable.meshing.never_slides);
+            cable.contacts.copy_from(&s.contacts);
+            cable.meshing.support_node.clone_from(&s.support_node);
+            cable.answers.reaction.clone_from(&s.reaction);
+            for (load, &node) in cable.meshing.loads.iter_mut().zip(&s.load_node) {
                 load.0 = node;
             }
-            self.rollback.can_restore = false;
-            self.place_outline();
-            self.renew_task();
+            self.can_restore = false;
+            cable.place_outline();
+            cable.renew_input();
         }
     }
 }

@@ -2,44 +2,14 @@
 //! support itself.
 
 use crate::math::Vec2;
-use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::control::HandDrive;
 use crate::model::fem::system::bar_weight;
-use crate::model::fem::system::step_input::Pose;
+use crate::model::fem::system::step_input::Unknowns;
 use crate::model::input_filter::{Hand, SmoothedTarget, is_led};
 use crate::solution::Warning;
 
-impl Dynamics {
-    /// Hands and dragged supports move on for `h` (s) towards where they are drawn (m).
-    pub(in crate::model::fem) fn follow_hands(&mut self, h: f64, dragged: &[Option<Vec2>]) {
-        for (k, target) in dragged.iter().enumerate() {
-            let (Some(target), Some(at)) = (*target, self.support_position(k)) else { continue };
-            let fastest = self.hand_drive.hand_speed;
-            if is_led(&self.problem, k) {
-                let left = self.pacing.due - self.motion.time;
-                let f = self.motion.followers[k].get_or_insert(SmoothedTarget::at_rest(at));
-                f.lead(target, if left > h { h / left } else { 1.0 }, h);
-                continue;
-            }
-            let node = self.meshing.support_node[k].filter(|_| self.problem.supports[k].holds_from(self.motion.time));
-            if let Some(node) = node.filter(|_| self.hand_drive.pulled[k]) {
-                let known = self.motion.hands[k];
-                let mut hand = known.unwrap_or_else(|| {
-                    Hand::grip(&self.problem, self.hand_drive.hand_stiffness, at, self.holding_force(k, node))
-                });
-                hand.follow(target, h, fastest);
-                (self.motion.hands[k], self.motion.followers[k]) = (Some(hand), None);
-            } else {
-                let let_go = self.motion.hands[k].take().and(node);
-                let begins = || {
-                    let_go.map_or(SmoothedTarget::at_rest(at), |node| SmoothedTarget::moving(at, self.motion.v[node]))
-                };
-                let mut f = self.motion.followers[k].unwrap_or_else(begins);
-                f.follow(target, h, fastest);
-                self.motion.followers[k] = Some(f);
-            }
-        }
-    }
-
+impl CableState {
     /// Force that holds a support's node against its bars and what hangs there, N.
     fn holding_force(&self, support: usize, node: usize) -> Vec2 {
         let (mesh, x) = (&self.mesh, &self.motion.x);
@@ -57,20 +27,55 @@ impl Dynamics {
             - self.problem.hung_on(support, time)
     }
 
-    /// Keeps the force of the cable on what hands hold, as a pose balances it.
-    pub(in crate::model::fem) fn note_hands(&mut self, pose: &Pose) {
-        for &(k, stiffness, at) in &self.task.hands {
-            self.answers.reaction[k] = (pose.x[k] - at) * stiffness;
+    /// Keeps the force of the cable on what hands hold, as unknowns balances it.
+    pub(in crate::model::fem) fn note_hands(&mut self, unknowns: &Unknowns) {
+        for &(k, stiffness, at) in &self.input.hands {
+            self.answers.reaction[k] = (unknowns.x[k] - at) * stiffness;
+        }
+    }
+}
+
+impl HandDrive {
+    /// Moves hands and dragged supports on for `h` (s) towards where they are drawn (m); supports
+    /// that the robot leads get there at the time `due` (s).
+    pub(in crate::model::fem) fn follow(&self, cable: &mut CableState, due: f64, h: f64, dragged: &[Option<Vec2>]) {
+        for (k, target) in dragged.iter().enumerate() {
+            let (Some(target), Some(at)) = (*target, cable.support_position(k)) else { continue };
+            let fastest = self.hand_speed;
+            if is_led(&cable.problem, k) {
+                let left = due - cable.motion.time;
+                let f = cable.motion.followers[k].get_or_insert(SmoothedTarget::at_rest(at));
+                f.lead(target, if left > h { h / left } else { 1.0 }, h);
+                continue;
+            }
+            let node =
+                cable.meshing.support_node[k].filter(|_| cable.problem.supports[k].holds_from(cable.motion.time));
+            if let Some(node) = node.filter(|_| self.pulled[k]) {
+                let known = cable.motion.hands[k];
+                let mut hand = known.unwrap_or_else(|| {
+                    Hand::grip(&cable.problem, self.hand_stiffness, at, cable.holding_force(k, node))
+                });
+                hand.follow(target, h, fastest);
+                (cable.motion.hands[k], cable.motion.followers[k]) = (Some(hand), None);
+            } else {
+                let let_go = cable.motion.hands[k].take().and(node);
+                let begins = || {
+                    let_go.map_or(SmoothedTarget::at_rest(at), |node| SmoothedTarget::moving(at, cable.motion.v[node]))
+                };
+                let mut f = cable.motion.followers[k].unwrap_or_else(begins);
+                f.follow(target, h, fastest);
+                cable.motion.followers[k] = Some(f);
+            }
         }
     }
 
-    /// What is to be said of hands that lag, and of supports that lag behind them.
-    pub(in crate::model::fem) fn hand_warnings(&self) -> impl Iterator<Item = Warning> {
-        self.motion.hands.iter().enumerate().filter_map(|(k, hand)| {
-            let (hand, node) = (hand.as_ref()?, self.meshing.support_node[k]?);
-            let fastest = self.hand_drive.hand_speed;
-            let (at, force) = (self.motion.x[node], -self.answers.reaction[node]);
-            hand.warning(&self.problem, k, self.mesh.arc_length[node], at, force, fastest)
+    /// Warnings of hands that lag, and of supports that lag behind them.
+    pub(in crate::model::fem) fn warnings(&self, cable: &CableState) -> impl Iterator<Item = Warning> {
+        cable.motion.hands.iter().enumerate().filter_map(|(k, hand)| {
+            let (hand, node) = (hand.as_ref()?, cable.meshing.support_node[k]?);
+            let fastest = self.hand_speed;
+            let (at, force) = (cable.motion.x[node], -cable.answers.reaction[node]);
+            hand.warning(&cable.problem, k, cable.mesh.arc_length[node], at, force, fastest)
         })
     }
 }

@@ -10,3 +10,4 @@ pub(in crate::model::fem) mod self_contact;
 pub(in crate::model::fem) mod sleeping;
 pub(in crate::model::fem) mod step_setup;
 pub(in crate::model::fem) mod step_size;
+pub(in crate::model::fem) mod step_solver;

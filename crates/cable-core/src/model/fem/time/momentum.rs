@@ -10,13 +10,14 @@
 
 use crate::contact::friction;
 use crate::math::Vec2;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::Seat;
 use crate::model::fem::state::account::{Account, Kinds};
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::bar_weight;
-use crate::model::fem::system::step_input::Pose;
+use crate::model::fem::system::friction_state::ContactPair;
+use crate::model::fem::system::step_input::Unknowns;
 use crate::model::fem::time::bdf2::Weights;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -45,7 +46,7 @@ pub(in crate::model::fem) fn mass_with(
     problem.linear_density * mesh.share(node) + lumps.map(|(s, _)| s.mass).sum::<f64>()
 }
 
-impl Dynamics {
+impl CableState {
     /// A step of the caller begins.
     pub(in crate::model::fem) fn begin_account(&mut self) {
         let now = self.motion.time;
@@ -138,62 +139,6 @@ impl Dynamics {
         sum
     }
 
-    /// The forces that a step balanced at a pose, N: on what moves with its material, and the
-    /// weight of what does not less what carries that.
-    pub(in crate::model::fem) fn forces_in_step(&self, pose: &Pose) -> Kinds {
-        let (problem, mesh, task, x) = (&self.problem, &self.mesh, &self.task, &pose.x);
-        let gravity =
-            if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
-        let mut sum = [Vec2::zeros(); 4];
-        sum[WEIGHT] = problem.weight * problem.length;
-        sum[LOADS] = (task.body - problem.weight) * problem.length;
-        let to = task.to;
-        for (s, _) in problem.supports.iter().zip(&self.meshing.support_node).filter(|(_, node)| node.is_some()) {
-            sum[WEIGHT] += gravity * s.mass;
-            if s.kind == SupportKind::Load {
-                sum[LOADS] += s.force.at(to);
-            }
-        }
-        for (_, force) in &self.meshing.loads {
-            sum[LOADS] += force.at(to);
-        }
-        for (k, _) in mesh.held.iter().enumerate().filter(|(_, held)| **held) {
-            sum[SUPPORTS] -= self.answers.reaction[k];
-        }
-        for &(k, stiffness, at) in &task.hands {
-            sum[SUPPORTS] += (at - x[k]) * stiffness;
-        }
-        if self.meshing.freely {
-            return sum;
-        }
-        let moves = |k: usize| mesh.sliding[k].is_none();
-        for touch in self.solver.memory.0.iter().flat_map(|m| &m.touches) {
-            sum[CONTACTS] += touch.pair.gap.normal * (touch.load(&self.contacts.barrier) * touch.felt(moves));
-        }
-        for rub in &self.contacts.rubs {
-            let (_, slope, _) = friction::at(rub.sliding(x), rub.limit, self.contacts.slip);
-            sum[CONTACTS] -= rub.tangent * (slope * rub.touch.felt(moves));
-        }
-        for (k, &limit) in task.floor_limit.iter().enumerate().filter(|(k, _)| moves(*k)) {
-            let slid = self.contacts.floor_slid[k] + (x[k] - task.start[k]);
-            sum[CONTACTS] -= friction::at_plane(slid, limit, self.contacts.slip).1;
-        }
-        for k in 1..mesh.nodes().saturating_sub(1) {
-            let Some(node) = &mesh.sliding[k] else { continue };
-            let round = &mut sum[kind_of(node.seat)];
-            if moves(k - 1) {
-                *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, task, k - 1, x, &pose.slide);
-            }
-            if moves(k + 1) {
-                *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, task, k, x, &pose.slide);
-            }
-            for (e, side) in [(k - 1, 1), (k, 0)] {
-                *round -= bar_weight::on_ends(mesh, e, x, Some(&pose.slide), task.body)[side];
-            }
-        }
-        sum
-    }
-
     /// Adds the impulses of a step of these weights in which forces (N) were balanced: the step is
     /// made, contacts are not yet made plastic. `slid` is the momentum of what lay on rounds before
     /// (kg m/s), `slide` how far it slid (m).
@@ -211,7 +156,7 @@ impl Dynamics {
             let (mesh, m) = (&self.mesh, &self.motion);
             for (k, node) in mesh.sliding.iter().enumerate() {
                 let Some(node) = node else { continue };
-                // What goes over moves as what is there, and has its history.
+                // Material that goes over moves as the material there, and has its history.
                 let of = |v: &[Vec2]| {
                     let at = |j: usize| if mesh.sliding[j].is_none() { v[j] } else { Vec2::zeros() };
                     (at(k - 1) - at(k + 1)) * (0.5 * self.problem.linear_density * slide[k])
@@ -244,7 +189,7 @@ impl Dynamics {
         account.last[CONTACTS] -= forgotten;
     }
 
-    /// What comes to lie on a round or leaves it takes a part of the history with it, N s.
+    /// Material that comes to lie on a round or leaves it takes a part of the history with it, N s.
     pub(in crate::model::fem) fn account_for_history(&mut self, seat: Seat, impulse: Vec2) {
         self.motion.account.last[kind_of(seat)] += impulse;
     }
@@ -268,5 +213,61 @@ impl Dynamics {
         account.late[kind] += given;
         account.last[kind] += changed;
         done
+    }
+
+    /// The forces that a step balanced at unknowns, N: on what moves with its material, and the
+    /// weight of what does not less what carries that. `touches` are the contacts of the solver.
+    pub(in crate::model::fem) fn forces_in_step(&self, unknowns: &Unknowns, touches: &[ContactPair]) -> Kinds {
+        let (problem, mesh, input, x) = (&self.problem, &self.mesh, &self.input, &unknowns.x);
+        let gravity =
+            if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
+        let mut sum = [Vec2::zeros(); 4];
+        sum[WEIGHT] = problem.weight * problem.length;
+        sum[LOADS] = (input.body - problem.weight) * problem.length;
+        let to = input.to;
+        for (s, _) in problem.supports.iter().zip(&self.meshing.support_node).filter(|(_, node)| node.is_some()) {
+            sum[WEIGHT] += gravity * s.mass;
+            if s.kind == SupportKind::Load {
+                sum[LOADS] += s.force.at(to);
+            }
+        }
+        for (_, force) in &self.meshing.loads {
+            sum[LOADS] += force.at(to);
+        }
+        for (k, _) in mesh.held.iter().enumerate().filter(|(_, held)| **held) {
+            sum[SUPPORTS] -= self.answers.reaction[k];
+        }
+        for &(k, stiffness, at) in &input.hands {
+            sum[SUPPORTS] += (at - x[k]) * stiffness;
+        }
+        if self.meshing.freely {
+            return sum;
+        }
+        let moves = |k: usize| mesh.sliding[k].is_none();
+        for touch in touches {
+            sum[CONTACTS] += touch.pair.gap.normal * (touch.load(&self.contacts.barrier) * touch.felt(moves));
+        }
+        for rub in &self.contacts.rubs {
+            let (_, slope, _) = friction::at(rub.sliding(x), rub.limit, self.contacts.slip);
+            sum[CONTACTS] -= rub.tangent * (slope * rub.touch.felt(moves));
+        }
+        for (k, &limit) in input.floor_limit.iter().enumerate().filter(|(k, _)| moves(*k)) {
+            let slid = self.contacts.floor_slid[k] + (x[k] - input.start[k]);
+            sum[CONTACTS] -= friction::at_plane(slid, limit, self.contacts.slip).1;
+        }
+        for k in 1..mesh.nodes().saturating_sub(1) {
+            let Some(node) = &mesh.sliding[k] else { continue };
+            let round = &mut sum[kind_of(node.seat)];
+            if moves(k - 1) {
+                *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, input, k - 1, x, &unknowns.slide);
+            }
+            if moves(k + 1) {
+                *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, input, k, x, &unknowns.slide);
+            }
+            for (e, side) in [(k - 1, 1), (k, 0)] {
+                *round -= bar_weight::on_ends(mesh, e, x, Some(&unknowns.slide), input.body)[side];
+            }
+        }
+        sum
     }
 }

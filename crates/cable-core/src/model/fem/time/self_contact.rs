@@ -2,14 +2,14 @@
 
 use crate::contact::friction;
 use crate::math::Vec2;
-use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::time::bdf2::{carried_on, plastic};
 use crate::model::fem::time::momentum::mass_with;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
-impl Dynamics {
-    /// Whether there is nothing to touch: no obstacle, and the cable can pass itself.
+impl CableState {
+    /// True if there is nothing to touch: no obstacle, and the cable can pass itself.
     pub(in crate::model::fem) fn meets_nothing(&self) -> bool {
         self.problem.world.is_empty() && !self.contacts.own.shape.is_on()
     }
@@ -47,7 +47,8 @@ impl Dynamics {
         self.account_for_landing(given, forgotten);
     }
 
-    /// Where the cable touches itself at positions `x` (m): one report for each stretch of nodes.
+    /// Contacts of the cable with itself at positions `x` (m): one report for each stretch of
+    /// nodes.
     pub(in crate::model::fem) fn own_contacts(&self, x: &[Vec2], tension: &[f64], out: &mut Vec<ContactReport>) {
         let own = &self.contacts.own;
         let mut last = None;

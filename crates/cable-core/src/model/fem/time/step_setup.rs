@@ -2,15 +2,20 @@
 //! instant.
 
 use crate::math::Vec2;
-use crate::model::fem::dynamics::{Dynamics, INNER_STEP, REACH};
 use crate::model::fem::mesh::sliding_node::Seat;
-use crate::model::fem::newton::minimize::{StepContext, Workspace};
+use crate::model::fem::newton::minimize::StepContext;
+use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable::REACH;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::floor_friction;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Pose};
+use crate::model::fem::system::step_input::Unknowns;
 use crate::model::input_filter::MAX_SPEED;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
+
+/// Greatest move of a node in a Newton iteration, m: two longest inner steps at 100 m/s. Smaller:
+/// fast motion takes more iterations; larger: a wild step goes farther before it is cut.
+const MAX_NEWTON_MOVE_M: f64 = 2.0 / 240.0 * 100.0;
 
 /// Newton iterations of a dynamic step.
 const STEP_ITERATIONS: usize = 120;
@@ -32,14 +37,14 @@ const EVEN_FORCE: f64 = 1e-7;
 /// cone (the checker asks for 1e-3 of the normal force).
 const LAWFUL: f64 = 2e-4;
 
-/// What a pose says of the friction of sliding nodes with which it was found.
+/// Comparison of unknowns with the friction of sliding nodes with which it was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem) struct StickSlipChanges {
     /// Nodes that hold where they should slip, or slip where they should hold.
     pub(in crate::model::fem) wrong: usize,
-    /// Whether what slips has the friction that belongs to its turn, as nearly as anyone sees.
+    /// True if what slips has the friction that belongs to its turn, as nearly as anyone sees.
     pub(in crate::model::fem) lawful: bool,
-    /// Whether nothing changed but by rounding.
+    /// True if nothing changed but by rounding.
     pub(in crate::model::fem) same: bool,
 }
 
@@ -47,43 +52,43 @@ impl StickSlipChanges {
     /// Nothing slides.
     pub(in crate::model::fem) const FOUND: Self = Self { wrong: 0, lawful: true, same: true };
 
-    /// Whether the law holds at every sliding node.
+    /// True if the law holds at every sliding node.
     pub(in crate::model::fem) fn hold(self) -> bool {
         self.wrong == 0 && self.lawful
     }
 }
 
-impl Dynamics {
-    /// What the solve of the present step reads.
+impl CableState {
+    /// The input of the solve of the present step.
     pub(in crate::model::fem) fn step_context(&self) -> StepContext<'_> {
-        StepContext { problem: &self.problem, mesh: &self.mesh, contacts: &self.contacts, task: &self.task }
+        StepContext { problem: &self.problem, mesh: &self.mesh, contacts: &self.contacts, input: &self.input }
     }
 
     /// Sets held nodes, their targets and all forces for the time `to` (s); dragged supports go
     /// where `dragged` says.
-    pub(in crate::model::fem) fn prepare_task(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
+    pub(in crate::model::fem) fn prepare_input(&mut self, to: f64, dragged: Option<&[Option<Vec2>]>) {
         self.prepare_step([to, to], dragged);
     }
 
     /// The same for a step from one time to another (s): what holds at its start holds to its end.
     pub(in crate::model::fem) fn prepare_step(&mut self, [from, to]: [f64; 2], dragged: Option<&[Option<Vec2>]>) {
         self.answers.stepped = None;
-        let (problem, mesh, task) = (&self.problem, &mut self.mesh, &mut self.task);
+        let (problem, mesh, input) = (&self.problem, &mut self.mesh, &mut self.input);
         let n = mesh.nodes();
         let body = problem.body_force(to);
         let gravity =
             if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
-        task.body = body;
-        task.to = to;
-        task.force.clear();
-        task.force.extend((0..n).map(|k| body * mesh.share(k)));
+        input.body = body;
+        input.to = to;
+        input.force.clear();
+        input.force.extend((0..n).map(|k| body * mesh.share(k)));
         for (node, force) in &self.meshing.loads {
-            task.force[*node] += force.at(to);
+            input.force[*node] += force.at(to);
         }
-        task.start.clone_from(&self.motion.x);
-        task.target.clone_from(&self.motion.x);
-        task.laid.clear();
-        task.hands.clear();
+        input.start.clone_from(&self.motion.x);
+        input.target.clone_from(&self.motion.x);
+        input.laid.clear();
+        input.hands.clear();
         mesh.held.fill(false);
         mesh.clamps.clear();
         for (k, (s, node)) in problem.supports.iter().zip(&self.meshing.support_node).enumerate() {
@@ -92,24 +97,24 @@ impl Dynamics {
                 continue;
             }
             if s.kind == SupportKind::Load {
-                task.force[node] += s.force.at(to);
+                input.force[node] += s.force.at(to);
             }
-            task.force[node] += gravity * s.mass;
+            input.force[node] += gravity * s.mass;
             if s.holds_from(from)
                 && let Some((at, _)) = s.place_at(to)
             {
                 let drawn = dragged.and_then(|d| d.get(k).copied().flatten());
                 let at = self.motion.followers[k].map_or(drawn.unwrap_or(at), |f| f.position());
-                // What was stopped and is free again catches up no faster than this beyond its own
-                // motion, which is followed exactly.
+                // A support that was stopped and is free again catches up no faster than this
+                // beyond its own motion, which is followed exactly.
                 let own = s.place_at(from).map_or(0.0, |(before, _)| (at - before).norm());
                 let most = if self.motion.followers[k].is_some() { 0.0 } else { own } + MAX_SPEED * (to - from);
                 let at = if to > from { within(self.motion.x[node], at, most) } else { at };
-                // What a hand holds by a spring is a node that moves.
+                // A support that a hand holds by a spring is a node that moves.
                 if self.motion.hands[k].is_none() {
                     mesh.held[node] = true;
-                    task.target[node] = clear_way(problem, self.motion.x[node], at);
-                    if task.target[node] != at && !self.answers.held_back.contains(&k) {
+                    input.target[node] = clear_way(problem, self.motion.x[node], at);
+                    if input.target[node] != at && !self.answers.held_back.contains(&k) {
                         self.answers.held_back.push(k);
                     }
                 }
@@ -132,27 +137,27 @@ impl Dynamics {
                 let follower = self.motion.followers.get(support).copied().flatten();
                 node.end.center = follower.map_or(hand.unwrap_or(at), |f| f.position());
                 self.motion.x[k] = node.position();
-                task.start[k] = self.motion.x[k];
+                input.start[k] = self.motion.x[k];
             }
         }
-        task.may_lag = to > from;
-        task.outlined = self.rider.is_some();
-        task.max_iterations = STEP_ITERATIONS;
-        task.max_move = 2.0 * INNER_STEP * 100.0;
-        task.moves = false;
-        task.shift = 0.0;
-        task.loss.clear();
-        task.loss.resize(mesh.rest_length.len(), [0.0; 2]);
-        task.bending_damping = 0.0;
-        task.most_noise = f64::INFINITY;
-        task.inertia.clear();
-        task.inertia.resize(n, 0.0);
-        task.predicted.clone_from(&self.motion.x);
-        task.coupling.clear();
-        task.predicted_length.clear();
-        task.predicted_length.extend_from_slice(&mesh.rest_length);
-        task.predicted_slide.clear();
-        task.predicted_slide.resize(n, 0.0);
+        input.may_lag = to > from;
+        input.outlined = self.outline.is_some();
+        input.max_iterations = STEP_ITERATIONS;
+        input.max_move = MAX_NEWTON_MOVE_M;
+        input.moves = false;
+        input.shift = 0.0;
+        input.loss.clear();
+        input.loss.resize(mesh.rest_length.len(), [0.0; 2]);
+        input.bending_damping = 0.0;
+        input.most_noise = f64::INFINITY;
+        input.inertia.clear();
+        input.inertia.resize(n, 0.0);
+        input.predicted.clone_from(&self.motion.x);
+        input.coupling.clear();
+        input.predicted_length.clear();
+        input.predicted_length.extend_from_slice(&mesh.rest_length);
+        input.predicted_slide.clear();
+        input.predicted_slide.resize(n, 0.0);
         self.set_scale();
         let x = std::mem::take(&mut self.motion.x);
         self.press_on_floor(&x, None);
@@ -171,10 +176,10 @@ impl Dynamics {
     /// whether any of it changed.
     fn press_on_floor(&mut self, x: &[Vec2], slide: Option<&[f64]>) -> bool {
         let Some((friction, normal)) = self.problem.floor_friction else {
-            self.task.floor_limit.clear();
+            self.input.floor_limit.clear();
             return false;
         };
-        let (mesh, limits) = (&self.mesh, &mut self.task.floor_limit);
+        let (mesh, limits) = (&self.mesh, &mut self.input.floor_limit);
         let mut changed = limits.len() != mesh.nodes();
         limits.resize(mesh.nodes(), 0.0);
         for (k, limit) in limits.iter_mut().enumerate() {
@@ -189,44 +194,47 @@ impl Dynamics {
     /// The factor of each bar's energy from the grips of the sliding nodes before it.
     pub(in crate::model::fem) fn set_scale(&mut self) {
         let mut scale = 1.0;
-        self.task.scale.clear();
+        self.input.scale.clear();
         for e in 0..self.mesh.rest_length.len() {
             if let Some(s) = &self.mesh.sliding[e] {
                 scale *= s.factor;
             }
-            self.task.scale.push(scale);
+            self.input.scale.push(scale);
         }
     }
 
-    /// Reads turn and grip of every sliding node off a pose and says how that differs from what the
-    /// pose was found with. Where `one` is set only the first of the grips that are wrong is
-    /// changed, and turns half of the way: nearly slack bars hang from a round, and turn over it by
-    /// the more the less they pull.
+    /// Reads turn and grip of every sliding node off unknowns and says how that differs from what
+    /// the unknowns was found with. Where `one` is set only the first of the grips that are wrong
+    /// is changed, and turns half of the way: nearly slack bars hang from a round, and turn over it
+    /// by the more the less they pull.
     ///
-    /// What slid the wrong way until its grip was seen to be wrong has not slid at all.
-    pub(in crate::model::fem) fn update_grips(&mut self, pose: &mut Pose, one: bool) -> StickSlipChanges {
+    /// A node that slid the wrong way until its grip was seen to be wrong has not slid at all.
+    pub(in crate::model::fem) fn update_grips(&mut self, unknowns: &mut Unknowns, one: bool) -> StickSlipChanges {
         if self.meshing.never_slides {
             return StickSlipChanges::FOUND;
         }
-        let mut grips =
-            StickSlipChanges { same: !self.press_on_floor(&pose.x, Some(&pose.slide)), ..StickSlipChanges::FOUND };
+        let mut grips = StickSlipChanges {
+            same: !self.press_on_floor(&unknowns.x, Some(&unknowns.slide)),
+            ..StickSlipChanges::FOUND
+        };
         for k in 0..self.mesh.nodes() {
-            let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &pose.x, Some(&pose.slide))) else {
+            let (Some(node), Some(load)) = (self.mesh.sliding[k], self.load_at(k, &unknowns.x, Some(&unknowns.slide)))
+            else {
                 continue;
             };
             if !(node.friction > 0.0) {
                 continue;
             }
             let mut next = node;
-            // What does not pull presses on nothing.
+            // Bars that do not pull press on nothing.
             let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0;
             let exponent = if presses { node.friction * load.turn } else { 0.0 };
             next.exponent = if one { 0.5 * (node.exponent + exponent) } else { exponent };
-            let inertia = self.task.inertia[k] * (pose.slide[k] - self.task.predicted_slide[k]);
+            let inertia = self.input.inertia[k] * (unknowns.slide[k] - self.input.predicted_slide[k]);
             let pulls = load.pull[0].abs() + load.pull[1].abs();
-            let slack = self.task.tolerance + EVEN_FORCE * pulls;
+            let slack = self.input.tolerance + EVEN_FORCE * pulls;
             let stiffness = self.mesh.axial_stiffness;
-            let grip = load.grip(&next, pose.slide[k], [inertia, slack], stiffness);
+            let grip = load.grip(&next, unknowns.slide[k], [inertia, slack], stiffness);
             if grip != node.grip {
                 grips.wrong += 1;
                 if !one || grips.wrong == 1 {
@@ -234,10 +242,10 @@ impl Dynamics {
                 }
             }
             next.factor = load.factor(next.grip, next.exponent, stiffness);
-            let floor = floor_friction::reaches(&self.mesh, k, &pose.x, Some(&pose.slide));
+            let floor = floor_friction::reaches(&self.mesh, k, &unknowns.x, Some(&unknowns.slide));
             next.floor_factor = floor_friction::factor(floor, load.ratio(next.grip, next.exponent));
             if next.sticks() && !node.sticks() {
-                pose.slide[k] = 0.0;
+                unknowns.slide[k] = 0.0;
             }
             let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SCALE_TOLERANCE;
             grips.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);
@@ -256,13 +264,13 @@ impl Dynamics {
         [k - 1, k].map(|e| {
             let path = mesh.path(e, x);
             let tension = mesh.axial_stiffness * (path.length / mesh.rest_length[e] - 1.0);
-            bar_weight::may_lie(mesh, e, &path, self.task.body, tension)
+            bar_weight::may_lie(mesh, e, &path, self.input.body, tension)
         })
     }
 
-    /// Whether the cable is flexible and nothing but its supports can touch it on the way to places
+    /// True if the cable is flexible and nothing but its supports can touch it on the way to places
     /// `to` (m).
-    fn moves_freely(&self, to: &[Vec2]) -> bool {
+    pub(in crate::model::fem) fn moves_freely(&self, to: &[Vec2]) -> bool {
         let slides = !self.meshing.never_slides && self.mesh.sliding.iter().any(Option::is_some);
         !slides
             && self.problem.floor_friction.is_none()
@@ -270,44 +278,10 @@ impl Dynamics {
             && self.is_out_of_reach(to)
     }
 
-    /// Whether nothing but supports can touch the cable on its way to places `to` (m).
+    /// True if nothing but supports can touch the cable on its way to places `to` (m).
     pub(in crate::model::fem) fn is_out_of_reach(&self, to: &[Vec2]) -> bool {
         self.meets_nothing()
-            || (!self.contacts.own.shape.is_on() && self.contacts.out_of_reach(&self.mesh, [&self.task.start, to]))
-    }
-
-    pub(in crate::model::fem) fn minimise(&mut self, pose: &mut Pose) -> Result<Converged, Failure> {
-        if self.moves_freely(&pose.x)
-            && let Some(done) = self.solver.free.solve(&self.mesh, &self.task, pose)
-        {
-            if self.is_out_of_reach(&pose.x) {
-                for (k, reaction) in self.answers.reaction.iter_mut().enumerate() {
-                    *reaction = -self.solver.free.gradient_at(k);
-                }
-                self.meshing.freely = true;
-                return Ok(done);
-            }
-            // It would have met something: from the start again, with contact.
-            *pose = self.still_pose();
-        }
-        let mut memory = match self.solver.memory.0.take() {
-            Some(m) if m.nodes() == self.mesh.nodes() => m,
-            _ => Box::new(Workspace::new(&self.mesh).map_err(|_| Failure {
-                node: 0,
-                residual: f64::NAN,
-                cause: FailureCause::OutOfMemory,
-            })?),
-        };
-        memory.work_left = self.solver.work_left;
-        self.meshing.freely = false;
-        let done = memory.minimise(&self.step_context(), pose);
-        self.solver.work_left = memory.work_left;
-        for k in 0..self.mesh.nodes() {
-            let scale = self.task.scale.get(k.saturating_sub(1)).copied().unwrap_or(1.0);
-            self.answers.reaction[k] = -memory.gradient_at(k) / scale;
-        }
-        self.solver.memory.0 = Some(memory);
-        done
+            || (!self.contacts.own.shape.is_on() && self.contacts.out_of_reach(&self.mesh, [&self.input.start, to]))
     }
 }
 

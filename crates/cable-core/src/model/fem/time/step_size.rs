@@ -8,7 +8,8 @@
 //! of the cable, which falls or is carried along.
 
 use crate::math::{Vec2, bounded};
-use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::stepping::StepSizeController;
 
 /// The shortest step is this part of the longest, 1/240 s: frequencies up to 17 Hz are exact to
 /// 1e-3, those of 40 Hz to 6e-3. Smaller: a vibrating cable costs more than its vibration is worth;
@@ -22,19 +23,20 @@ const VIBRATION_FRACTION: f64 = 1e-5;
 /// Change of the step from one frame to the next. BDF2 is stable up to 2.4.
 const STEP_CHANGE_LIMIT: f64 = 2.0;
 
-/// What was seen is forgotten with this time, s. Half a period of what needs shorter steps passes
-/// in it: with less the step would be short where a vibration turns and long where it is fastest.
+/// Time constant of the memory of a motion, s. Half a period of a motion that needs shorter steps
+/// passes in it: with less the step would be short where a vibration turns and long where it is
+/// fastest.
 const MEMORY: f64 = 0.25;
 
-impl Dynamics {
-    /// Looks at a step of `h` (s) just made. What falls or lands is no vibration.
-    pub(in crate::model::fem) fn note_pace(&mut self, h: f64) {
-        if !self.is_string() {
-            self.pacing.pace.seen = [0.0; 3];
+impl StepSizeController {
+    /// Looks at a step of `h` (s) just made. A cable that falls or lands does not vibrate.
+    pub(in crate::model::fem) fn observe(&mut self, cable: &CableState, h: f64) {
+        if !is_string(cable) {
+            self.seen = [0.0; 3];
             return;
         }
-        let (m, pace) = (&self.motion, &mut self.pacing.pace);
-        let free = || (0..m.v.len()).filter(|&k| self.mesh.is_free(k)).map(|k| (k, self.mesh.share(k)));
+        let (m, mesh) = (&cable.motion, &cable.mesh);
+        let free = || (0..m.v.len()).filter(|&k| mesh.is_free(k)).map(|k| (k, mesh.share(k)));
         let (mut length, mut mean) = (0.0, [Vec2::zeros(); 2]);
         for (k, share) in free() {
             length += share;
@@ -44,31 +46,32 @@ impl Dynamics {
         for (k, share) in free() {
             let change = m.v[k] - m.v_before[k] - mean[0] / length;
             let speed = m.v[k] + m.v_before[k] - mean[1] / length;
-            pace.seen[0] += share * change.norm_squared() / h;
-            pace.seen[1] += share * speed.norm_squared() * 0.25 * h;
+            self.seen[0] += share * change.norm_squared() / h;
+            self.seen[1] += share * speed.norm_squared() * 0.25 * h;
         }
-        pace.seen[2] += h;
+        self.seen[2] += h;
     }
 
-    /// Whether the cable touches nothing and is pulled all along by more than it weighs.
-    fn is_string(&self) -> bool {
-        let weight = self.problem.body_force(self.motion.time).norm() * self.problem.length;
-        let taut = |e: usize| self.mesh.bar(e).tension(self.mesh.path(e, &self.motion.x).length) > weight;
-        let alone = self.contacts.rubs.is_empty() && self.contacts.own.rubs.is_empty();
-        alone && (0..self.mesh.rest_length.len()).all(taut)
-    }
-
-    /// Chooses the longest step of the next frame, after one of `dt` (s).
-    pub(in crate::model::fem) fn set_pace(&mut self, dt: f64) {
-        let (pace, length) = (&mut self.pacing.pace, self.problem.length);
-        let [changes, speeds, time] = pace.seen;
+    /// Chooses the longest step of the next frame, after one of `dt` (s), of a cable of a length
+    /// (m) whose frequency may be off by a part `tolerance`.
+    pub(in crate::model::fem) fn choose(&mut self, tolerance: f64, length: f64, dt: f64) {
+        let [changes, speeds, time] = self.seen;
         let frequency = (changes / speeds).sqrt();
         let amplitude = (speeds / (time * length)).sqrt() / frequency;
         let matters = frequency.is_finite() && amplitude > VIBRATION_FRACTION * length;
-        let wanted = if matters { (3.0 * self.pacing.tolerance).sqrt() / frequency } else { pace.longest };
-        let near = bounded(wanted, pace.step / STEP_CHANGE_LIMIT, pace.step * STEP_CHANGE_LIMIT);
-        pace.step = near.clamp(SHORTEST_STEP_FRACTION * pace.longest, pace.longest);
+        let wanted = if matters { (3.0 * tolerance).sqrt() / frequency } else { self.longest };
+        let near = bounded(wanted, self.step / STEP_CHANGE_LIMIT, self.step * STEP_CHANGE_LIMIT);
+        self.step = near.clamp(SHORTEST_STEP_FRACTION * self.longest, self.longest);
         let left = (-dt / MEMORY).exp();
-        pace.seen = pace.seen.map(|s| s * left);
+        self.seen = self.seen.map(|s| s * left);
     }
+}
+
+/// True if the cable touches nothing and is pulled all along by more than its weight.
+fn is_string(cable: &CableState) -> bool {
+    let (problem, mesh, motion) = (&cable.problem, &cable.mesh, &cable.motion);
+    let weight = problem.body_force(motion.time).norm() * problem.length;
+    let taut = |e: usize| mesh.bar(e).tension(mesh.path(e, &motion.x).length) > weight;
+    let alone = cable.contacts.rubs.is_empty() && cable.contacts.own.rubs.is_empty();
+    alone && (0..mesh.rest_length.len()).all(taut)
 }

@@ -11,13 +11,13 @@
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::dynamics::REACH;
 use crate::model::fem::mesh::sliding_node::{MARKED_ARC_LIMIT, ONE_MARK_BAR_FRACTION};
 use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::rotate;
 use crate::model::fem::mesh::tangent_path::{End, angle_between};
-use crate::model::fem::newton::initial_guess::push_out;
+use crate::model::fem::newton::initial_guess::depenetrate;
 use crate::model::fem::remesh::adapt::LEAST_TURN;
+use crate::model::fem::state::cable::{CableState, REACH};
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::solution::{CableSolution, Node};
 use crate::state::State;
@@ -98,50 +98,7 @@ impl SolutionCurve<'_> {
     }
 }
 
-impl Dynamics {
-    /// Goes on from an answer of the same cable at rest, holding what friction held there.
-    ///
-    /// # Errors
-    /// As [`Self::set_state`].
-    pub fn warm_start(
-        &mut self,
-        answer: &CableSolution,
-        time_s: f64,
-        dragged: &[Option<Vec2>],
-    ) -> Result<(), SolveError> {
-        let curve = SolutionCurve(&answer.nodes);
-        let state = self.state_of_solution(&curve, &State::of_nodes(&answer.nodes, time_s));
-        self.set_state(&state)?;
-        let moves = answer.nodes.iter().any(|n| n.vx_m_per_s != 0.0 || n.vy_m_per_s != 0.0);
-        let touches = !self.problem.world.is_empty() || self.problem.floor_friction.is_some();
-        if moves || !touches || self.contacts.own.shape.is_on() {
-            return Ok(());
-        }
-        self.save();
-        self.restore_positions(&state);
-        self.adopt_sliding_nodes(&curve);
-        let mut x = std::mem::take(&mut self.motion.x);
-        push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
-        self.motion.x = x;
-        self.adopt_stretch(&curve);
-        self.renew_task();
-        self.adopt_friction(&curve);
-        self.adopt_floor_friction(&curve);
-        // Bars that stick from node to node are far from their balance by hardly any way: where
-        // Newton's method alone does not find it, a resistance that fades leads there. From bars
-        // that cut a corner it would lead to where they still do.
-        let found = self.rest_step(time_s, dragged).or_else(|failed| match self.cuts_nothing() {
-            true => self.relax(time_s, dragged),
-            false => Err(failed),
-        });
-        if found.is_ok() {
-            self.rested = true;
-        } else {
-            self.restore();
-        }
-        Ok(())
-    }
-
+impl CableState {
     /// A state with the nodes of this mesh where the answer has them.
     fn state_of_solution(&self, curve: &SolutionCurve<'_>, whole: &State) -> State {
         let mut s = whole.arc_length_m.clone();
@@ -314,14 +271,14 @@ impl Dynamics {
         }
         let s = &self.mesh.arc_length;
         let near = NEAR * self.even();
-        for (k, limit) in self.task.floor_limit.iter().enumerate().filter(|(k, l)| **l > 0.0 && !self.mesh.held[*k]) {
+        for (k, limit) in self.input.floor_limit.iter().enumerate().filter(|(k, l)| **l > 0.0 && !self.mesh.held[*k]) {
             let low = 0.5 * (s[k] + s[k.saturating_sub(1)]);
             let high = 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]);
             let asked = match self.mesh.sliding[k] {
-                // What holds there is the floor first, and the round for the rest.
+                // The floor holds there first, and the round the rest.
                 Some(_) => Some(Vec2::new(curve.tension(low) - curve.tension(high), 0.0)),
                 None => match (curve.force(low, near), curve.force(high, near)) {
-                    (Some(before), Some(after)) => Some(after - before + self.task.body * (high - low)),
+                    (Some(before), Some(after)) => Some(after - before + self.input.body * (high - low)),
                     _ => None,
                 },
             };
@@ -346,7 +303,7 @@ impl Dynamics {
                 (0.5 * (s[k] + s[k.saturating_sub(1)]), 0.5 * (s[k] + s[(k + 1).min(s.len() - 1)]))
             };
             let (Some(before), Some(after)) = (curve.force(low, near), curve.force(high, near)) else { continue };
-            let pushed = before - after - self.task.body * (high - low);
+            let pushed = before - after - self.input.body * (high - low);
             let normal = pushed.dot(&touch.pair.gap.normal);
             let limit = touch.pair.gap.friction * normal;
             if limit > 0.0 {
@@ -356,6 +313,51 @@ impl Dynamics {
                 self.contacts.remember(touch, u * self.contacts.slip);
             }
         }
+    }
+}
+
+impl Dynamics {
+    /// Goes on from an answer of the same cable at rest, holding what friction held there.
+    ///
+    /// # Errors
+    /// As [`Self::set_state`].
+    pub fn warm_start(
+        &mut self,
+        answer: &CableSolution,
+        time_s: f64,
+        dragged: &[Option<Vec2>],
+    ) -> Result<(), SolveError> {
+        let curve = SolutionCurve(&answer.nodes);
+        let state = self.cable.state_of_solution(&curve, &State::of_nodes(&answer.nodes, time_s));
+        self.set_state(&state)?;
+        let moves = answer.nodes.iter().any(|n| n.vx_m_per_s != 0.0 || n.vy_m_per_s != 0.0);
+        let touches = !self.cable.problem.world.is_empty() || self.cable.problem.floor_friction.is_some();
+        if moves || !touches || self.cable.contacts.own.shape.is_on() {
+            return Ok(());
+        }
+        self.rollback.save(&self.cable);
+        self.cable.restore_positions(&state);
+        self.cable.adopt_sliding_nodes(&curve);
+        let mut x = std::mem::take(&mut self.cable.motion.x);
+        depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
+        self.cable.motion.x = x;
+        self.cable.adopt_stretch(&curve);
+        self.cable.renew_input();
+        self.cable.adopt_friction(&curve);
+        self.cable.adopt_floor_friction(&curve);
+        // Bars that stick from node to node are far from their balance by hardly any way: where
+        // Newton's method alone does not find it, a resistance that fades leads there. From bars
+        // that cut a corner it would lead to where they still do.
+        let found = self.rest_step(time_s, dragged).or_else(|failed| match self.cable.cuts_nothing() {
+            true => self.relax(time_s, dragged),
+            false => Err(failed),
+        });
+        if found.is_ok() {
+            self.rested = true;
+        } else {
+            self.rollback.restore(&mut self.cable);
+        }
+        Ok(())
     }
 }
 

@@ -5,11 +5,12 @@ use std::sync::Arc;
 
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
-use crate::model::fem::dynamics::{Dynamics, REACH};
+use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::free::stations::{Hold, Layout};
 use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode};
 use crate::model::fem::mesh::tangent_path::End;
-use crate::model::fem::newton::initial_guess::push_out;
+use crate::model::fem::newton::initial_guess::depenetrate;
+use crate::model::fem::state::cable::{CableState, REACH};
 use crate::scene::PulleySide;
 use crate::state::State;
 
@@ -17,7 +18,7 @@ use crate::state::State;
 /// beside a node are still cut off.
 const LEAST_PART: f64 = 0.05;
 
-impl Dynamics {
+impl CableState {
     /// Puts a sliding node at every pulley: where `state` has the cable nearest to it, else where
     /// the layout lays it.
     pub(in crate::model::fem) fn thread_pulleys(&mut self, state: Option<&State>) {
@@ -37,68 +38,7 @@ impl Dynamics {
             self.insert(k, at, Some(SlidingNode::new(end, wheel.friction, Seat::Pulley(support))));
         }
         self.even_out();
-        self.renew_task();
-    }
-
-    /// Takes over a state (from statics: at rest).
-    ///
-    /// # Errors
-    /// When a number is not finite, and `Buried` when it is so far inside an obstacle that nodes
-    /// cannot be pushed out.
-    pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
-        if let Some(e) = state.refuse_non_finite() {
-            return Err(e);
-        }
-        if state.arc_length_m.len() < 2 || state.position_m.len() != state.arc_length_m.len() {
-            return Ok(());
-        }
-        self.save();
-        let taken = self.take(state);
-        if taken.is_err() {
-            self.restore();
-        }
-        taken
-    }
-
-    fn take(&mut self, state: &State) -> Result<(), SolveError> {
-        self.wake();
-        let led = self.put_outline();
-        let same = state.arc_length_m == self.mesh.arc_length && !led;
-        if !same {
-            self.unthread();
-        }
-        for (k, &s) in self.mesh.arc_length.iter().enumerate() {
-            if self.mesh.sliding[k].is_some() {
-                continue;
-            }
-            if let Some(p) = state.position_at(s) {
-                self.motion.x[k] = p;
-            }
-            self.motion.v[k] = state.velocity_at(s).unwrap_or_default();
-        }
-        self.motion.time = state.time_s;
-        self.motion.followers.fill(None);
-        self.motion.hands.fill(None);
-        self.contacts.forget();
-        if !same {
-            self.thread_pulleys(Some(state));
-        }
-        // What moves goes on from where it is; a state at rest is brought to rest on this mesh.
-        let still = !state.in_motion && self.motion.v.iter().all(|v| v.norm() == 0.0);
-        if !same && !still {
-            self.follow_corners(state);
-        }
-        if !same || self.refuse_buried().is_err() {
-            let mut x = std::mem::take(&mut self.motion.x);
-            push_out(&self.problem, &self.mesh, &mut x, 0.9 * REACH);
-            self.motion.x = x;
-        }
-        self.refuse_buried()?;
-        self.forget_history();
-        // A state at rest on another mesh is brought to rest on this one before it moves.
-        self.rested = same || !still;
-        self.renew_task();
-        Ok(())
+        self.renew_input();
     }
 
     /// Bars that cut off by more than the cable's radius what the state leads round get a node
@@ -143,5 +83,68 @@ impl Dynamics {
             }
         }
         self.even_out();
+    }
+}
+
+impl Dynamics {
+    /// Takes over a state (from statics: at rest).
+    ///
+    /// # Errors
+    /// When a number is not finite, and `Buried` when it is so far inside an obstacle that nodes
+    /// cannot be pushed out.
+    pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        if let Some(e) = state.refuse_non_finite() {
+            return Err(e);
+        }
+        if state.arc_length_m.len() < 2 || state.position_m.len() != state.arc_length_m.len() {
+            return Ok(());
+        }
+        self.rollback.save(&self.cable);
+        let taken = self.take(state);
+        if taken.is_err() {
+            self.rollback.restore(&mut self.cable);
+        }
+        taken
+    }
+
+    fn take(&mut self, state: &State) -> Result<(), SolveError> {
+        self.pacing.sleep.wake();
+        let led = self.cable.put_outline();
+        let same = state.arc_length_m == self.cable.mesh.arc_length && !led;
+        if !same {
+            self.cable.unthread();
+        }
+        for (k, &s) in self.cable.mesh.arc_length.iter().enumerate() {
+            if self.cable.mesh.sliding[k].is_some() {
+                continue;
+            }
+            if let Some(p) = state.position_at(s) {
+                self.cable.motion.x[k] = p;
+            }
+            self.cable.motion.v[k] = state.velocity_at(s).unwrap_or_default();
+        }
+        self.cable.motion.time = state.time_s;
+        self.cable.motion.followers.fill(None);
+        self.cable.motion.hands.fill(None);
+        self.cable.contacts.forget();
+        if !same {
+            self.cable.thread_pulleys(Some(state));
+        }
+        // A state in motion goes on as it is; one at rest is brought to rest on this mesh.
+        let still = !state.in_motion && self.cable.motion.v.iter().all(|v| v.norm() == 0.0);
+        if !same && !still {
+            self.cable.follow_corners(state);
+        }
+        if !same || self.cable.refuse_buried().is_err() {
+            let mut x = std::mem::take(&mut self.cable.motion.x);
+            depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
+            self.cable.motion.x = x;
+        }
+        self.cable.refuse_buried()?;
+        self.forget_history();
+        // A state at rest on another mesh is brought to rest on this one before it moves.
+        self.rested = same || !still;
+        self.cable.renew_input();
+        Ok(())
     }
 }

@@ -3,110 +3,119 @@
 use crate::error::SolveError;
 use crate::math::{Vec2, bounded};
 use crate::model::Model;
-use crate::model::mass_spring::{MassSpringModel, Touch};
+use crate::model::mass_spring::contact_memory::{ContactImpulse, ContactMemory};
+use crate::model::mass_spring::dynamics::momentum::Account;
+use crate::model::mass_spring::mesh::nodes::Mesh;
 
-/// Distance kept ready for contact beside what is travelled, m.
-pub(in crate::model::mass_spring) const CONTACT_SKIN: f64 = 1e-4;
-/// Greatest speed at which a penetration is pushed out, m/s: more throws the cable off, less lets
-/// it sink for longer.
-const PUSH_OUT_SPEED: f64 = 1.0;
-/// Time in which a shallow one is pushed out, s: a cable that rests a few micrometres deep must not
-/// jump.
-const PUSH_OUT_TIME: f64 = 0.02;
-/// Passes over the contacts of a sub-step: one leaves neighbours in each other's way, more changes
-/// nothing visible.
-const CONTACT_PASSES: usize = 2;
-
-impl MassSpringModel {
-    /// Refuses to go on from where the middle of the cable is inside an obstacle: distances have no
-    /// sign there, and what should push it out would hold it in. What lies in less deep is pushed
-    /// out.
-    pub(in crate::model::mass_spring) fn refuse_buried(&self) -> Result<(), SolveError> {
-        let world = &self.problem.world;
-        if world.is_empty() {
-            return Ok(());
-        }
-        let free = (0..self.chain.x.len()).filter(|&n| !self.drives.held[n] && self.wheels.pulley_at[n].is_none());
-        let gaps = free.filter_map(|n| Some((n, world.signed_gap(self.chain.x[n], f64::INFINITY)?)));
-        let inside = gaps.filter(|(_, gap)| gap.gap_m < -self.problem.radius);
-        if let Some((n, deepest)) = inside.min_by(|a, b| a.1.gap_m.total_cmp(&b.1.gap_m)) {
-            return Err(SolveError::Buried {
-                model: Model::MassSpring,
-                obstacle: world.obstacle_name(deepest.obstacle).to_owned(),
-                depth_m: -deepest.gap_m,
-                arc_length_m: self.chain.s[n],
-                at_m: self.chain.x[n],
-            });
-        }
-        Ok(())
+/// Refuses to go on from where the middle of the cable is inside an obstacle: distances have no
+/// sign there, and what should push it out would hold it in. A shallow penetration is pushed
+/// out.
+pub(in crate::model::mass_spring) fn refuse_buried(mesh: &Mesh) -> Result<(), SolveError> {
+    let world = &mesh.problem.world;
+    if world.is_empty() {
+        return Ok(());
     }
+    let free = (0..mesh.position.len()).filter(|&n| !mesh.supported[n] && mesh.wheels.at_node[n].is_none());
+    let gaps = free.filter_map(|n| Some((n, world.signed_gap(mesh.position[n], f64::INFINITY)?)));
+    let inside = gaps.filter(|(_, gap)| gap.gap_m < -mesh.problem.radius);
+    if let Some((n, deepest)) = inside.min_by(|a, b| a.1.gap_m.total_cmp(&b.1.gap_m)) {
+        return Err(SolveError::Buried {
+            model: Model::MassSpring,
+            obstacle: world.obstacle_name(deepest.obstacle).to_owned(),
+            depth_m: -deepest.gap_m,
+            arc_length_m: mesh.arc_length[n],
+            at_m: mesh.position[n],
+        });
+    }
+    Ok(())
+}
 
-    /// Makes velocities such that nothing is entered in this sub-step: at each contact an inelastic
-    /// normal impulse and a friction impulse within the Coulomb cone. Inside the cone the
-    /// tangential velocity becomes exactly zero, so a held cable does not creep.
-    pub(in crate::model::mass_spring) fn contacts(&mut self, h: f64) {
-        self.contacts.touches.clear();
-        if self.problem.world.is_empty() {
-            return;
+/// Makes velocities such that nothing is entered in this sub-step: at each contact an inelastic
+/// normal impulse and a friction impulse within the Coulomb cone. Inside the cone the
+/// tangential velocity becomes exactly zero, so a held cable does not creep.
+pub(in crate::model::mass_spring) fn apply(
+    contacts: &mut ContactMemory,
+    mesh: &mut Mesh,
+    account: &mut Account,
+    h: f64,
+) {
+    contacts.impulses.clear();
+    if mesh.problem.world.is_empty() {
+        return;
+    }
+    let tuning = mesh.tuning.impact;
+    for e in 0..mesh.rest_length.len() {
+        if mesh.wheels.is_on_wheel(e) {
+            continue;
         }
-        for e in 0..self.chain.rest.len() {
-            if self.on_wheel(e) {
-                continue;
-            }
-            let (va, vb) = (self.chain.v[e].norm(), self.chain.v[e + 1].norm());
-            let travel = if va > vb { va } else { vb } * h;
-            self.contacts.clearance[e] -= travel;
-            if self.contacts.clearance[e] > 0.0 {
-                continue;
-            }
-            let near = CONTACT_SKIN + 2.0 * travel;
-            let reach = near + self.chain.rest[e];
-            self.contacts.gaps.clear();
-            self.problem.world.segment_gaps(self.chain.x[e], self.chain.x[e + 1], reach, &mut self.contacts.gaps);
-            let nearest = self.contacts.gaps.iter().map(|g| g.gap_m).fold(reach, f64::min);
-            self.contacts.clearance[e] = nearest - near;
-            for gap in self.contacts.gaps.iter().filter(|g| g.gap_m < near) {
-                self.contacts.touches.push(Touch { element: e, gap: *gap, normal: 0.0, friction: 0.0, slips: false });
-            }
+        let (va, vb) = (mesh.velocity[e].norm(), mesh.velocity[e + 1].norm());
+        let travel = if va > vb { va } else { vb } * h;
+        contacts.clearance[e] -= travel;
+        if contacts.clearance[e] > 0.0 {
+            continue;
         }
-        for _ in 0..CONTACT_PASSES {
-            for k in 0..self.contacts.touches.len() {
-                let mut touch = self.contacts.touches[k];
-                self.impulse(&mut touch, h);
-                self.contacts.touches[k] = touch;
-            }
+        let near = tuning.skin_m + 2.0 * travel;
+        let reach = near + mesh.rest_length[e];
+        contacts.gap_buffer.clear();
+        mesh.problem.world.segment_gaps(mesh.position[e], mesh.position[e + 1], reach, &mut contacts.gap_buffer);
+        let nearest = contacts.gap_buffer.iter().map(|g| g.gap_m).fold(reach, f64::min);
+        contacts.clearance[e] = nearest - near;
+        for gap in contacts.gap_buffer.iter().filter(|g| g.gap_m < near) {
+            contacts.impulses.push(ContactImpulse { element: e, gap: *gap, normal: 0.0, friction: 0.0, slips: false });
         }
     }
-
-    fn impulse(&mut self, touch: &mut Touch, h: f64) {
-        let (a, b, c) = (touch.element, touch.element + 1, touch.gap.fraction);
-        let inverse = |i: usize| if self.drives.held[i] { 0.0 } else { 1.0 / self.chain.mass[i] };
-        let (ia, ib) = (inverse(a), inverse(b));
-        // Inverse mass of the point at fraction c of the element.
-        let w = (1.0 - c) * (1.0 - c) * ia + c * c * ib;
-        if !(w > 0.0) {
-            return;
+    for _ in 0..tuning.passes {
+        for contact in &mut contacts.impulses {
+            apply_one(contact, mesh, account, h);
         }
-        let n = touch.gap.normal;
-        let v = self.chain.v[a] * (1.0 - c) + self.chain.v[b] * c;
-        // The gap after the sub-step is gap + v·n·h ≥ 0; a penetration leaves at a bounded speed.
-        let gap = touch.gap.gap_m;
-        let target = if gap > 0.0 { -gap / h } else { (-gap / PUSH_OUT_TIME).min(PUSH_OUT_SPEED) };
-        let wanted = touch.normal + (target - v.dot(&n)) / w;
-        let normal = if wanted > 0.0 { wanted } else { 0.0 };
-        let change = normal - touch.normal;
-        let mut along = self.chain.x[b] - self.chain.x[a];
-        along -= n * along.dot(&n);
-        let t = along.try_normalize(0.0).unwrap_or(Vec2::new(n.y, -n.x));
-        let wanted = touch.friction - v.dot(&t) / w;
-        let cone = touch.gap.friction * normal;
-        let friction = bounded(wanted, -cone, cone);
-        touch.slips = wanted.abs() > cone;
-        let j = n * change + t * (friction - touch.friction);
-        (touch.normal, touch.friction) = (normal, friction);
-        let of = |i: usize, part: f64| if self.drives.held[i] { 0.0 } else { part };
-        self.report.account.contacts += j * (of(a, 1.0 - c) + of(b, c));
-        self.chain.v[a] += j * ((1.0 - c) * ia);
-        self.chain.v[b] += j * (c * ib);
+    }
+}
+
+fn apply_one(contact: &mut ContactImpulse, mesh: &mut Mesh, account: &mut Account, h: f64) {
+    let tuning = &mesh.tuning.impact;
+    let (a, b, c) = (contact.element, contact.element + 1, contact.gap.fraction);
+    let inverse = |i: usize| if mesh.supported[i] { 0.0 } else { 1.0 / mesh.mass[i] };
+    let (ia, ib) = (inverse(a), inverse(b));
+    // Inverse mass of the point at fraction c of the element.
+    let w = (1.0 - c) * (1.0 - c) * ia + c * c * ib;
+    if !(w > 0.0) {
+        return;
+    }
+    let n = contact.gap.normal;
+    let v = mesh.velocity[a] * (1.0 - c) + mesh.velocity[b] * c;
+    // The gap after the sub-step is gap + v·n·h ≥ 0; a penetration leaves at a bounded speed.
+    let gap = contact.gap.gap_m;
+    let target = if gap > 0.0 { -gap / h } else { (-gap / tuning.push_out_time_s).min(tuning.push_out_speed_m_per_s) };
+    let wanted = contact.normal + (target - v.dot(&n)) / w;
+    let normal = if wanted > 0.0 { wanted } else { 0.0 };
+    let change = normal - contact.normal;
+    let mut along = mesh.position[b] - mesh.position[a];
+    along -= n * along.dot(&n);
+    let t = along.try_normalize(0.0).unwrap_or(Vec2::new(n.y, -n.x));
+    let wanted = contact.friction - v.dot(&t) / w;
+    let cone = contact.gap.friction * normal;
+    let friction = bounded(wanted, -cone, cone);
+    contact.slips = wanted.abs() > cone;
+    let j = n * change + t * (friction - contact.friction);
+    (contact.normal, contact.friction) = (normal, friction);
+    let of = |i: usize, part: f64| if mesh.supported[i] { 0.0 } else { part };
+    account.contacts += j * (of(a, 1.0 - c) + of(b, c));
+    mesh.velocity[a] += j * ((1.0 - c) * ia);
+    mesh.velocity[b] += j * (c * ib);
+}
+
+/// Lets the floor of a plan view take up to μ·w·ds·dt of each node's momentum in a time `h` (s).
+pub(in crate::model::mass_spring) fn floor_friction(mesh: &mut Mesh, account: &mut Account, h: f64) {
+    let Some((mu, normal)) = mesh.problem.floor_friction else { return };
+    for i in 0..mesh.position.len() {
+        let before = if i > 0 { mesh.material_length[i - 1] } else { 0.0 };
+        let ds = 0.5 * (before + mesh.material_length.get(i).copied().unwrap_or(0.0));
+        let speed = mesh.velocity[i].norm();
+        let loss = mu * normal * ds * h / mesh.mass[i];
+        if !mesh.supported[i] {
+            let kept = if speed <= loss { 0.0 } else { 1.0 - loss / speed };
+            account.contacts -= mesh.velocity[i] * ((1.0 - kept) * mesh.mass[i]);
+            mesh.velocity[i] *= kept;
+        }
     }
 }

@@ -1,21 +1,22 @@
-//! These modules take one explicit sub-step: forces, impacts, limits, rollback, momentum and hands.
+//! These modules take one explicit sub-step: supports and hands that move, material that slides
+//! over pulleys, impacts, the account of momentum, limits and rollback.
 
 pub(in crate::model::mass_spring) mod hands;
 pub(in crate::model::mass_spring) mod impacts;
 pub(in crate::model::mass_spring) mod momentum;
 pub(in crate::model::mass_spring) mod rollback;
 pub(in crate::model::mass_spring) mod runaway_guard;
+pub(in crate::model::mass_spring) mod sliding;
 pub(in crate::model::mass_spring) mod sub_step;
-
-use crate::math::Vec2;
-use crate::model::input_filter::{Hand, SmoothedTarget};
+pub(in crate::model::mass_spring) mod supports;
 
 part! {
     /// The times of the model.
+    #[derive(Default)]
     Clock {
         /// Time reached, s.
         time_s: f64,
-        /// When the present step of the caller ends, s.
+        /// End of the present step of the caller, s.
         due_s: f64,
         /// Time by which velocities are behind places, s: half of the last sub-step, 0 where a
         /// motion begins.
@@ -23,24 +24,12 @@ part! {
     }
 }
 
-part! {
-    /// How supports hold nodes, and what leads them.
-    SupportDrives {
-        /// Whether a support holds the node now.
-        held: Vec<bool>,
-        /// Nodes that their support has let go as the present sub-step began.
-        let_go: Vec<usize>,
-        /// Acceleration of held nodes, m/s².
-        held_acceleration: Vec<Vec2>,
-        /// Where each support is dragged to, if it is.
-        drag: Vec<Option<Vec2>>,
-        /// Followers of dragged supports.
-        followers: Vec<Option<SmoothedTarget>>,
-        /// Which of the dragged supports a hand holds by a spring.
-        pulled: Vec<bool>,
-        /// Those hands.
-        hands: Vec<Option<Hand>>,
-        /// Fastest any support has moved, m/s.
-        driven: f64,
-    }
+/// One explicit sub-step.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::mass_spring) struct SubStep {
+    /// Time by which positions go on, s.
+    pub length_s: f64,
+    /// Time for which forces act on velocities, s: from the middle of the sub-step before to the
+    /// middle of this one.
+    pub kick_s: f64,
 }

@@ -1,15 +1,15 @@
-//! The account of a cable's momentum in a step: what each kind of force gave it, sub-step by
-//! sub-step. There is none of previews, and of cables over pulleys, whose material takes its
+//! The account of a cable's momentum in a step: the impulse of each kind of force, summed over the
+//! sub-steps. There is none of previews, and of cables over pulleys, whose material takes its
 //! momentum along.
 
 use crate::math::Vec2;
-use crate::model::mass_spring::MassSpringModel;
+use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::solution::MomentumAccount;
 
-/// What became of the momentum since the caller's step began; impulses in N s.
+/// Impulses since the caller's step began, N s.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::model::mass_spring) struct Account {
-    /// As it began, kg m/s; None: no account is kept.
+    /// Momentum as the step began, kg m/s; None if no account is kept.
     before: Option<Vec2>,
     over_s: f64,
     weight: Vec2,
@@ -18,42 +18,37 @@ pub(in crate::model::mass_spring) struct Account {
     pub(in crate::model::mass_spring) contacts: Vec2,
 }
 
-impl MassSpringModel {
-    /// A step of `dt` (s) begins, of which an account is `kept` or not.
-    pub(in crate::model::mass_spring) fn begin_account(&mut self, dt: f64, kept: bool) {
-        let before = (kept && self.wheels.pulleys.is_empty()).then(|| self.momentum());
-        self.report.account = Account { before, over_s: dt, ..Account::default() };
+impl Account {
+    /// The account of a step of `dt` (s) that begins now.
+    pub(in crate::model::mass_spring) fn of_step(mesh: &Mesh, dt: f64) -> Self {
+        let before = mesh.wheels.pulleys.is_empty().then(|| mesh.momentum());
+        Self { before, over_s: dt, ..Self::default() }
     }
 
-    /// Momentum of all nodes, kg m/s.
-    pub(in crate::model::mass_spring) fn momentum(&self) -> Vec2 {
-        self.chain.v.iter().zip(&self.chain.mass).map(|(v, m)| v * *m).sum()
-    }
-
-    /// Adds what forces give in a `kick` (s), supports beside what they have changed of the
-    /// momentum of what they hold.
-    pub(in crate::model::mass_spring) fn account_for_kick(&mut self, kick: f64) {
-        if self.report.account.before.is_none() {
+    /// Adds the impulses of forces in a `kick` (s) at a time; of supports those that pass through
+    /// them, as the momentum of what they hold is counted already.
+    pub(in crate::model::mass_spring) fn add_kick(&mut self, mesh: &Mesh, time_s: f64, kick: f64) {
+        if self.before.is_none() {
             return;
         }
-        let p = &self.problem;
+        let p = &mesh.problem;
         let gravity = if p.linear_density > 0.0 { p.weight / p.linear_density } else { Vec2::zeros() };
         let lumps: f64 = p.supports.iter().map(|s| s.mass).sum();
-        let hung: Vec2 = p.supports.iter().map(|s| s.force.at(self.clock.time_s)).sum();
-        let loads: Vec2 = p.loads.iter().map(|l| l.force.at(self.clock.time_s)).sum();
-        let pulled: Vec2 = self.chain.f.iter().zip(&self.drives.held).filter(|(_, held)| **held).map(|(f, _)| *f).sum();
-        self.report.account.weight += (p.weight * p.length + gravity * lumps) * kick;
-        self.report.account.loads += (p.wind.at(self.clock.time_s) * p.length + hung + loads) * kick;
-        self.report.account.supports -= pulled * kick;
+        let arc_moment: Vec2 = p.supports.iter().map(|s| s.force.at(time_s)).sum();
+        let loads: Vec2 = p.loads.iter().map(|l| l.force.at(time_s)).sum();
+        let pulled: Vec2 = mesh.force.iter().zip(&mesh.supported).filter(|(_, held)| **held).map(|(f, _)| *f).sum();
+        self.weight += (p.weight * p.length + gravity * lumps) * kick;
+        self.loads += (p.wind.at(time_s) * p.length + arc_moment + loads) * kick;
+        self.supports -= pulled * kick;
     }
 
-    /// Of the last step with inertia.
-    pub(in crate::model::mass_spring) fn momentum_account(&self) -> Option<MomentumAccount> {
-        let Account { before, over_s, weight, loads, supports, contacts } = self.report.account;
+    /// The account as the answer gives it, if one was kept.
+    pub(in crate::model::mass_spring) fn report(&self, mesh: &Mesh) -> Option<MomentumAccount> {
+        let Self { before, over_s, weight, loads, supports, contacts } = *self;
         Some(MomentumAccount {
             over_s,
             before_kg_m_per_s: before?.into(),
-            after_kg_m_per_s: self.momentum().into(),
+            after_kg_m_per_s: mesh.momentum().into(),
             weight_n_s: weight.into(),
             loads_n_s: loads.into(),
             supports_n_s: supports.into(),

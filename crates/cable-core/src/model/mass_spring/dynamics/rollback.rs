@@ -13,38 +13,34 @@ impl Clone for Rollback {
     }
 }
 
-impl MassSpringModel {
-    /// Does `step`; where it fails, all is as before.
-    pub(in crate::model::mass_spring) fn or_as_before<E>(
-        &mut self,
-        step: impl FnOnce(&mut Self) -> Result<(), E>,
-    ) -> Result<(), E> {
-        let mut kept = match self.kept.0.take() {
-            Some(mut kept) => {
-                kept.copy_from(self);
-                kept
-            }
-            None => Box::new(self.clone()),
-        };
-        let done = step(self);
-        if done.is_err() {
-            std::mem::swap(self, &mut kept);
+/// Does `step`; where it fails, the model is as before.
+pub(in crate::model::mass_spring) fn transaction<E>(
+    model: &mut MassSpringModel,
+    step: impl FnOnce(&mut MassSpringModel) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut before = match model.rollback.0.take() {
+        Some(mut before) => {
+            copy_into(&mut before, model);
+            before
         }
-        self.kept.0 = Some(kept);
-        done
+        None => Box::new(model.clone()),
+    };
+    let done = step(model);
+    if done.is_err() {
+        std::mem::swap(model, &mut before);
     }
+    model.rollback.0 = Some(before);
+    done
+}
 
-    /// Becomes a copy without new memory where there is room.
-    fn copy_from(&mut self, other: &Self) {
-        // All fields are named, so that none is forgotten.
-        let Self { problem, settings, clock, chain, drives, contacts, wheels, report, laid, kept: _ } = other;
-        self.problem.clone_from(problem);
-        (self.settings, self.laid) = (*settings, *laid);
-        self.clock.clone_from(clock);
-        self.chain.clone_from(chain);
-        self.drives.clone_from(drives);
-        self.contacts.clone_from(contacts);
-        self.wheels.clone_from(wheels);
-        self.report.clone_from(report);
-    }
+/// Makes `to` a copy of a model without new memory where there is room.
+fn copy_into(to: &mut MassSpringModel, model: &MassSpringModel) {
+    // All fields are named, so that none is forgotten.
+    let MassSpringModel { settings, clock, mesh, drives, contacts, report, has_shape, rollback: _ } = model;
+    (to.settings, to.has_shape) = (*settings, *has_shape);
+    to.clock.clone_from(clock);
+    to.mesh.clone_from(mesh);
+    to.drives.clone_from(drives);
+    to.contacts.clone_from(contacts);
+    to.report.clone_from(report);
 }

@@ -5,20 +5,12 @@
 //! and the answer says that it was held back, where and when.
 
 use crate::math::Vec2;
-use crate::model::mass_spring::MassSpringModel;
+use crate::model::mass_spring::dynamics::supports::SupportDrives;
+use crate::model::mass_spring::mesh::nodes::Mesh;
+use crate::problem::Problem;
 use crate::solution::{Warning, WarningCause};
 
-/// Fastest a node may move, m/s. Recoil of a broken rope stays below it (breaking strain times wave
-/// speed: 20 m/s for steel, 300 m/s for nylon); a lower limit cuts that, a higher one lets thin
-/// obstacles cost ever shorter sub-steps.
-const NODE_SPEED_LIMIT: f64 = 300.0;
-/// Kinetic energy over what supports, loads and stretch can have given beyond which the motion is
-/// not believed. Less damps real whips, more shows the explosion first.
-const MOST_ENERGY: f64 = 10.0;
-/// What is left of velocities in such a sub-step: 0.7 takes a tenfold energy back in seven of them.
-const BRAKE: f64 = 0.7;
-
-/// Something that was held back.
+/// A speed or an energy that was held back.
 #[derive(Clone, Copy, Debug, Default)]
 struct Excess {
     value: f64,
@@ -28,102 +20,108 @@ struct Excess {
     at: Vec2,
 }
 
-/// The worst of a step.
+/// The runaway guard of a step: its limits, and the worst that it held back.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::model::mass_spring) struct Trouble {
+pub(in crate::model::mass_spring) struct RunawayGuard {
     speed: Option<Excess>,
     energy: Option<Excess>,
-    /// Energy limit of the step, J, but for what supports give.
+    /// Energy that supports at rest, loads and stretch can give in the step, J.
     work: f64,
 }
 
-impl MassSpringModel {
-    /// Trouble to be filled in a step that begins now.
-    pub(in crate::model::mass_spring) fn no_trouble(&self) -> Trouble {
-        let p = &self.problem;
+impl RunawayGuard {
+    /// The guard of a step that begins now.
+    pub(in crate::model::mass_spring) fn new(p: &Problem, time_s: f64) -> Self {
         let g = if p.linear_density > 0.0 { p.weight.norm() / p.linear_density } else { 0.0 };
-        let lumps: f64 = p.supports.iter().map(|s| s.mass * g + s.force.at(self.clock.time_s).norm()).sum();
-        let loads: f64 = p.loads.iter().map(|l| l.force.at(self.clock.time_s).norm()).sum();
-        let pull = p.body_force(self.clock.time_s).norm() * p.length + lumps + loads;
+        let lumps: f64 = p.supports.iter().map(|s| s.mass * g + s.force.at(time_s).norm()).sum();
+        let loads: f64 = p.loads.iter().map(|l| l.force.at(time_s).norm()).sum();
+        let pull = p.body_force(time_s).norm() * p.length + lumps + loads;
         // Falling and being pulled the whole length twice, from the top of its swing to the bottom;
         // and what it can hold in stretch until it breaks.
         let strain = (p.cable.breaking_tension_n / p.axial_stiffness).min(1.0);
         let stretch = 0.5 * p.axial_stiffness * strain * strain * p.length;
-        Trouble { work: 2.0 * pull * p.length + stretch, ..Trouble::default() }
+        Self { work: 2.0 * pull * p.length + stretch, ..Self::default() }
     }
 
     /// Cuts velocities and brakes a motion that has more energy than anything gave it. Returns the
     /// greatest speed, m/s.
-    pub(in crate::model::mass_spring) fn calm(&mut self, trouble: &mut Trouble) -> f64 {
+    pub(in crate::model::mass_spring) fn limit(
+        &mut self,
+        mesh: &mut Mesh,
+        drives: &mut SupportDrives,
+        time_s: f64,
+    ) -> f64 {
+        let tuning = mesh.tuning.runaway;
         let (mut energy, mut mass, mut momentum) = (0.0, 0.0, Vec2::zeros());
         let (mut fastest, mut node, mut support) = (0.0, 0, 0.0);
-        for i in 0..self.chain.x.len() {
-            let square = self.chain.v[i].norm_squared();
-            if self.drives.held[i] {
+        for i in 0..mesh.position.len() {
+            let square = mesh.velocity[i].norm_squared();
+            if mesh.supported[i] {
                 support = if square > support { square } else { support };
                 continue;
             }
             if square > fastest || square.is_nan() {
                 (fastest, node) = (square, i);
             }
-            mass += self.chain.mass[i];
-            momentum += self.chain.v[i] * self.chain.mass[i];
-            energy += 0.5 * self.chain.mass[i] * square;
+            mass += mesh.mass[i];
+            momentum += mesh.velocity[i] * mesh.mass[i];
+            energy += 0.5 * mesh.mass[i] * square;
         }
         let support = f64::sqrt(support);
-        if support > self.drives.driven {
-            self.drives.driven = support;
+        if support > drives.max_speed {
+            drives.max_speed = support;
         }
-        let limit = MOST_ENERGY * (trouble.work + 2.0 * mass * self.drives.driven * self.drives.driven);
-        if energy > limit && !self.drives.held.contains(&true) {
-            // What flies freely may fall as fast as it likes; only its own motion counts.
+        let limit = tuning.max_energy_ratio * (self.work + 2.0 * mass * drives.max_speed * drives.max_speed);
+        if energy > limit && !mesh.supported.contains(&true) {
+            // A cable that flies freely may fall as fast as it likes; only its own motion counts.
             energy -= 0.5 * momentum.norm_squared() / mass;
         }
         let found = |value, limit| Excess {
             value,
             limit,
-            time_s: self.clock.time_s,
-            arc_length_m: self.chain.s[node],
-            at: self.chain.x[node],
+            time_s,
+            arc_length_m: mesh.arc_length[node],
+            at: mesh.position[node],
         };
         let mut speed = f64::sqrt(fastest);
         let brake = energy > limit;
-        if brake && trouble.energy.is_none_or(|e| energy > e.value) {
-            trouble.energy = Some(found(energy, limit));
+        if brake && self.energy.is_none_or(|e| energy > e.value) {
+            self.energy = Some(found(energy, limit));
         }
-        let cut = speed > NODE_SPEED_LIMIT;
-        if cut && trouble.speed.is_none_or(|s| speed > s.value) {
-            trouble.speed = Some(found(speed, NODE_SPEED_LIMIT));
+        let cut = speed > tuning.max_speed_m_per_s;
+        if cut && self.speed.is_none_or(|s| speed > s.value) {
+            self.speed = Some(found(speed, tuning.max_speed_m_per_s));
         }
         if cut || brake {
-            speed = self.hold_back(if brake { BRAKE } else { 1.0 });
+            speed = reduce_speeds(mesh, if brake { tuning.brake_factor } else { 1.0 });
         }
         if support > speed { support } else { speed }
     }
 
-    /// Brakes and cuts; returns the greatest speed left, m/s.
-    fn hold_back(&mut self, brake: f64) -> f64 {
-        let mut fastest = 0.0;
-        for i in (0..self.chain.x.len()).filter(|&i| !self.drives.held[i]) {
-            self.chain.v[i] *= brake;
-            let speed = self.chain.v[i].norm();
-            if speed > NODE_SPEED_LIMIT {
-                self.chain.v[i] *= NODE_SPEED_LIMIT / speed;
-            }
-            let left = if speed > NODE_SPEED_LIMIT { NODE_SPEED_LIMIT } else { speed };
-            fastest = if left > fastest || left.is_nan() { left } else { fastest };
-        }
-        fastest
+    /// Warnings of what was held back.
+    pub(in crate::model::mass_spring) fn warnings(&self, cable: &str) -> Vec<Warning> {
+        let fast = self.speed.map(|e| (e, WarningCause::SpeedCut));
+        let violent = self.energy.map(|e| (e, WarningCause::EnergyCut));
+        let warning = |(e, cause): (Excess, WarningCause)| {
+            let w = Warning::new(cause, cable, e.arc_length_m, [e.value, e.limit]).at(e.at.into());
+            Warning { since_s: Some(e.time_s), ..w }
+        };
+        fast.into_iter().chain(violent).map(warning).collect()
     }
+}
 
-    /// Says what was held back.
-    pub(in crate::model::mass_spring) fn warn_of(&mut self, trouble: &Trouble) {
-        let name = &self.problem.cable.name;
-        let fast = trouble.speed.map(|e| (e, WarningCause::SpeedCut));
-        let violent = trouble.energy.map(|e| (e, WarningCause::EnergyCut));
-        for (e, cause) in fast.into_iter().chain(violent) {
-            let w = Warning::new(cause, name, e.arc_length_m, [e.value, e.limit]).at(e.at.into());
-            self.report.warnings.push(Warning { since_s: Some(e.time_s), ..w });
+/// Brakes all free nodes and cuts their speeds; returns the greatest speed left, m/s.
+fn reduce_speeds(mesh: &mut Mesh, brake: f64) -> f64 {
+    let limit = mesh.tuning.runaway.max_speed_m_per_s;
+    let mut fastest = 0.0;
+    for i in (0..mesh.position.len()).filter(|&i| !mesh.supported[i]) {
+        mesh.velocity[i] *= brake;
+        let speed = mesh.velocity[i].norm();
+        if speed > limit {
+            mesh.velocity[i] *= limit / speed;
         }
+        let left = if speed > limit { limit } else { speed };
+        fastest = if left > fastest || left.is_nan() { left } else { fastest };
     }
+    fastest
 }

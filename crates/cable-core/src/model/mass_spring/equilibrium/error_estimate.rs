@@ -1,142 +1,146 @@
-//! How wrong the figures of a chain at rest are: beside `spans`, which has no mesh, where that lays
-//! the cable; beside `fem` where that knows a stiff one better than was asked for; else beside
-//! chains of elements twice and four times as long.
+//! The errors of the figures of a cable at rest: by comparison with `spans`, which has no mesh,
+//! where that finds the equilibrium; with `fem` where that knows a stiff cable better than was
+//! asked for; else with meshes of elements twice and four times as long.
 //!
 //! Masses and springs are of the second order in the air and of the first at corners and where the
-//! cable touches down, as the bars of `fem` in contact are, and what is said is the same
-//! (`fem/two_meshes`).
+//! cable touches down, as the bars of `fem` in contact are, and the estimate is the same
+//! (`fem/mesh_comparison`).
 
 use crate::model::fem::FemModel;
 use crate::model::initial_equilibrium::initial_equilibrium;
-use crate::model::mass_spring::{MassSpringModel, mesh};
+use crate::model::mass_spring::MassSpringModel;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};
 use crate::solution::CableSolution;
 use crate::solution::ErrorEstimates;
 
-/// Fewer elements than this have no half of use.
-const LEAST_ELEMENTS: usize = 8;
-/// Part of what the coarser two of three meshes differ by that the error of the finest is at least:
-/// that of the first order.
-const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
-
-/// Who goes on beside a chain.
+/// The model beside which errors are estimated.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::mass_spring) enum ErrorEstimator {
-    /// Nobody: nothing is known.
+    /// No model: nothing is known.
     #[default]
-    Nobody,
+    None,
     /// The cable without a mesh.
     Exact(Box<SpansModel>),
-    /// Nobody yet: a better answer is known for the place where it rests.
+    /// No model yet: a better answer is known for the place where the cable rests.
     AtRest,
-    /// A chain of elements twice as long.
+    /// A mesh of elements twice as long.
     Coarse(Box<MassSpringModel>),
 }
 
-impl MassSpringModel {
-    /// Looks at the place where it rests; `first`, as the cable was laid.
-    pub(in crate::model::mass_spring) fn look_beside(&mut self, first: bool) {
-        (self.report.beside, self.report.errors) = (ErrorEstimator::Nobody, ErrorEstimates::default());
-        let flexible = self.problem.bending_stiffness == 0.0;
-        if first
-            && flexible
-            && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, &self.drives.drag, None)
-        {
-            self.report.errors = self.apart(&lay.answer);
-            self.report.beside = ErrorEstimator::Exact(lay.spans);
-            return;
+/// An estimator and the errors that it found.
+#[derive(Clone, Debug, Default)]
+pub(in crate::model::mass_spring) struct Estimate {
+    pub estimator: ErrorEstimator,
+    pub errors: ErrorEstimates,
+}
+
+/// The shape from which a coarser mesh comes to rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::mass_spring) enum Start {
+    /// The first shape of the scene.
+    Scene,
+    /// The shape in which the finer mesh is.
+    Present,
+}
+
+impl Estimate {
+    /// Estimates the errors of a model at rest, which came there from a `start`.
+    pub(in crate::model::mass_spring) fn at_rest(model: &MassSpringModel, start: Start) -> Self {
+        let (problem, targets) = (&model.mesh.problem, &model.drives.targets);
+        if start == Start::Scene {
+            let flexible = problem.bending_stiffness == 0.0;
+            if flexible && let Ok(Some(exact)) = initial_equilibrium(problem, model.settings, targets, None) {
+                let errors = errors_beside(model, &exact.answer);
+                return Self { estimator: ErrorEstimator::Exact(exact.spans), errors };
+            }
+            if let Some(errors) = errors_beside_fem(model) {
+                return Self { estimator: ErrorEstimator::AtRest, errors };
+            }
         }
-        if first && let Some(errors) = self.beside_fem() {
-            (self.report.beside, self.report.errors) = (ErrorEstimator::AtRest, errors);
-            return;
+        let Some(coarse) = coarser(model, 2, start) else { return Self::default() };
+        let (fine, half) = (model.solution(), coarse.solution());
+        let rounding = ErrorEstimates::rounding(&fine, problem);
+        let mut errors = ErrorEstimates::between(&half, &fine).plus(&rounding);
+        if let Some(coarsest) = coarser(model, 4, start) {
+            let change = ErrorEstimates::between(&coarsest.solution(), &half);
+            errors = errors.or_larger(&change.times(model.mesh.tuning.estimate.first_order_fraction));
         }
-        let Some(coarse) = self.coarser(2, first) else { return };
-        let (answer, other) = (self.answer(), coarse.answer());
-        let rounding = ErrorEstimates::rounding(&answer, &self.problem);
-        self.report.errors = ErrorEstimates::between(&other, &answer).plus(&rounding);
-        if let Some(coarsest) = self.coarser(4, first) {
-            let change = ErrorEstimates::between(&coarsest.answer(), &other);
-            self.report.errors = self.report.errors.or_larger(&change.times(FIRST_ORDER_ERROR_FRACTION));
-        }
-        self.report.beside = ErrorEstimator::Coarse(Box::new(coarse));
+        Self { estimator: ErrorEstimator::Coarse(Box::new(coarse)), errors }
     }
 
-    /// Goes on beside it without inertia; with inertia nothing is known.
-    pub(in crate::model::mass_spring) fn follow_beside(&mut self, dt_s: f64, inertia: Inertia) {
-        let (beside, before) = (std::mem::take(&mut self.report.beside), std::mem::take(&mut self.report.errors));
-        if inertia != Inertia::QuasiStatic {
-            return;
-        }
-        match beside {
-            ErrorEstimator::Nobody => {}
-            ErrorEstimator::AtRest => {
-                if let Some(coarse) = self.coarser(2, false) {
-                    self.keep_beside(before, coarse);
-                }
-            }
+    /// Follows a model through a quasi-static step of `dt_s`.
+    pub(in crate::model::mass_spring) fn follow(self, model: &MassSpringModel, dt_s: f64) -> Self {
+        let Self { estimator, errors } = self;
+        let renewed = || coarser(model, 2, Start::Present).map(|coarse| Self::beside(model, errors, coarse));
+        match estimator {
+            ErrorEstimator::None => None,
+            ErrorEstimator::AtRest => renewed(),
             ErrorEstimator::Exact(mut spans) => {
-                for (k, at) in self.drives.drag.iter().enumerate() {
+                for (k, at) in model.drives.targets.iter().enumerate() {
                     if let Some(at) = at {
                         spans.drag_support(k, *at);
                     }
                 }
-                if spans.advance(dt_s, inertia).is_ok() {
-                    self.report.errors = self.apart(&spans.solution());
-                    self.report.beside = ErrorEstimator::Exact(spans);
-                } else if let Some(coarse) = self.coarser(2, false) {
-                    self.keep_beside(before, coarse);
+                if spans.advance(dt_s, Inertia::QuasiStatic).is_ok() {
+                    let errors = errors_beside(model, &spans.solution());
+                    Some(Self { estimator: ErrorEstimator::Exact(spans), errors })
+                } else {
+                    renewed()
                 }
             }
             ErrorEstimator::Coarse(mut coarse) => {
-                coarse.drives.drag.clone_from(&self.drives.drag);
-                if coarse.advance(dt_s, inertia).is_ok() {
-                    self.keep_beside(before, *coarse);
-                }
+                coarse.drives.targets.clone_from(&model.drives.targets);
+                let stepped = coarse.advance(dt_s, Inertia::QuasiStatic).is_ok();
+                stepped.then(|| Self::beside(model, errors, *coarse))
             }
         }
+        .unwrap_or_default()
     }
 
-    /// What friction remembers is as wrong as the steps were that it remembers.
-    fn keep_beside(&mut self, before: ErrorEstimates, coarse: Self) {
-        self.report.errors = before.or_larger(&ErrorEstimates::between(&coarse.answer(), &self.answer()));
-        self.report.beside = ErrorEstimator::Coarse(Box::new(coarse));
+    /// Errors beside a coarser mesh, at least those `before`: friction is as wrong as the steps
+    /// were that it remembers.
+    fn beside(model: &MassSpringModel, before: ErrorEstimates, coarse: MassSpringModel) -> Self {
+        let errors = before.or_larger(&ErrorEstimates::between(&coarse.solution(), &model.solution()));
+        Self { estimator: ErrorEstimator::Coarse(Box::new(coarse)), errors }
     }
+}
 
-    /// Errors beside the answer of `fem` on a mesh of its own, where that is known to better than
-    /// was asked for.
-    fn beside_fem(&self) -> Option<ErrorEstimates> {
-        let mut fem = FemModel::new(self.problem.clone(), Settings { segments: None, ..self.settings }).ok()?;
-        for (k, at) in self.drives.drag.iter().enumerate() {
-            if let Some(at) = at {
-                fem.drag_support(k, *at);
-            }
+/// Errors beside the answer of `fem` on a mesh of its own, where that is known to better than was
+/// asked for.
+fn errors_beside_fem(model: &MassSpringModel) -> Option<ErrorEstimates> {
+    let settings = Settings { segments: None, ..model.settings };
+    let mut fem = FemModel::new(model.mesh.problem.clone(), settings).ok()?;
+    for (k, at) in model.drives.targets.iter().enumerate() {
+        if let Some(at) = at {
+            fem.drag_support(k, *at);
         }
-        fem.settle().ok()?;
-        let better = fem.solution();
-        let known = better.errors.relative(&better).is_some_and(|e| e <= self.settings.tolerance);
-        known.then(|| ErrorEstimates::between(&self.answer(), &better).plus(&better.errors))
     }
+    fem.settle().ok()?;
+    let better = fem.solution();
+    let is_known = better.errors.relative(&better).is_some_and(|e| e <= model.settings.tolerance);
+    is_known.then(|| ErrorEstimates::between(&model.solution(), &better).plus(&better.errors))
+}
 
-    fn apart(&self, exact: &CableSolution) -> ErrorEstimates {
-        ErrorEstimates::between(&self.answer(), exact).plus(&ErrorEstimates::rounding(exact, &self.problem))
-    }
+fn errors_beside(model: &MassSpringModel, exact: &CableSolution) -> ErrorEstimates {
+    let rounding = ErrorEstimates::rounding(exact, &model.mesh.problem);
+    ErrorEstimates::between(&model.solution(), exact).plus(&rounding)
+}
 
-    /// The same cable at rest on a part of the elements: laid for itself (`first`), or from where
-    /// this one lies.
-    fn coarser(&self, times: usize, first: bool) -> Option<Self> {
-        if self.chain.rest.len() < LEAST_ELEMENTS {
-            return None;
-        }
-        let settings = Settings { segments: Some(self.chain.rest.len() / times), ..self.settings };
-        let mut coarse = Self::mesh(self.problem.clone(), settings, &mesh::lay_supports(&self.problem));
-        coarse.drives.drag.clone_from(&self.drives.drag);
-        if !first {
-            let state = self.present();
-            let slid = coarse.slid_in(&state);
-            coarse = coarse.shaped(&state, &slid)?;
-        }
-        coarse.settle_alone().ok()?;
-        Some(coarse)
+/// The same cable at rest on elements `times` as long.
+fn coarser(model: &MassSpringModel, times: usize, start: Start) -> Option<MassSpringModel> {
+    let elements = model.mesh.rest_length.len();
+    if elements < model.mesh.tuning.estimate.min_elements {
+        return None;
     }
+    let settings = Settings { segments: Some(elements / times), ..model.settings };
+    let mut coarse =
+        MassSpringModel::with_tuning(model.mesh.problem.clone(), settings, model.mesh.tuning.clone()).ok()?;
+    coarse.drives.targets.clone_from(&model.drives.targets);
+    if start == Start::Present {
+        let state = model.state();
+        coarse = coarse.on_shape(&state, &coarse.support_arc_lengths(&state))?;
+    }
+    coarse.settle_alone().ok()?;
+    Some(coarse)
 }

@@ -1,46 +1,68 @@
-//! A quasi-static step moves the supports a little; the chain comes to rest there, and friction
-//! remembers.
+//! Equilibria of the model, and quasi-static steps: the supports move a little, the cable comes to
+//! rest there, and friction remembers.
 
-use crate::error::SolveError;
+use crate::error::{NoEquilibrium, SolveError};
 use crate::math::Vec2;
-use crate::model::mass_spring::Anchors;
 use crate::model::mass_spring::MassSpringModel;
+use crate::model::mass_spring::equilibrium::contact_energy::Anchors;
+use crate::model::mass_spring::equilibrium::newton::EquilibriumSolver;
+use crate::model::mass_spring::forces::nodal;
 
-/// Longest way of a support between two resting places, of the even length (friction is measured
-/// from where the material was, and a longer way leaves that element) and of the cable's radius
-/// where there is something to hit (a longer one stretches the end so far that Newton's first steps
-/// draw a node in under a corner, where it locks).
-const SUPPORT_WAY_LENGTHS: f64 = 0.5;
-/// Most resting places in a step, and the shortest part of one that is tried after a failure.
-const MOST_PARTS: f64 = 1e4;
-const SHORTEST_PART: f64 = 1.0 / 1024.0;
-
+/// This block solves equilibria and repeats the whole model's state where a part of a step fails.
 impl MassSpringModel {
-    pub(in crate::model::mass_spring) fn creep(&mut self, dt_s: f64) -> Result<(), SolveError> {
+    /// Moves the nodes to equilibrium. On an error they are somewhere on the way.
+    pub(in crate::model::mass_spring) fn equilibrium(&mut self, anchors: Anchors) -> Result<(), SolveError> {
+        self.mesh.velocity.fill(Vec2::zeros());
+        self.clock.behind_s = 0.0;
+        let time_s = self.clock.time_s;
+        self.drives.place_nodes(&mut self.mesh, time_s);
+        self.contacts.forget_distances();
+        if !self.mesh.supported.contains(&true) && !self.mesh.can_touch() {
+            return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingBelow });
+        }
+        let mut solver = EquilibriumSolver::new(&mut self.mesh, time_s, &self.contacts.anchors, anchors)?;
+        let iterations = solver.solve()?;
+        self.contacts.anchors = solver.move_anchors();
+        let impulses = solver.impulses();
+        self.contacts.renew(self.mesh.rest_length.len());
+        self.contacts.impulses.extend(impulses);
+        self.report.cost.iterations = iterations.count;
+        self.report.cost.residual_n = iterations.residual_n;
+        self.report.cost.inner_step_s = 0.0;
+        nodal::update(&mut self.mesh, time_s);
+        self.mesh.non_finite(time_s).map_or(Ok(()), Err)
+    }
+
+    /// Follows the supports through equilibria for `dt_s`.
+    pub(in crate::model::mass_spring) fn quasi_static_step(&mut self, dt_s: f64) -> Result<(), SolveError> {
         let (begin, end) = (self.clock.time_s, self.clock.time_s + dt_s);
-        let from = self.chain.x.clone();
-        let nodes: Vec<(usize, usize)> = self.chain.node_of.iter().copied().enumerate().collect();
-        let mut way: f64 = 0.0;
+        let tuning = self.mesh.tuning.quasi_static;
+        let from = self.mesh.position.clone();
+        let nodes: Vec<(usize, usize)> = self.mesh.support_node.iter().copied().enumerate().collect();
+        let mut path: f64 = 0.0;
         for &(k, node) in &nodes {
-            let support = &self.problem.supports[k];
-            // The way of a motion within the step may be longer than the distance.
+            let support = &self.mesh.problem.supports[k];
+            // The path of a motion within the step may be longer than the distance.
             let mut last = from[node];
-            for j in 1..=WAY_SAMPLES {
-                let time = begin + dt_s * f64::from(j) / f64::from(WAY_SAMPLES);
+            for j in 1..=tuning.path_samples {
+                let time = begin + dt_s * f64::from(j) / f64::from(tuning.path_samples);
                 let Some((at, _)) = support.position_at(time) else { break };
-                let at = self.drives.drag[k].unwrap_or(at);
-                way += (at - last).norm();
+                let at = self.drives.targets[k].unwrap_or(at);
+                path += (at - last).norm();
                 last = at;
             }
         }
-        let within =
-            if self.problem.world.is_empty() { self.chain.even } else { self.chain.even.min(self.problem.radius) };
-        let parts = if self.touches_something() || !self.wheels.pulleys.is_empty() {
-            (way / (SUPPORT_WAY_LENGTHS * within)).ceil().clamp(1.0, MOST_PARTS)
+        let within = if self.mesh.problem.world.is_empty() {
+            self.mesh.even_length
+        } else {
+            self.mesh.even_length.min(self.mesh.problem.radius)
+        };
+        let parts = if self.mesh.can_touch() || !self.mesh.wheels.pulleys.is_empty() {
+            (path / (tuning.max_path_lengths * within)).ceil().clamp(1.0, tuning.max_parts)
         } else {
             1.0
         };
-        let targets = self.drives.drag.clone();
+        let targets = self.drives.targets.clone();
         let starts: Vec<Vec2> = nodes.iter().map(|&(_, n)| from[n]).collect();
         let (mut done, mut part, mut iterations) = (0.0, 1.0 / parts, 0);
         while done < 1.0 {
@@ -49,7 +71,7 @@ impl MassSpringModel {
             self.clock.time_s = begin + (end - begin) * next;
             for (k, target) in targets.iter().enumerate() {
                 // A hand goes straight.
-                self.drives.drag[k] = target.map(|t| starts[k] + (t - starts[k]) * next);
+                self.drives.targets[k] = target.map(|t| starts[k] + (t - starts[k]) * next);
             }
             match self.equilibrium(Anchors::Kept) {
                 Ok(()) => {
@@ -59,24 +81,21 @@ impl MassSpringModel {
                 Err(e) => {
                     *self = kept;
                     part *= 0.5;
-                    if part * parts < SHORTEST_PART {
+                    if part * parts < tuning.min_part {
                         return Err(e);
                     }
                 }
             }
         }
         self.report.cost.iterations = iterations;
-        // What rubs on a held node asks which way it goes.
+        // Friction on a supported node acts against its velocity.
         for &(k, node) in &nodes {
-            let now = self.chain.node_of[k];
-            if self.drives.held[now] {
-                self.chain.v[now] = (self.chain.x[now] - from[node]) / dt_s;
+            let now = self.mesh.support_node[k];
+            if self.mesh.supported[now] {
+                self.mesh.velocity[now] = (self.mesh.position[now] - from[node]) / dt_s;
             }
         }
-        self.drives.drag = targets;
+        self.drives.targets = targets;
         Ok(())
     }
 }
-
-/// Points at which a motion is looked at to measure its way.
-const WAY_SAMPLES: u32 = 8;

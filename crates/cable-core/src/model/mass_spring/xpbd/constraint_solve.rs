@@ -1,4 +1,4 @@
-//! This solver balances the preview's springs for the whole chain at once.
+//! The solver balances the preview's springs for the whole cable at once.
 //!
 //! With λ = −T h² (T tension, h the sub-step), w the inverse masses, t the directions and C =
 //! length − l₀ at the predicted place, Δx = w ∇C λ and C + λ l₀/(EA h²) = 0 make
@@ -7,7 +7,7 @@
 //! A λ = −C,   A_ee = w_e + w_{e+1} + l₀/(EA h²),   A_{e,e+1} = −w_{e+1} t_e·t_{e+1}
 //! ```
 //!
-//! tridiagonal; elements that would push are let go. Between the elements b before and a after a
+//! tridiagonal; elements that would push are left out. Between the elements b before and a after a
 //! pulley the material σ (mass m, thermal stretch θ) takes the place of the node: C_b = C_b⁰ − θΔσ,
 //! C_a = C_a⁰ + θΔσ. Friction is Coulomb's on a round, |T_b − T_a| ≤ g (T_b + T_a), g = tanh(μφ/2),
 //! sliding in the sense s = ±1 or stuck:
@@ -23,16 +23,13 @@
 //! from the last sub-step, is added.
 
 use crate::math::Vec2;
-use crate::model::mass_spring::MassSpringModel;
-use crate::model::mass_spring::pulleys::pulley::Pulley;
+use crate::model::mass_spring::mesh::edit::least_straight_length;
+use crate::model::mass_spring::mesh::nodes::Mesh;
+use crate::model::mass_spring::mesh::pulley::Pulley;
 
-/// Rounds of letting go of elements that would push, and of pulleys that hold or slide. In most
-/// sub-steps one does; the last round stands as it is, its error is that of one sub-step.
-const ROUNDS: usize = 8;
-
-/// What the material on a pulley does in a sub-step.
+/// Friction of the material on a pulley in a sub-step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum Grip {
+enum PulleyFriction {
     /// Friction holds it.
     #[default]
     Stuck,
@@ -42,15 +39,15 @@ enum Grip {
     Blocked,
 }
 
-/// Buffers of a sub-step.
+/// The solver of the constraints of one sub-step; it keeps its memory from one to the next.
 #[derive(Default)]
-pub(in crate::model::mass_spring) struct Chain {
-    /// Where the nodes go.
-    pub x: Vec<Vec2>,
-    /// Inverse masses of the nodes, 1/kg; 0 where held.
-    pub inverse: Vec<f64>,
+pub(in crate::model::mass_spring) struct ConstraintSolver {
+    /// Predicted position of each node, m.
+    pub position: Vec<Vec2>,
+    /// Inverse masses of the nodes, 1/kg; 0 where supported.
+    pub inverse_mass: Vec<f64>,
     direction: Vec<Vec2>,
-    gap: Vec<f64>,
+    violation: Vec<f64>,
     active: Vec<bool>,
     /// The matrix: `lower[e]` is A between rows e and e − 1, `upper[e]` between rows e − 1 and e.
     diagonal: Vec<f64>,
@@ -59,39 +56,48 @@ pub(in crate::model::mass_spring) struct Chain {
     /// The same while it is eliminated.
     pivot: Vec<f64>,
     lambda: Vec<f64>,
-    grip: Vec<Grip>,
+    friction: Vec<PulleyFriction>,
 }
 
-impl MassSpringModel {
+impl ConstraintSolver {
     /// Moves the predicted nodes, and the material on pulleys, so that the springs balance;
     /// tensions are those that do it.
-    pub(in crate::model::mass_spring) fn project(&mut self, h: f64, b: &mut Chain) {
-        self.chain_rows(h, b);
-        for _ in 0..ROUNDS {
-            self.pulley_rows(h, b);
-            b.solve();
+    pub(in crate::model::mass_spring) fn solve(&mut self, mesh: &mut Mesh, h: f64) {
+        self.set_spring_rows(mesh, h);
+        for _ in 0..mesh.tuning.preview.max_rounds {
+            self.set_pulley_rows(mesh, h);
+            self.eliminate();
             let mut changed = false;
-            for e in 0..b.lambda.len() {
-                if b.active[e] && b.lambda[e] > 0.0 {
-                    (b.active[e], b.lambda[e], changed) = (false, 0.0, true);
+            for e in 0..self.lambda.len() {
+                if self.active[e] && self.lambda[e] > 0.0 {
+                    (self.active[e], self.lambda[e], changed) = (false, 0.0, true);
                 }
             }
-            if !(changed | self.regrip(h, b)) {
+            if !(changed | self.update_friction(mesh, h)) {
                 break;
             }
         }
-        for k in 0..self.wheels.pulleys.len() {
-            let p = self.wheels.pulleys[k];
-            let by = self.slid(&p, b.grip[k], h, b);
+        for k in 0..mesh.wheels.pulleys.len() {
+            let p = mesh.wheels.pulleys[k];
+            let by = self.slide(mesh, &p, self.friction[k], h);
             // The last round may leave one that slides against its friction: it stops.
-            let by = if matches!(b.grip[k], Grip::Slides(s) if p.friction > 0.0 && s * by < 0.0) { 0.0 } else { by };
-            self.chain.s[p.node] += by;
-            self.wheels.pulleys[k].rate = by / h;
+            let by = if matches!(self.friction[k], PulleyFriction::Slides(s) if p.friction > 0.0 && s * by < 0.0) {
+                0.0
+            } else {
+                by
+            };
+            mesh.arc_length[p.node] += by;
+            mesh.wheels.pulleys[k].sliding_speed = by / h;
         }
         let per_square = -1.0 / (h * h);
         let mut before = Vec2::zeros();
-        for ((((lambda, tension), direction), x), inverse) in
-            b.lambda.iter().zip(&mut self.chain.tension).zip(&b.direction).zip(&mut b.x).zip(&b.inverse)
+        for ((((lambda, tension), direction), x), inverse) in self
+            .lambda
+            .iter()
+            .zip(&mut mesh.tension)
+            .zip(&self.direction)
+            .zip(&mut self.position)
+            .zip(&self.inverse_mass)
         {
             // NaN goes through to where it is found.
             let lambda = if *lambda > 0.0 { 0.0 } else { *lambda };
@@ -100,24 +106,29 @@ impl MassSpringModel {
             *x += (before - push) * *inverse;
             before = push;
         }
-        if let (Some(x), Some(inverse)) = (b.x.last_mut(), b.inverse.last()) {
+        if let (Some(x), Some(inverse)) = (self.position.last_mut(), self.inverse_mass.last()) {
             *x += before * *inverse;
         }
     }
 
-    /// The system without pulleys, and the first guess of what these do.
-    fn chain_rows(&mut self, h: f64, b: &mut Chain) {
-        let elements = self.chain.rest.len();
-        let compliance = 1.0 / (self.problem.axial_stiffness * h * h);
-        b.active.clear();
-        b.active.resize(elements, true);
-        for list in [&mut b.gap, &mut b.diagonal, &mut b.upper] {
+    /// Sets the rows of springs without pulleys, and the first guess of the friction of these.
+    fn set_spring_rows(&mut self, mesh: &Mesh, h: f64) {
+        let elements = mesh.rest_length.len();
+        let compliance = 1.0 / (mesh.problem.axial_stiffness * h * h);
+        self.active.clear();
+        self.active.resize(elements, true);
+        for list in [&mut self.violation, &mut self.diagonal, &mut self.upper] {
             list.resize(elements, 0.0);
         }
-        b.direction.resize(elements, Vec2::zeros());
+        self.direction.resize(elements, Vec2::zeros());
         let mut before = Vec2::zeros();
-        let rows = b.x.windows(2).zip(b.inverse.windows(2)).zip(&self.chain.rest).zip(b.direction.iter_mut());
-        let rows = rows.zip(b.gap.iter_mut()).zip(b.diagonal.iter_mut()).zip(b.upper.iter_mut());
+        let rows = self
+            .position
+            .windows(2)
+            .zip(self.inverse_mass.windows(2))
+            .zip(&mesh.rest_length)
+            .zip(self.direction.iter_mut());
+        let rows = rows.zip(self.violation.iter_mut()).zip(self.diagonal.iter_mut()).zip(self.upper.iter_mut());
         for ((((((x, inverse), rest), direction), gap), diagonal), upper) in rows {
             let d = x[1] - x[0];
             let length = d.norm();
@@ -127,116 +138,102 @@ impl MassSpringModel {
             *diagonal = inverse[0] + inverse[1] + rest * compliance;
             before = *direction;
         }
-        for p in &self.wheels.pulleys {
+        for p in &mesh.wheels.pulleys {
             for e in [p.node - 1, p.node] {
-                b.direction[e] = self.reach_at(e, &b.x).direction;
+                self.direction[e] = mesh.wheels.element(e, &self.position).direction;
             }
             for i in [p.node - 1, p.node + 1].into_iter().filter(|&i| i > 0 && i < elements) {
-                b.upper[i] = -b.inverse[i] * b.direction[i - 1].dot(&b.direction[i]);
+                self.upper[i] = -self.inverse_mass[i] * self.direction[i - 1].dot(&self.direction[i]);
             }
         }
-        b.lower.clone_from(&b.upper);
-        b.grip.clear();
-        b.grip.extend(self.wheels.pulleys.iter().map(|p| match p.rate {
-            _ if p.friction == 0.0 => Grip::Slides(1.0),
-            r if r > 0.0 => Grip::Slides(1.0),
-            r if r < 0.0 => Grip::Slides(-1.0),
-            _ => Grip::Stuck,
+        self.lower.clone_from(&self.upper);
+        self.friction.clear();
+        self.friction.extend(mesh.wheels.pulleys.iter().map(|p| match p.sliding_speed {
+            _ if p.friction == 0.0 => PulleyFriction::Slides(1.0),
+            r if r > 0.0 => PulleyFriction::Slides(1.0),
+            r if r < 0.0 => PulleyFriction::Slides(-1.0),
+            _ => PulleyFriction::Stuck,
         }));
     }
 
-    /// Puts what pulleys do into their rows.
-    fn pulley_rows(&self, h: f64, b: &mut Chain) {
-        let (theta, ea) = (self.problem.thermal_stretch, self.problem.axial_stiffness);
-        for p in &self.wheels.pulleys {
+    /// Sets the rows of springs beside pulleys.
+    fn set_pulley_rows(&mut self, mesh: &Mesh, h: f64) {
+        let (theta, ea) = (mesh.problem.thermal_stretch, mesh.problem.axial_stiffness);
+        for p in &mesh.wheels.pulleys {
             for e in [p.node - 1, p.node] {
                 // Its other node, unless that is a pulley too: then what it does is added below.
                 let other = if e < p.node { e } else { e + 1 };
-                let inverse = if self.wheels.pulley_at[other].is_none() { b.inverse[other] } else { 0.0 };
-                b.diagonal[e] = inverse + self.chain.rest[e] / (ea * h * h);
-                b.gap[e] = self.reach_at(e, &b.x).length - self.chain.rest[e];
+                let inverse = if mesh.wheels.at_node[other].is_none() { self.inverse_mass[other] } else { 0.0 };
+                self.diagonal[e] = inverse + mesh.rest_length[e] / (ea * h * h);
+                self.violation[e] = mesh.wheels.element(e, &self.position).length - mesh.rest_length[e];
             }
         }
-        for (k, p) in self.wheels.pulleys.iter().enumerate() {
+        for (k, p) in mesh.wheels.pulleys.iter().enumerate() {
             let i = p.node;
-            (b.lower[i], b.upper[i]) = (0.0, 0.0);
-            if let Grip::Slides(sense) = b.grip[k] {
-                let (w, g) = (theta * theta / p.mass, sense * p.grip());
-                b.diagonal[i - 1] += w * (1.0 - g);
-                b.diagonal[i] += w * (1.0 + g);
-                b.upper[i] = -w * (1.0 + g);
-                b.lower[i] = -w * (1.0 - g);
-                let free = self.free_way(p, sense, h);
-                b.gap[i - 1] -= theta * free;
-                b.gap[i] += theta * free;
+            (self.lower[i], self.upper[i]) = (0.0, 0.0);
+            if let PulleyFriction::Slides(sense) = self.friction[k] {
+                let (w, g) = (theta * theta / p.mass, sense * p.friction_ratio());
+                self.diagonal[i - 1] += w * (1.0 - g);
+                self.diagonal[i] += w * (1.0 + g);
+                self.upper[i] = -w * (1.0 + g);
+                self.lower[i] = -w * (1.0 - g);
+                let free = predicted_slide(mesh, p, sense, h);
+                self.violation[i - 1] -= theta * free;
+                self.violation[i] += theta * free;
             }
         }
     }
 
-    /// Δσ⁰, m: how far the material would slide without springs, but with friction in the given
-    /// sense (0: without).
-    fn free_way(&self, p: &Pulley, sense: f64, h: f64) -> f64 {
-        p.rate * h - sense * self.problem.thermal_stretch * p.grip() * self.beyond(p) * h * h / p.mass
+    /// Δσ, m: the material that slides over a pulley.
+    fn slide(&self, mesh: &Mesh, p: &Pulley, friction: PulleyFriction, h: f64) -> f64 {
+        let PulleyFriction::Slides(sense) = friction else { return 0.0 };
+        let (before, after) = (self.lambda[p.node - 1], self.lambda[p.node]);
+        let pull = (after - before) + sense * p.friction_ratio() * (before + after);
+        predicted_slide(mesh, p, sense, h) + mesh.problem.thermal_stretch / p.mass * pull
     }
 
-    /// Returns how much more the tensions at the wheel sum up to than those of the elements, N, in
-    /// the last sub-step.
-    fn beyond(&self, p: &Pulley) -> f64 {
-        p.tension[0] + p.tension[1] - self.chain.tension[p.node - 1] - self.chain.tension[p.node]
-    }
-
-    /// Δσ, m.
-    fn slid(&self, p: &Pulley, grip: Grip, h: f64, b: &Chain) -> f64 {
-        let Grip::Slides(sense) = grip else { return 0.0 };
-        let (before, after) = (b.lambda[p.node - 1], b.lambda[p.node]);
-        let pull = (after - before) + sense * p.grip() * (before + after);
-        self.free_way(p, sense, h) + self.problem.thermal_stretch / p.mass * pull
-    }
-
-    /// Lets pulleys hold or slide as their tensions say; whether any changed.
-    fn regrip(&self, h: f64, b: &mut Chain) -> bool {
-        let (theta, least) = (self.problem.thermal_stretch, self.least_span());
+    /// Lets pulleys hold or slide by their tensions; returns true if any changed.
+    fn update_friction(&mut self, mesh: &Mesh, h: f64) -> bool {
+        let (theta, least) = (mesh.problem.thermal_stretch, least_straight_length(mesh));
         let mut any = false;
-        for (k, p) in self.wheels.pulleys.iter().enumerate() {
+        for (k, p) in mesh.wheels.pulleys.iter().enumerate() {
             let i = p.node;
-            let next = match b.grip[k] {
-                Grip::Stuck => {
-                    let (before, after) = (-b.lambda[i - 1] / (h * h), -b.lambda[i] / (h * h));
-                    let pull = theta * (before - after) + p.rate * p.mass / h;
-                    let most = theta * p.grip() * (before + after + self.beyond(p));
-                    if pull.abs() > most { Grip::Slides(pull.signum()) } else { Grip::Stuck }
+            let next = match self.friction[k] {
+                PulleyFriction::Stuck => {
+                    let (before, after) = (-self.lambda[i - 1] / (h * h), -self.lambda[i] / (h * h));
+                    let pull = theta * (before - after) + p.sliding_speed * p.mass / h;
+                    let most = theta * p.friction_ratio() * (before + after + tension_excess(mesh, p));
+                    if pull.abs() > most { PulleyFriction::Slides(pull.signum()) } else { PulleyFriction::Stuck }
                 }
-                Grip::Slides(sense) => {
-                    let by = self.slid(p, b.grip[k], h, b);
+                PulleyFriction::Slides(sense) => {
+                    let by = self.slide(mesh, p, self.friction[k], h);
                     let blocked =
-                        by < 0.0 && self.chain.share[i - 1] < least || by > 0.0 && self.chain.share[i] < least;
+                        by < 0.0 && mesh.straight_length[i - 1] < least || by > 0.0 && mesh.straight_length[i] < least;
                     if blocked {
-                        Grip::Blocked
+                        PulleyFriction::Blocked
                     } else if p.friction > 0.0 && sense * by < 0.0 {
-                        Grip::Stuck
+                        PulleyFriction::Stuck
                     } else {
-                        b.grip[k]
+                        self.friction[k]
                     }
                 }
-                Grip::Blocked => Grip::Blocked,
+                PulleyFriction::Blocked => PulleyFriction::Blocked,
             };
-            any |= next != b.grip[k];
-            b.grip[k] = next;
+            any |= next != self.friction[k];
+            self.friction[k] = next;
         }
         any
     }
-}
 
-impl Chain {
     /// A λ = −C of the active elements (L. H. Thomas' elimination; A is diagonally dominant but for
     /// friction, whose columns sum to more than zero as g < 1).
-    fn solve(&mut self) {
+    fn eliminate(&mut self) {
         let elements = self.diagonal.len();
         self.pivot.resize(elements, 0.0);
         self.lambda.resize(elements, 0.0);
-        // Those let go are 0, and so is what they pass on: 1/pivot = 0.
+        // Elements that are left out have λ = 0 and pass nothing on: 1/pivot = 0.
         let (mut inverse, mut right) = (0.0, 0.0);
-        let rows = self.diagonal.iter().zip(&self.lower).zip(&self.upper).zip(&self.gap).zip(&self.active);
+        let rows = self.diagonal.iter().zip(&self.lower).zip(&self.upper).zip(&self.violation).zip(&self.active);
         for (((((diagonal, lower), upper), gap), active), (pivot, lambda)) in
             rows.zip(self.pivot.iter_mut().zip(&mut self.lambda))
         {
@@ -252,4 +249,16 @@ impl Chain {
             *lambda = after;
         }
     }
+}
+
+/// Δσ⁰, m: the material that would slide without springs, but with friction in the given sense (0:
+/// without).
+fn predicted_slide(mesh: &Mesh, p: &Pulley, sense: f64, h: f64) -> f64 {
+    let friction = sense * mesh.problem.thermal_stretch * p.friction_ratio() * tension_excess(mesh, p);
+    p.sliding_speed * h - friction * h * h / p.mass
+}
+
+/// Sum of the tensions at the wheel less those of the elements beside it, N, in the last sub-step.
+fn tension_excess(mesh: &Mesh, p: &Pulley) -> f64 {
+    p.tension[0] + p.tension[1] - mesh.tension[p.node - 1] - mesh.tension[p.node]
 }

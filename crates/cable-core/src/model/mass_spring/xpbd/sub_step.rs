@@ -5,8 +5,9 @@
 //! Chentanez, "XPBD: position-based simulation of compliant constrained dynamics", Motion in Games,
 //! 2016), one iteration in each of many sub-steps (M. Macklin et al., "Small steps in physics
 //! simulation", Symposium on Computer Animation, 2019). Unlike the papers the constraints of a
-//! chain are not taken one after the other but solved together (`chain`). It is a picture, not a
-//! measurement: implicit in time, so fast motion is damped, and contacts act a sub-step late.
+//! chain are not taken one after the other but solved together (`constraint_solve`). It is a
+//! picture, not a measurement: implicit in time, so fast motion is damped, and contacts act a
+//! sub-step late.
 //!
 //! Directions are those of the predicted place x* = 2xₙ − xₙ₋₁, so swings across a taut cable, of
 //! frequency ω, obey xₙ₊₁ = (1 − ω²h²) x*, whose roots have modulus √(1 − ω²h²) up to ωh = 1 and
@@ -17,19 +18,19 @@ use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::gauge::TensionGauge;
 use crate::model::mass_spring::MassSpringModel;
-use crate::model::mass_spring::integrator::MOST_SUB_STEPS;
-use crate::model::mass_spring::xpbd::constraint_solve::Chain;
+use crate::model::mass_spring::dynamics::hands;
+use crate::model::mass_spring::dynamics::impacts;
+use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;
+use crate::model::mass_spring::dynamics::supports::{HandSettings, SupportDrives};
+use crate::model::mass_spring::forces::{nodal, pulley, tension};
+use crate::model::mass_spring::integrator::FRAME_S;
+use crate::model::mass_spring::mesh::edit::release_pulleys;
+use crate::model::mass_spring::mesh::nodes::Mesh;
+use crate::model::mass_spring::xpbd::constraint_solve::ConstraintSolver;
 use crate::model::settings::Stepping;
 use crate::solution::{Warning, WarningCause};
 
-/// Longest sub-step, s. Longer damps motion and softens contacts visibly, shorter costs in
-/// proportion.
-const LONGEST_SUB_STEP_S: f64 = 1.0 / 600.0;
-/// And shortest: a snap that asks for less is damped instead, for a sub-step or two.
-const SHORTEST_SUB_STEP_S: f64 = LONGEST_SUB_STEP_S / 64.0;
-/// Greatest ω²h² of swings across the cable: 4/3 is unstable, less costs more.
-const SWING_STEP_LIMIT: f64 = 1.0;
-
+/// This block is the integrator of the preview: it sets every part of the model in motion.
 impl MassSpringModel {
     /// Advances by `dt_s` in sub-steps.
     pub(in crate::model::mass_spring) fn preview(
@@ -38,115 +39,147 @@ impl MassSpringModel {
         gauge: &mut TensionGauge,
     ) -> Result<(), SolveError> {
         let end = self.clock.time_s + dt_s;
-        let mut chain = Chain::default();
-        let mut trouble = self.no_trouble();
+        let tuning = self.mesh.tuning.preview;
+        let shortest = tuning.max_sub_step_s * tuning.min_sub_step_fraction;
+        let mut solver = ConstraintSolver::default();
+        let mut guard = RunawayGuard::new(&self.mesh.problem, self.clock.time_s);
         let (mut left, mut count, mut longest) = (dt_s, 0, 0.0);
         while left > 0.0 {
-            let stable = (SWING_STEP_LIMIT / self.sway()).sqrt();
-            let limit = if stable < LONGEST_SUB_STEP_S { stable } else { LONGEST_SUB_STEP_S };
-            let parts =
-                (left / if limit > SHORTEST_SUB_STEP_S { limit } else { SHORTEST_SUB_STEP_S } - 1e-9).ceil().max(1.0);
+            let stable = (tuning.max_swing / max_transverse_frequency_squared(&self.mesh)).sqrt();
+            let limit = if stable < tuning.max_sub_step_s { stable } else { tuning.max_sub_step_s };
+            let parts = (left / if limit > shortest { limit } else { shortest } - 1e-9).ceil().max(1.0);
             let h = left / parts;
             left = if parts > 1.0 { left - h } else { 0.0 };
             self.clock.time_s = end - left;
-            self.preview_step(h, &mut chain);
-            gauge.note(self.clock.time_s, &self.chain.s, |i| self.gauged_inside(i));
+            self.preview_step(h, &mut solver);
+            gauge.note(self.clock.time_s, &self.mesh.arc_length, |i| tension::at_node_inside(&self.mesh, i));
             gauge.keep();
-            self.calm(&mut trouble);
-            self.floor_friction(h);
-            self.contacts(h);
-            for (x, v) in self.chain.x.iter_mut().zip(&self.chain.v) {
+            guard.limit(&mut self.mesh, &mut self.drives, self.clock.time_s);
+            let (mesh, account) = (&mut self.mesh, &mut self.report.account);
+            impacts::floor_friction(mesh, account, h);
+            impacts::apply(&mut self.contacts, mesh, account, h);
+            for (x, v) in mesh.position.iter_mut().zip(&mesh.velocity) {
                 *x += v * h;
             }
-            if !self.wheels.pulleys.is_empty() {
-                self.weigh();
-                self.load_pulleys();
+            if !mesh.wheels.pulleys.is_empty() {
+                mesh.update_pulley_elements();
+                pulley::update_all(mesh, self.clock.time_s);
             }
-            if let Some(e) = self.non_finite() {
+            if let Some(e) = mesh.non_finite(self.clock.time_s) {
                 return Err(e);
             }
             count += 1;
             longest = if h > longest { h } else { longest };
         }
-        self.read_forces();
+        nodal::update_from_tensions(&mut self.mesh, self.clock.time_s);
         self.clock.behind_s = 0.0;
         self.report.cost.iterations = count;
         self.report.cost.inner_step_s = longest;
         self.report.cost.residual_n = 0.0;
-        self.warn_of(&trouble);
+        self.report.warnings.extend(guard.warnings(&self.mesh.problem.cable.name));
         self.warn_of_preview(longest);
         Ok(())
     }
 
-    /// ω² of the fastest swing across the cable, 1/s², by Gershgorin's circles: 2(T_b/l_b +
-    /// T_a/l_a)/m at a node.
-    fn sway(&self) -> f64 {
-        let (mut fastest, mut before) = (0.0, 0.0);
-        let held = self.drives.held.iter().zip(&self.chain.mass);
-        let after = self.chain.tension.iter().zip(&self.chain.rest).map(|(tension, rest)| tension / rest).chain([0.0]);
-        for ((held, mass), after) in held.zip(after) {
-            let square = 2.0 * (before + after) / mass;
-            if square > fastest && !held {
-                fastest = square;
-            }
-            before = after;
-        }
-        fastest
-    }
-
-    /// The velocities of a sub-step, but for contacts.
-    fn preview_step(&mut self, h: f64, chain: &mut Chain) {
-        if !self.wheels.pulleys.is_empty() {
-            self.release_pulleys();
+    /// Sets the velocities of a sub-step of `h` (s) without contacts.
+    fn preview_step(&mut self, h: f64, solver: &mut ConstraintSolver) {
+        if !self.mesh.wheels.pulleys.is_empty() {
+            release_pulleys(&mut self.mesh, self.clock.time_s);
             self.remesh();
         }
-        self.supports(h);
-        self.pull_of_loads();
-        self.predict(h, chain);
-        let hands = self.predict_hands(h, chain);
-        self.project(h, chain);
+        let (mesh, account) = (&mut self.mesh, &mut self.report.account);
+        let hand_settings = HandSettings::of(&self.settings);
+        self.drives.move_nodes(mesh, &self.clock, hand_settings.max_speed_m_per_s, account, h);
+        hands::follow(&mut self.drives, mesh, hand_settings, h);
+        nodal::set_loads(mesh, self.clock.time_s);
+        predict(mesh, self.clock.time_s, h, solver);
+        let held_by_hands = predict_held(&self.drives, mesh, h, solver);
+        solver.solve(mesh, h);
         let per_step = h.recip();
-        for (((v, x), to), held) in self.chain.v.iter_mut().zip(&self.chain.x).zip(&chain.x).zip(&self.drives.held) {
+        for (((v, x), to), held) in
+            mesh.velocity.iter_mut().zip(&mesh.position).zip(&solver.position).zip(&mesh.supported)
+        {
             if !held {
                 *v = (to - x) * per_step;
             }
         }
-        for (node, before) in hands {
-            let v = (chain.x[node] - self.chain.x[node]) * per_step;
-            self.drives.held_acceleration[node] = (v - before) * per_step;
-            self.chain.v[node] = v;
+        for HeldNode { node, velocity } in held_by_hands {
+            let v = (solver.position[node] - mesh.position[node]) * per_step;
+            mesh.support_acceleration[node] = (v - velocity) * per_step;
+            mesh.velocity[node] = v;
         }
     }
 
-    /// Where nodes and material go without springs.
-    fn predict(&mut self, h: f64, chain: &mut Chain) {
-        let count = self.chain.x.len();
-        chain.x.resize(count, Vec2::zeros());
-        chain.inverse.resize(count, 0.0);
-        let nodes =
-            self.chain.x.iter().zip(&mut self.chain.v).zip(&self.chain.f).zip(&self.chain.mass).zip(&self.drives.held);
-        for (((((x, v), f), mass), held), (to, inverse)) in nodes.zip(chain.x.iter_mut().zip(&mut chain.inverse)) {
-            *inverse = if *held { 0.0 } else { mass.recip() };
-            if !held {
-                *v += f * (h * *inverse);
-            }
-            *to = x + *v * h;
-        }
-        let body = self.problem.body_force(self.clock.time_s);
-        for k in 0..self.wheels.pulleys.len() {
-            let i = self.wheels.pulleys[k].node;
-            let weight = body.dot(&(self.reach(i - 1).middle - self.reach(i).middle));
-            let p = &mut self.wheels.pulleys[k];
-            p.rate += weight * h / p.mass;
-        }
-    }
-
+    /// Warns that stiffness made the step a preview, with its longest sub-step `h` (s).
     fn warn_of_preview(&mut self, h: f64) {
         if self.settings.stepping != Stepping::Auto {
             return;
         }
-        let name = &self.problem.cable.name;
-        let stable = 1.0 / 60.0 / MOST_SUB_STEPS;
+        let name = &self.mesh.problem.cable.name;
+        let stable = FRAME_S / self.mesh.tuning.sub_step.max_per_frame;
         self.report.warnings.push(Warning::new(WarningCause::StiffPreview, name, 0.0, [h, stable]));
     }
+}
+
+/// ω² of the fastest swing across the cable, 1/s², by Gershgorin's circles: 2(T_b/l_b +
+/// T_a/l_a)/m at a node.
+fn max_transverse_frequency_squared(mesh: &Mesh) -> f64 {
+    let (mut fastest, mut before) = (0.0, 0.0);
+    let held = mesh.supported.iter().zip(&mesh.mass);
+    let after = mesh.tension.iter().zip(&mesh.rest_length).map(|(tension, rest)| tension / rest).chain([0.0]);
+    for ((held, mass), after) in held.zip(after) {
+        let square = 2.0 * (before + after) / mass;
+        if square > fastest && !held {
+            fastest = square;
+        }
+        before = after;
+    }
+    fastest
+}
+
+/// Predicts nodes and material on pulleys without springs in a sub-step of `h` (s).
+fn predict(mesh: &mut Mesh, time_s: f64, h: f64, solver: &mut ConstraintSolver) {
+    let count = mesh.position.len();
+    solver.position.resize(count, Vec2::zeros());
+    solver.inverse_mass.resize(count, 0.0);
+    let nodes = mesh.position.iter().zip(&mut mesh.velocity).zip(&mesh.force).zip(&mesh.mass).zip(&mesh.supported);
+    for (((((x, v), f), mass), held), (to, inverse)) in
+        nodes.zip(solver.position.iter_mut().zip(&mut solver.inverse_mass))
+    {
+        *inverse = if *held { 0.0 } else { mass.recip() };
+        if !held {
+            *v += f * (h * *inverse);
+        }
+        *to = x + *v * h;
+    }
+    let body = mesh.problem.body_force(time_s);
+    for k in 0..mesh.wheels.pulleys.len() {
+        let i = mesh.wheels.pulleys[k].node;
+        let weight = body.dot(&(mesh.element(i - 1).middle - mesh.element(i).middle));
+        let p = &mut mesh.wheels.pulleys[k];
+        p.sliding_speed += weight * h / p.mass;
+    }
+}
+
+/// A node that a hand holds, and its velocity before a sub-step, m/s.
+struct HeldNode {
+    node: usize,
+    velocity: Vec2,
+}
+
+/// Predicts nodes that hands hold without the springs of the cable in a preview's sub-step of `h`
+/// (s).
+fn predict_held(drives: &SupportDrives, mesh: &Mesh, h: f64, solver: &mut ConstraintSolver) -> Vec<HeldNode> {
+    let mut found = Vec::new();
+    for (hand, &node) in drives.hands.iter().zip(&mesh.support_node) {
+        let Some(hand) = hand else { continue };
+        let (mass, before) = (mesh.mass[node], mesh.velocity[node]);
+        let (stiffness, at) = hand.pull(h, mesh.position[node]);
+        let push = mesh.force[node] + (at - mesh.position[node]) * stiffness;
+        let heavier = mass + stiffness * h * h;
+        solver.position[node] = mesh.position[node] + (before * mass + push * h) * (h / heavier);
+        solver.inverse_mass[node] = heavier.recip();
+        found.push(HeldNode { node, velocity: before });
+    }
+    found
 }

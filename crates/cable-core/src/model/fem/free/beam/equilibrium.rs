@@ -69,7 +69,7 @@ pub struct Beam {
     pub residual: f64,
 }
 
-/// What a solve found.
+/// The outcome of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// A stable equilibrium.
@@ -85,7 +85,7 @@ fn shapes(x: f64) -> [f64; 3] {
     [(1.0 - x) * (1.0 - 2.0 * x), 4.0 * x * (1.0 - x), x * (2.0 * x - 1.0)]
 }
 
-/// What a bar has at a Gauss point.
+/// The values of a bar at a Gauss point.
 pub(in crate::model::fem) struct Sample {
     pub(in crate::model::fem) shapes: [f64; 3],
     /// Its part of the rest length, m.
@@ -167,7 +167,7 @@ impl Beam {
         }
     }
 
-    /// How far the cable turns from its first clamp to its last, rad.
+    /// Turn of the cable from its first clamp to its last, rad.
     fn winding(&self) -> f64 {
         self.clamps.last().map_or(0.0, |z| z.1) - self.clamps.first().map_or(0.0, |a| a.1)
     }

@@ -1,0 +1,91 @@
+//! The contacts of the last sub-step, and the points from which friction at rest is measured.
+
+use crate::contact::Gap;
+use crate::math::{Vec2, larger};
+use crate::model::mass_spring::mesh::nodes::Mesh;
+
+part! {
+    /// The contacts of the cable, and the points where friction holds it.
+    #[derive(Default)]
+    ContactMemory {
+        /// Distance that each element may still travel before it can touch anything, m.
+        clearance: Vec<f64>,
+        /// Contacts of the last sub-step.
+        impulses: Vec<ContactImpulse>,
+        /// Room for the gaps of one element.
+        gap_buffer: Vec<Gap>,
+        /// Points where friction holds, between steps without inertia.
+        anchors: Vec<Anchor>,
+    }
+}
+
+/// The surface to which an anchor holds the cable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::mass_spring) enum Surface {
+    /// The floor of a plan view, on which all of the cable lies.
+    Floor,
+    /// The obstacle of this index.
+    Obstacle(usize),
+}
+
+/// The point where friction holds the cable.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::mass_spring) struct Anchor {
+    pub surface: Surface,
+    /// Arc length of the material, m.
+    pub arc_length: f64,
+    pub at: Vec2,
+}
+
+/// A contact in the last sub-step.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::mass_spring) struct ContactImpulse {
+    pub element: usize,
+    pub gap: Gap,
+    /// Normal impulse, N·s.
+    pub normal: f64,
+    /// Friction impulse along growing arc length, N·s.
+    pub friction: f64,
+    pub slips: bool,
+}
+
+impl ContactMemory {
+    /// Room for contacts of a number of elements.
+    pub(in crate::model::mass_spring) fn new(elements: usize) -> Self {
+        Self {
+            clearance: vec![0.0; elements],
+            impulses: Vec::with_capacity(2 * elements),
+            gap_buffer: Vec::with_capacity(16),
+            anchors: Vec::new(),
+        }
+    }
+
+    /// Forgets the distances to obstacles, since nodes were moved.
+    pub(in crate::model::mass_spring) fn forget_distances(&mut self) {
+        self.clearance.fill(0.0);
+    }
+
+    /// Forgets distances and impulses, since the mesh now has a number of other elements.
+    pub(in crate::model::mass_spring) fn renew(&mut self, elements: usize) {
+        self.clearance.clear();
+        self.clearance.resize(elements, 0.0);
+        self.impulses.clear();
+    }
+
+    /// Part of the largest tension that a floor leaves open: where the cable does not slide on it,
+    /// friction is whatever the path there left, up to μ times the normal force. 0 where nothing is
+    /// remembered.
+    pub(in crate::model::mass_spring) fn floor_uncertainty(&self, mesh: &Mesh) -> f64 {
+        let Some((mu, normal)) = mesh.problem.floor_friction else { return 0.0 };
+        let on_floor = self.anchors.iter().take_while(|a| a.surface == Surface::Floor).count();
+        let top = mesh.tension.iter().copied().fold(0.0, larger);
+        if on_floor != mesh.position.len() || !(top > 0.0) {
+            return 0.0;
+        }
+        let tuning = &mesh.tuning.contact;
+        let sticks =
+            |n: &usize| (mesh.position[*n] - self.anchors[*n].at).norm() < tuning.slip_fraction * tuning.slip_m;
+        let held: f64 = (0..on_floor).filter(sticks).map(|n| mu * normal * mesh.half_straight_length(n)).sum();
+        held / top
+    }
+}

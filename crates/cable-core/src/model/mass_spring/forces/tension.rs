@@ -1,0 +1,33 @@
+//! Tensions at nodes as a gauge takes them in every sub-step.
+
+use crate::math::larger;
+use crate::model::mass_spring::forces::reactions;
+use crate::model::mass_spring::mesh::nodes::Mesh;
+
+/// Tension at a node, N: the mean of the elements beside it, the greater of both sides of a pulley,
+/// and at a supported end the force that holds it, ground beside it left out.
+pub(in crate::model::mass_spring) fn at_node(mesh: &Mesh, i: usize) -> f64 {
+    let e = match i.checked_sub(1) {
+        Some(e) if i < mesh.rest_length.len() => {
+            return match mesh.wheels.at(i) {
+                Some(p) => larger(p.tension[0], p.tension[1]),
+                None => 0.5 * (mesh.tension[e] + mesh.tension[i]),
+            };
+        }
+        before => before.unwrap_or(0),
+    };
+    if !mesh.supported[i] {
+        return mesh.tension[e];
+    }
+    let force = reactions::total(mesh, i);
+    if mesh.problem.bending_stiffness > 0.0 { force.dot(&mesh.element(e).direction).abs() } else { force.norm() }
+}
+
+/// The same where forces are not summed up: at an end the tension of its element.
+pub(in crate::model::mass_spring) fn at_node_inside(mesh: &Mesh, i: usize) -> f64 {
+    match (i, mesh.rest_length.len()) {
+        (0, _) => mesh.tension.first().copied().unwrap_or(0.0),
+        (i, n) if i == n => mesh.tension.last().copied().unwrap_or(0.0),
+        _ => at_node(mesh, i),
+    }
+}

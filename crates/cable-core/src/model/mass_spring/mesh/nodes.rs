@@ -1,0 +1,359 @@
+//! The mesh holds the nodes and springs of a cable; it is built along the route of the scene.
+
+use std::sync::Arc;
+
+use crate::error::SolveError;
+use crate::math::{Vec2, bounded};
+use crate::model::mass_spring::mesh::pulley::{ElementGeometry, Pulley, Wheels};
+use crate::model::mass_spring::settings::{MeshTuning, Tuning};
+use crate::problem::Problem;
+use crate::state::State;
+
+/// Points of the cable nearer to each other than this part of its length are one.
+const SAME_PLACE_FRACTION: f64 = 1e-9;
+
+part! {
+    /// The nodes and springs of a cable, and the pulleys that it runs over.
+    Mesh {
+        /// The cable that it divides.
+        problem: Arc<Problem>,
+        /// The tuned constants by which it is solved.
+        tuning: Arc<Tuning>,
+        /// Arc length of each node, m.
+        arc_length: Vec<f64>,
+        /// Position of each node, m.
+        position: Vec<Vec2>,
+        /// Velocity of each node, m/s.
+        velocity: Vec<Vec2>,
+        /// Force on each node but that of supports and contacts, N.
+        force: Vec<Vec2>,
+        /// Mass of each node, kg.
+        mass: Vec<f64>,
+        /// Part of that mass that belongs to the support at the node, kg.
+        point_mass: Vec<f64>,
+        /// True where a support holds the node now.
+        supported: Vec<bool>,
+        /// Acceleration of supported nodes, m/s².
+        support_acceleration: Vec<Vec2>,
+        /// Unstretched length of each element at the present temperature, m.
+        rest_length: Vec<f64>,
+        /// Arc length of each element at rest temperature, m: weight and wind go with it.
+        material_length: Vec<f64>,
+        /// Arc length of the straight part of each element (all of it but what lies on a wheel), m.
+        straight_length: Vec<f64>,
+        /// Tension of each element, N.
+        tension: Vec<f64>,
+        /// Length of an element where they are even, m.
+        even_length: f64,
+        /// Node of each support.
+        support_node: Vec<usize>,
+        /// Node of each load.
+        load_node: Vec<usize>,
+        /// Time constant of the material's loss, s.
+        damping_time_s: f64,
+        /// The pulleys.
+        wheels: Wheels,
+    }
+}
+
+impl Mesh {
+    /// Puts a node at each support and load and the others evenly between them, `segments` elements
+    /// on the whole cable. `support_arc_lengths` (m) are those of all supports.
+    pub(in crate::model::mass_spring) fn new(
+        problem: Arc<Problem>,
+        tuning: Arc<Tuning>,
+        segments: usize,
+        support_arc_lengths: &[f64],
+    ) -> Self {
+        let seats = separate_supports(&problem, &tuning.mesh, support_arc_lengths, segments);
+        let nodes = even_nodes(&problem, segments, &seats);
+        Self::on_nodes(problem, tuning, segments, &seats, nodes)
+    }
+
+    /// Puts nodes at given arc lengths (m).
+    pub(in crate::model::mass_spring) fn with_nodes(
+        problem: Arc<Problem>,
+        tuning: Arc<Tuning>,
+        segments: usize,
+        support_arc_lengths: &[f64],
+        nodes: Vec<f64>,
+    ) -> Self {
+        let seats = separate_supports(&problem, &tuning.mesh, support_arc_lengths, segments);
+        Self::on_nodes(problem, tuning, segments, &seats, nodes)
+    }
+
+    fn on_nodes(
+        problem: Arc<Problem>,
+        tuning: Arc<Tuning>,
+        segments: usize,
+        seats: &[f64],
+        arc_length: Vec<f64>,
+    ) -> Self {
+        let material_length: Vec<f64> = arc_length.windows(2).map(|w| w[1] - w[0]).collect();
+        let rest_length: Vec<f64> = material_length.iter().map(|d| d * problem.thermal_stretch).collect();
+        let (count, elements) = (arc_length.len(), material_length.len());
+        let mut mass = vec![0.0; count];
+        for (e, d) in material_length.iter().enumerate() {
+            mass[e] += 0.5 * d * problem.linear_density;
+            mass[e + 1] += 0.5 * d * problem.linear_density;
+        }
+        let nearest = |at: f64| {
+            let k = arc_length.partition_point(|&v| v < at).min(count - 1);
+            if k > 0 && at - arc_length[k - 1] < arc_length[k] - at { k - 1 } else { k }
+        };
+        let support_node: Vec<usize> = seats.iter().map(|&s| nearest(s)).collect();
+        let mut point_mass = vec![0.0; count];
+        for (p, &k) in problem.supports.iter().zip(&support_node) {
+            mass[k] += p.mass;
+            point_mass[k] += p.mass;
+        }
+        let mut pulleys = Pulley::all(&problem);
+        for p in &mut pulleys {
+            let node = support_node[p.support];
+            p.place_on(node, arc_length[node]);
+        }
+        Self {
+            position: first_shape(&problem, &arc_length, &support_node),
+            velocity: vec![Vec2::zeros(); count],
+            force: vec![Vec2::zeros(); count],
+            mass,
+            point_mass,
+            supported: vec![false; count],
+            support_acceleration: vec![Vec2::zeros(); count],
+            straight_length: material_length.clone(),
+            tension: vec![0.0; elements],
+            even_length: problem.length / segments as f64,
+            load_node: problem.loads.iter().map(|l| nearest(l.arc_length)).collect(),
+            damping_time_s: damping_time(&problem, &tuning.mesh, &rest_length),
+            wheels: Wheels::new(pulleys, count),
+            problem,
+            tuning,
+            arc_length,
+            rest_length,
+            material_length,
+            support_node,
+        }
+    }
+
+    /// The nodes of a shape, if they will do: resampled, its elements would cut the corners that
+    /// they lie round.
+    pub(in crate::model::mass_spring) fn usable_nodes(&self, shape: &State) -> Option<Vec<f64>> {
+        let s = &shape.arc_length_m;
+        let fits = |wanted: f64| s.iter().any(|v| (v - wanted).abs() <= SAME_PLACE_FRACTION * self.problem.length);
+        let supports = self.problem.supports.iter().filter_map(|p| p.arc_length);
+        let marks = supports.chain(self.problem.loads.iter().map(|l| l.arc_length)).chain([0.0, self.problem.length]);
+        let apart = s.windows(2).all(|w| w[1] - w[0] >= self.tuning.mesh.min_spacing_lengths * self.even_length);
+        let wanted = self.problem.length / self.even_length;
+        let many = (0.5 * wanted..=2.0 * wanted).contains(&(s.len() as f64));
+        let plain = self.wheels.pulleys.is_empty() && !self.problem.world.is_empty();
+        (plain && apart && many && marks.into_iter().all(fits)).then(|| s.clone())
+    }
+
+    /// Geometry of element `e` now.
+    pub(in crate::model::mass_spring) fn element(&self, e: usize) -> ElementGeometry {
+        self.wheels.element(e, &self.position)
+    }
+
+    /// Half of the straight parts beside a node, m of arc length.
+    pub(in crate::model::mass_spring) fn half_straight_length(&self, n: usize) -> f64 {
+        let before = if n > 0 { self.straight_length[n - 1] } else { 0.0 };
+        0.5 * (before + self.straight_length.get(n).copied().unwrap_or(0.0))
+    }
+
+    /// Element and fraction of a material point.
+    pub(in crate::model::mass_spring) fn locate(&self, s: f64) -> (usize, f64) {
+        let e = self.arc_length.partition_point(|&v| v <= s).clamp(1, self.arc_length.len() - 1) - 1;
+        let fraction = (s - self.arc_length[e]) / self.material_length[e];
+        (e, if fraction > 1.0 { 1.0 } else { fraction })
+    }
+
+    /// True if the cable can touch an obstacle or the floor of a plan view.
+    pub(in crate::model::mass_spring) fn can_touch(&self) -> bool {
+        !self.problem.world.is_empty() || self.problem.floor_friction.is_some()
+    }
+
+    /// The error of a state that is no longer finite, if it is not.
+    pub(in crate::model::mass_spring) fn non_finite(&self, time_s: f64) -> Option<SolveError> {
+        let is_bad = |&i: &usize| !(self.position[i] + self.velocity[i]).iter().all(|c| c.is_finite());
+        let bad = (0..self.position.len()).find(is_bad)?;
+        let arc_length_m = self.arc_length[bad];
+        Some(SolveError::NonFinite { quantity: "position or velocity", arc_length_m, time_s })
+    }
+
+    /// Momentum of all nodes, kg m/s.
+    pub(in crate::model::mass_spring) fn momentum(&self) -> Vec2 {
+        self.velocity.iter().zip(&self.mass).map(|(v, m)| v * *m).sum()
+    }
+
+    /// Takes lengths and masses from the arc lengths of the nodes.
+    pub(in crate::model::mass_spring) fn update_elements(&mut self) {
+        for e in 0..self.material_length.len() {
+            self.material_length[e] = self.arc_length[e + 1] - self.arc_length[e];
+            self.rest_length[e] = self.material_length[e] * self.problem.thermal_stretch;
+            self.straight_length[e] = self.material_length[e];
+        }
+        let density = self.problem.linear_density;
+        for n in 0..self.position.len() {
+            self.mass[n] = density * self.half_straight_length(n) + self.point_mass[n];
+        }
+        self.update_pulley_elements();
+    }
+
+    /// The same of the elements beside pulleys, after material slid or the wheels moved.
+    pub(in crate::model::mass_spring) fn update_pulley_elements(&mut self) {
+        for k in 0..self.wheels.pulleys.len() {
+            let i = self.wheels.pulleys[k].node;
+            for e in [i - 1, i] {
+                self.material_length[e] = self.arc_length[e + 1] - self.arc_length[e];
+                self.rest_length[e] = self.material_length[e] * self.problem.thermal_stretch;
+            }
+        }
+        for k in 0..self.wheels.pulleys.len() {
+            let i = self.wheels.pulleys[k].node;
+            for e in [i - 1, i] {
+                let r = self.element(e);
+                // The arcs on wheels count as unstretched: σ then moves the straight part alone.
+                self.straight_length[e] =
+                    self.material_length[e] - (r.arc[0] + r.arc[1]) / self.problem.thermal_stretch;
+            }
+        }
+        let density = self.problem.linear_density;
+        for k in 0..self.wheels.pulleys.len() {
+            let i = self.wheels.pulleys[k].node;
+            for n in [i - 1, i, i + 1] {
+                self.mass[n] = density * self.half_straight_length(n) + self.point_mass[n];
+            }
+            let whole = self.material_length[i - 1] + self.material_length[i];
+            let on_wheel = whole - self.straight_length[i - 1] - self.straight_length[i];
+            self.mass[i] += density * on_wheel;
+            self.wheels.pulleys[k].mass = density * (self.half_straight_length(i) + on_wheel);
+        }
+    }
+}
+
+/// Arc lengths (m) of nodes with about `segments` elements on the whole cable, evenly between
+/// supports (at `seats`, m) and loads.
+fn even_nodes(problem: &Problem, segments: usize, seats: &[f64]) -> Vec<f64> {
+    let close = SAME_PLACE_FRACTION * problem.length;
+    let at_pulleys: Vec<f64> = Pulley::all(problem).iter().map(|p| seats[p.support]).collect();
+    let mut marks: Vec<f64> = problem.supports.iter().filter_map(|s| s.arc_length).collect();
+    marks.extend(&at_pulleys);
+    marks.extend(problem.loads.iter().map(|l| l.arc_length));
+    marks.extend([0.0, problem.length]);
+    marks.sort_by(f64::total_cmp);
+    marks.dedup_by(|b, a| (*b - *a).abs() <= close);
+    let is_pulley = |m: f64| at_pulleys.iter().any(|s| (s - m).abs() <= close);
+    let mut nodes = vec![0.0];
+    for w in marks.windows(2) {
+        // Beside a pulley there is always a node that moves.
+        let least = if is_pulley(w[0]) || is_pulley(w[1]) { 2.0 } else { 1.0 };
+        let count = ((w[1] - w[0]) / problem.length * segments as f64).round().max(least);
+        nodes.extend((1..=count as usize).map(|k| w[0] + (w[1] - w[0]) * k as f64 / count));
+    }
+    nodes
+}
+
+/// Arc length of each support (m): as the scene gives it; for supports that slide as `wanted`, but
+/// apart from what they could run onto by a part of an even element, or by their share of the room.
+/// Material lies on both sides of a pulley, however near to a support it stands.
+fn separate_supports(p: &Problem, tuning: &MeshTuning, wanted: &[f64], segments: usize) -> Vec<f64> {
+    let least = tuning.min_spacing_lengths * p.length / segments as f64;
+    let mut out: Vec<f64> = (0..p.supports.len())
+        .map(|k| p.supports[k].arc_length.or(wanted.get(k).copied()).unwrap_or(f64::NAN))
+        .collect();
+    let slides: Vec<bool> = p.supports.iter().map(|s| s.arc_length.is_none()).collect();
+    let mut k = 0;
+    while k < out.len() {
+        let count = slides[k..].iter().take_while(|s| **s).count();
+        let low = if k > 0 { out[k - 1] } else { 0.0 };
+        let high = out.get(k + count).copied().unwrap_or(p.length);
+        let room = least.min(0.5 * (high - low) / (count + 1) as f64);
+        for i in 0..count {
+            let (floor, ceiling) = (low + room * (i + 1) as f64, high - room * (count - i) as f64);
+            let floor = if i > 0 { floor.max(out[k + i - 1] + room) } else { floor };
+            let even = low + (high - low) * (i + 1) as f64 / (count + 1) as f64;
+            let here = if out[k + i].is_finite() { out[k + i] } else { even };
+            out[k + i] = here.min(ceiling).max(floor);
+        }
+        k += count + 1;
+    }
+    out
+}
+
+/// Damping ζ of the first axial mode, ω₁ = π/L·√(EA/ρ): strain-rate force EA·τ·ε̇ with τ = 2ζ/ω₁.
+/// Mode k then has ζ_k = ζ·ω_k/ω₁, which for the fastest one is kept between
+/// [`MeshTuning::min_mode_damping`] and [`MeshTuning::max_mode_damping`].
+fn damping_time(p: &Problem, tuning: &MeshTuning, rest: &[f64]) -> f64 {
+    let c = (p.axial_stiffness / p.linear_density).sqrt();
+    let first = std::f64::consts::PI / p.damped_length * c;
+    let shortest = rest.iter().copied().fold(f64::INFINITY, f64::min);
+    let fastest = 2.0 * c / shortest;
+    let own = 2.0 * p.cable.damping_ratio / first;
+    bounded(own, 2.0 * tuning.min_mode_damping / fastest, 2.0 * tuning.max_mode_damping / fastest)
+}
+
+/// Arc lengths of the supports before anything is known, m: material is even along the straight
+/// path between those whose arc length is given; a hanging end gets what the path leaves.
+pub(in crate::model::mass_spring) fn first_support_arc_lengths(p: &Problem, tuning: &MeshTuning) -> Vec<f64> {
+    let count = p.supports.len();
+    let mut path = vec![0.0; count];
+    let mut last: Option<Vec2> = None;
+    for k in 0..count {
+        path[k] = if k > 0 { path[k - 1] } else { 0.0 };
+        if let Some((at, _)) = p.supports[k].position_at(0.0) {
+            path[k] += last.map_or(0.0, |l| (at - l).norm());
+            last = Some(at);
+        }
+    }
+    let known = |k: usize| p.supports[k].arc_length.filter(|_| p.supports[k].at.is_some());
+    let whole = path.last().copied().unwrap_or(0.0);
+    let scale_into = |room: f64, path: f64| {
+        if path < tuning.max_path_fraction * room { 1.0 } else { tuning.max_path_fraction * room / path }
+    };
+    (0..count)
+        .map(|k| {
+            if let Some(s) = p.supports[k].arc_length {
+                return s;
+            }
+            let before = (0..k).rev().find_map(|j| known(j).map(|s| (path[j], s)));
+            let after = (k + 1..count).find_map(|j| known(j).map(|s| (path[j], s)));
+            match (before, after) {
+                (Some((wa, sa)), Some((wb, sb))) if wb > wa => sa + (sb - sa) * (path[k] - wa) / (wb - wa),
+                (Some((wa, sa)), _) => sa + (path[k] - wa) * scale_into(p.length - sa, whole - wa),
+                (None, Some((wb, sb))) => sb - (wb - path[k]) * scale_into(sb, wb),
+                (None, None) => {
+                    let scale = scale_into(p.length, whole);
+                    0.5 * (p.length - whole * scale) + path[k] * scale
+                }
+            }
+        })
+        .collect()
+}
+
+/// Along the route, material spread evenly; without one, straight from support to support. A free
+/// end goes on in the direction of gravity.
+fn first_shape(p: &Problem, s: &[f64], support_node: &[usize]) -> Vec<Vec2> {
+    if p.route.len() >= 2 {
+        let mut along = vec![0.0];
+        for w in p.route.windows(2) {
+            along.push(along[along.len() - 1] + (w[1] - w[0]).norm());
+        }
+        let scale = along[along.len() - 1] / p.length;
+        let route = crate::State { arc_length_m: along, position_m: p.route.clone(), ..crate::State::default() };
+        return s.iter().map(|v| route.position_at(v * scale).unwrap_or_default()).collect();
+    }
+    let fixed: Vec<(f64, Vec2)> =
+        p.supports.iter().zip(support_node).filter_map(|(u, &k)| u.at.map(|at| (s[k], at))).collect();
+    let down = p.body_force(0.0).try_normalize(0.0).unwrap_or(Vec2::new(0.0, -1.0));
+    s.iter()
+        .map(|&v| {
+            let k = fixed.partition_point(|h| h.0 < v);
+            match (k.checked_sub(1).and_then(|i| fixed.get(i)), fixed.get(k)) {
+                (Some(a), Some(b)) => a.1 + (b.1 - a.1) * ((v - a.0) / (b.0 - a.0)),
+                (Some(a), None) => a.1 + down * (v - a.0),
+                (None, Some(b)) => b.1 + down * (b.0 - v),
+                (None, None) => down * v,
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,46 @@
+//! These modules read the answer out of the state of the model.
+
+pub(in crate::model::mass_spring) mod contacts;
+pub(in crate::model::mass_spring) mod nodes;
+
+use crate::math::Vec2;
+use crate::model::mass_spring::MassSpringModel;
+use crate::solution::{Assumptions, CableSolution};
+use crate::state::State;
+use nodes::NodeReader;
+
+/// The answer of the present state.
+pub(in crate::model::mass_spring) fn answer(model: &MassSpringModel) -> CableSolution {
+    let MassSpringModel { settings, clock, mesh, drives, contacts, report, .. } = model;
+    let reader = NodeReader { mesh, time_s: clock.time_s };
+    let answer = CableSolution {
+        name: mesh.problem.cable.name.clone(),
+        nodes: reader.nodes(),
+        supports: (0..mesh.support_node.len()).map(|k| reader.reaction(k, drives.hands[k])).collect(),
+        assumptions: Assumptions {
+            bending_stiffness_n_m2: mesh.problem.bending_stiffness,
+            inertia: mesh.velocity.iter().any(|v| v.norm_squared() > 0.0),
+            ..Assumptions::default()
+        },
+        momentum: report.account.report(mesh),
+        contacts: contacts::read(mesh, contacts, &report.cost).into_iter().map(|contact| contact.report).collect(),
+        ..CableSolution::default()
+    };
+    let errors = report.estimate.errors;
+    let by_contacts = || contacts::tension_uncertainty(mesh, contacts, &report.cost, settings.tolerance);
+    let error_estimate = errors.relative(&answer).or_else(by_contacts);
+    CableSolution { error_estimate, errors, ..answer }
+}
+
+/// Positions and velocities as every model reads them.
+pub(in crate::model::mass_spring) fn state(model: &MassSpringModel) -> State {
+    let time_s = model.clock.time_s;
+    let nodes = NodeReader { mesh: &model.mesh, time_s }.nodes();
+    State {
+        time_s,
+        arc_length_m: nodes.iter().map(|n| n.arc_length_m).collect(),
+        position_m: nodes.iter().map(|n| Vec2::new(n.x_m, n.y_m)).collect(),
+        velocity_m_per_s: nodes.iter().map(|n| Vec2::new(n.vx_m_per_s, n.vy_m_per_s)).collect(),
+        in_motion: false,
+    }
+}
