@@ -4,7 +4,7 @@ use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::equilibrium::lagged_friction::LAG_ROUNDS;
-use crate::model::fem::newton::initial_guess::depenetrate;
+use crate::model::fem::newton::initial_guess::{bow, depenetrate};
 use crate::model::fem::newton::minimize::DRIFT;
 use crate::model::fem::results;
 use crate::model::fem::state::cable::{CableState, REACH};
@@ -19,6 +19,11 @@ use crate::state::State;
 /// converge slowly are refused; larger: a search that fails reports it after minutes. The value is
 /// 20 000 iterations of 200 nodes, and takes some 10 s.
 pub(in crate::model::fem) const REST_WORK: usize = 4_000_000;
+
+/// Length of a cable with self-contact, in lengths of its way, from which it begins on an arc. At
+/// 2.4 the first parts that may touch do, laid along a straight line. Smaller: cables that need no
+/// arc begin there, and take longer; larger: some begin pressed on themselves.
+const SPARE_LENGTH_RATIO: f64 = 2.0;
 
 /// Newton iterations of a step without inertia.
 const REST_ITERATIONS: usize = 150;
@@ -476,6 +481,7 @@ impl Dynamics {
             }
             self.rollback.restore(&mut self.cable);
             self.rollback.save(&self.cable);
+            self.begin_on_a_bow();
         }
         let overlap = self.cable.contacts.own.smallest_gap(&self.cable.mesh, &self.cable.motion.x, 0.0);
         if overlap.is_some() || self.cable.crosses_itself() {
@@ -484,5 +490,25 @@ impl Dynamics {
             return Err(SolveError::Unsupported { model: Model::Fem, feature });
         }
         Ok(self.relax(time, dragged))
+    }
+
+    /// A cable with much to spare for which no route is drawn begins on an arc, where it does not
+    /// touch itself: along a straight line it would, or stand on itself as a row of beads does.
+    fn begin_on_a_bow(&mut self) {
+        let cable = &mut self.cable;
+        let way: f64 = cable.motion.x.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+        if !cable.problem.cable.route_m.is_empty() || cable.problem.length < SPARE_LENGTH_RATIO * way {
+            return;
+        }
+        let Some(arc) = bow(&cable.problem, &cable.mesh, &cable.motion.x) else { return };
+        let straight = std::mem::replace(&mut cable.motion.x, arc);
+        for k in (0..straight.len()).filter(|&k| cable.mesh.held[k]) {
+            cable.motion.x[k] = straight[k];
+        }
+        if cable.cuts_nothing() {
+            cable.forget_history();
+        } else {
+            cable.motion.x = straight;
+        }
     }
 }

@@ -2,7 +2,7 @@
 //! way.
 
 use crate::contact::Gap;
-use crate::math::{Vec2, cross};
+use crate::math::{Vec2, cross, perp};
 use crate::model::fem::system::assembly::Mesh;
 use crate::problem::Problem;
 use crate::problem::ground_route::above_ground;
@@ -21,6 +21,9 @@ const DEPENETRATION_DEPTH: f64 = 0.5;
 const LEAN_STEP: f64 = std::f64::consts::PI / 36.0;
 /// See `LEAN_STEP`.
 const MOST_LEANS: i32 = 36;
+
+/// Halvings in the search for the angle of an arc: rounding.
+const ARC_HALVINGS: usize = 52;
 
 /// Corners of the way of a cable with the arc length at each, m.
 #[must_use]
@@ -97,6 +100,33 @@ pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
         }
     }
     points
+}
+
+/// Nodes on a circular arc from the first to the last, as long as the cable, on the side from which
+/// its weight draws it: a cable with much to spare touches itself nowhere there. None where the
+/// ends are in one place, or farther apart than the cable is long.
+#[must_use]
+pub fn bow(problem: &Problem, mesh: &Mesh, x: &[Vec2]) -> Option<Vec<Vec2>> {
+    let (from, to) = (*x.first()?, *x.last()?);
+    let (chord, length) = ((to - from).norm(), mesh.thermal_stretch * problem.length);
+    if !(chord > 0.0 && chord < length) {
+        return None;
+    }
+    // Half of the angle u of the arc: sin u / u is chord over length.
+    let (mut low, mut high) = (0.0, std::f64::consts::PI);
+    for _ in 0..ARC_HALVINGS {
+        let middle = 0.5 * (low + high);
+        (low, high) = if middle.sin() * length > chord * middle { (middle, high) } else { (low, middle) };
+    }
+    let along = (to - from) / chord;
+    let up = if perp(along).dot(&problem.body_force(0.0)) > 0.0 { -perp(along) } else { perp(along) };
+    let radius = 0.5 * length / low;
+    let center = (from + to) * 0.5 - up * (radius * low.cos());
+    let place = |s: &f64| {
+        let (sin, cos) = (low * (2.0 * s / problem.length - 1.0)).sin_cos();
+        center + (along * sin + up * cos) * radius
+    };
+    Some(mesh.arc_length.iter().map(place).collect())
 }
 
 fn nearest_way(points: &[Vec2], along: &[f64], at: Vec2) -> f64 {
