@@ -1,9 +1,9 @@
 //! This module solves for the equilibrium: which pulleys slip, where the material lies, where
 //! wheels are touched.
 
-use super::layout::{Anchor, Layout, angle_near, angle_of, unsupported};
+use super::layout::{Anchor, Layout, angle_near, angle_of};
 use super::slide::{Arc, Mode, Slide, Stretches};
-use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError, Unsupported};
+use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
 use crate::problem::Problem;
@@ -99,7 +99,7 @@ pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Eq
     match lifted {
         Some(k) => {
             let name = p.supports.get(layout.anchors[k].support).map_or("", |s| s.name.as_str());
-            Err(unsupported(Unsupported::OffWheel { support: name.to_owned() }))
+            Err(SolveError::NoRestingPlace { why: NoEquilibrium::LeavesWheel { pulley: name.to_owned() } })
         }
         None => Err(not_converged(p, layout, 0, iterations, f64::NAN)),
     }
