@@ -1,7 +1,7 @@
 //! A stretch of an arc has closed forms of tension and material.
 //!
 //! With λ = λ₀ frozen dT/dψ = mT − (c/λ)(b·t + m b·n) is solved by T⁰, see
-//! [`law`](crate::model::spans::boundary::capstan). What is left of it, and the material, are
+//! [`capstan`](crate::model::spans::boundary::capstan). What is left of it, and the material, are
 //! integrals of functions that hardly change along a stretch, and whose derivatives at both ends
 //! are known: with f = 1/λ, k = τ/EA, q = b·t + m b·n and r = dq/dψ = m b·t − b·n (dr/dψ = −q),
 //!

@@ -1,9 +1,9 @@
 //! This module gives models with spans of their own the friction of one wheel: its memory, and the
 //! two equations of the cable on it.
 //!
-//! The law is that of every contact here (`law`, `history`, `rub`). Slip is seen at points fixed to
-//! the wheel, since where the cable meets and leaves it wanders with its directions and moves no
-//! material.
+//! The law is that of every contact here (`capstan`, `friction_memory`, `equations`). Slip is seen
+//! at points fixed to the wheel, since where the cable meets and leaves it wanders with its
+//! directions and moves no material.
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::capstan::{Law, Track};

@@ -183,8 +183,8 @@ fn span_rows(strand: &CableRun, course: &Course, k: usize, system: &mut System) 
     }
 }
 
-/// The rows of a load that lies, see `weight`.
-fn weight_rows(strand: &CableRun, course: &Course, j: usize, system: &mut System) {
+/// The rows of a load that lies, see `point_load`.
+fn load_rows(strand: &CableRun, course: &Course, j: usize, system: &mut System) {
     let (r, b, scale) = (&mut system.residual, &mut system.band, scale(strand));
     let (c, place) = (&strand.contacts[j], &system.spots[j].0[0]);
     let (row, p) = (6 * j + 2, c.ends.p[0]);
@@ -219,7 +219,7 @@ fn weight_rows(strand: &CableRun, course: &Course, j: usize, system: &mut System
 
 fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, system: &mut System) {
     if strand.contacts[j].is_load() {
-        return weight_rows(strand, course, j, system);
+        return load_rows(strand, course, j, system);
     }
     let (r, b, (spots, pivot), scale) = (&mut system.residual, &mut system.band, &system.spots[j], scale(strand));
     let c = &strand.contacts[j];

@@ -7,7 +7,7 @@
 //! ```text
 //! span     ∫ f(F(s)) ds − (x_b − x_a) = 0,   f(F) = τ(F/T + F/EA)      (2)
 //! contact  F × t = 0 at p₁ and at p₂                                    (2)
-//!          two rows for material and tension, see `rub`                 (2)
+//!          two rows for material and tension, see `contact/equations`   (2)
 //! ```
 //!
 //! At a lying end the tension takes the place of p among the unknowns, and s = its material that of
