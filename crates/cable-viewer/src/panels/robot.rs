@@ -26,7 +26,7 @@ const FIRST_LEG: (f64, f64) = (0.3, 2.0);
 /// Draws it, if the scene has one.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(robot) = &state.document.scene.robot else {
-        ui.weak("No robot: choose one under Scene");
+        ui.weak("No robot: select the scene and choose one");
         return;
     };
     by_hand(ui, state, commands);

@@ -242,7 +242,7 @@ pub fn with_pulley(state: &mut AppState) {
 /// What lists the things of the scene, and what edits the one that is selected.
 pub fn outline_and_form(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
     cable_viewer::panels::scene::outline::ui(ui, state, commands);
-    if cable_viewer::panels::selected::is_shown(state) {
+    if state.selection.selected.is_some() {
         cable_viewer::panels::selected::ui(ui, state, commands);
     }
 }

@@ -85,6 +85,11 @@ fn support(harness: &Harness<'_, ViewerApp>, name: &str) -> Pos2 {
     harness.get_by_label(&format!("Support {name} of cable")).rect().center()
 }
 
+/// Opens the form of a thing.
+fn select(harness: &mut Harness<'_, ViewerApp>, item: Item) {
+    apply(harness, Command::View(ViewCommand::Select(Some(item))));
+}
+
 fn apply(harness: &mut Harness<'_, ViewerApp>, command: Command) {
     let ctx = harness.ctx.clone();
     harness.state_mut().apply(&ctx, vec![command]);
