@@ -66,7 +66,7 @@ fn the_window_opens_on_a_robot_without_a_warning() {
     assert!(first.robot.is_some() && first.name.contains("tank"), "{}", first.name);
     let mut harness = open(first);
     harness.get_by_label("No warnings");
-    for hint in ["Drag “riser”", "Press Space to play", "Scroll to zoom"] {
+    for hint in ["Drag the robot", "Press Space to play", "Scroll to zoom"] {
         harness.get_by_label(hint);
     }
     // Nor in the first minute of play.

@@ -4,6 +4,7 @@
 
 mod contrast;
 mod controls;
+mod defects;
 mod editing;
 mod first_minute;
 mod gallery;
@@ -16,6 +17,7 @@ mod layout;
 mod outline;
 mod pictures;
 mod playing;
+mod precision;
 mod pulling;
 mod quality;
 mod reach;

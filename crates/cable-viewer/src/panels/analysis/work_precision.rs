@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use cable_core::Model;
 use cable_core::summary::Setting;
-use egui::{ProgressBar, RichText, Ui};
-use egui_plot::{GridInput, GridMark, HLine, LineStyle, MarkerShape, Plot, PlotBounds, Points};
+use egui::{ProgressBar, Rangef, RichText, Ui};
+use egui_plot::{AxisHints, GridInput, GridMark, HLine, LineStyle, MarkerShape, Plot, PlotBounds, Points};
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
@@ -21,6 +21,9 @@ use crate::widgets::field;
 const TITLE: &str = "Error over cost";
 /// Height of the chart, points.
 const HEIGHT: f32 = 190.0;
+/// Distance of powers of ten below which their numbers are left out, and from which they are as dark as
+/// text, points.
+const LABELS_APART: Rangef = Rangef { min: 18.0, max: 26.0 };
 /// Differences below this are drawn at it: they are rounding.
 const LEAST_DIFFERENCE: f64 = 1e-10;
 
@@ -99,6 +102,8 @@ fn chart(ui: &mut Ui, found: &Outcome, tolerance: f64) {
     };
     let [left, right] = ends(0, (found.given.1 * 1e3).max(1e-6).log10());
     let [low, high] = ends(1, tolerance.max(LEAST_DIFFERENCE).log10());
+    let across =
+        AxisHints::new_x().label("Time, ms").formatter(|mark, _| power(mark.value)).label_spacing(LABELS_APART);
     let plot = Plot::new(TITLE)
         .height(HEIGHT)
         .allow_drag(false)
@@ -106,11 +111,10 @@ fn chart(ui: &mut Ui, found: &Outcome, tolerance: f64) {
         .allow_scroll(false)
         .allow_boxed_zoom(false)
         .y_axis_min_width(34.0)
-        .x_axis_label("Time, ms")
+        .custom_x_axes(vec![across])
         .y_axis_label("Difference of forces")
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
-        .x_axis_formatter(|mark, _| power(mark.value))
         .y_axis_formatter(|mark, _| power(mark.value));
     let shown = plot.show(ui, |plot| {
         plot.set_plot_bounds(PlotBounds::from_min_max([left - 0.4, low - 0.8], [right + 0.4, high + 0.8]));

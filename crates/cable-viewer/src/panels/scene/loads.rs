@@ -4,7 +4,6 @@ use cable_core::Load;
 use egui::{ComboBox, Ui};
 
 use crate::command::{Command, SceneCommand};
-use crate::panels::scene::outline;
 use crate::panels::scene::rows::{self, VALUE_WIDTH, components, show_faults};
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
@@ -32,7 +31,7 @@ const STRENGTH: Quantity = Quantity {
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     for (k, load) in state.document.scene.loads.iter().enumerate() {
         let about = load.force_n.map_or("changes with time".to_owned(), |[x, y]| format::force(x.hypot(y)));
-        ui.push_id(k, |ui| outline::row(ui, state, Item::Load(k), &format!("load {}", k + 1), &about, commands));
+        ui.push_id(k, |ui| rows::row(ui, state, Item::Load(k), &format!("load {}", k + 1), &about, commands));
     }
     let Some(cable) = state.document.scene.cables.get(state.current_cable()) else { return };
     if ui.button("Add load").on_hover_text("A force on the middle of the cable, 100 N down").clicked() {

@@ -3,7 +3,7 @@
 //! - `outline`: everything in the scene as a tree that selects
 //! - `map`, `robot`: pickers of known tanks and robots
 //! - `supports`, `obstacles`, `loads`: a list each, and a form for everything of one
-//! - `rows`: the cells and fields that forms are made of
+//! - `rows`: the rows of the outline, and the cells and fields that forms are made of
 
 pub(super) mod loads;
 mod map;

@@ -6,7 +6,6 @@ use cable_core::scene::Shape;
 use egui::{Button, ScrollArea, Ui};
 
 use crate::command::{Command, SceneCommand};
-use crate::panels::scene::outline;
 use crate::panels::scene::rows::{self, GAP, coordinates, optional, show_faults};
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
@@ -22,7 +21,7 @@ const CORNERS_HEIGHT: f32 = 240.0;
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     for (k, obstacle) in state.document.scene.obstacles.iter().enumerate() {
         let (form, _) = shape_name(&obstacle.shape);
-        ui.push_id(k, |ui| outline::row(ui, state, Item::Obstacle(k), &obstacle.name, form, commands));
+        ui.push_id(k, |ui| rows::row(ui, state, Item::Obstacle(k), &obstacle.name, form, commands));
     }
     let menu = ui.menu_button("Add obstacle", |ui| add(ui, state, commands));
     menu.response.on_hover_text("Ground, a beam, a post or a sheet, in the middle of the picture");

@@ -3,22 +3,18 @@
 
 use cable_core::scene::preset::robot_preset;
 use cable_core::scene::{RobotTask, View};
-use egui::{Atom, AtomExt, Button, CollapsingHeader, Ui};
+use egui::{CollapsingHeader, Ui};
 
-use crate::command::{Command, ViewCommand};
-use crate::panels::readouts::DIMMED;
+use crate::command::Command;
+use crate::panels::scene::rows::row;
 use crate::panels::scene::{loads, obstacles, supports};
 use crate::panels::warnings;
 use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
 use crate::units::{format, labels};
-use crate::widgets::field;
 
 /// How far what belongs to a cable or a heading stands to the right of it, points.
 const INDENT: f32 = 10.0;
-
-/// Between a line and the canvas, points: a text that is cut may be a little wider than it is given.
-const RIGHT_MARGIN: f32 = 6.0;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -64,27 +60,6 @@ fn list(ui: &mut Ui, width: f32, id: &str, title: &str, contents: impl FnOnce(&m
         ui.set_max_width(width);
         indented(ui, id, contents);
     });
-}
-
-/// A thing with a word about it at the right end.
-pub(super) fn row(ui: &mut Ui, state: &AppState, item: Item, name: &str, about: &str, commands: &mut Vec<Command>) {
-    let selected = state.selection.selected == Some(item);
-    let colour = if selected { ui.visuals().text_color() } else { ui.visuals().weak_text_color() };
-    let opacity = if state.is_current() { 1.0 } else { DIMMED };
-    let about = egui::RichText::new(about).color(colour.gamma_multiply(opacity));
-    // The name gives way to the word about it, but the word "Scene" to no name.
-    let about = about.atom_shrink(item == Item::Scene);
-    let button = Button::selectable(selected, (name, Atom::grow(), about)).truncate();
-    let width = ui.available_width() - RIGHT_MARGIN;
-    let row = ui.scope(|ui| {
-        ui.set_max_width(width);
-        ui.add(button.min_size(egui::vec2(width, 0.0)))
-    });
-    let response = row.inner;
-    field::name(&response, &format!("Select {name}"));
-    if response.on_hover_text(format!("{}: click to select it", state.describe(item))).clicked() {
-        commands.push(Command::View(ViewCommand::Select((!selected).then_some(item))));
-    }
 }
 
 /// The greatest tension of a cable in words; nothing where there is no answer.

@@ -1,14 +1,20 @@
-//! The forms of supports, obstacles and loads are made of these cells and fields.
+//! The outline is made of these rows, the forms of supports, obstacles and loads of these cells and
+//! fields.
 
 use cable_core::math::Point;
-use egui::Ui;
+use egui::{Atom, AtomExt, Button, Ui};
 
+use crate::command::{Command, ViewCommand};
+use crate::panels::readouts::DIMMED;
+use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::property::labelled;
 
 /// Width of a number beside another, points: “−12.345” fits.
 pub const NUMBER_WIDTH: f32 = 47.0;
+/// Between a line and the canvas, points: a text that is cut may be a little wider than it is given.
+const RIGHT_MARGIN: f32 = 6.0;
 /// What a field has beside its text, points.
 const FIELD_MARGIN: f32 = 8.0;
 
@@ -20,6 +26,27 @@ pub const VALUE_WIDTH: f32 = 84.0;
 
 /// Gap between columns, points.
 pub const GAP: f32 = 3.0;
+
+/// A thing with a word about it at the right end.
+pub fn row(ui: &mut Ui, state: &AppState, item: Item, name: &str, about: &str, commands: &mut Vec<Command>) {
+    let selected = state.selection.selected == Some(item);
+    let colour = if selected { ui.visuals().text_color() } else { ui.visuals().weak_text_color() };
+    let opacity = if state.is_current() { 1.0 } else { DIMMED };
+    let about = egui::RichText::new(about).color(colour.gamma_multiply(opacity));
+    // The name gives way to the word about it, but the words "Scene" and "robot" to no name.
+    let about = about.atom_shrink(matches!(item, Item::Scene | Item::Robot));
+    let button = Button::selectable(selected, (name, Atom::grow(), about)).truncate();
+    let width = ui.available_width() - RIGHT_MARGIN;
+    let row = ui.scope(|ui| {
+        ui.set_max_width(width);
+        ui.add(button.min_size(egui::vec2(width, 0.0)))
+    });
+    let response = row.inner;
+    field::name(&response, &format!("Select {name}"));
+    if response.on_hover_text(format!("{}: click to select it", state.describe(item))).clicked() {
+        commands.push(Command::View(ViewCommand::Select((!selected).then_some(item))));
+    }
+}
 
 /// A cell of a list, so that columns stand under each other.
 pub fn cell<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> R {

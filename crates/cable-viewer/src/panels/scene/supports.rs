@@ -8,7 +8,6 @@ use egui::{ComboBox, Response, Ui};
 use crate::command::support_kind::{KINDS, of_kind, refusal};
 use crate::command::{Command, SceneCommand};
 use crate::panels::scene::loads::FIRST_SPAN_S;
-use crate::panels::scene::outline;
 use crate::panels::scene::rows::{self, NUMBER_WIDTH, cell, components, coordinates, optional, show_faults};
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
@@ -51,7 +50,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
     let Some(cable) = state.document.scene.cables.get(index) else { return };
     for (support, value) in cable.supports.iter().enumerate() {
         let item = Item::Support { cable: index, support };
-        ui.push_id(support, |ui| outline::row(ui, state, item, &value.name, kind_name(value.kind), commands));
+        ui.push_id(support, |ui| rows::row(ui, state, item, &value.name, kind_name(value.kind), commands));
     }
     let help = "A frictionless point the cable slides through, in the middle of the cable; drag it, or change its kind";
     if ui.button("Add waypoint").on_hover_text(help).clicked() {
