@@ -209,6 +209,7 @@ pub fn driven() -> AppState {
     let mut state = state();
     let mut scene = catalog::robot_drive();
     scene.name.clone_from(&state.document.scene.name);
+    state.live.snapshot.scene = Some(Arc::new(scene.clone()));
     state.document.scene = scene;
     let mut answer = (**state.live.snapshot.solution.as_ref().unwrap()).clone();
     answer.robot = Some(RobotReport {
