@@ -1,10 +1,15 @@
 //! The bundled scenes: readable, valid by the schema, and laid clear of what stands in their way.
 
 use cable_core::scene::{Robot, Shape, SupportKind, catalog, preset};
-use cable_core::{Scene, Vec2};
+use cable_core::solution::WarningKind;
+use cable_core::{Model, Scene, Simulation, Vec2};
 
 fn vec2(p: [f64; 2]) -> Vec2 {
     Vec2::new(p[0], p[1])
+}
+
+fn text_of(id: &str) -> &'static str {
+    catalog::TEXTS.iter().find(|(k, _)| *k == id).map_or("", |(_, text)| text)
 }
 
 #[test]
@@ -61,7 +66,7 @@ fn the_schema_accepts_every_bundled_scene_and_refuses_unknown_keys() {
         assert!(!validator.is_valid(&json(&super::FULL.replacen(from, to, 1))), "{to} was accepted");
     }
     // Without a preset its numbers are needed.
-    assert!(!validator.is_valid(&json(&catalog::TEXTS[1].1.replace("preset = \"soow-6-4\"\n", ""))));
+    assert!(!validator.is_valid(&json(&text_of("hanging-span").replace("preset = \"soow-6-4\"\n", ""))));
 }
 
 /// Distance of two segments, 0 where they cross, m.
@@ -149,7 +154,7 @@ fn every_map_and_every_cable_preset_makes_a_valid_scene() {
         assert!((2.0 * wide - map.inside_width_m.value).abs() < 1e-9, "{}: drawn {} m wide", map.id, 2.0 * wide);
         assert!(map.riser_at_m[0].abs() < wide, "{}", map.id);
     }
-    let text = |id: &str| catalog::TEXTS[1].1.replace("soow-6-4", id);
+    let text = |id: &str| text_of("hanging-span").replace("soow-6-4", id);
     for cable in preset::cable_presets() {
         let scene = Scene::from_toml(&text(cable.id)).unwrap_or_else(|e| panic!("{}: {e}", cable.id));
         assert_eq!(scene.cables[0].linear_density_kg_per_m, cable.linear_density_kg_per_m.value);
@@ -158,4 +163,39 @@ fn every_map_and_every_cable_preset_makes_a_valid_scene() {
         let text = format!("{}\n[robot]\npreset = \"{}\"\nat_m = [0.0, 0.0]\n", text("soow-6-4"), robot.id);
         Scene::from_toml(&text).unwrap_or_else(|e| panic!("{}: {e}", robot.id));
     }
+}
+
+/// A scene whose ground is rough was said to have many resting places where its cable touched none of it.
+#[test]
+fn a_cable_that_hangs_free_over_rough_ground_has_one_rest() {
+    for model in [Model::Auto, Model::Spans, Model::Fem, Model::MassSpring] {
+        let answer = Simulation::new(catalog::tank_robot(), model).unwrap().settle().unwrap();
+        assert!(answer.warnings.is_empty(), "{model}: {:?}", answer.warnings);
+        // With the robot nearer the cable lies on the ground, and it matters how it was laid.
+        let mut near = catalog::tank_robot();
+        near.robot.as_mut().unwrap().at_m = [0.5, 0.1];
+        let answer = Simulation::new(near, model).unwrap().settle().unwrap();
+        assert!(answer.warnings.iter().any(|w| w.kind == WarningKind::NotUnique), "{model}");
+    }
+}
+
+/// The opening scene is harmless: over two rounds of the robot's path nothing is warned of, and the tension stays below
+/// half of the service tension.
+#[test]
+fn the_opening_scene_has_nothing_to_warn_of() {
+    let scene = catalog::tank_robot();
+    let service_n = scene.cables[0].service_tension_n;
+    let mut simulation = Simulation::new(scene, Model::Auto).unwrap();
+    let mut answer = simulation.settle().unwrap();
+    let (mut greatest_n, mut span_m) = (0.0_f64, [f64::INFINITY, f64::NEG_INFINITY]);
+    while answer.time_s < 45.0 {
+        assert!(answer.warnings.is_empty(), "{} s: {:?}", answer.time_s, answer.warnings);
+        greatest_n = greatest_n.max(answer.max_tension().tension_n);
+        let x_m = answer.robot.unwrap().x_m;
+        span_m = [span_m[0].min(x_m), span_m[1].max(x_m)];
+        simulation.step(1.0 / 60.0).unwrap();
+        answer = simulation.solution();
+    }
+    assert!(span_m[0] < 3.5 && span_m[1] > 5.6, "the robot drives out and back: {span_m:?}");
+    assert!(greatest_n > 200.0 && greatest_n < 0.5 * service_n, "{greatest_n} N");
 }

@@ -294,7 +294,7 @@ const CONTROLS: [(&str, &str); 28] = [
     ("Left, right in a graph", "Moves its cursor; with Shift what is in view"),
     ("Up, down, Enter in a graph", "Zooms; sets another cursor"),
     ("F, C", "Fits the scene, recentres on the cable"),
-    ("[, ], G", "Folds the edit panel, the results, graphs and timeline"),
+    ("[, ], G", "Folds the outline, the selection and results, graphs and timeline"),
     ("Space", "Runs or pauses"),
     ("Arrow right, left", "One step of 1/60 s; one picture back"),
     ("Hold A, D", "Drives the robot left, right"),

@@ -62,7 +62,10 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState, commands: &mut Vec<Command>) 
 fn text(state: &AppState, step: FirstStep) -> String {
     match step {
         FirstStep::Drag => {
-            // One that is held at a place: what hangs on the robot moves with it.
+            if state.document.scene.robot.is_some() {
+                return "Drag the robot".to_owned();
+            }
+            // One that is held at a place.
             let held = state.document.scene.cables.first().and_then(|c| c.supports.iter().rfind(|s| s.at_m.is_some()));
             held.map_or_else(|| "Drag an end of the cable".to_owned(), |s| format!("Drag “{}”", s.name))
         }

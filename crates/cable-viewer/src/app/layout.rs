@@ -12,21 +12,13 @@ use crate::{canvas, panels};
 type PanelUi = fn(&mut Ui, &AppState, &mut Vec<Command>);
 type Section = (&'static str, PanelUi);
 
-/// What is edited.
-const EDIT: &[Section] = &[
-    ("Outline", panels::scene::outline::ui),
-    (SELECTED, panels::selected::ui),
-    ("Scene", panels::scene::ui),
-    ("Robot", panels::robot::ui),
-    ("Cable", panels::cable::ui),
-    ("Environment", panels::environment::ui),
-    ("Solver", panels::solver::ui),
-];
-/// What is read off, first of what is selected. Where a place on the cable is marked its tension stands above the readouts,
-/// else at the end.
+/// What is in the scene, and in a small window what edits the selected thing.
+const EDIT: &[Section] = &[("Outline", panels::scene::outline::ui), (SELECTED, panels::selected::ui)];
+/// What is wrong, what edits the selected thing, then what is read off. Where a place on the cable is
+/// marked its tension stands above the readouts, else at the end.
 const READ: &[Section] = &[
-    (SELECTED, panels::selected::ui),
     ("Warnings", panels::warnings::ui),
+    (SELECTED, panels::selected::ui),
     (MARKED, panels::analysis::tension_budget::ui),
     ("Readouts", panels::readouts::ui),
     ("Safe reach", panels::analysis::safe_reach::ui),
@@ -45,14 +37,16 @@ const WIDE: f32 = 1000.0;
 /// Lower windows (points) have one side panel, and the graphs in it: nothing would be left of the
 /// canvas above them.
 const LEAST_FOR_GRAPHS: f32 = 520.0;
-/// Width of the panels as a part of the window's, and the least and greatest, points: what is in
-/// them never moves the canvas. Wider: the canvas has less than 60 % of 1280×800; narrower: a name,
-/// a number and its unit do not fit in a line.
-const EDIT_WIDTH: (f32, [f32; 2]) = (0.198, [246.0, 336.0]);
-/// As [`EDIT_WIDTH`].
-const RESULTS_WIDTH: (f32, [f32; 2]) = (0.155, [196.0, 320.0]);
-/// Height of the graphs with the timeline as a part of the window's, and the least, points.
-const GRAPHS_HEIGHT: (f32, f32) = (0.19, 120.0);
+/// Width of the outline as a part of the window's, and the least and greatest, points: what is in
+/// the panels never moves the canvas. Wider: the canvas has less than 60 % of 1280×800; narrower:
+/// the kind of a thing does not fit beside its name.
+const OUTLINE_WIDTH: (f32, [f32; 2]) = (0.142, [164.0, 250.0]);
+/// As [`OUTLINE_WIDTH`], of the panel on the right; narrower: a name, a number and its unit do not
+/// fit in a line.
+const INSPECTOR_WIDTH: (f32, [f32; 2]) = (0.195, [244.0, 340.0]);
+/// Height of the graphs with the timeline as a part of the window's, and the least, points. Less:
+/// lines are not read in them; more: the canvas has less than 48 % of 1280×800.
+const GRAPHS_HEIGHT: (f32, f32) = (0.205, 150.0);
 
 fn part((fraction, [least, most]): (f32, [f32; 2]), of: f32) -> f32 {
     (fraction * of).clamp(least, most).round()
@@ -72,32 +66,33 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let open = state.ui.panels;
     let wide = width >= WIDE && graphs;
     state.ui.legend_beside = wide && open.results;
-    if wide {
-        if open.edit {
-            side(ui, Panel::left("edit"), part(EDIT_WIDTH, width), |ui| scroll(ui, "edit", EDIT, state, commands));
-        }
-        if open.results {
-            side(ui, Panel::right("read"), part(RESULTS_WIDTH, width), |ui| {
-                legend::beside(ui, state);
-                scroll(ui, "read", READ, state, commands);
-            });
-        }
-    } else if open.edit || open.results {
+    if wide && open.results {
+        side(ui, Panel::right("read"), part(INSPECTOR_WIDTH, width), |ui| {
+            legend::beside(ui, state);
+            scroll(ui, "read", READ, state, commands);
+        });
+    }
+    if !wide && (open.edit || open.results) {
         tabs(ui, state, !graphs, commands);
     }
+    // Below outline and canvas, and so wider than the canvas.
     // A past that is shown must not be forgotten about.
     let past = state.live.recording.shown_s.is_some();
     if graphs && open.graphs {
-        let high = (GRAPHS_HEIGHT.0 * height).max(GRAPHS_HEIGHT.1);
-        Panel::bottom("plots").resizable(true).default_size(high).size_range(GRAPHS_HEIGHT.1..=500.0).show(ui, |ui| {
+        let high = (GRAPHS_HEIGHT.0 * height).max(GRAPHS_HEIGHT.1).round();
+        let frame = Frame::side_top_panel(ui.style()).inner_margin(egui::Margin::symmetric(5, 2));
+        let drawer = Panel::bottom("plots").frame(frame).resizable(true).default_size(high);
+        drawer.size_range(GRAPHS_HEIGHT.1..=500.0).show(ui, |ui| {
             // A panel takes the height of what is in it: without this it shrinks by a margin a
             // frame.
             ui.set_min_height(ui.available_height());
-            panels::timeline::ui(ui, state, commands);
             panels::plots::ui(ui, state, commands);
         });
     } else if past || (graphs && state.live.before_reset.is_some()) {
         Panel::bottom("timeline").show(ui, |ui| panels::timeline::ui(ui, state, commands));
+    }
+    if wide && open.edit {
+        side(ui, Panel::left("edit"), part(OUTLINE_WIDTH, width), |ui| scroll(ui, "edit", EDIT, state, commands));
     }
     let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
     first_steps::ui(ui, canvas.response.rect, state, commands);
@@ -132,7 +127,7 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
         let mut tab: Tab = ui.data(|d| d.get_temp(id)).unwrap_or_default();
         ui.horizontal(|ui| {
             ui.selectable_value(&mut tab, Tab::Edit, "Edit")
-                .on_hover_text("Outline, scene, robot, cable, environment, solver");
+                .on_hover_text("The outline, and what edits the selected thing");
             ui.selectable_value(&mut tab, Tab::Read, "Results")
                 .on_hover_text("Warnings, readouts, safe reach, tension at a place, compare");
             if graphs {
@@ -146,10 +141,7 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
         });
         ui.data_mut(|d| d.insert_temp(id, tab));
         match tab {
-            Tab::Graphs if graphs => {
-                panels::timeline::ui(ui, state, commands);
-                panels::plots::ui(ui, state, commands);
-            }
+            Tab::Graphs if graphs => panels::plots::ui(ui, state, commands),
             Tab::Read => scroll(ui, "read", READ, state, commands),
             Tab::Edit | Tab::Graphs => scroll(ui, "edit", EDIT, state, commands),
         }
@@ -162,9 +154,8 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
         let width = ui.available_width();
         for (title, panel) in sections {
             let hidden = match *title {
-                "Robot" => state.document.scene.robot.is_none(),
                 // On the right where there is such a panel, else below the outline.
-                SELECTED => !panels::selected::is_shown(state) || (id == "read") != state.ui.legend_beside,
+                SELECTED => state.selection.selected.is_none() || (id == "read") != state.ui.legend_beside,
                 MARKED => state.analysis.tension_marker.is_none(),
                 UNMARKED => state.analysis.tension_marker.is_some(),
                 _ => false,

@@ -30,7 +30,7 @@ use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::{self, Command};
 use crate::io::autosave::Autosave;
 use crate::io::{first_steps as first_steps_file, recent_files};
-use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach};
+use crate::jobs::{friction_range, model_comparison, neglected_bending, safe_reach, work_precision};
 use crate::render::theme;
 use crate::state::analysis::hold;
 use crate::state::dialog::Dialog;
@@ -70,6 +70,8 @@ pub struct ViewerApp {
     reach: Option<safe_reach::Job>,
     /// Every model being asked.
     models: Option<model_comparison::Job>,
+    /// Every model and mesh being compared.
+    precision: Option<work_precision::Job>,
     /// What neglecting bending stiffness changes, computed or being computed.
     bending: Option<neglected_bending::Job>,
     /// The ribbon of less and more friction, computed or being computed.
@@ -104,6 +106,7 @@ impl ViewerApp {
             first_steps_mark: None,
             reach: None,
             models: None,
+            precision: None,
             bending: None,
             spread: None,
         };
@@ -187,6 +190,11 @@ impl ViewerApp {
             let (shown, settings) = (ctx.clone(), self.state.solver.settings);
             self.models = scene.map(|s| model_comparison::start(*s, settings, move || shown.request_repaint()));
         }
+        if let Some(scene) = effects.work_precision {
+            let (shown, solver) = (ctx.clone(), &self.state.solver);
+            let (model, settings) = (solver.model, solver.settings);
+            self.precision = scene.map(|s| work_precision::start(*s, model, settings, move || shown.request_repaint()));
+        }
         if effects.restart_worker {
             self.worker = new_worker(ctx, self.threaded);
         }
@@ -223,6 +231,12 @@ impl ViewerApp {
             }
             if !matches!(self.state.analysis.models, model_comparison::Progress::Running(..)) {
                 self.models = None;
+            }
+        }
+        if let Some(job) = &self.precision {
+            self.state.analysis.work_precision = job.progress();
+            if !matches!(self.state.analysis.work_precision, work_precision::Progress::Running(..)) {
+                self.precision = None;
             }
         }
         self.update_neglected_bending(ctx);

@@ -7,12 +7,12 @@ use egui::{Key, ScrollArea, TextEdit, Ui};
 use crate::app::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::render::colour::{ColourScale, Quantity};
-use crate::state::OpenPanels;
 use crate::state::dialog::Dialog;
+use crate::state::{Item, OpenPanels};
 use crate::units::system::System;
 
 /// Other words that people look for, and a part of the name that they mean.
-const SYNONYMS: [(&str, &str); 23] = [
+const SYNONYMS: [(&str, &str); 24] = [
     ("start here", "learn guide tutorial welcome introduction"),
     ("pin this result", "hold keep compare reference remember"),
     ("pin a recorded run", "hold compare"),
@@ -36,12 +36,14 @@ const SYNONYMS: [(&str, &str); 23] = [
     ("quit", "exit close"),
     ("new scene", "create empty"),
     ("colour by", "color"),
+    ("chart error", "work precision accuracy tolerance speed mesh compare"),
 ];
 
 /// Everything, with the words it is found by.
 fn entries(panels: OpenPanels) -> Vec<(String, Command)> {
     let show = |panels| Command::View(ViewCommand::ShowPanels(panels));
     let file = |dialog| Command::File(FileCommand::SetDialog(Some(dialog)));
+    let select = |item| Command::View(ViewCommand::Select(Some(item)));
     let theme = |theme| Command::View(ViewCommand::SetTheme(theme));
     let fixed = [
         ("New scene", Command::File(FileCommand::New)),
@@ -69,6 +71,11 @@ fn entries(panels: OpenPanels) -> Vec<(String, Command)> {
         ("Pin this result", Command::View(ViewCommand::Hold)),
         ("Compare all models", Command::View(ViewCommand::HoldModels(true))),
         ("Unpin all", Command::View(ViewCommand::LetGo(None))),
+        ("Chart error over cost of every model", Command::View(ViewCommand::ChartPrecision(true))),
+        ("Edit the scene: name, map, robot", select(Item::Scene)),
+        ("Edit the cable", select(Item::Cable(0))),
+        ("Edit the environment", select(Item::Environment)),
+        ("Edit the solver: model, mesh, accuracy", select(Item::Solver)),
         ("Find safe reach", Command::View(ViewCommand::Reach(true))),
         ("Cancel or clear the safe reach", Command::View(ViewCommand::Reach(false))),
         ("Light theme", theme(egui::ThemePreference::Light)),

@@ -3,8 +3,8 @@
 use cable_core::scene::SupportKind;
 
 use crate::command::FileCommand;
-use crate::state::AppState;
 use crate::state::tutorial_place::TutorialPlace;
+use crate::state::{AppState, Item};
 
 /// A guided scene.
 pub struct Tutorial {
@@ -84,9 +84,12 @@ pub const TUTORIALS: [Tutorial; 6] = [
         title: "Change the cable",
         scene: "over-beam",
         steps: &[
+            act("Select cable", "Click the cable in the outline on the left: its properties open on the right", |s| {
+                matches!(s.selection.selected, Some(Item::Cable(_)))
+            }),
             act(
                 "Linear density",
-                "Choose another preset or move a slider under Cable on the left: every property has a unit, a range and a source",
+                "Choose another preset or move a slider: every property has a unit, a range and a source",
                 changed,
             ),
             read(
@@ -110,7 +113,7 @@ pub const TUTORIALS: [Tutorial; 6] = [
             }),
             act(
                 "Support waypoint of cable",
-                "Drag the waypoint upwards, and give it a wheel in the outline on the left if you like",
+                "Drag the waypoint upwards, and give it a wheel on the right if you like",
                 |s| {
                     let of = s.document.scene.cables.first().map(|c| &c.supports);
                     of.is_some_and(|list| {
@@ -144,9 +147,10 @@ pub const TUTORIALS: [Tutorial; 6] = [
             act("Robot on the canvas", "Hold D: the robot drives to the right and draws its cable along", |s| {
                 s.live.latest.solution.as_ref().and_then(|a| a.robot).is_some_and(|r| r.x_m > 10.4)
             }),
-            read(
-                "Robot section",
-                "Under Robot stands why it is as fast as it is: slope, ground, the pull of the cable. Drive on and it stalls or slips",
+            act(
+                "Select robot",
+                "Click the robot: on the right stands why it is as fast as it is: slope, ground, the pull of the cable. Drive on and it stalls or slips",
+                |s| s.selection.selected == Some(Item::Robot),
             ),
             act(
                 "Find safe reach",
@@ -162,9 +166,11 @@ pub const TUTORIALS: [Tutorial; 6] = [
             act("Pin this result", "Press Pin this result under Compare on the right", |s| {
                 !s.analysis.references.is_empty()
             }),
-            act("Length", "Change the length: both are drawn, and what differs is told under Compare", |s| {
-                !s.analysis.references.is_empty() && changed(s)
-            }),
+            act(
+                "Select cable",
+                "Select the cable and change its length: both are drawn, and what differs is told under Compare",
+                |s| !s.analysis.references.is_empty() && changed(s),
+            ),
             read(
                 "Export Along the cable",
                 "Export… beside a graph writes what is in view as CSV, SVG or PNG; Save run… in the File menu keeps everything",

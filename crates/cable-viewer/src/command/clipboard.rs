@@ -67,7 +67,7 @@ fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
             let (at_m, _) = crate::geometry::arrows::load_at(state, k)?;
             (Thing::Load(scene.loads.get(k)?.clone()), vec![at_m])
         }
-        Item::Robot | Item::Leg(_) => return None,
+        Item::Robot | Item::Leg(_) | Item::Scene | Item::Environment | Item::Solver => return None,
     })
 }
 

@@ -21,6 +21,8 @@ pub struct Effects {
     pub reach: Option<Option<Box<ReachQuery>>>,
     /// Ask every model about a scene, or end that.
     pub models: Option<Option<Box<Scene>>>,
+    /// Compare every model and mesh about a scene, or end that.
+    pub work_precision: Option<Option<Box<Scene>>>,
     /// Text for the clipboard of the system.
     pub copied: Option<String>,
 }

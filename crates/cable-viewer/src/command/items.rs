@@ -70,7 +70,7 @@ pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
                 }
             }
         }
-        Item::Cable(_) | Item::Load(_) => {}
+        Item::Cable(_) | Item::Load(_) | Item::Scene | Item::Environment | Item::Solver => {}
     }
 }
 
@@ -148,6 +148,7 @@ pub fn remove_all(state: &mut AppState, mut items: Vec<Item>) {
         Item::Obstacle(k) => (4, k, 0),
         Item::Cable(k) => (5, k, 0),
         Item::Robot => (6, 0, 0),
+        Item::Scene | Item::Environment | Item::Solver => (7, 0, 0),
     };
     items.sort_by_key(|item| std::cmp::Reverse(rank(item)));
     items.dedup_by_key(|item| rank(item));
@@ -164,7 +165,7 @@ fn remove(scene: &mut Scene, item: Item) {
             let gone = scene.cables.remove(k);
             scene.loads.retain(|l| l.cable != gone.name);
         }
-        Item::Cable(_) => {}
+        Item::Cable(_) | Item::Scene | Item::Environment | Item::Solver => {}
         Item::Robot => set_robot(scene, None),
         Item::Support { cable, support } => {
             let Some(c) = scene.cables.get_mut(cable) else { return };
@@ -231,6 +232,7 @@ fn exists(state: &AppState, item: Item) -> bool {
         Item::Load(k) | Item::Head(k) => k < scene.loads.len(),
         Item::Robot => scene.robot.is_some(),
         Item::Leg(k) => scene.robot.as_ref().is_some_and(|r| k < r.path.len()),
+        Item::Scene | Item::Environment | Item::Solver => true,
     }
 }
 

@@ -47,7 +47,7 @@ pub enum Command {
 /// The first step that a command is.
 fn first_step(command: &Command) -> Option<FirstStep> {
     match command {
-        Command::Scene(SceneCommand::Move { item: Item::Support { .. }, .. }) => Some(FirstStep::Drag),
+        Command::Scene(SceneCommand::Move { item: Item::Support { .. } | Item::Robot, .. }) => Some(FirstStep::Drag),
         Command::Scene(SceneCommand::MoveAll(moved)) if !moved.is_empty() => Some(FirstStep::Drag),
         Command::Playback(PlaybackCommand::TogglePause | PlaybackCommand::SetPaused(false) | PlaybackCommand::Step) => {
             Some(FirstStep::Play)

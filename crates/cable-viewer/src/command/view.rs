@@ -7,7 +7,7 @@ use cable_core::math::Point;
 
 use crate::command::effects::Effects;
 use crate::jobs::safe_reach::{self, Progress, ReachQuery, ReachSubject};
-use crate::jobs::{model_comparison, neglected_bending};
+use crate::jobs::{model_comparison, neglected_bending, work_precision};
 use crate::record::run::Run;
 use crate::render::colour::ColourScale;
 use crate::state::questions::{bending_query, reach_target};
@@ -78,6 +78,9 @@ pub enum ViewCommand {
     Hold,
     /// Asks every model about the scene at rest and holds what they answer, or ends that.
     HoldModels(bool),
+    /// Solves the scene at rest by every model and mesh and charts their error over their cost, or
+    /// ends that.
+    ChartPrecision(bool),
     /// Lets one go, or all.
     LetGo(Option<usize>),
 }
@@ -204,6 +207,18 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         }
         ViewCommand::HoldModels(false) => {
             (state.analysis.models, effects.models) = (model_comparison::Progress::None, Some(None))
+        }
+        ViewCommand::ChartPrecision(true) => {
+            state.analysis.work_precision = work_precision::Progress::Running(0.0, None);
+            effects.work_precision = Some(Some(Box::new(state.document.scene.clone())));
+        }
+        ViewCommand::ChartPrecision(false) => {
+            // What was found until then stays.
+            let before = std::mem::take(&mut state.analysis.work_precision);
+            if let work_precision::Progress::Running(_, Some(found)) = before {
+                state.analysis.work_precision = work_precision::Progress::Done(found);
+            }
+            effects.work_precision = Some(None);
         }
         ViewCommand::LetGo(None) => state.analysis.references.clear(),
         ViewCommand::LetGo(Some(k)) => {

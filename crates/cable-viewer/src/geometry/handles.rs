@@ -35,7 +35,7 @@ pub fn of(state: &AppState, item: Item) -> Option<Point> {
         }
         Item::Robot => state.document.scene.robot.as_ref().map(|r| r.at_m),
         Item::Leg(k) => path_flags(state).into_iter().find(|(leg, ..)| *leg == k).map(|(_, at, _)| at),
-        Item::Cable(_) => None,
+        Item::Cable(_) | Item::Scene | Item::Environment | Item::Solver => None,
     }
 }
 

@@ -1,8 +1,10 @@
 //! The panels are the forms beside the canvas: each reads the state and pushes commands, nothing
 //! else.
 //!
-//! - `scene`, `cable`, `environment`, `robot`, `solver`: what is edited, on the left
-//! - `selected`, `readouts`, `warnings`, `analysis`: what was answered, on the right
+//! - `scene`: the outline on the left, and the forms of what stands in it
+//! - `selected`: the form of what is selected, on the right; `cable`, `environment`, `robot` and
+//!   `solver` are such forms
+//! - `readouts`, `warnings`, `analysis`: what was answered, on the right
 //! - `quality`: how far the answer can be relied on, in the solver panel
 //! - `plots`, `playback`, `timeline`: graphs and time, below
 //! - `scene_errors`: what is wrong with the scene, beside the field where it was typed

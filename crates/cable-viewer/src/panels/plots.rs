@@ -1,9 +1,11 @@
-//! The plots panel shows a quantity over time and along the cable, with cursors and export.
+//! The plots panel shows a quantity over time and along the cable, with cursors and export, and above
+//! them the timeline.
 
 use egui::{ComboBox, Id, Ui};
 
 use crate::command::{Command, FileCommand, PlaybackCommand};
 use crate::panels::readouts::DIMMED;
+use crate::panels::timeline;
 use crate::plot::{GraphResponse, GraphView, along, time};
 use crate::record::measure::Measure;
 use crate::render::colour::Quantity;
@@ -12,6 +14,9 @@ use crate::state::dialog::Dialog;
 use crate::state::questions::friction_answer;
 use crate::widgets::field;
 
+/// From this width on the timeline stands beside the choice of graphs, points. Less: its rail is too
+/// short to aim at.
+const ONE_ROW: f32 = 960.0;
 /// Below this width the graphs stand one under the other, points.
 const SIDE_BY_SIDE: f32 = 480.0;
 /// Lowest graph that can still be read, points.
@@ -25,7 +30,16 @@ const WINDOWS: [(Option<f64>, &str); 4] =
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let id = Id::unique("plot view");
     let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
-    ui.horizontal_wrapped(|ui| controls(ui, state, &mut view));
+    if ui.available_width() >= ONE_ROW {
+        ui.horizontal(|ui| {
+            controls(ui, state, &mut view);
+            ui.separator();
+            timeline::in_row(ui, state, commands);
+        });
+    } else {
+        timeline::ui(ui, state, commands);
+        ui.horizontal_wrapped(|ui| controls(ui, state, &mut view));
+    }
     let wide = ui.available_width() >= SIDE_BY_SIDE;
     let room = ui.available_height() - ui.spacing().item_spacing.y;
     let height = if wide { room } else { room / 2.0 };

@@ -1,5 +1,5 @@
-//! The quality of the answer: the force left unbalanced, the greatest displacement, the
-//! conditioning of the equations, and whether the motion gains energy.
+//! The quality of the answer: the force left unbalanced, the greatest displacement, an estimate of
+//! the conditioning of the equations, and whether the motion gains energy.
 
 use cable_core::solution::{CableSolution, Node};
 use cable_core::{Cable, Model, Scene, Solution};
@@ -80,7 +80,7 @@ fn estimated(cable: &Cable, solved: &CableSolution) -> Option<f64> {
 }
 
 fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
-    let name = "Condition number";
+    let name = "Condition estimate";
     if answer.model != Model::Fem {
         return readout::row(ui, name, "no mesh", "Only FEM solves one large system of equations", |_| {});
     }
@@ -90,7 +90,7 @@ fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
     };
     let wrong = (worst * f64::EPSILON > tolerance)
         .then_some("Rounding alone may spoil the tolerance asked for: use fewer segments, or a softer cable");
-    let help = "Estimated as that of a straight cable of as many elements under the mean tension, without bending and \
+    let help = "Condition number, estimated as that of a straight cable of as many elements under the mean tension, without bending and \
                 contact: of 16 digits its logarithm are lost to rounding";
     judged(ui, name, &format!("≈ {worst:.1e}"), help, wrong);
 }

@@ -2,9 +2,9 @@
 
 use cable_core::Robot;
 use cable_core::robot::RobotReport;
-use cable_core::scene::RobotTask;
 use cable_core::scene::preset::robot_preset;
 use cable_core::scene::robot::{ROLLING_RESISTANCE, TRACK_FRICTION};
+use cable_core::scene::{RobotTask, SupportKind};
 use egui::Ui;
 
 use crate::command::{Command, PlaybackCommand, SceneCommand};
@@ -18,20 +18,20 @@ use crate::widgets::{field, readout};
 
 /// Width of a number, points: “12.34 m/s” fits.
 const WIDTH: f32 = 72.0;
-/// Room for “1  Drive to”, “at” and the button of a leg with the gaps between, points.
-const LEG_WORDS: f32 = 106.0;
+/// Room for “1  To”, “at” and the button of a leg with the gaps between, points.
+const LEG_WORDS: f32 = 74.0;
 /// Speed of a new leg, m/s, and its wait, s.
 const FIRST_LEG: (f64, f64) = (0.3, 2.0);
 
 /// Draws it, if the scene has one.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(robot) = &state.document.scene.robot else {
-        ui.weak("No robot: choose one under Scene");
+        ui.weak("No robot: select the scene and choose one");
         return;
     };
     by_hand(ui, state, commands);
     match state.live.snapshot.solution.as_ref().and_then(|s| s.robot) {
-        Some(report) => readouts(ui, &report),
+        Some(report) => readouts(ui, &report, pull_n(state)),
         None => {
             ui.weak("It cannot drive here: it needs terrain below it in a side view");
         }
@@ -88,7 +88,17 @@ fn by_hand(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
-fn readouts(ui: &mut Ui, r: &RobotReport) {
+/// Force of the cables on the hitch, N: at rest the report of the robot has none yet.
+fn pull_n(state: &AppState) -> f64 {
+    let Some(answer) = &state.live.snapshot.solution else { return 0.0 };
+    let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
+    let held = scene.cables.iter().zip(&answer.cables).flat_map(|(c, solved)| c.supports.iter().zip(&solved.supports));
+    let on_it = held.filter(|(s, _)| s.kind == SupportKind::Robot);
+    let [x, y] = on_it.fold([0.0; 2], |[x, y], (_, r)| [x + r.reaction_x_n, y + r.reaction_y_n]);
+    x.hypot(y)
+}
+
+fn readouts(ui: &mut Ui, r: &RobotReport, pull_n: f64) {
     let share = if r.traction_n > 0.0 { r.thrust_n.abs() / r.traction_n } else { 0.0 };
     let Unit { symbol, si, .. } = Unit::M_PER_S.display();
     let speed = |v: f64| format!("{} {symbol}", significant(v / si, 3));
@@ -104,11 +114,7 @@ fn readouts(ui: &mut Ui, r: &RobotReport) {
             "Track force as a share of friction times normal force: at 100 % the tracks slip",
         ),
         ("Normal force", format::force(r.normal_n), "Of the ground on its tracks; the cable can lift or press"),
-        (
-            "Pull of the cable",
-            format::force(r.hitch_x_n.hypot(r.hitch_y_n)),
-            "On its hitch; it slows the robot by the balance of forces",
-        ),
+        ("Pull of the cable", format::force(pull_n), "On its hitch; it slows the robot by the balance of forces"),
         (
             "Cable contact force",
             format::force(r.push_x_n.hypot(r.push_y_n)),
@@ -201,7 +207,7 @@ fn leg(
     ui.horizontal(|ui| {
         match *task {
             RobotTask::Drive { to_x_m, speed_m_per_s } => {
-                ui.label(format!("{number}  Drive to"));
+                ui.label(format!("{number}  To"));
                 let to = field::number(ui, &format!("Place of leg {number}"), Unit::COORDINATE, to_x_m, width);
                 if let Some(to_x_m) = to.value {
                     put(Some(RobotTask::Drive { to_x_m, speed_m_per_s }), commands);

@@ -1,24 +1,22 @@
 //! What is selected is edited here, with the answer about it: the force on a support, the contacts of
-//! an obstacle, the tension at a load, the motion of the robot.
+//! an obstacle, the tension at a load, the motion of the robot. Cables, the environment and the
+//! solver have panels of their own, which stand here once they are selected.
 
 use cable_core::Solution;
+use cable_core::scene::SupportKind;
 use cable_core::solution::{ContactReport, ContactState};
 use egui::Ui;
 
-use crate::command::{Command, ViewCommand};
+use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::geometry::handles;
 use crate::panels::readouts::DIMMED;
-use crate::panels::scene::{loads, obstacles, supports};
+use crate::panels::scene::{self, loads, obstacles, supports};
+use crate::panels::{cable, environment, robot, solver};
 use crate::state::{AppState, Item};
 use crate::units::format;
 use crate::units::unit::Unit;
-use crate::widgets::readout;
-
-/// Whether it is shown; a whole cable has a panel of its own, and the readouts.
-#[must_use]
-pub fn is_shown(state: &AppState) -> bool {
-    state.selection.selected.is_some_and(|item| !matches!(item, Item::Cable(_)))
-}
+use crate::widgets::icon::{self, Icon};
+use crate::widgets::{field, readout};
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -37,12 +35,20 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if ui.button("Deselect").on_hover_text("Selects nothing (Esc)").clicked() {
             commands.push(Command::View(ViewCommand::Select(None)));
         }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| remove(ui, state, item, commands));
     });
     ui.push_id(item, |ui| match item {
         Item::Support { cable, support } => supports::form(ui, state, cable, support, commands),
         Item::Obstacle(k) | Item::Corner { obstacle: k, .. } => obstacles::form(ui, state, k, commands),
         Item::Load(k) | Item::Head(k) => loads::form(ui, state, k, commands),
-        Item::Cable(_) | Item::Robot | Item::Leg(_) => {}
+        Item::Cable(_) => cable::ui(ui, state, commands),
+        Item::Robot | Item::Leg(_) => {
+            scene::robot::ui(ui, state, commands);
+            robot::ui(ui, state, commands);
+        }
+        Item::Scene => scene::ui(ui, state, commands),
+        Item::Environment => environment::ui(ui, state, commands),
+        Item::Solver => solver::ui(ui, state, commands),
     });
     let Some(answer) = state.live.snapshot.solution.as_deref() else { return };
     ui.scope(|ui| {
@@ -56,6 +62,38 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
+/// The button that takes it out of the scene, where that can be done.
+fn remove(ui: &mut Ui, state: &AppState, item: Item, commands: &mut Vec<Command>) {
+    let scene = &state.document.scene;
+    let (name, help) = match item {
+        Item::Support { cable, support } => {
+            let Some(of) = scene.cables.get(cable) else { return };
+            let Some(value) = of.supports.get(support) else { return };
+            let end = support == 0 || support + 1 == of.supports.len();
+            if end && value.kind == SupportKind::Free {
+                return;
+            }
+            (value.name.clone(), if end { "Frees this end" } else { "Removes it" })
+        }
+        Item::Obstacle(k) | Item::Corner { obstacle: k, .. } => {
+            (scene.obstacles.get(k).map_or_else(String::new, |o| o.name.clone()), "Removes it")
+        }
+        Item::Load(k) | Item::Head(k) => (format!("load {}", k + 1), "Removes it"),
+        _ => return,
+    };
+    // A corner or the head of an arrow has the form of what it is of.
+    let whole = match item {
+        Item::Corner { obstacle, .. } => Item::Obstacle(obstacle),
+        Item::Head(k) => Item::Load(k),
+        other => other,
+    };
+    let button = icon::plain_button(ui, Icon::Remove, true);
+    field::name(&button, &format!("Remove {name}"));
+    if button.on_hover_text(help).clicked() {
+        commands.push(Command::Scene(SceneCommand::Remove(whole)));
+    }
+}
+
 type Figure = (&'static str, String, &'static str);
 
 fn figures(state: &AppState, answer: &Solution, item: Item) -> Vec<Figure> {
@@ -66,8 +104,8 @@ fn figures(state: &AppState, answer: &Solution, item: Item) -> Vec<Figure> {
             of_obstacle(answer, name)
         }
         Item::Load(k) | Item::Head(k) => of_load(state, answer, k),
-        Item::Robot | Item::Leg(_) => of_robot(answer),
-        Item::Cable(_) => Vec::new(),
+        // The panels of the others have their own figures, or none.
+        Item::Robot | Item::Leg(_) | Item::Cable(_) | Item::Scene | Item::Environment | Item::Solver => Vec::new(),
     }
 }
 
@@ -120,16 +158,4 @@ fn of_load(state: &AppState, answer: &Solution, k: usize) -> Vec<Figure> {
         ("Place", format::position([node.x_m, node.y_m]), "Where it acts now"),
     ];
     steady.into_iter().chain(there).collect()
-}
-
-fn of_robot(answer: &Solution) -> Vec<Figure> {
-    let Some(robot) = answer.robot else {
-        return vec![("Motion", "none".to_owned(), "It needs terrain below it in a side view")];
-    };
-    vec![
-        ("Motion", robot.going.name().to_owned(), "Why it is as fast as it is"),
-        ("Speed", Unit::M_PER_S.text(robot.speed_m_per_s), "Along the ground"),
-        ("Pull of cable", format::force(robot.hitch_x_n.hypot(robot.hitch_y_n)), "On its hitch"),
-        ("Place", format::position([robot.x_m, robot.y_m]), "The middle of its tracks"),
-    ]
 }

@@ -6,6 +6,7 @@ use cable_core::{Model, Settings, Solution};
 use egui::{Grid, Ui};
 
 use crate::command::{Command, PlaybackCommand};
+use crate::panels::analysis::work_precision;
 use crate::panels::quality;
 use crate::state::{AppState, WorkerStatus};
 use crate::units::format;
@@ -96,6 +97,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.weak("Nothing solved yet");
         return;
     };
+    ui.separator();
+    work_precision::ui(ui, state, commands);
     ui.separator();
     quality::ui(ui, state, answer, commands);
     cost(ui, state, answer);

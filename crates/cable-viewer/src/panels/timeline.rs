@@ -7,10 +7,11 @@ use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
 use crate::units::format;
 use crate::units::sentence::sentence;
+use crate::widgets::icon::{self, Icon};
 use crate::widgets::{field, highlight};
 
-/// Room for the buttons beside it, points.
-const BESIDE: f32 = 250.0;
+/// Room for the words beside it, points.
+const BESIDE: f32 = 205.0;
 /// How near to a mark the pointer tells what it is, points.
 const MARK_REACH: f32 = 4.0;
 
@@ -19,72 +20,77 @@ const NOTHING: &str = "Nothing is recorded yet: press play";
 /// Why what leads back to the present is off.
 const PRESENT: &str = "The latest frame is shown";
 
-/// Draws it.
+/// Draws it in a row of its own.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.horizontal(|ui| in_row(ui, state, commands));
+}
+
+/// Draws it in the rest of a row.
+pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let span = state.live.recording.span_s();
     let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
-    ui.horizontal(|ui| {
-        let mut push = |command| commands.push(Command::Playback(command));
-        ui.add_enabled_ui(span.is_some(), |ui| {
-            let back = ui.button("Step back").on_hover_text("The frame before this one (arrow left)");
-            let back = back.on_disabled_hover_text(NOTHING);
-            if back.clicked() {
-                push(PlaybackCommand::StepBack);
-            }
-            let mut looped = state.live.recording.looped;
-            let help = "Playback starts again at the end of the recording; off, the simulation goes on from there";
-            if ui.checkbox(&mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NOTHING).changed() {
-                push(PlaybackCommand::SetLoop(looped));
-                // A loop of what is not shown begins at its start.
-                if let (true, None, Some([first, _])) = (looped, state.live.recording.shown_s, span) {
-                    push(PlaybackCommand::Show(Some(first)));
-                }
-            }
-            let shown = state.live.recording.shown_s.is_some();
-            let help = "Returns to the latest frame";
-            let present = ui.add_enabled(shown, egui::Button::new("Latest")).on_hover_text(help);
-            highlight::offer(&present, "Latest");
-            if present.on_disabled_hover_text(PRESENT).clicked() {
-                push(PlaybackCommand::Show(None));
-            }
-            let help = "Continues from the time shown: later frames are dropped, and friction starts fresh";
-            let on = ui.add_enabled(shown, egui::Button::new("Resume from here")).on_hover_text(help);
-            if on.on_disabled_hover_text(PRESENT).clicked() {
-                push(PlaybackCommand::GoOn);
-            }
-        });
-        if state.live.before_reset.is_some() {
-            let help = "Brings back what was recorded before the last reset, and goes on from its end (Ctrl+Z)";
-            if ui.button("Undo reset").on_hover_text(help).clicked() {
-                push(PlaybackCommand::UndoReset);
+    let mut push = |command| commands.push(Command::Playback(command));
+    ui.add_enabled_ui(span.is_some(), |ui| {
+        let back = icon::plain_button(ui, Icon::StepBack, span.is_some());
+        field::name(&back, "Step back");
+        let back = back.on_hover_text("The frame before this one (arrow left)").on_disabled_hover_text(NOTHING);
+        if back.clicked() {
+            push(PlaybackCommand::StepBack);
+        }
+        let mut looped = state.live.recording.looped;
+        let help = "Playback starts again at the end of the recording; off, the simulation goes on from there";
+        if ui.checkbox(&mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NOTHING).changed() {
+            push(PlaybackCommand::SetLoop(looped));
+            // A loop of what is not shown begins at its start.
+            if let (true, None, Some([first, _])) = (looped, state.live.recording.shown_s, span) {
+                push(PlaybackCommand::Show(Some(first)));
             }
         }
-        let [first, last] = span.unwrap_or([0.0, 1.0]);
-        ui.spacing_mut().slider_width = (ui.available_width() - BESIDE).max(80.0);
-        let mut time_s = state.live.recording.shown_s.unwrap_or(now_s).clamp(first, last);
-        let slider = ui.add_enabled(span.is_some(), Slider::new(&mut time_s, first..=last).show_value(false));
-        field::name(&slider, "Timeline");
-        if slider.changed() {
-            push(PlaybackCommand::Show(Some(time_s)));
+        let shown = state.live.recording.shown_s.is_some();
+        let help = "Returns to the latest frame";
+        let present = ui.add_enabled(shown, egui::Button::new("Latest")).on_hover_text(help);
+        highlight::offer(&present, "Latest");
+        if present.on_disabled_hover_text(PRESENT).clicked() {
+            push(PlaybackCommand::Show(None));
         }
-        if span.is_some() {
-            marks(ui, state, slider.rect, [first, last]);
-        }
-        slider.on_hover_text(state.live.recording.about()).on_disabled_hover_text(NOTHING);
-        let text = match state.live.recording.shown_s {
-            Some(t) => format!("showing {t:.2} s of {last:.2} s"),
-            None => format!("recorded {}", format::duration(last - first)),
-        };
-        if span.is_some() {
-            ui.label(text);
-        } else {
-            ui.weak("Press play to record");
-        }
-        let count = state.live.recording.events().len();
-        if span.is_some() && count > 0 {
-            ui.weak(if count == 1 { "1 event".to_owned() } else { format!("{count} events") });
+        let help = "Continues from the time shown: later frames are dropped, and friction starts fresh";
+        let on = ui.add_enabled(shown, egui::Button::new("Resume")).on_hover_text(help);
+        field::name(&on, "Resume from here");
+        if on.on_disabled_hover_text(PRESENT).clicked() {
+            push(PlaybackCommand::GoOn);
         }
     });
+    if state.live.before_reset.is_some() {
+        let help = "Brings back what was recorded before the last reset, and goes on from its end (Ctrl+Z)";
+        if ui.button("Undo reset").on_hover_text(help).clicked() {
+            push(PlaybackCommand::UndoReset);
+        }
+    }
+    let [first, last] = span.unwrap_or([0.0, 1.0]);
+    ui.spacing_mut().slider_width = (ui.available_width() - BESIDE).max(80.0);
+    let mut time_s = state.live.recording.shown_s.unwrap_or(now_s).clamp(first, last);
+    let slider = ui.add_enabled(span.is_some(), Slider::new(&mut time_s, first..=last).show_value(false));
+    field::name(&slider, "Timeline");
+    if slider.changed() {
+        push(PlaybackCommand::Show(Some(time_s)));
+    }
+    if span.is_some() {
+        marks(ui, state, slider.rect, [first, last]);
+    }
+    slider.on_hover_text(state.live.recording.about()).on_disabled_hover_text(NOTHING);
+    let text = match state.live.recording.shown_s {
+        Some(t) => format!("showing {t:.2} s of {last:.2} s"),
+        None => format!("recorded {}", format::duration(last - first)),
+    };
+    if span.is_some() {
+        ui.label(text);
+    } else {
+        ui.weak("Press play to record");
+    }
+    let count = state.live.recording.events().len();
+    if span.is_some() && count > 0 {
+        ui.weak(if count == 1 { "1 event".to_owned() } else { format!("{count} events") });
+    }
 }
 
 /// Events as marks over the rail; a click on one shows its time.

@@ -8,6 +8,8 @@ mod cursors;
 mod keys;
 pub mod time;
 
+use std::ops::RangeInclusive;
+
 use egui::{Align2, Color32, Id, RichText, Sense, Stroke, TextStyle, Ui, vec2};
 use egui_plot::{GridInput, GridMark, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
@@ -41,14 +43,15 @@ const LIMIT_IN_VIEW_FROM: f64 = 0.5;
 /// Free room above the data, as a share of their range.
 const HEADROOM: f64 = 0.12;
 
-/// Lower graphs (points) name their unit only beside the axis: the whole name would stand over the
-/// title.
-const UPRIGHT: f32 = 110.0;
 /// Lowest graph that can still be read, points.
 const LEAST_HEIGHT: f32 = 42.0;
 /// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not
 /// to touch.
 const COLUMN: f32 = 66.0;
+/// Part of an axis at its end in which a number with its unit would be cut.
+const UNIT_MARGIN: f64 = 0.03;
+/// Height of the numbers below a graph, points.
+const TICKS: f32 = 18.0;
 /// Distance of numbers on the vertical axis, points.
 const ROW: f32 = 24.0;
 
@@ -165,13 +168,11 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let cursor_text = cursors.text([(across_symbol, x_si), (symbol, si)], lines.first());
     let height = (graph.height - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
     let columns = f64::from(ui.available_width() / COLUMN).max(1.0);
-    let rows = f64::from((height - 40.0) / ROW).max(1.0);
+    let rows = f64::from((height - TICKS) / ROW).max(1.0);
     let plot = Plot::new(graph.title)
         .link_axis(Id::unique(("axis", graph.group.to_owned())), [!follow, false])
         .link_cursor(Id::unique(("cursor", graph.group.to_owned())), [true, false])
         .height(height)
-        .x_axis_label(format!("{across}, {across_symbol}"))
-        .y_axis_label(if height < UPRIGHT { symbol.to_owned() } else { format!("{}, {symbol}", graph.measure.name()) })
         .y_axis_min_width(44.0)
         .allow_drag(!follow)
         .allow_zoom(!follow)
@@ -181,8 +182,8 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         .allow_axis_zoom_drag(!follow)
         .x_grid_spacer(|input| grid_marks(input, columns))
         .y_grid_spacer(|input| grid_marks(input, rows))
-        .x_axis_formatter(|mark, _| tick(mark))
-        .y_axis_formatter(|mark, _| tick(mark))
+        .x_axis_formatter(|mark, shown| tick_with_unit(mark, shown, across_symbol))
+        .y_axis_formatter(|mark, shown| tick_with_unit(mark, shown, symbol))
         .label_formatter(|at| {
             let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = at;
             Some(read(position.x))
@@ -380,6 +381,14 @@ fn grid_marks(input: GridInput, parts: f64) -> Vec<GridMark> {
 fn tick(mark: GridMark) -> String {
     let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 12.0) as usize;
     format!("{:.decimals$}", mark.value + 0.0).replace('-', "−")
+}
+
+/// As [`tick`]; the last number that is not cut by the end of its axis has the unit, so that no line of
+/// the graph is spent on it.
+fn tick_with_unit(mark: GridMark, shown: &RangeInclusive<f64>, symbol: &str) -> String {
+    let end = shown.end() - UNIT_MARGIN * (shown.end() - shown.start());
+    let last = mark.value <= end && mark.value + mark.step_size > end;
+    if last { format!("{} {symbol}", tick(mark)) } else { tick(mark) }
 }
 
 /// What the colours mean, on one line above the graph, where it hides nothing. Limits out of view

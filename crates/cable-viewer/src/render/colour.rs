@@ -1,7 +1,7 @@
 //! A colour scale shows a quantity along the cable by a map, a range and a unit.
 
-use cable_core::Solution;
 use cable_core::solution::Node;
+use cable_core::{Model, Solution};
 use egui::Color32;
 
 use crate::units::system;
@@ -69,6 +69,19 @@ impl Quantity {
             Self::Strain if greatest >= 1e-3 => ("%", 1e-2),
             Self::Strain => ("µm/m", 1e-6),
         }
+    }
+}
+
+/// The colour of a model in every chart.
+#[must_use]
+pub fn of_model(model: Model) -> Color32 {
+    let [spans, catenary, fem, mass_spring] = LINES;
+    match model {
+        Model::Spans => spans,
+        Model::Catenary => catenary,
+        Model::Fem => fem,
+        Model::MassSpring => mass_spring,
+        Model::Auto | Model::External => Color32::GRAY,
     }
 }
 

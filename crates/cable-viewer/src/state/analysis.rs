@@ -5,7 +5,7 @@ use std::sync::Arc;
 use cable_core::{Scene, Solution};
 
 use crate::jobs::model_comparison::{self, Outcome};
-use crate::jobs::{friction_range, neglected_bending, safe_reach};
+use crate::jobs::{friction_range, neglected_bending, safe_reach, work_precision};
 use crate::record::run::Run;
 use crate::units::labels;
 
@@ -22,6 +22,8 @@ pub struct Analysis {
     pub safe_reach: safe_reach::SafeReachState,
     /// What neglecting bending stiffness changes.
     pub neglected_bending: neglected_bending::NeglectedBendingState,
+    /// How error and cost of every model and mesh stand to each other.
+    pub work_precision: work_precision::Progress,
     /// What less and more friction does.
     pub friction_range: friction_range::FrictionRangeState,
 }

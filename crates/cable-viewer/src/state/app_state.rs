@@ -80,6 +80,9 @@ impl AppState {
             Item::Head(k) => format!("force of load {}", k + 1),
             Item::Robot => "the robot".to_owned(),
             Item::Leg(k) => format!("leg {} of the robot's path", k + 1),
+            Item::Scene => "the scene".to_owned(),
+            Item::Environment => "the environment".to_owned(),
+            Item::Solver => "the solver".to_owned(),
         }
     }
 }

@@ -39,7 +39,7 @@ impl Selection {
     }
 }
 
-/// A thing on the canvas that can be picked.
+/// A thing that can be picked, on the canvas or in the outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Item {
     /// A whole cable.
@@ -68,6 +68,12 @@ pub enum Item {
     Robot,
     /// Where a leg of the robot's path ends.
     Leg(usize),
+    /// The scene as a whole: its name, map and robot.
+    Scene,
+    /// Gravity, wind, temperature and view.
+    Environment,
+    /// Model, mesh and accuracy.
+    Solver,
 }
 
 /// A thing being dragged.

@@ -14,6 +14,8 @@ pub enum Icon {
     Pause,
     /// One step on.
     Step,
+    /// One step back.
+    StepBack,
     /// Back to the start.
     ToStart,
     /// Back to an earlier value.
@@ -84,6 +86,7 @@ fn paint(painter: &Painter, icon: Icon, rect: Rect, colour: Color32) {
         Icon::Play => drop(painter.add(triangle(-0.5, 0.75))),
         Icon::Pause => painter.extend([bar(-0.35), bar(0.35)]),
         Icon::Step => painter.extend([triangle(-0.7, 0.3), bar(0.5)]),
+        Icon::StepBack => drop(painter.add(triangle(0.5, -0.75))),
         Icon::ToStart => painter.extend([triangle(0.7, -0.3), bar(-0.5)]),
         Icon::Reset => {
             // Three quarters of a circle, anticlockwise, with its arrow head at the upper left.

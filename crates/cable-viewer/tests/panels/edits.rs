@@ -206,6 +206,7 @@ fn playback_runs_steps_resets_and_changes_speed() {
 #[test]
 fn supports_are_moved_changed_renamed_and_taken_out() {
     let mut harness = open(outline_and_form);
+    click(&mut harness, "Select left");
     enter(&mut harness, "x of left", "0.125");
     enter(&mut harness, "y of left", "450 cm");
     assert_eq!(harness.state().state.document.scene.cables[0].supports[0].at_m, Some([0.125, 4.5]));
@@ -242,8 +243,8 @@ fn a_fault_of_a_support_stands_below_it() {
 #[test]
 fn obstacles_are_moved_changed_added_and_taken_out() {
     let mut harness = open(outline_and_form);
-    enter(&mut harness, "x of post", "4.25");
     click(&mut harness, "Select post");
+    enter(&mut harness, "x of post", "4.25");
     enter(&mut harness, "Radius", "0.3");
     enter(&mut harness, "Obstacle name", "pipe");
     click(&mut harness, "Select floor");
@@ -255,6 +256,7 @@ fn obstacles_are_moved_changed_added_and_taken_out() {
     click(&mut harness, "Add obstacle");
     click(&mut harness, "Beam");
     assert_eq!(harness.state().state.document.scene.obstacles[2].name, "beam");
+    click(&mut harness, "Select pipe");
     click(&mut harness, "Remove pipe");
     assert_eq!(harness.state().state.document.scene.obstacles.len(), 2);
     assert_eq!(harness.state().state.document.fault, None);
@@ -263,12 +265,14 @@ fn obstacles_are_moved_changed_added_and_taken_out() {
 #[test]
 fn loads_are_moved_changed_added_and_taken_off() {
     let mut harness = open(outline_and_form);
+    click(&mut harness, "Select load 1");
     enter(&mut harness, "Place of load 1", "3");
     enter(&mut harness, "Force upwards of load 1", "-0.2 kN");
     let load = &harness.state().state.document.scene.loads[0];
     assert_eq!((load.arc_length_m, load.force_n), (3.0, Some([0.0, -200.0])));
     click(&mut harness, "Add load");
     assert_eq!(harness.state().state.document.scene.loads.len(), 2);
+    click(&mut harness, "Select load 1");
     click(&mut harness, "Remove load 1");
     assert_eq!(harness.state().state.document.scene.loads.len(), 1);
 }

@@ -209,6 +209,7 @@ pub fn driven() -> AppState {
     let mut state = state();
     let mut scene = catalog::robot_drive();
     scene.name.clone_from(&state.document.scene.name);
+    state.live.snapshot.scene = Some(Arc::new(scene.clone()));
     state.document.scene = scene;
     let mut answer = (**state.live.snapshot.solution.as_ref().unwrap()).clone();
     answer.robot = Some(RobotReport {
@@ -242,7 +243,7 @@ pub fn with_pulley(state: &mut AppState) {
 /// What lists the things of the scene, and what edits the one that is selected.
 pub fn outline_and_form(ui: &mut egui::Ui, state: &AppState, commands: &mut Vec<Command>) {
     cable_viewer::panels::scene::outline::ui(ui, state, commands);
-    if cable_viewer::panels::selected::is_shown(state) {
+    if state.selection.selected.is_some() {
         cable_viewer::panels::selected::ui(ui, state, commands);
     }
 }

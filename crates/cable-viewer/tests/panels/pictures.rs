@@ -76,7 +76,7 @@ fn selected_obstacle() {
         state.selection.selected = Some(Item::Obstacle(0));
         state
     };
-    picture("selected_obstacle", selected, panels::selected::ui, [186.0, 420.0]);
+    picture("selected_obstacle", selected, panels::selected::ui, [250.0, 420.0]);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use cable_core::scene::catalog;
 use cable_viewer::command::{Command, ViewCommand};
+use cable_viewer::geometry::handles;
 use cable_viewer::state::Item;
 use egui::Vec2;
 
@@ -14,20 +15,25 @@ const BEFORE: &str = include_str!("controls.txt");
 
 fn names() -> BTreeSet<String> {
     let mut names = BTreeSet::new();
-    for (scene, picked) in [
-        (catalog::tank(), None),
-        (catalog::robot_drive(), Some(Item::Robot)),
-        (catalog::loads_wind_heat(), Some(Item::Load(0))),
-        (catalog::pulley_waypoints(), Some(Item::Support { cable: 0, support: 1 })),
-        (catalog::round_post(), Some(Item::Obstacle(0))),
-        (catalog::over_beam(), Some(Item::Obstacle(0))),
+    for scene in [
+        catalog::tank(),
+        catalog::robot_drive(),
+        catalog::loads_wind_heat(),
+        catalog::pulley_waypoints(),
+        catalog::round_post(),
+        catalog::over_beam(),
     ] {
         let mut harness = open(scene);
         apply(&mut harness, Command::View(ViewCommand::Hold));
-        apply(&mut harness, Command::View(ViewCommand::Select(picked)));
         harness.set_size(Vec2::new(1600.0, 3000.0));
-        harness.run_steps(4);
-        names.extend(crate::help::controls(&harness).into_iter().map(|(name, ..)| name).filter(|n| !n.is_empty()));
+        // What edits a thing stands where it is selected.
+        let all = handles::all(&harness.state().state);
+        let others = [Item::Cable(0), Item::Scene, Item::Environment, Item::Solver];
+        for picked in [None].into_iter().chain(all.into_iter().chain(others).map(Some)) {
+            apply(&mut harness, Command::View(ViewCommand::Select(picked)));
+            harness.run_steps(2);
+            names.extend(crate::help::controls(&harness).into_iter().map(|(name, ..)| name).filter(|n| !n.is_empty()));
+        }
     }
     names
 }

@@ -162,6 +162,7 @@ fn a_table_pasted_from_another_program_is_offered_as_a_map() {
 #[test]
 fn s01_cables_are_added_swapped_and_taken_out() {
     let mut harness = open_span();
+    crate::select(&mut harness, Item::Cable(0));
     click(&mut harness, "Add cable");
     assert_eq!(state(&harness).document.scene.cables.len(), 2);
     assert_eq!(state(&harness).selection.selected, Some(Item::Cable(1)));
@@ -271,6 +272,7 @@ fn u01_units_are_switched_and_files_stay_si() {
         use egui_kittest::kittest::NodeT;
         h.get_by_label(label).accesskit_node().value().unwrap_or_default()
     };
+    crate::select(&mut harness, Item::Cable(0));
     assert_eq!(spoken(&harness, "Length"), "39.37 ft");
     assert!(spoken(&harness, "Linear density").ends_with(" lb/ft"));
     assert!(harness.get_all_by_label_contains(" lbf").count() > 3);

@@ -4,6 +4,7 @@ use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::app::tutorials::TUTORIALS;
 use cable_viewer::command::{Command, FileCommand, SceneCommand, ViewCommand};
+use cable_viewer::state::Item;
 use cable_viewer::state::dialog::{Dialog, Replacement};
 use cable_viewer::state::tutorial_place::TutorialPlace;
 use cable_viewer::widgets::highlight;
@@ -11,7 +12,7 @@ use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::{apply, drag, open, open_span, support};
+use crate::{apply, drag, open, open_span, select, support};
 
 const HINTS: [&str; 3] = ["Drag “right”", "Press Space to play", "Scroll to zoom"];
 
@@ -104,6 +105,7 @@ fn guides_point_at_what_they_speak_of() {
                     let value = Box::new(cable);
                     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value }));
                 }
+                "Linear density" | "Length" => select(&mut harness, Item::Cable(0)),
                 "Pause" => harness.key_press(Key::Space),
                 _ => {}
             }

@@ -31,9 +31,10 @@ fn a_drag_in_the_graph_over_time_moves_the_playhead_of_all() {
     let mut harness = played(2);
     let graph =
         harness.get_all_by_label("Over time").map(|n| n.rect()).max_by(|a, b| a.height().total_cmp(&b.height()));
-    let from = graph.unwrap().center() + Vec2::new(100.0, 0.0);
+    let graph = graph.unwrap();
+    let from = graph.center() + Vec2::new(100.0, 0.0);
     // From where nothing is recorded yet to within the first two of ten seconds.
-    drag(&mut harness, from, Vec2::new(-220.0, 0.0));
+    drag(&mut harness, from, Vec2::new(graph.left() + 0.18 * graph.width() - from.x, 0.0));
     let shown = shown_s(&harness).expect("an earlier time is shown");
     let solution = harness.state().state.live.snapshot.solution.clone().unwrap();
     assert!((solution.time_s - shown).abs() < 1.0 / 60.0 && shown < 1.9, "{shown} {}", solution.time_s);

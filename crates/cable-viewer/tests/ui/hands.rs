@@ -11,8 +11,8 @@ use egui::{Event, Key, Modifiers, Role, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
-use crate::open;
 use crate::rows::{answer, click, state};
+use crate::{open, select};
 
 fn tall(harness: &mut Harness<'_, ViewerApp>) {
     harness.set_size(Vec2::new(1400.0, 2000.0));
@@ -83,6 +83,7 @@ fn s05_the_cable_stops_on_itself_and_what_tangles_is_named() {
 
     harness.key_press(Key::R);
     harness.run_steps(3);
+    select(&mut harness, Item::Cable(0));
     click(&mut harness, "Self-contact");
     assert!(!state(&harness).document.scene.cables[0].self_contact);
     seconds(&mut harness, 1.1);
@@ -103,6 +104,7 @@ fn s09_maps_are_picked_and_pasted_while_the_window_runs() {
     tall(&mut harness);
     let before = state(&harness).document.scene.clone();
     let map = cable_core::scene::preset::map_presets().iter().find(|m| m.id.starts_with("flat")).expect("a flat tank");
+    select(&mut harness, Item::Scene);
     click(&mut harness, "Map");
     harness.get_by_label(&map.name).click();
     harness.run_steps(4);
@@ -152,6 +154,7 @@ fn s19_friction_typed_at_an_obstacle_sticks_slides_and_changes_the_tension() {
     let run = |friction: &str| {
         let mut harness = open(catalog::draped_slipping());
         tall(&mut harness);
+        select(&mut harness, Item::Solver);
         click(&mut harness, "FEM");
         click(&mut harness, "Select pipe");
         enter(&mut harness, "Obstacle friction", friction);
@@ -188,6 +191,7 @@ fn s19_friction_typed_at_an_obstacle_sticks_slides_and_changes_the_tension() {
 fn s06_a_pointer_holds_an_end_by_a_spring_while_time_runs() {
     let mut harness = open(catalog::hanging_span());
     tall(&mut harness);
+    select(&mut harness, Item::Solver);
     click(&mut harness, "FEM");
     harness.key_press(Key::Space);
     harness.run_steps(3);
@@ -263,6 +267,7 @@ fn a_whole_session_by_keys_alone() {
     assert!(after[0] < before[0] && after[1] == before[1], "{before:?} {after:?}");
     assert_eq!(state(&harness).live.snapshot.error, None);
     // A number is reached with Tab and typed.
+    command(&mut harness, "edit the cable");
     let focused = |h: &Harness<'_, ViewerApp>| {
         let id = h.ctx.memory(|m| m.focused());
         let named = |label: &str| {

@@ -248,11 +248,14 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
 
     // 2. Change the cable.
     let mut harness = start(1);
-    typed(&mut harness, "Linear density", "2");
+    harness.get_by_label("Select cable").click();
+    harness.run_steps(3);
     assert_eq!(at(&harness), Some(1));
+    typed(&mut harness, "Linear density", "2");
+    assert_eq!(at(&harness), Some(2));
     next(&mut harness);
     typed(&mut harness, "Length", "8.5");
-    assert_eq!(at(&harness), Some(3), "{:?}", state(&harness).document.fault);
+    assert_eq!(at(&harness), Some(4), "{:?}", state(&harness).document.fault);
     harness.get_by_label("The scene cannot be solved");
     let fix = harness.get_all_by_label_contains("Set to ").next().expect("the fix is offered");
     fix.click();
@@ -308,10 +311,12 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
     let mut harness = start(4);
     hold(&mut harness, Key::D, 80);
     assert_eq!(at(&harness), Some(1), "{:?}", state(&harness).live.latest.solution.as_ref().and_then(|s| s.robot));
+    harness.get_by_label("Select robot").click();
+    harness.run_steps(3);
     for row in ["Slope", "Pull of the cable", "Track force"] {
         harness.get_by_label(row);
     }
-    next(&mut harness);
+    assert_eq!(at(&harness), Some(2));
     harness.get_by_label("Find safe reach").click();
     harness.run_steps(2);
     assert!(matches!(
@@ -324,6 +329,8 @@ fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
     harness.get_by_label("Pin this result").click();
     harness.run_steps(3);
     assert_eq!(at(&harness), Some(1));
+    harness.get_by_label("Select cable").click();
+    harness.run_steps(3);
     typed(&mut harness, "Length", "12.5");
     assert_eq!(at(&harness), Some(2));
     harness.get_by_label_contains("Length: ");

@@ -6,7 +6,7 @@ use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
 use cable_viewer::jobs::model_comparison::Progress;
-use cable_viewer::state::AppState;
+use cable_viewer::state::{AppState, Item};
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -35,6 +35,7 @@ fn a_first_robot_stands_in_the_tank_with_the_cable_on_its_hitch() {
     for map in preset::map_presets() {
         for robot in preset::robot_presets() {
             let mut harness = tall(catalog::hanging_span());
+            crate::select(&mut harness, Item::Scene);
             click(&mut harness, "Map");
             click(&mut harness, &map.name);
             let end = state(&harness).document.scene.cables[0].supports[1].at_m.unwrap();
@@ -64,6 +65,7 @@ fn a_robot_turns_its_back_to_where_the_cable_comes_from() {
     scene.cables[0].supports[0].name = "start".to_owned();
     scene.obstacles.push(catalog::robot_drive().obstacles[0].clone());
     let mut harness = tall(scene);
+    crate::select(&mut harness, Item::Scene);
     click(&mut harness, "Robot");
     click(&mut harness, &preset::robot_presets()[0].name);
     let scene = &state(&harness).document.scene;
@@ -76,6 +78,7 @@ fn a_robot_turns_its_back_to_where_the_cable_comes_from() {
 fn a_tank_job_is_set_up_and_driven_from_the_first_scene() {
     let mut harness = tall(catalog::hanging_span());
     let map = preset::map_presets().iter().find(|m| m.id == "saltcake-75ft").unwrap();
+    crate::select(&mut harness, Item::Scene);
     click(&mut harness, "Map");
     click(&mut harness, &map.name);
     click(&mut harness, "Robot");

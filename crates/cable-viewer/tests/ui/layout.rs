@@ -44,6 +44,41 @@ fn the_canvas_has_most_of_the_window() {
     }
 }
 
+/// Graphs were 35 points high at 1280×800, and half as wide as the canvas.
+#[test]
+fn graphs_are_high_and_wide_enough_to_read() {
+    for (size, least) in [([1280.0, 800.0], [400.0, 80.0]), ([1024.0, 640.0], [280.0, 60.0])] {
+        let mut harness = open(catalog::tank());
+        harness.set_size(Vec2::from(size));
+        harness.run_steps(4);
+        for name in ["Over time", "Along the cable"] {
+            let graph = harness.get_by_role_and_label(egui::accesskit::Role::Figure, name).rect();
+            println!("{size:?}: {name} is {} by {} points", graph.width(), graph.height());
+            assert!(graph.width() >= least[0] && graph.height() >= least[1], "{size:?}: {name} at {graph}");
+        }
+    }
+}
+
+/// The window opens on a robot in a tank, with nothing to warn of and three hints.
+#[test]
+fn the_window_opens_on_a_robot_without_a_warning() {
+    let (_, first) = catalog::all().into_iter().next().expect("a scene");
+    assert!(first.robot.is_some() && first.name.contains("tank"), "{}", first.name);
+    let mut harness = open(first);
+    harness.get_by_label("No warnings");
+    for hint in ["Drag the robot", "Press Space to play", "Scroll to zoom"] {
+        harness.get_by_label(hint);
+    }
+    // Nor in the first minute of play.
+    harness.key_press(Key::Space);
+    for _ in 0..60 {
+        harness.run_steps(30);
+        let state = &harness.state().state;
+        assert!(state.live.snapshot.error.is_none() && state.live.recording.events().is_empty());
+    }
+    assert!(harness.state().state.live.snapshot.solution.as_ref().unwrap().time_s > 29.0);
+}
+
 /// D10.4: the side panels grew with what was in them, from 624 to 505 points of canvas in one sitting.
 #[test]
 fn what_is_in_a_panel_does_not_move_the_canvas() {

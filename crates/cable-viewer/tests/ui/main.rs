@@ -4,6 +4,7 @@
 
 mod contrast;
 mod controls;
+mod defects;
 mod editing;
 mod first_minute;
 mod gallery;
@@ -16,6 +17,7 @@ mod layout;
 mod outline;
 mod pictures;
 mod playing;
+mod precision;
 mod pulling;
 mod quality;
 mod reach;
@@ -83,6 +85,11 @@ fn drag(harness: &mut Harness<'_, ViewerApp>, from: Pos2, by: Vec2) {
 
 fn support(harness: &Harness<'_, ViewerApp>, name: &str) -> Pos2 {
     harness.get_by_label(&format!("Support {name} of cable")).rect().center()
+}
+
+/// Opens the form of a thing.
+fn select(harness: &mut Harness<'_, ViewerApp>, item: Item) {
+    apply(harness, Command::View(ViewCommand::Select(Some(item))));
 }
 
 fn apply(harness: &mut Harness<'_, ViewerApp>, command: Command) {

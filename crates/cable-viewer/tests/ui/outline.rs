@@ -25,12 +25,15 @@ fn the_outline_begins_the_left_panel_and_selects() {
         let mut harness = open(catalog::tank());
         harness.set_size(Vec2::from(size));
         harness.run_steps(4);
-        let [outline, scene, canvas] = ["Outline", "Scene name", "Canvas"].map(|l| harness.get_by_label(l).rect());
+        let [outline, scene, canvas] = ["Outline", "Select Scene", "Canvas"].map(|l| harness.get_by_label(l).rect());
         assert!(outline.bottom() < scene.top() && outline.right() < canvas.left(), "{size:?}");
         for (label, item) in [
             ("Select umbilical", Item::Cable(0)),
             ("Select hitch", Item::Support { cable: 0, support: 1 }),
             ("Select pipe", Item::Obstacle(4)),
+            ("Select Scene", Item::Scene),
+            ("Select Environment", Item::Environment),
+            ("Select Solver", Item::Solver),
         ] {
             click(&mut harness, label);
             assert_eq!(selected(&harness), Some(item), "{size:?}");
@@ -54,7 +57,11 @@ fn the_right_panel_follows_the_selection() {
         (catalog::pulley_waypoints(), "Select wheel", "support wheel of cable", &["Tension before", "Tension after"]),
         (catalog::tank(), "Select beam", "obstacle beam", &["Lying on it", "Friction"]),
         (catalog::loads_wind_heat(), "Select load 1", "load 1", &["Tension there"]),
-        (catalog::robot_drive(), "Select robot", "the robot", &["Pull of cable"]),
+        (catalog::tank(), "Select umbilical", "cable umbilical", &["Cable preset", "Length slider"]),
+        (catalog::tank(), "Select Scene", "the scene", &["Scene name", "Map"]),
+        (catalog::tank(), "Select Environment", "the environment", &["Gravity", "Plan view"]),
+        (catalog::tank(), "Select Solver", "the solver", &["Tolerance", "FEM", "Chart error over cost"]),
+        (catalog::robot_drive(), "Select robot", "the robot", &["Pull of the cable", "Add drive", "Robot facing"]),
     ] {
         let mut harness = open(scene);
         let canvas = harness.get_by_label("Canvas").rect();
@@ -81,6 +88,10 @@ fn the_form_of_what_is_selected_fits_the_panel() {
         (catalog::tank(), Item::Obstacle(0)),
         (catalog::loads_wind_heat(), Item::Load(0)),
         (catalog::robot_drive(), Item::Robot),
+        (catalog::tank(), Item::Cable(0)),
+        (catalog::tank(), Item::Scene),
+        (catalog::tank(), Item::Environment),
+        (catalog::tank(), Item::Solver),
     ] {
         let mut harness = open(scene);
         harness.set_size(Vec2::new(1024.0, 1600.0));
@@ -97,8 +108,8 @@ fn the_form_of_what_is_selected_fits_the_panel() {
             let rect = node.rect();
             // What is in the panel of figures on supports scrolls by itself.
             let right = rect.left() > canvas.right() && rect.right() > 1024.0 - 3.0;
-            let left =
-                rect.top() > canvas.top() && rect.right() < canvas.left() + 60.0 && rect.right() > canvas.left() - 3.0;
+            let beside = rect.top() > canvas.top() && rect.bottom() < canvas.bottom();
+            let left = beside && rect.right() < canvas.left() + 60.0 && rect.right() > canvas.left() - 3.0;
             if left || right {
                 too_wide.push(format!("{told} ends at {}", rect.right()));
             }

@@ -217,7 +217,8 @@ fn a_cancelled_search_keeps_what_it_found_and_none_of_it_lies_outside_the_tank()
     let Some((Maps::Area(there, _), _)) = reach(&harness).found() else { panic!("{:?}", reach(&harness)) };
     assert!(there.most_n.iter().any(|n| n.is_finite()), "what was found is kept");
     let walls = harness.state().state.document.scene.obstacles.iter().find_map(|o| match &o.shape {
-        cable_core::scene::Shape::Terrain { points_m } => Some([points_m[0][0], points_m[points_m.len() - 1][0]]),
+        // Their inner faces: above a wall is no place in the tank either.
+        cable_core::scene::Shape::Terrain { points_m } => Some([points_m[1][0], points_m[points_m.len() - 2][0]]),
         _ => None,
     });
     let [left, right] = walls.unwrap();

@@ -8,8 +8,8 @@ use cable_core::{Model, Robot, Scene, Solution};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand};
 use cable_viewer::render::colour::{ColourMap, Quantity};
-use cable_viewer::state::AppState;
 use cable_viewer::state::dialog::Replacement;
+use cable_viewer::state::{AppState, Item};
 use egui::Vec2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -188,6 +188,7 @@ fn s05_a_cable_that_crosses_itself_is_named_and_can_be_made_to_stop_on_itself() 
     apply(&mut harness, Command::File(FileCommand::Discard(Replacement::OpenCatalogue("hanging-span".to_owned()))));
     harness.set_size(Vec2::new(1280.0, 1800.0));
     harness.run_steps(3);
+    crate::select(&mut harness, Item::Cable(0));
     click(&mut harness, "Self-contact");
     assert!(state(&harness).document.scene.cables[0].self_contact);
     assert_eq!(state(&harness).live.snapshot.error, None);
@@ -295,6 +296,9 @@ fn s18_properties_have_names_units_presets_and_a_way_back() {
         let field = h.get_by_role_and_label(egui::accesskit::Role::TextInput, label);
         field.accesskit_node().value().unwrap_or_default()
     };
+    crate::select(&mut harness, Item::Cable(0));
+    harness.set_size(Vec2::new(1280.0, 1800.0));
+    harness.run_steps(3);
     for property in &cable_viewer::panels::cable::property::PROPERTIES {
         let text = spoken(&harness, property.quantity.name);
         let symbol = property.quantity.unit.symbol;
@@ -302,8 +306,6 @@ fn s18_properties_have_names_units_presets_and_a_way_back() {
         harness.get_by_label(&format!("{} slider", property.quantity.name));
     }
     set_cable(&mut harness, |c| c.length_m = 15.0);
-    harness.set_size(Vec2::new(1280.0, 1800.0));
-    harness.run_steps(3);
     click(&mut harness, "Reset length");
     assert_eq!(state(&harness).document.scene.cables[0], loaded);
 }

@@ -37,6 +37,7 @@ fn spans_is_offered_wherever_models_are() {
     let mut harness = open(catalog::round_post());
     harness.set_size(Vec2::new(1280.0, 1800.0));
     harness.run_steps(3);
+    crate::select(&mut harness, Item::Solver);
     click(&mut harness, "Spans");
     assert_eq!(state(&harness).solver.model, Model::Spans);
     assert_eq!(state(&harness).live.snapshot.error, None);

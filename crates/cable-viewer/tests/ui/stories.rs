@@ -5,6 +5,7 @@ use cable_core::robot::{Going, RobotReport};
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand};
+use cable_viewer::state::Item;
 use cable_viewer::state::dialog::Dialog;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
@@ -122,6 +123,7 @@ fn s08_an_edit_is_of_the_present() {
 #[test]
 fn s14_the_robot_follows_its_path_and_it_can_be_edited() {
     let mut harness = open(catalog::robot_drive());
+    crate::select(&mut harness, Item::Robot);
     click(&mut harness, "Follow path");
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
     harness.run_steps(60);
@@ -141,6 +143,7 @@ fn s17_the_robot_says_that_its_cable_holds_it() {
     let mut scene = catalog::robot_drive();
     scene.robot.as_mut().unwrap().at_m = [13.2, 0.0];
     let mut harness = open(scene);
+    crate::select(&mut harness, Item::Robot);
     click(&mut harness, "Drive right");
     harness.run_steps(240);
     let r = robot(&harness);

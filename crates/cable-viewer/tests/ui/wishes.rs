@@ -28,11 +28,14 @@ fn u02_grid_lines_are_round_and_numbered() {
 
 #[test]
 fn u03_both_ends_are_labelled_with_x_and_y() {
-    let harness = open_span();
+    let mut harness = open_span();
     let told = harness.get_by_label("Canvas").accesskit_node().description().unwrap_or_default();
     assert!(told.contains("left at (0.000, 5.000) m") && told.contains("right at (10.000, 5.000) m"), "{told}");
-    for label in ["x of left", "y of left", "x of right", "y of right"] {
-        harness.get_by_label(label);
+    for (support, labels) in [(0, ["x of left", "y of left"]), (1, ["x of right", "y of right"])] {
+        crate::select(&mut harness, Item::Support { cable: 0, support });
+        for label in labels {
+            harness.get_by_label(label);
+        }
     }
 }
 
@@ -111,6 +114,7 @@ fn u10_overstretch_is_warned_of() {
 #[test]
 fn u15_density_is_per_metre_and_presets_say_where_theirs_is_from() {
     let mut harness = open_span();
+    crate::select(&mut harness, Item::Cable(0));
     let text = harness.get_by_label("Linear density").accesskit_node().value().unwrap_or_default();
     assert!(text.ends_with(" kg/m"), "{text}");
     assert!(cable_presets().len() >= 3);

@@ -58,6 +58,10 @@ use crate::scene::FrictionMobilised;
 use crate::solution::{CableSolution, Cost, Histories, ModelReason, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
+/// Part of the greatest tension within which two histories left the same. Larger: a cable that is
+/// held by little friction is said to have one rest; smaller: rounding is said to be another
+/// history.
+const SAME_TENSION: f64 = 1e-9;
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
 
@@ -269,6 +273,20 @@ impl SpansModel {
         self.layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none))
     }
 
+    /// Whether the cable touches nothing that rubs, and drawn towards either end comes back to the
+    /// same tensions: then no history was found that leaves others.
+    fn hangs_free(&self, histories: &Histories) -> bool {
+        let Histories::Mobilised {
+            greatest_n, towards_start_n: Some(_), towards_end_n: Some(_), start_n, end_n, ..
+        } = histories
+        else {
+            return false;
+        };
+        let same = |[low, high]: &[f64; 2]| high - low <= SAME_TENSION * greatest_n;
+        let answer = CableSolution { contacts: self.look().contacts, ..CableSolution::default() };
+        same(start_n) && same(end_n) && !self.problem.rubs(&answer)
+    }
+
     fn rubs(&self) -> bool {
         let p = &self.layout.problem;
         p.supports.iter().any(|s| s.friction > 0.0) || p.world.geometry().bodies().iter().any(|b| b.friction > 0.0)
@@ -362,7 +380,7 @@ impl Mechanics for SpansModel {
             let held_n = self.network.as_ref().map_or(0.0, CableEquilibrium::friction_of_loose);
             let cause = WarningCause::Loose { material_m: material, ground_m: ground, held_n };
             report.warnings.push(self.warning(cause));
-        } else if self.rubs() && mobilised.is_default() {
+        } else if self.rubs() && mobilised.is_default() && !self.hangs_free(&histories) {
             let shown = if taken.eased { ShownEquilibrium::Frictionless } else { ShownEquilibrium::LeastSliding };
             report.warnings.push(self.warning(WarningCause::ManyEquilibria { shown, histories }));
         }

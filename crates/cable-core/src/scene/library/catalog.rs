@@ -26,7 +26,9 @@ macro_rules! scenes {
 }
 
 scenes! {
-    /// The opening scene: a waste tank, a cable from a riser over mounds and a beam, out and back.
+    /// The opening scene: a robot in a waste tank, its cable hanging free from a riser.
+    tank_robot = "tank-robot";
+    /// A waste tank, a cable from a riser over mounds and a beam, out and back.
     tank = "tank";
     /// A cable between two points, sagging freely.
     hanging_span = "hanging-span";

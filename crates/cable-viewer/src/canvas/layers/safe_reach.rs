@@ -32,21 +32,43 @@ pub fn area(view: &CanvasView<'_>, state: &AppState) {
     let Some(area) = (if state.analysis.safe_reach.choice.back { ways.as_ref() } else { Some(there) }) else { return };
     let mut mesh = Mesh::default();
     let mut lines = Vec::new();
-    for corners in quads(area) {
-        quad(view, area, corners, &mut mesh, &mut lines);
+    for k in 0..area.most_n.len() {
+        if let Some(corners) = corners(area, k) {
+            quad(view, area, corners, &mut mesh, &mut lines);
+            border(view, area, k, corners, &mut lines);
+        }
     }
     view.painter.add(mesh);
     view.painter.extend(lines);
 }
 
-/// Neighbouring places four by four, anticlockwise.
-fn quads(area: &Area) -> impl Iterator<Item = [(Point, f64); 4]> + '_ {
+/// A place and its neighbours to the right and above, anticlockwise, with what is known of each.
+fn corners(area: &Area, k: usize) -> Option<[(Point, f64); 4]> {
     let columns = area.columns;
-    let rows = area.most_n.len() / columns.max(1);
-    let corner = move |k: usize| Some((area.at(k), area.most_n.get(k).copied()?));
-    (0..rows.saturating_sub(1) * columns)
-        .filter(move |k| k % columns + 1 < columns)
-        .filter_map(move |k| Some([corner(k)?, corner(k + 1)?, corner(k + columns + 1)?, corner(k + columns)?]))
+    let corner = |k: usize| Some((area.at(k), area.most_n.get(k).copied()?));
+    let inside = k % columns.max(1) + 1 < columns;
+    let found = [corner(k)?, corner(k + 1)?, corner(k + columns + 1)?, corner(k + columns)?];
+    inside.then_some(found)
+}
+
+/// Whether something is known of a square, and the cable reaches all of it.
+fn is_filled(corners: [(Point, f64); 4]) -> bool {
+    corners.iter().all(|(_, n)| n.is_finite())
+}
+
+/// A line where the map ends: its darkest colours alone do not stand off the background.
+fn border(view: &CanvasView<'_>, area: &Area, k: usize, own: [(Point, f64); 4], lines: &mut Vec<Shape>) {
+    if !is_filled(own) {
+        return;
+    }
+    let at = own.map(|(p, _)| view.at(p));
+    let beside = [k.checked_sub(area.columns), Some(k + 1), Some(k + area.columns), k.checked_sub(1)];
+    for (side, next) in beside.into_iter().enumerate() {
+        if !next.and_then(|k| corners(area, k)).is_some_and(is_filled) {
+            let ends = [at[side], at[(side + 1) % 4]];
+            lines.push(Shape::line_segment(ends, Stroke::new(1.0, view.palette.surface)));
+        }
+    }
 }
 
 fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], mesh: &mut Mesh, lines: &mut Vec<Shape>) {
@@ -57,7 +79,7 @@ fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], mesh: &m
     if !view.rect.intersects(Rect::from_points(&at)) {
         return;
     }
-    if corners.iter().all(|(_, n)| n.is_finite()) {
+    if is_filled(corners) {
         let first = mesh.vertices.len() as u32;
         for (p, (_, n)) in at.into_iter().zip(corners) {
             mesh.colored_vertex(p, colour(n / area.service_n));
@@ -66,21 +88,25 @@ fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], mesh: &m
         mesh.add_triangle(first, first + 2, first + 3);
     }
     let over = |limit_n: f64| corners.iter().all(|(_, n)| *n > limit_n);
-    let hatch = Stroke::new(1.0, view.palette.risk);
     if over(area.service_n) {
-        lines.push(Shape::line_segment([at[0], at[2]], hatch));
+        lines.extend(stroke(view, [at[0], at[2]], 1.0));
     }
     if over(area.breaking_n) {
-        lines.push(Shape::line_segment([at[1], at[3]], hatch));
+        lines.extend(stroke(view, [at[1], at[3]], 1.0));
     }
     let values = corners.map(|(_, n)| n.min(BEYOND * area.breaking_n));
     for (limit_n, width) in [(area.service_n, 2.0), (area.breaking_n, 3.5)] {
         for ends in crossing(at, values, limit_n) {
-            // Dark below light: the line stands off every colour and both themes.
-            lines.push(Shape::line_segment(ends, Stroke::new(width + 2.0, view.palette.background)));
-            lines.push(Shape::line_segment(ends, Stroke::new(width, view.palette.risk)));
+            lines.extend(stroke(view, ends, width));
         }
     }
+}
+
+/// A line of risk over one of the background: one of the two stands off every colour of the map that is
+/// above the service tension, in both themes.
+fn stroke(view: &CanvasView<'_>, ends: [Pos2; 2], width: f32) -> [Shape; 2] {
+    let line = |width: f32, colour: Color32| Shape::line_segment(ends, Stroke::new(width, colour));
+    [line(width + 2.0, view.palette.background), line(width, view.palette.risk)]
 }
 
 /// Where a value is passed in a square: its ends on the sides, between which tension grows by even
@@ -98,8 +124,9 @@ fn crossing(at: [Pos2; 4], values: [f64; 4], limit: f64) -> Vec<[Pos2; 2]> {
     found.chunks_exact(2).map(|ends| [ends[0], ends[1]]).collect()
 }
 
-/// Of a share of the service tension.
-fn colour(share: f64) -> Color32 {
+/// The colour of a share of the service tension; what is below shines through.
+#[must_use]
+pub fn colour(share: f64) -> Color32 {
     ColourMap::Cividis.at(share).gamma_multiply(COVER)
 }
 
@@ -139,7 +166,7 @@ fn hatch(view: &CanvasView<'_>, [a, b]: [Pos2; 2], height: f32) {
     let strokes = ((b.x - a.x).abs() / HATCH).ceil().clamp(1.0, 40.0);
     for k in 0..strokes as usize {
         let at = a + (b - a) * (k as f32 / strokes);
-        view.painter.line_segment([at, at + vec2(HATCH, -height)], Stroke::new(1.0, view.palette.risk));
+        view.painter.extend(stroke(view, [at, at + vec2(HATCH, -height)], 1.0));
     }
 }
 
@@ -209,7 +236,7 @@ pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
     let sample = pos2(bar.min.x, y);
     for k in 0..3 {
         let foot = sample + vec2(6.0 * k as f32, 5.0);
-        view.painter.line_segment([foot, foot + vec2(6.0, -10.0)], Stroke::new(1.0, view.palette.risk));
+        view.painter.extend(stroke(view, [foot, foot + vec2(6.0, -10.0)], 1.0));
     }
     view.text(sample + vec2(27.0, 0.0), Align2::LEFT_CENTER, &over, 10.5, view.palette.text);
     view.taken.push(plate);

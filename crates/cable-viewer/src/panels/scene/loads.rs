@@ -1,17 +1,16 @@
-//! The list of point loads says on which cable, where and how much.
+//! The list of point loads says how strong each is; a form has everything of one.
 
 use cable_core::Load;
 use egui::{ComboBox, Ui};
 
 use crate::command::{Command, SceneCommand};
-use crate::panels::scene::rows::{
-    GAP, KIND_WIDTH, components, headings, name_width, number_width, remove, selectable_name, show_faults,
-};
+use crate::panels::scene::rows::{self, VALUE_WIDTH, components, show_faults};
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
+use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::property::{Provenance, Quantity, row};
+use crate::widgets::property::{Provenance, Quantity, labelled, row};
 use crate::widgets::time_table::{self, Knots, Table};
 
 /// Force of a new load, N.
@@ -28,18 +27,11 @@ const STRENGTH: Quantity = Quantity {
     help: "How strong the selected load is, in the direction it has; the cable follows while the slider moves.",
 };
 
-/// Draws them.
+/// Lists them.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    if !state.document.scene.loads.is_empty() {
-        let (length, force) = (Unit::M.display().symbol, Unit::N.display().symbol);
-        let [at, right, up] = [format!("At, {length}"), format!("Right, {force}"), format!("Up, {force}")];
-        let columns =
-            [("Name", name_width(ui)), (&*at, KIND_WIDTH), (&*right, number_width(ui)), (&*up, number_width(ui))];
-        headings(ui, &columns);
-    }
     for (k, load) in state.document.scene.loads.iter().enumerate() {
-        ui.push_id(k, |ui| line(ui, state, k, load, commands));
-        scene_errors::inline(ui, state, &format!("loads[{k}]"), commands);
+        let about = load.force_n.map_or("changes with time".to_owned(), |[x, y]| format::force(x.hypot(y)));
+        ui.push_id(k, |ui| rows::row(ui, state, Item::Load(k), &format!("load {}", k + 1), &about, commands));
     }
     let Some(cable) = state.document.scene.cables.get(state.current_cable()) else { return };
     if ui.button("Add load").on_hover_text("A force on the middle of the cable, 100 N down").clicked() {
@@ -54,59 +46,48 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-fn line(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec<Command>) {
-    let item = Item::Load(k);
+/// Where it acts and how strong it is.
+fn head(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
     let name = format!("load {}", k + 1);
-    let mut faults = Vec::new();
     let set = |value: Load, commands: &mut Vec<Command>| {
         commands.push(Command::Scene(SceneCommand::SetLoad { load: k, value }));
         commands.push(Command::Scene(SceneCommand::EditDone));
     };
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = GAP;
-        selectable_name(ui, state, item, &name, commands);
-        let entry =
-            field::number(ui, &format!("Place of {name}"), Unit::COORDINATE.bare(), load.arc_length_m, KIND_WIDTH);
-        if let Some(arc_length_m) = entry.value {
-            set(Load { arc_length_m, ..load.clone() }, commands);
-        }
-        faults.extend(entry.fault);
-        entry.response.on_hover_text("Where on the cable, m of unstretched length from its start");
-        match load.force_n {
-            Some(force_n) => {
-                let labels = [format!("Force to the right of {name}"), format!("Force upwards of {name}")];
-                if let Some(force_n) = components(ui, labels, Unit::N, force_n, &mut faults) {
-                    set(Load { force_n: Some(force_n), ..load.clone() }, commands);
-                }
-            }
-            None => {
-                ui.weak("changes with time").on_hover_text("Select it to see and edit its times");
-            }
-        }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            remove(ui, item, &name, "Takes it off", commands);
-        });
-    });
     if state.document.scene.cables.len() > 1 {
-        ui.horizontal(|ui| {
-            ui.label("    on");
-            let shown = ComboBox::from_id_salt("cable").selected_text(&load.cable).show_ui(ui, |ui| {
+        labelled(ui, "On", &format!("Cable of {name}"), |ui| {
+            let combo = ComboBox::from_id_salt("cable").selected_text(&load.cable).width(ui.available_width() - 14.0);
+            let shown = combo.show_ui(ui, |ui| {
                 for cable in &state.document.scene.cables {
                     if ui.selectable_label(cable.name == load.cable, &cable.name).clicked() {
                         set(Load { cable: cable.name.clone(), ..load.clone() }, commands);
                     }
                 }
             });
-            field::name(&shown.response, &format!("Cable of {name}"));
+            shown.response.on_hover_text("The cable it acts on")
         });
     }
-    show_faults(ui, &faults);
+    labelled(ui, "At", &format!("Place of {name}"), |ui| {
+        let entry = field::number(ui, &format!("Place of {name}"), Unit::COORDINATE, load.arc_length_m, VALUE_WIDTH);
+        if let Some(arc_length_m) = entry.value {
+            set(Load { arc_length_m, ..load.clone() }, commands);
+        }
+        faults.extend(entry.fault);
+        entry.response.on_hover_text("Where on the cable, unstretched length from its start")
+    });
+    let Some(force_n) = load.force_n else { return };
+    rows::pair(ui, &format!("Right, up, {}", Unit::N.display().symbol), |ui| {
+        let labels = [format!("Force to the right of {name}"), format!("Force upwards of {name}")];
+        if let Some(force_n) = components(ui, labels, Unit::N, force_n, faults) {
+            set(Load { force_n: Some(force_n), ..load.clone() }, commands);
+        }
+    });
 }
 
-/// Everything about a load that its line does not have.
+/// Everything about a load.
 pub fn form(ui: &mut Ui, state: &AppState, k: usize, commands: &mut Vec<Command>) {
     let Some(load) = state.document.scene.loads.get(k) else { return };
     let mut faults = Vec::new();
+    head(ui, state, k, load, commands, &mut faults);
     if let Some(force_n) = load.force_n {
         strength(ui, load, k, force_n, commands);
     }
@@ -115,6 +96,7 @@ pub fn form(ui: &mut Ui, state: &AppState, k: usize, commands: &mut Vec<Command>
         commands.push(Command::Scene(SceneCommand::EditDone));
     }
     show_faults(ui, &faults);
+    scene_errors::inline(ui, state, &format!("loads[{k}]"), commands);
 }
 
 /// A force that changes with time, or does from now on.

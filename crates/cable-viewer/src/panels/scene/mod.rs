@@ -1,16 +1,15 @@
-//! The scene panel edits the name, the map and the robot of the scene; the outline lists its things
-//! with exact coordinates.
+//! The scene panel edits the name, the map and the robot of the scene; the outline lists its things.
 //!
 //! - `outline`: everything in the scene as a tree that selects
 //! - `map`, `robot`: pickers of known tanks and robots
-//! - `supports`, `obstacles`, `loads`: a list each, and a form for everything else of one
-//! - `rows`: the cells, headings and fields that lists are made of
+//! - `supports`, `obstacles`, `loads`: a list each, and a form for everything of one
+//! - `rows`: the rows of the outline, and the cells and fields that forms are made of
 
 pub(super) mod loads;
 mod map;
 pub(super) mod obstacles;
 pub mod outline;
-mod robot;
+pub(super) mod robot;
 pub mod rows;
 pub(super) mod supports;
 
@@ -63,5 +62,8 @@ fn pickers(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         shown.response.on_hover_text("Ready-made scenes; asks first if this one is not saved")
     });
     map::ui(ui, state, commands);
-    robot::ui(ui, state, commands);
+    // One that is there has a panel of its own.
+    if state.document.scene.robot.is_none() {
+        robot::ui(ui, state, commands);
+    }
 }

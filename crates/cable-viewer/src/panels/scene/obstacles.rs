@@ -1,4 +1,4 @@
-//! The list of obstacles gives form and place of each; a form has everything else of one.
+//! The list of obstacles says the form of each; a form has everything of one.
 
 use cable_core::Obstacle;
 use cable_core::math::Point;
@@ -6,10 +6,7 @@ use cable_core::scene::Shape;
 use egui::{Button, ScrollArea, Ui};
 
 use crate::command::{Command, SceneCommand};
-use crate::panels::scene::rows::{
-    GAP, KIND_WIDTH, cell, coordinates, headings, name_width, number_width, optional, remove, selectable_name,
-    show_faults,
-};
+use crate::panels::scene::rows::{self, GAP, coordinates, optional, show_faults};
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
@@ -20,15 +17,11 @@ use crate::widgets::property::labelled;
 /// Height of the list of corners, points: about ten.
 const CORNERS_HEIGHT: f32 = 240.0;
 
-/// Draws them.
+/// Lists them.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    if !state.document.scene.obstacles.is_empty() {
-        let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.display().symbol));
-        headings(ui, &[("Name", name_width(ui)), ("Form", KIND_WIDTH), (&x, number_width(ui)), (&y, number_width(ui))]);
-    }
     for (k, obstacle) in state.document.scene.obstacles.iter().enumerate() {
-        ui.push_id(k, |ui| line(ui, state, k, obstacle, commands));
-        scene_errors::inline(ui, state, &format!("obstacles[{k}]"), commands);
+        let (form, _) = shape_name(&obstacle.shape);
+        ui.push_id(k, |ui| rows::row(ui, state, Item::Obstacle(k), &obstacle.name, form, commands));
     }
     let menu = ui.menu_button("Add obstacle", |ui| add(ui, state, commands));
     menu.response.on_hover_text("Ground, a beam, a post or a sheet, in the middle of the picture");
@@ -81,28 +74,20 @@ fn anchor(shape: &Shape) -> Option<Point> {
     }
 }
 
-fn line(ui: &mut Ui, state: &AppState, k: usize, obstacle: &Obstacle, commands: &mut Vec<Command>) {
-    let item = Item::Obstacle(k);
-    let mut faults = Vec::new();
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = GAP;
-        selectable_name(ui, state, item, &obstacle.name, commands);
-        let (text, help) = shape_name(&obstacle.shape);
-        cell(ui, KIND_WIDTH, |ui| ui.weak(text).on_hover_text(help));
-        if let Some(at_m) = anchor(&obstacle.shape)
-            && let Some(to_m) = coordinates(ui, &obstacle.name, at_m, &mut faults)
-        {
-            commands.push(Command::Scene(SceneCommand::Move { item, to_m }));
+/// Form and place.
+fn head(ui: &mut Ui, k: usize, obstacle: &Obstacle, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
+    let (text, help) = shape_name(&obstacle.shape);
+    labelled(ui, "Form", &format!("Form of {}", obstacle.name), |ui| ui.label(text).on_hover_text(help));
+    let Some(at_m) = anchor(&obstacle.shape) else { return };
+    rows::place(ui, |ui| {
+        if let Some(to_m) = coordinates(ui, &obstacle.name, at_m, faults) {
+            commands.push(Command::Scene(SceneCommand::Move { item: Item::Obstacle(k), to_m }));
             commands.push(Command::Scene(SceneCommand::EditDone));
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            remove(ui, item, &obstacle.name, "Removes it", commands);
-        });
     });
-    show_faults(ui, &faults);
 }
 
-/// Everything about an obstacle that its line does not have.
+/// Everything about an obstacle.
 pub fn form(ui: &mut Ui, state: &AppState, k: usize, commands: &mut Vec<Command>) {
     let Some(obstacle) = state.document.scene.obstacles.get(k) else { return };
     let mut faults = Vec::new();
@@ -115,6 +100,7 @@ pub fn form(ui: &mut Ui, state: &AppState, k: usize, commands: &mut Vec<Command>
         faults.extend(entry.fault);
         entry.response.on_hover_text("What it is called here, in contacts and in warnings")
     });
+    head(ui, k, obstacle, commands, &mut faults);
     let mut own = obstacle.friction.is_some();
     let help = "Off: the cable's own coefficient";
     if ui.checkbox(&mut own, "Custom friction").on_hover_text(help).changed() {
@@ -142,6 +128,7 @@ pub fn form(ui: &mut Ui, state: &AppState, k: usize, commands: &mut Vec<Command>
         Shape::Terrain { points_m } | Shape::Polygon { points_m } => corners(ui, k, points_m, &mut faults),
     }
     show_faults(ui, &faults);
+    scene_errors::inline(ui, state, &format!("obstacles[{k}]"), commands);
     if value != *obstacle {
         commands.push(Command::Scene(SceneCommand::SetObstacle { obstacle: k, value }));
         commands.push(Command::Scene(SceneCommand::EditDone));

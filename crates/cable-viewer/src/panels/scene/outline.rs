@@ -1,30 +1,34 @@
-//! The outline is everything in the scene as a tree: a click on a thing selects it, and what the
-//! window shows of it follows.
+//! The outline is everything in the scene as a tree: a click on a thing selects it, and the panel on
+//! the right edits it.
 
-use cable_core::scene::RobotTask;
 use cable_core::scene::preset::robot_preset;
-use egui::{Atom, Button, CollapsingHeader, Ui};
+use cable_core::scene::{RobotTask, View};
+use egui::{CollapsingHeader, Ui};
 
-use crate::command::{Command, ViewCommand};
-use crate::panels::readouts::DIMMED;
+use crate::command::Command;
+use crate::panels::scene::rows::row;
 use crate::panels::scene::{loads, obstacles, supports};
 use crate::panels::warnings;
 use crate::state::{AppState, Item};
-use crate::units::format;
 use crate::units::unit::Unit;
-use crate::widgets::field;
+use crate::units::{format, labels};
+
+/// How far what belongs to a cable or a heading stands to the right of it, points.
+const INDENT: f32 = 10.0;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    ui.spacing_mut().item_spacing.y = 2.0;
     let scene = &state.document.scene;
     let width = ui.available_width();
     let current = state.current_cable();
+    row(ui, state, Item::Scene, "Scene", &scene.name, commands);
     for (k, cable) in scene.cables.iter().enumerate() {
         let most = greatest_tension(state, k);
         row(ui, state, Item::Cable(k), &cable.name, &most, commands);
         // The others open once they are selected.
         if k == current {
-            ui.push_id(("supports", k), |ui| supports::ui(ui, state, k, commands));
+            indented(ui, ("supports", k), |ui| supports::ui(ui, state, k, commands));
         }
     }
     list(ui, width, "obstacles", &format!("Obstacles ({})", scene.obstacles.len()), |ui| {
@@ -32,28 +36,30 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
     list(ui, width, "loads", &format!("Loads ({})", scene.loads.len()), |ui| loads::ui(ui, state, commands));
     robot(ui, state, commands);
+    row(ui, state, Item::Environment, "Environment", &environment(state), commands);
+    let model = state.live.snapshot.solution.as_ref().map_or("", |s| labels::model(s.model));
+    row(ui, state, Item::Solver, "Solver", model, commands);
     warnings::summary(ui, state, commands);
+}
+
+fn indented(ui: &mut Ui, id: impl std::hash::Hash + std::fmt::Debug, contents: impl FnOnce(&mut Ui)) {
+    ui.horizontal(|ui| {
+        ui.add_space(INDENT);
+        let width = ui.available_width();
+        ui.push_id(id, |ui| {
+            ui.vertical(|ui| {
+                ui.set_max_width(width);
+                contents(ui);
+            });
+        });
+    });
 }
 
 fn list(ui: &mut Ui, width: f32, id: &str, title: &str, contents: impl FnOnce(&mut Ui)) {
     CollapsingHeader::new(title).id_salt(id).default_open(true).show_unindented(ui, |ui| {
         ui.set_max_width(width);
-        contents(ui);
+        indented(ui, id, contents);
     });
-}
-
-/// A thing with a word about it at the right end.
-fn row(ui: &mut Ui, state: &AppState, item: Item, name: &str, about: &str, commands: &mut Vec<Command>) {
-    let selected = state.selection.selected == Some(item);
-    let colour = if selected { ui.visuals().text_color() } else { ui.visuals().weak_text_color() };
-    let opacity = if state.is_current() { 1.0 } else { DIMMED };
-    let about = egui::RichText::new(about).color(colour.gamma_multiply(opacity));
-    let button = Button::selectable(selected, (name, Atom::grow(), about)).truncate();
-    let response = ui.add(button.min_size(egui::vec2(ui.available_width() - 4.0, 0.0)));
-    field::name(&response, &format!("Select {name}"));
-    if response.on_hover_text(format!("{}: click to select it", state.describe(item))).clicked() {
-        commands.push(Command::View(ViewCommand::Select((!selected).then_some(item))));
-    }
 }
 
 /// The greatest tension of a cable in words; nothing where there is no answer.
@@ -63,13 +69,24 @@ fn greatest_tension(state: &AppState, cable: usize) -> String {
     tensions.reduce(f64::max).map_or_else(String::new, |t| format!("max {}", format::force(t)))
 }
 
+/// The view, and what acts besides gravity.
+fn environment(state: &AppState) -> String {
+    let scene = &state.document.scene;
+    let view = match scene.view {
+        View::Elevation => "side view",
+        View::Plan => "plan view",
+    };
+    let wind = scene.environment.wind_n_per_m != [0.0; 2] || !scene.environment.winds_n_per_m.is_empty();
+    if wind { format!("{view}, wind") } else { view.to_owned() }
+}
+
 /// The robot, and the legs of its path.
 fn robot(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(robot) = &state.document.scene.robot else { return };
     let about = robot_preset(&robot.preset).map_or(robot.preset.as_str(), |p| p.name.as_str());
     row(ui, state, Item::Robot, "robot", about, commands);
     for (k, task) in robot.path.iter().enumerate() {
-        ui.indent(("leg", k), |ui| match task {
+        indented(ui, ("leg", k), |ui| match task {
             RobotTask::Drive { to_x_m, .. } => {
                 let about = format!("drive to {}", Unit::COORDINATE.text(*to_x_m));
                 row(ui, state, Item::Leg(k), &format!("leg {}", k + 1), &about, commands);

@@ -1,61 +1,51 @@
-//! The lists of the scene panel are made of these cells, headings and fields.
+//! The outline is made of these rows, the forms of supports, obstacles and loads of these cells and
+//! fields.
 
 use cable_core::math::Point;
-use egui::{Atom, Button, Ui};
+use egui::{Atom, AtomExt, Button, Ui};
 
-use crate::command::{Command, SceneCommand, ViewCommand};
+use crate::command::{Command, ViewCommand};
+use crate::panels::readouts::DIMMED;
 use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
 use crate::widgets::field;
-use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
 
-/// Width of a number in a list, points: “−12.345” fits; in a narrow window “−12.34”.
-const NUMBER_WIDTHS: [f32; 2] = [47.0, 41.0];
-/// Narrower windows (points) have narrow panels.
-const NARROW_WINDOW: f32 = 1400.0;
+/// Width of a number beside another, points: “−12.345” fits.
+pub const NUMBER_WIDTH: f32 = 47.0;
+/// Between a line and the canvas, points: a text that is cut may be a little wider than it is given.
+const RIGHT_MARGIN: f32 = 6.0;
 /// What a field has beside its text, points.
 const FIELD_MARGIN: f32 = 8.0;
 
-fn is_narrow(ui: &Ui) -> bool {
-    ui.ctx().content_rect().width() < NARROW_WINDOW
-}
-
-/// Width of a number in a list, points.
-pub fn number_width(ui: &Ui) -> f32 {
-    NUMBER_WIDTHS[usize::from(is_narrow(ui))]
-}
+/// Least and greatest width of the name of two numbers, points.
+const NAME_WIDTH: [f32; 2] = [56.0, 122.0];
 
 /// Width of a number with its unit, points: “−123.456 m” fits.
 pub const VALUE_WIDTH: f32 = 84.0;
 
-/// Narrowest and widest column of names, points: what is left of the panel beside the others.
-pub const NAME_WIDTH: [f32; 2] = [36.0, 100.0];
-
-/// Width of the kind in a list, points.
-pub const KIND_WIDTH: f32 = 60.0;
-
 /// Gap between columns, points.
 pub const GAP: f32 = 3.0;
 
-/// The name of a thing in a list: picks it.
-pub fn selectable_name(ui: &mut Ui, state: &AppState, item: Item, name: &str, commands: &mut Vec<Command>) {
+/// A thing with a word about it at the right end.
+pub fn row(ui: &mut Ui, state: &AppState, item: Item, name: &str, about: &str, commands: &mut Vec<Command>) {
     let selected = state.selection.selected == Some(item);
-    let button = Button::selectable(selected, (name, Atom::grow())).truncate();
-    let width = name_width(ui);
-    let response = cell(ui, width, |ui| ui.add(button.min_size(egui::vec2(width, 0.0))));
+    let colour = if selected { ui.visuals().text_color() } else { ui.visuals().weak_text_color() };
+    let opacity = if state.is_current() { 1.0 } else { DIMMED };
+    let about = egui::RichText::new(about).color(colour.gamma_multiply(opacity));
+    // The name gives way to the word about it, but the words "Scene" and "robot" to no name.
+    let about = about.atom_shrink(matches!(item, Item::Scene | Item::Robot));
+    let button = Button::selectable(selected, (name, Atom::grow(), about)).truncate();
+    let width = ui.available_width() - RIGHT_MARGIN;
+    let row = ui.scope(|ui| {
+        ui.set_max_width(width);
+        ui.add(button.min_size(egui::vec2(width, 0.0)))
+    });
+    let response = row.inner;
     field::name(&response, &format!("Select {name}"));
-    if response.on_hover_text(format!("{name}: click to see and edit everything about it")).clicked() {
-        let item = if selected { None } else { Some(item) };
-        commands.push(Command::View(ViewCommand::Select(item)));
+    if response.on_hover_text(format!("{}: click to select it", state.describe(item))).clicked() {
+        commands.push(Command::View(ViewCommand::Select((!selected).then_some(item))));
     }
-}
-
-/// Width of the column of names at the start of a line, points.
-pub fn name_width(ui: &Ui) -> f32 {
-    // The other columns and the cross at the end.
-    let beside = KIND_WIDTH + 2.0 * (number_width(ui) + FIELD_MARGIN) + 3.0 * GAP + 17.0;
-    (ui.available_width() - beside).clamp(NAME_WIDTH[0], NAME_WIDTH[1])
 }
 
 /// A cell of a list, so that columns stand under each other.
@@ -70,28 +60,20 @@ pub fn cell<R>(ui: &mut Ui, width: f32, contents: impl FnOnce(&mut Ui) -> R) -> 
     shown.inner
 }
 
-/// The headings of a list; the last two or three stand over numbers.
-pub fn headings(ui: &mut Ui, texts: &[(&str, f32)]) {
+/// Two numbers beside one name.
+pub fn pair(ui: &mut Ui, name: &str, contents: impl FnOnce(&mut Ui)) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
-        for (k, (text, width)) in texts.iter().enumerate() {
-            cell(ui, *width, |ui| {
-                if k == 0 {
-                    ui.add_space(4.0);
-                }
-                ui.weak(*text);
-            });
-        }
+        let beside = 2.0 * (NUMBER_WIDTH + FIELD_MARGIN) + 2.0 * GAP;
+        let width = (ui.available_width() - beside).clamp(NAME_WIDTH[0], NAME_WIDTH[1]);
+        cell(ui, width, |ui| ui.add(egui::Label::new(name).truncate().selectable(false)).on_hover_text(name));
+        contents(ui);
     });
 }
 
-/// The button that takes a thing out.
-pub fn remove(ui: &mut Ui, item: Item, name: &str, help: &str, commands: &mut Vec<Command>) {
-    let response = icon::plain_button(ui, Icon::Remove, true);
-    field::name(&response, &format!("Remove {name}"));
-    if response.on_hover_text(help).clicked() {
-        commands.push(Command::Scene(SceneCommand::Remove(item)));
-    }
+/// The coordinates of a thing beside their name.
+pub fn place(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    pair(ui, &format!("x, y, {}", Unit::M.display().symbol), contents);
 }
 
 /// Two typed coordinates; the point once one was entered.
@@ -108,11 +90,8 @@ pub fn components(
     faults: &mut Vec<String>,
 ) -> Option<Point> {
     let mut entered = None;
-    // In a narrow list the last decimal is left to the hover text and to who types.
-    let decimals = if is_narrow(ui) { unit.decimals.map(|d| d.min(2)) } else { unit.decimals };
-    let (shown, width) = (Unit { decimals, ..unit.bare() }, number_width(ui));
     for (k, label) in labels.iter().enumerate() {
-        let entry = field::number(ui, label, shown, value[k], width);
+        let entry = field::number(ui, label, unit.bare(), value[k], NUMBER_WIDTH);
         if let Some(component) = entry.value {
             let mut changed = value;
             changed[k] = component;

@@ -1,17 +1,14 @@
-//! The list of supports gives kind and place of each; a form has everything else of one.
+//! The list of supports says the kind of each; a form has everything of one.
 
 use cable_core::math::Point;
 use cable_core::scene::{Motion, PulleySide, SupportKind};
 use cable_core::{Cable, Support};
-use egui::{ComboBox, Ui};
+use egui::{ComboBox, Response, Ui};
 
 use crate::command::support_kind::{KINDS, of_kind, refusal};
 use crate::command::{Command, SceneCommand};
 use crate::panels::scene::loads::FIRST_SPAN_S;
-use crate::panels::scene::rows::{
-    GAP, KIND_WIDTH, cell, components, coordinates, headings, name_width, number_width, optional, remove,
-    selectable_name, show_faults,
-};
+use crate::panels::scene::rows::{self, NUMBER_WIDTH, cell, components, coordinates, optional, show_faults};
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
@@ -48,28 +45,23 @@ impl Row<'_> {
     }
 }
 
-/// Draws them.
+/// Lists them.
 pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Command>) {
     let Some(cable) = state.document.scene.cables.get(index) else { return };
-    let last = cable.supports.len().saturating_sub(1);
-    let [x, y] = ["x", "y"].map(|c| format!("{c}, {}", Unit::M.display().symbol));
-    headings(ui, &[("Name", name_width(ui)), ("Kind", KIND_WIDTH), (&x, number_width(ui)), (&y, number_width(ui))]);
     for (support, value) in cable.supports.iter().enumerate() {
-        let end = support == 0 || support == last;
-        let row = Row { cable: index, support, value, end, now: place_now(state, index, support, cable) };
-        ui.push_id((index, support), |ui| line(ui, state, &row, commands));
-        if support < last {
-            let path = format!("cables[{index}].supports[{support}]");
-            scene_errors::inline(ui, state, &path, commands);
-        }
+        let item = Item::Support { cable: index, support };
+        ui.push_id(support, |ui| rows::row(ui, state, item, &value.name, kind_name(value.kind), commands));
     }
-    scene_errors::inline(ui, state, &format!("cables[{index}].supports[{last}]"), commands);
     let help = "A frictionless point the cable slides through, in the middle of the cable; drag it, or change its kind";
     if ui.button("Add waypoint").on_hover_text(help).clicked() {
         let arc_length_m = cable.length_m / 2.0;
         let at_m = position_at(state, index, arc_length_m).unwrap_or([0.0; 2]);
         commands.push(Command::Scene(SceneCommand::AddWaypoint { cable: index, arc_length_m, at_m }));
     }
+}
+
+fn kind_name(kind: SupportKind) -> &'static str {
+    KINDS.iter().find(|(k, ..)| *k == kind).map_or("", |(_, text, _)| text)
 }
 
 /// Where a support is in the present answer, else where the scene says.
@@ -94,41 +86,30 @@ pub(super) fn position_at(state: &AppState, cable: usize, arc_length_m: f64) -> 
     nodes.get(k).map(|n| [n.x_m, n.y_m])
 }
 
-fn line(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command>) {
-    let mut faults = Vec::new();
-    ui.horizontal(|ui| {
-        ui.spacing_mut().item_spacing.x = GAP;
-        selectable_name(ui, state, row.item(), &row.value.name, commands);
-        cell(ui, KIND_WIDTH, |ui| kind(ui, state, row, commands));
-        match row.value.at_m {
-            Some(at_m) => {
-                if let Some(to_m) = coordinates(ui, &row.value.name, at_m, &mut faults) {
-                    commands.push(Command::Scene(SceneCommand::Move { item: row.item(), to_m }));
-                    commands.push(Command::Scene(SceneCommand::EditDone));
-                }
-            }
-            None => {
-                let (at_m, _) = row.now;
-                for v in at_m {
-                    cell(ui, number_width(ui), |ui| {
-                        ui.weak(Unit::COORDINATE.bare().text(v)).on_hover_text("Where it is now; not held there");
-                    });
-                }
+/// Kind and place, and the button that takes it out.
+fn head(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
+    labelled(ui, "Kind", &format!("Kind of {}", row.value.name), |ui| kind(ui, state, row, commands));
+    rows::place(ui, |ui| match row.value.at_m {
+        Some(at_m) => {
+            if let Some(to_m) = coordinates(ui, &row.value.name, at_m, faults) {
+                commands.push(Command::Scene(SceneCommand::Move { item: row.item(), to_m }));
+                commands.push(Command::Scene(SceneCommand::EditDone));
             }
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let help = if row.end { "Frees this end" } else { "Removes it" };
-            if !(row.end && row.value.kind == SupportKind::Free) {
-                remove(ui, row.item(), &row.value.name, help, commands);
+        None => {
+            let (at_m, _) = row.now;
+            for v in at_m {
+                cell(ui, NUMBER_WIDTH, |ui| {
+                    ui.weak(Unit::COORDINATE.bare().text(v)).on_hover_text("Where it is now; not held there");
+                });
             }
-        });
+        }
     });
-    show_faults(ui, &faults);
 }
 
-fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command>) {
-    let text = KINDS.iter().find(|(k, ..)| *k == row.value.kind).map_or("", |(_, text, _)| text);
-    let shown = ComboBox::from_id_salt("kind").selected_text(text).width(KIND_WIDTH - 4.0).show_ui(ui, |ui| {
+fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command>) -> Response {
+    let combo = ComboBox::from_id_salt("kind").selected_text(kind_name(row.value.kind));
+    let shown = combo.width(ui.available_width() - 14.0).truncate().show_ui(ui, |ui| {
         for (kind, text, help) in KINDS {
             let refused = refusal(kind, row.end, state.document.scene.robot.is_some());
             let entry = ui.add_enabled(refused.is_none(), egui::Button::selectable(kind == row.value.kind, text));
@@ -139,11 +120,10 @@ fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
             }
         }
     });
-    field::name(&shown.response, &format!("Kind of {}", row.value.name));
-    shown.response.on_hover_text("What it does to the cable");
+    shown.response.on_hover_text("What it does to the cable")
 }
 
-/// Everything about a support that its line does not have.
+/// Everything about a support.
 pub fn form(ui: &mut Ui, state: &AppState, cable: usize, support: usize, commands: &mut Vec<Command>) {
     let Some(of) = state.document.scene.cables.get(cable) else { return };
     let Some(value) = of.supports.get(support) else { return };
@@ -159,6 +139,7 @@ pub fn form(ui: &mut Ui, state: &AppState, cable: usize, support: usize, command
         faults.extend(entry.fault);
         entry.response.on_hover_text("What it is called here, in tables and in warnings")
     });
+    head(ui, state, row, commands, &mut faults);
     if s.arc_length_m.is_some() || (!row.end && s.kind != SupportKind::Pulley) {
         let text = ["Sits at", "Where on the cable it grips, m of unstretched length from the start"];
         if let Some(v) = optional(ui, text, Unit::COORDINATE, s.arc_length_m, &mut faults) {
@@ -191,6 +172,7 @@ pub fn form(ui: &mut Ui, state: &AppState, cable: usize, support: usize, command
     release(ui, row, commands, &mut faults);
     motion(ui, row, commands, &mut faults);
     show_faults(ui, &faults);
+    scene_errors::inline(ui, state, &format!("cables[{cable}].supports[{support}]"), commands);
 }
 
 /// A support that holds may let go.
