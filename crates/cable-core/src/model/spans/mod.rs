@@ -283,7 +283,7 @@ impl SpansModel {
             return false;
         };
         let same = |[low, high]: &[f64; 2]| high - low <= SAME_TENSION * greatest_n;
-        let answer = CableSolution { contacts: self.look().contacts, ..CableSolution::default() };
+        let answer = CableSolution { contacts: self.present_report().contacts, ..CableSolution::default() };
         same(start_n) && same(end_n) && !self.problem.rubs(&answer)
     }
 

@@ -62,7 +62,7 @@ fn outcome(ui: &mut Ui, state: &AppState, found: &Outcome) {
     legend(ui, found);
     ui.label(format!("In use: {}, {}", labels::model(given.model), format::duration(*given_s)))
         .on_hover_text("The answer that the others are compared with");
-    ui.weak(capital(&given.reason));
+    ui.weak(capital(&sentence(&given.reason)));
     ui.label(match found.quickest(tolerance) {
         Some((setting, wall_s)) => {
             format!("Quickest within {}: {}, {}", format::percent(tolerance), name(setting), format::duration(wall_s))
