@@ -12,6 +12,7 @@ use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::floor_friction::OverRound;
 use crate::model::fem::system::friction_state::{ContactPair, ContactSet, FrictionContact};
+use crate::model::fem::time::{branches, self_contact};
 use crate::problem::Problem;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
@@ -65,7 +66,7 @@ impl CableState {
             let mesh = &self.mesh;
             gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| {
                 let t = mesh.bar(e).tension((pair[1] - pair[0]).norm());
-                let t = if t > 0.0 { t + self.held_by_branches(e) } else { t };
+                let t = if t > 0.0 { t + branches::force(self, e) } else { t };
                 if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
             }));
         } else {
@@ -143,7 +144,7 @@ fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
         let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
         return Weight::of(&d.mesh, e, &path, d.input.body).in_the_middle(t, material, flexible);
     }
-    let t = if t > 0.0 || !flexible { t + d.held_by_branches(e) } else { t };
+    let t = if t > 0.0 || !flexible { t + branches::force(d, e) } else { t };
     if t < 0.0 && flexible { 0.0 } else { t }
 }
 
@@ -341,8 +342,9 @@ fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 
         // Relaxation branches pull beside what the strain makes.
         let beside = if k == 0 { 0..1 } else { k - 1..if k + 1 < n { k + 1 } else { k } };
         let count = beside.len() as f64;
-        let branches = beside.map(|e| if tension[e] > 0.0 { d.held_by_branches(e) } else { 0.0 }).sum::<f64>() / count;
-        out.push(Node { strain: node.strain - branches / d.problem.axial_stiffness, ..node });
+        let by_branches =
+            beside.map(|e| if tension[e] > 0.0 { branches::force(d, e) } else { 0.0 }).sum::<f64>() / count;
+        out.push(Node { strain: node.strain - by_branches / d.problem.axial_stiffness, ..node });
     }
     out
 }
@@ -661,7 +663,7 @@ fn contacts(d: &CableState, x: &[Vec2], tension: &[f64], lain: &[Option<Lain>; 2
         }
     }
     rounds(d, x, &mut out);
-    d.own_contacts(x, tension, &mut out);
+    self_contact::reports(d, x, tension, &mut out);
     out.retain(|c| c.normal_n > 0.0);
     out.sort_by(|a, b| a.arc_length_m.total_cmp(&b.arc_length_m));
     out

@@ -192,6 +192,11 @@ impl CableState {
         cable
     }
 
+    /// True if there is nothing to touch: no obstacle, and the cable can pass itself.
+    pub(in crate::model::fem) fn meets_nothing(&self) -> bool {
+        self.problem.world.is_empty() && !self.contacts.own.shape.is_on()
+    }
+
     /// Forgets the steps before the present instant.
     pub(in crate::model::fem) fn forget_history(&mut self) {
         self.answers.stepped = None;

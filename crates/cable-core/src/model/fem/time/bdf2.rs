@@ -23,6 +23,7 @@ use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::system::loss::damping_time;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 use crate::model::fem::time::momentum::mass_with;
+use crate::model::fem::time::{branches, hands, self_contact};
 
 /// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
 const PLASTIC_SPEED_LIMIT: f64 = 0.05;
@@ -293,7 +294,7 @@ impl CableState {
                 length(&m.x) * now - length(&m.x_before) * past + older
             };
         }
-        self.add_branches(h, rate, decay);
+        branches::add(self, h, rate, decay);
     }
 }
 
@@ -330,11 +331,11 @@ impl Dynamics {
             return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
         }
         self.cable.note_lag(&unknowns);
-        self.cable.note_hands(&unknowns);
+        hands::keep_forces(&mut self.cable, &unknowns);
         self.cable.note_balanced(&unknowns);
         let given = self.cable.forces_in_step(&unknowns, self.solver.touches());
         let slid = self.cable.sliding_momentum();
-        self.cable.relax_branches(h, &unknowns.x);
+        branches::relax(&mut self.cable, h, &unknowns.x);
         self.cable.contacts.commit(
             &self.cable.problem,
             &self.cable.mesh,
@@ -366,7 +367,7 @@ impl Dynamics {
         self.cable.note_step(h);
         self.pacing.pace.observe(&self.cable, h);
         self.cable.land(h, a);
-        self.cable.land_on_itself(PLASTIC_SPEED_LIMIT, [h, a]);
+        self_contact::land(&mut self.cable, PLASTIC_SPEED_LIMIT, h, a);
         self.cable.close_account();
         self.cable.contacts.outline_motion = None;
         if !self.cable.meshing.never_slides {

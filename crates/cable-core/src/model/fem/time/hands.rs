@@ -9,29 +9,27 @@ use crate::model::fem::system::step_input::Unknowns;
 use crate::model::input_filter::{Hand, SmoothedTarget, is_led};
 use crate::solution::Warning;
 
-impl CableState {
-    /// Force that holds a support's node against its bars and what hangs there, N.
-    fn holding_force(&self, support: usize, node: usize) -> Vec2 {
-        let (mesh, x) = (&self.mesh, &self.motion.x);
-        let pull = |e: usize| {
-            let path = mesh.path(e, x);
-            let tension = mesh.bar(e).tension(path.length);
-            path.direction * if tension > 0.0 { tension } else { 0.0 }
-        };
-        let before = if node > 0 { pull(node - 1) } else { Vec2::zeros() };
-        let after = if node + 1 < mesh.nodes() { pull(node) } else { Vec2::zeros() };
-        let time = self.motion.time;
-        before
-            - after
-            - bar_weight::on_node(mesh, node, x, self.problem.body_force(time))
-            - self.problem.hung_on(support, time)
-    }
+/// Force that holds a support's node against its bars and what hangs there, N.
+fn holding_force(cable: &CableState, support: usize, node: usize) -> Vec2 {
+    let (mesh, x) = (&cable.mesh, &cable.motion.x);
+    let pull = |e: usize| {
+        let path = mesh.path(e, x);
+        let tension = mesh.bar(e).tension(path.length);
+        path.direction * if tension > 0.0 { tension } else { 0.0 }
+    };
+    let before = if node > 0 { pull(node - 1) } else { Vec2::zeros() };
+    let after = if node + 1 < mesh.nodes() { pull(node) } else { Vec2::zeros() };
+    let time = cable.motion.time;
+    before
+        - after
+        - bar_weight::on_node(mesh, node, x, cable.problem.body_force(time))
+        - cable.problem.hung_on(support, time)
+}
 
-    /// Keeps the force of the cable on what hands hold, as unknowns balances it.
-    pub(in crate::model::fem) fn note_hands(&mut self, unknowns: &Unknowns) {
-        for &(k, stiffness, at) in &self.input.hands {
-            self.answers.reaction[k] = (unknowns.x[k] - at) * stiffness;
-        }
+/// Keeps the force of the cable on what hands hold, as unknowns balances it.
+pub(in crate::model::fem) fn keep_forces(cable: &mut CableState, unknowns: &Unknowns) {
+    for &(k, stiffness, at) in &cable.input.hands {
+        cable.answers.reaction[k] = (unknowns.x[k] - at) * stiffness;
     }
 }
 
@@ -53,7 +51,7 @@ impl HandDrive {
             if let Some(node) = node.filter(|_| self.pulled[k]) {
                 let known = cable.motion.hands[k];
                 let mut hand = known.unwrap_or_else(|| {
-                    Hand::grip(&cable.problem, self.hand_stiffness, at, cable.holding_force(k, node))
+                    Hand::grip(&cable.problem, self.hand_stiffness, at, holding_force(cable, k, node))
                 });
                 hand.follow(target, h, fastest);
                 (cable.motion.hands[k], cable.motion.followers[k]) = (Some(hand), None);

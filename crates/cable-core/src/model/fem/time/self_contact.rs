@@ -8,85 +8,78 @@ use crate::model::fem::time::bdf2::{carried_on, plastic};
 use crate::model::fem::time::momentum::mass_with;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
-impl CableState {
-    /// True if there is nothing to touch: no obstacle, and the cable can pass itself.
-    pub(in crate::model::fem) fn meets_nothing(&self) -> bool {
-        self.problem.world.is_empty() && !self.contacts.own.shape.is_on()
-    }
-
-    /// Takes the normal speed out of contacts of the cable with itself that are faster than `quiet`
-    /// (m/s); momentum is kept.
-    pub(in crate::model::fem) fn land_on_itself(&mut self, quiet: f64, [h, a]: [f64; 2]) {
-        let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-        let mass = |k: usize| mass_with(&self.problem, &self.mesh, &self.meshing.support_node, k);
-        let m = &mut self.motion;
-        for rub in &self.contacts.own.rubs {
-            let n = rub.pair.normal;
-            let speed = n.dot(&rub.pair.difference(&m.v));
-            let shares = rub.pair.shares();
-            let give = |k: usize| if self.mesh.is_free(k) { 1.0 / mass(k) } else { 0.0 };
-            let sum: f64 = shares.iter().map(|&(k, part)| part * part * give(k)).sum();
-            let made = -self.contacts.barrier.at(rub.pair.gap_m).slope * rub.pair.weight / a;
-            if !(sum > 0.0) || speed.abs() < quiet {
-                continue;
-            }
-            let taken = plastic(speed, made * sum) / sum;
-            let change = rub.pair.difference(&m.v) - rub.pair.difference(&m.v_before);
-            let (_, rubbing, _) = friction::at(rub.sliding(&m.x), rub.limit, SLIDE);
-            let acted = n * made - rub.pair.tangent() * (rubbing / a);
-            let over = acted - carried_on(acted - change / sum, n, self.contacts.own.friction);
-            for (k, part) in shares.into_iter().filter(|&(k, _)| self.mesh.is_free(k)) {
-                m.v[k] -= n * (taken * part * give(k));
-                m.v_before[k] += (over - n * taken) * (part * give(k));
-                m.x_before[k] = m.x[k] - (m.v[k] + m.v_before[k]) * (0.5 * h);
-                given -= n * (taken * part);
-                forgotten += over * part;
-            }
+/// Takes the normal speed out of contacts of the cable with itself that are faster than `quiet`
+/// (m/s), after a step of `h` (s) whose forces acted for 1/`a` (s); momentum is kept.
+pub(in crate::model::fem) fn land(cable: &mut CableState, quiet: f64, h: f64, a: f64) {
+    let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
+    let mass = |k: usize| mass_with(&cable.problem, &cable.mesh, &cable.meshing.support_node, k);
+    let m = &mut cable.motion;
+    for rub in &cable.contacts.own.rubs {
+        let n = rub.pair.normal;
+        let speed = n.dot(&rub.pair.difference(&m.v));
+        let shares = rub.pair.shares();
+        let give = |k: usize| if cable.mesh.is_free(k) { 1.0 / mass(k) } else { 0.0 };
+        let sum: f64 = shares.iter().map(|&(k, part)| part * part * give(k)).sum();
+        let made = -cable.contacts.barrier.at(rub.pair.gap_m).slope * rub.pair.weight / a;
+        if !(sum > 0.0) || speed.abs() < quiet {
+            continue;
         }
-        // Nothing, but where a support holds a side of the contact.
-        self.account_for_landing(given, forgotten);
+        let taken = plastic(speed, made * sum) / sum;
+        let change = rub.pair.difference(&m.v) - rub.pair.difference(&m.v_before);
+        let (_, rubbing, _) = friction::at(rub.sliding(&m.x), rub.limit, SLIDE);
+        let acted = n * made - rub.pair.tangent() * (rubbing / a);
+        let over = acted - carried_on(acted - change / sum, n, cable.contacts.own.friction);
+        for (k, part) in shares.into_iter().filter(|&(k, _)| cable.mesh.is_free(k)) {
+            m.v[k] -= n * (taken * part * give(k));
+            m.v_before[k] += (over - n * taken) * (part * give(k));
+            m.x_before[k] = m.x[k] - (m.v[k] + m.v_before[k]) * (0.5 * h);
+            given -= n * (taken * part);
+            forgotten += over * part;
+        }
     }
+    // Nothing, but where a support holds a side of the contact.
+    cable.account_for_landing(given, forgotten);
+}
 
-    /// Contacts of the cable with itself at positions `x` (m): one report for each stretch of
-    /// nodes.
-    pub(in crate::model::fem) fn own_contacts(&self, x: &[Vec2], tension: &[f64], out: &mut Vec<ContactReport>) {
-        let own = &self.contacts.own;
-        let mut last = None;
-        for rub in &own.rubs {
-            let (k, pair) = (rub.pair.node, &rub.pair);
-            let load = -self.contacts.barrier.at(pair.gap_m).slope * pair.weight;
-            let along = self.mesh.path(k.min(tension.len().saturating_sub(1)), x).direction;
-            let (_, rubbing, _) = friction::at(rub.sliding(x), rub.limit, SLIDE);
-            let new = last.is_none_or(|l| k > l + 1);
-            last = Some(k);
-            if new {
-                let around = [k.saturating_sub(1), k.min(tension.len().saturating_sub(1))];
-                out.push(ContactReport {
-                    obstacle: self.problem.cable.name.clone(),
-                    x_m: x[k].x,
-                    y_m: x[k].y,
-                    arc_length_m: self.mesh.arc_length[k],
-                    normal: [pair.normal.x, pair.normal.y],
-                    state: ContactState::Stick,
-                    tension_before_n: tension[around[0]],
-                    begins_m: self.mesh.arc_length[k],
-                    ..ContactReport::default()
-                });
+/// Contacts of the cable with itself at positions `x` (m): one report for each stretch of
+/// nodes.
+pub(in crate::model::fem) fn reports(cable: &CableState, x: &[Vec2], tension: &[f64], out: &mut Vec<ContactReport>) {
+    let own = &cable.contacts.own;
+    let mut last = None;
+    for rub in &own.rubs {
+        let (k, pair) = (rub.pair.node, &rub.pair);
+        let load = -cable.contacts.barrier.at(pair.gap_m).slope * pair.weight;
+        let along = cable.mesh.path(k.min(tension.len().saturating_sub(1)), x).direction;
+        let (_, rubbing, _) = friction::at(rub.sliding(x), rub.limit, SLIDE);
+        let new = last.is_none_or(|l| k > l + 1);
+        last = Some(k);
+        if new {
+            let around = [k.saturating_sub(1), k.min(tension.len().saturating_sub(1))];
+            out.push(ContactReport {
+                obstacle: cable.problem.cable.name.clone(),
+                x_m: x[k].x,
+                y_m: x[k].y,
+                arc_length_m: cable.mesh.arc_length[k],
+                normal: [pair.normal.x, pair.normal.y],
+                state: ContactState::Stick,
+                tension_before_n: tension[around[0]],
+                begins_m: cable.mesh.arc_length[k],
+                ..ContactReport::default()
+            });
+        }
+        if let Some(report) = out.last_mut() {
+            let force = pair.normal * load - pair.tangent() * rubbing;
+            // The other side of the contact feels the opposite: the force on the whole cable is
+            // nothing.
+            for (node, part) in pair.shares() {
+                report.samples.push(ContactSample::new(cable.mesh.arc_length[node], force * part));
             }
-            if let Some(report) = out.last_mut() {
-                let force = pair.normal * load - pair.tangent() * rubbing;
-                // The other side of the contact feels the opposite: the force on the whole cable is
-                // nothing.
-                for (node, part) in pair.shares() {
-                    report.samples.push(ContactSample::new(self.mesh.arc_length[node], force * part));
-                }
-                report.normal_n += load;
-                report.ends_m = self.mesh.arc_length[k];
-                report.friction_n -= rubbing * pair.tangent().dot(&along);
-                report.tension_after_n = tension[k.min(tension.len().saturating_sub(1))];
-                if rubbing.abs() >= rub.limit {
-                    report.state = ContactState::Slip;
-                }
+            report.normal_n += load;
+            report.ends_m = cable.mesh.arc_length[k];
+            report.friction_n -= rubbing * pair.tangent().dot(&along);
+            report.tension_after_n = tension[k.min(tension.len().saturating_sub(1))];
+            if rubbing.abs() >= rub.limit {
+                report.state = ContactState::Slip;
             }
         }
     }
