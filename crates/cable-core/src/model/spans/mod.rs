@@ -59,8 +59,9 @@ use crate::state::State;
 /// reverses inside a step is missed, and what is laid down in a step is laid with the tension it
 /// began with. Smaller: more solves.
 const STEP: f64 = 0.01;
-/// Part of the greatest tension within which two histories left the same. Larger: a cable that is held
-/// by little friction is said to have one rest; smaller: rounding is said to be another history.
+/// Part of the greatest tension within which two histories left the same. Larger: a cable that is
+/// held by little friction is said to have one rest; smaller: rounding is said to be another
+/// history.
 const SAME_TENSION: f64 = 1e-9;
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
