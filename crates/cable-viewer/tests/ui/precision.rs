@@ -51,7 +51,7 @@ fn every_model_and_mesh_is_charted_with_the_choice_and_its_reason() {
     let spoken = figure.accesskit_node().description().unwrap_or_default();
     assert!(spoken.contains("Spans: ") && spoken.contains("FEM of 400 elements: "), "{spoken}");
     harness.get_by_label_contains("In use: Spans");
-    harness.get_by_label_contains("Contacts as intervals have no discretisation error");
+    harness.get_by_label_contains("contacts as intervals have no discretisation error");
     harness.get_by_label_contains("Catenary: ");
     // The tolerance is a line in it, and moves what is quickest.
     let quickest = |h: &Harness<'_, ViewerApp>| {
