@@ -165,7 +165,8 @@ fn every_map_and_every_cable_preset_makes_a_valid_scene() {
     }
 }
 
-/// A scene whose ground is rough was said to have many resting places where its cable touched none of it.
+/// A scene whose ground is rough was said to have many resting places where its cable touched none
+/// of it.
 #[test]
 fn a_cable_that_hangs_free_over_rough_ground_has_one_rest() {
     for model in [Model::Auto, Model::Spans, Model::Fem, Model::MassSpring] {
@@ -179,8 +180,8 @@ fn a_cable_that_hangs_free_over_rough_ground_has_one_rest() {
     }
 }
 
-/// The opening scene is harmless: over two rounds of the robot's path nothing is warned of, and the tension stays below
-/// half of the service tension.
+/// The opening scene is harmless: over two rounds of the robot's path nothing is warned of, and the
+/// tension stays below half of the service tension.
 #[test]
 fn the_opening_scene_has_nothing_to_warn_of() {
     let scene = catalog::tank_robot();

@@ -35,7 +35,7 @@ pub const STATES: [State; 8] = [
     State { name: "selection", scene: catalog::pulley_waypoints, prepare: selection, frames: 6 },
     State { name: "tension-budget", scene: catalog::draped_slipping, prepare: tension_budget, frames: 6 },
     State { name: "motion", scene: catalog::tank, prepare: motion, frames: 8 * RATE },
-    State { name: "robot", scene: catalog::tank_robot, prepare: robot, frames: 8 * RATE },
+    State { name: "robot", scene: catalog::robot_drive, prepare: robot, frames: 5 * RATE },
     State { name: "break", scene: weak, prepare: motion, frames: 2 * RATE / 3 },
     State { name: "safe-reach", scene: catalog::over_beam, prepare: safe_reach, frames: 6 },
     State { name: "compare", scene: catalog::hanging_span, prepare: compare, frames: 6 },
