@@ -14,7 +14,7 @@ from pathlib import Path
 
 from scenes import AT_REST, IN_MOTION, ROOT
 
-PEERS = ["moorpy", "moordyn", "opensees", "exudyn", "mujoco", "pymunk", "box2d", "rapier2d"]
+PEERS = ["moorpy", "moordyn", "cabledyn", "opensees", "exudyn", "mujoco", "pymunk", "box2d", "rapier2d"]
 HEADER = ["scene", "who", "setting", "cost_s", "error", "shape_error", "note"]
 TABLE = ROOT / "docs/charts/peers.csv"
 # Elapsed time after which a peer that does not use CPU is ended, s.

@@ -51,13 +51,14 @@ const GOALS: [f64; 3] = [1e-2, 1e-3, 1e-6];
 
 /// Colour and mark of everyone who answers. Colours are those of M. Okabe and K. Ito, "Color universal design"
 /// (2008), and grey tones for peers beyond eight.
-const MARKS: [(&str, &str, u32); 13] = [
+const MARKS: [(&str, &str, u32); 14] = [
     ("catenary", "#000000", 4),
     ("spans", "#009E73", 3),
     ("fem", "#0072B2", 0),
     ("mass-spring", "#D55E00", 4),
     ("moorpy", "#CC79A7", 5),
     ("moordyn", "#CC79A7", 3),
+    ("cabledyn", "#F0E442", 4),
     ("opensees", "#56B4E9", 5),
     ("exudyn", "#56B4E9", 3),
     ("mujoco", "#E69F00", 5),
