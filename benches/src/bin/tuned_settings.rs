@@ -2,7 +2,7 @@
 //!
 //! Run from the root of the repository: `cargo run --release -p cable-benches --bin tuned-settings -- mass-spring`; words after the
 //! model keep the constants whose names contain one of them. Each scene is solved at rest, for a second of motion and for a second of
-//! quasi-static motion. `docs/notes/settings.md` tells what was found.
+//! quasi-static motion. `docs/notes/settings.md` explains the table.
 
 use std::collections::BTreeMap;
 use std::error::Error;
