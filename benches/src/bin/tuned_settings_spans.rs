@@ -61,6 +61,7 @@ impl Scale for [f64; 3] {
 }
 
 /// A model with its tuned constants.
+#[expect(clippy::large_enum_variant)] // There are a handful of them, copied once a measurement.
 #[derive(Clone, Copy)]
 enum Model {
     Spans(SpansSettings),
