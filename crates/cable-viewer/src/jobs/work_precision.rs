@@ -110,9 +110,11 @@ mod tests {
                 wall_s,
             )),
         };
+        let scene = cable_core::scene::catalog::hanging_span();
+        let given = at_rest(&scene, Model::Catenary, Settings::default()).unwrap();
         let outcome = Outcome {
-            scene: Arc::new(cable_core::scene::catalog::hanging_span()),
-            given: (Arc::new(Solution::default()), 1.0),
+            scene: Arc::new(scene),
+            given: (Arc::new(given), 1.0),
             entries: vec![entry(25, 1e-2, 1e-3), entry(50, 2e-3, 2e-3), entry(100, 5e-4, 4e-3)],
         };
         let elements = |within| outcome.quickest(within).and_then(|(s, _)| s.elements);
