@@ -123,6 +123,8 @@ fn s08_an_edit_is_of_the_present() {
 #[test]
 fn s14_the_robot_follows_its_path_and_it_can_be_edited() {
     let mut harness = open(catalog::robot_drive());
+    // The form of a robot with its path is higher than a window of 800 points shows.
+    harness.set_size(egui::Vec2::new(1280.0, 1800.0));
     crate::select(&mut harness, Item::Robot);
     click(&mut harness, "Follow path");
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
