@@ -399,7 +399,10 @@ impl CheckedCable<'_> {
         }
         sums.residual_n = larger(larger(sums.residual_n, in_air.sqrt()), beyond);
         let allowed = limit + CONE_EXCESS * pressed;
-        if !(beyond <= allowed) && !(self.beyond_lumped_friction(near) <= allowed) {
+        // Small sums may be hidden by all bends together, larger ones by the bend where they are.
+        let [at_bends, apart] = if beyond <= allowed { [0.0; 2] } else { self.lumped_friction(near) };
+        let hidden = smaller(at_bends, REPORTED_BALANCE * self.scale);
+        if !(beyond <= allowed + hidden) && !(apart <= allowed) {
             let mut finding = self.finding(Law::Friction, worst.1, beyond, allowed);
             let here = near.of(worst.1).first();
             here.map_or("", |n| self.surroundings.name(n.body)).clone_into(&mut finding.with);
@@ -493,18 +496,16 @@ impl CheckedCable<'_> {
         self.wheels.iter().any(|&(center, radius, _)| piece.nodes.iter().any(|&k| self.is_led(k, center, radius)))
     }
 
-    /// The sum (N) of what pieces ask of obstacles beyond their cones, less the friction that the
-    /// bars' own weight may add or hide where the ground turns: a bar carries it to its ends, where
-    /// it turns the cable by weight over tension, and so presses as no edge does.
-    fn beyond_lumped_friction(&self, near: &Neighbours) -> f64 {
+    /// Friction (N) that the bars' own weight may add or hide where the ground turns, all of it,
+    /// and what pieces ask of obstacles beyond their cones when each is let off with its own: a bar
+    /// carries its weight to its ends, where it turns the cable by weight over tension, and so
+    /// presses as no edge does.
+    fn lumped_friction(&self, near: &Neighbours) -> [f64; 2] {
         let nodes = &self.answer.nodes;
         let last = nodes.len() - 1;
-        let mut rays = Vec::new();
-        let of_piece = |piece: CheckedPiece| {
+        let (mut rays, mut sums) = (Vec::new(), [0.0; 2]);
+        for piece in self.pieces() {
             let excess = self.excess(near, &piece, &mut rays).unwrap_or(0.0);
-            if excess == 0.0 {
-                return 0.0;
-            }
             let [from, to] = [piece.nodes[0].saturating_sub(1), (piece.nodes[1] + 1).min(last)];
             // Material that lies in folds is beside the way, and turns nothing.
             let way: f64 = nodes[from..=to].windows(2).map(|pair| (pair[1].at() - pair[0].at()).norm()).sum();
@@ -512,9 +513,10 @@ impl CheckedCable<'_> {
             let force = larger(nodes[piece.nodes[0]].force().norm(), nodes[piece.nodes[1]].force().norm());
             let turn = if weight < force { weight / force } else { 1.0 };
             let lumped = if self.rays(near, &piece, &mut rays) { weight * turn } else { 0.0 };
-            larger(excess - LUMPED_WEIGHT_TURN * self.greatest_friction() * lumped, 0.0)
-        };
-        self.pieces().map(of_piece).sum()
+            let hidden = LUMPED_WEIGHT_TURN * self.greatest_friction() * lumped;
+            sums = [sums[0] + hidden, sums[1] + larger(excess - hidden, 0.0)];
+        }
+        sums
     }
 
     /// The greatest friction coefficient that the cable may meet.
