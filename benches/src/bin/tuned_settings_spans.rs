@@ -1,4 +1,4 @@
-//! What the tuned constants of `spans` and `catenary` move: each is halved and doubled over the scenes of the catalogue and random ones, and
+//! This program shows the effect of the tuned constants of `spans` and `catenary`: each is halved and doubled over the scenes of the catalogue and random ones, and
 //! compared with the answers by the constants as they are.
 //!
 //! `cargo run --release -p cable-benches --bin tuned-settings-spans` prints a table; `-- 50` takes so many random scenes, and
@@ -241,7 +241,7 @@ fn asked(words: &[String], name: &str) -> bool {
     words.is_empty() || words.iter().any(|w| name.contains(w.as_str()))
 }
 
-/// What changes, as the cells of a row.
+/// The changes, as the cells of a row.
 fn compared(cases: &[Case], usual: &[Answers], model: Model) -> String {
     let (mut answered, mut changed, mut greatest, mut work) = (0i64, 0, 0.0, 0i64);
     for (case, usual) in cases.iter().zip(usual) {

@@ -369,6 +369,7 @@ fn section(page: &mut String, id: &str, points: &[&Point]) {
         };
         let ([a, b], [c, d]) = (way(&ours), way(&others));
         let times = match (cheapest(&ours, goal), cheapest(&others, goal)) {
+            (Some((_, own)), Some((_, other))) if other < own => format!("{:.2}", other / own),
             (Some((_, own)), Some((_, other))) => format!("{:.1}", other / own),
             _ => "–".to_owned(),
         };

@@ -53,16 +53,16 @@ pub enum SceneFault {
     },
     /// A value of a wrong type.
     Type {
-        /// What was found, in the reader's words.
+        /// The thing found, in the reader's words.
         found: String,
-        /// What is needed, in the reader's words.
+        /// The thing needed, in the reader's words.
         needed: String,
     },
     /// A list with a wrong number of elements.
     Elements {
         /// Their number.
         count: usize,
-        /// What is needed, in the reader's words.
+        /// The thing needed, in the reader's words.
         needed: String,
     },
     /// A number out of range or not finite.

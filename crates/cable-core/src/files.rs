@@ -698,7 +698,7 @@ fn sync_folder(folder: &Path) {
     let _ = fs::File::open(folder).and_then(|folder| folder.sync_all());
 }
 
-/// What the reader of a run should know.
+/// Remarks for the reader of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RunRemark {
     /// It did not come to its end.

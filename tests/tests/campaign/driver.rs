@@ -229,7 +229,7 @@ fn unsound(answer: &Solution) -> bool {
     answer.model == Model::MassSpring && answer.verification.as_ref().is_some_and(|v| !v.is_sound())
 }
 
-/// Whether an answer with `own` forces at its ends says that other histories of the cable leave
+/// True if an answer with `own` forces at its ends says that other histories of the cable leave
 /// tensions there as large as those of `other` forces, N.
 fn states(answer: &Solution, own: [Point; 2], other: [Point; 2]) -> bool {
     let ranges = answer.warnings.iter().find_map(|w| match &w.cause {
@@ -332,10 +332,10 @@ fn judge_case(plan: &Plan, case: &Case, seed: u64) -> Verdict {
                 let both = said + other.cables[0].error_estimate.unwrap_or(0.0);
                 let limit = if changed.name == "a touch more" { 0.02 } else { 1e-4 };
                 let rounding = 1e-12 * cable.axial_stiffness_n / greatest;
-                if off <= limit + both + rounding {
-                } else if states(&answer, forces, seen) || states(&other, seen, forces) {
+                let differs = !(off <= limit + both + rounding);
+                if differs && (states(&answer, forces, seen) || states(&other, seen, forces)) {
                     v.other += 1;
-                } else {
+                } else if differs {
                     v.outside.push(format!(
                         "{}: {off:.2e} of {greatest:.3e} N apart, {both:.1e} said, {} and {}",
                         changed.name, answer.model, other.model
@@ -363,10 +363,10 @@ fn judge_case(plan: &Plan, case: &Case, seed: u64) -> Verdict {
         let seen = end_forces(&other);
         let off = (0..2).map(|k| distance(forces[k], seen[k])).fold(0.0, f64::max) / greatest;
         let both = said + other.cables[0].error_estimate.unwrap_or(1e-3);
-        if off <= 1e-5 + both {
-        } else if states(&answer, forces, seen) || states(&other, seen, forces) {
+        let differs = !(off <= 1e-5 + both);
+        if differs && (states(&answer, forces, seen) || states(&other, seen, forces)) {
             v.other += 1;
-        } else {
+        } else if differs {
             v.outside.push(format!("fem 300: {off:.2e} of {greatest:.3e} N apart, {both:.1e} said"));
         }
     }

@@ -44,12 +44,12 @@ pub enum ModelReason {
     Bending {
         /// Why that model.
         reason: Box<Self>,
-        /// What was taken for the bending stiffness.
+        /// The bending stiffness that was used.
         bending: LikelyBending,
     },
 }
 
-/// What was made of the bending stiffness that is likely of the presets of flexible cables.
+/// The use made of the bending stiffness that is likely of the presets of flexible cables.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LikelyBending {
     /// It was taken, as the user asked.

@@ -12,9 +12,9 @@ use crate::{canvas, panels};
 type PanelUi = fn(&mut Ui, &AppState, &mut Vec<Command>);
 type Section = (&'static str, PanelUi);
 
-/// What is in the scene, and in a small window what edits the selected thing.
+/// The outline of the scene, and in a small window the form of the selected thing.
 const EDIT: &[Section] = &[("Outline", panels::scene::outline::ui), (SELECTED, panels::selected::ui)];
-/// What is wrong, what edits the selected thing, then what is read off. Where a place on the cable is
+/// Warnings, the form of the selected thing, then the readouts. Where a place on the cable is
 /// marked its tension stands above the readouts, else at the end.
 const READ: &[Section] = &[
     ("Warnings", panels::warnings::ui),

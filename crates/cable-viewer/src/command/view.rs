@@ -213,7 +213,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             effects.work_precision = Some(Some(Box::new(state.document.scene.clone())));
         }
         ViewCommand::ChartPrecision(false) => {
-            // What was found until then stays.
+            // The results found until then stay.
             let before = std::mem::take(&mut state.analysis.work_precision);
             if let work_precision::Progress::Running(_, Some(found)) = before {
                 state.analysis.work_precision = work_precision::Progress::Done(found);

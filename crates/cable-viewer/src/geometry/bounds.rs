@@ -98,7 +98,7 @@ pub fn above_ground(state: &AppState, point: Option<Point>, [mut low, mut high]:
     [low, high]
 }
 
-/// How much farther down than across a wall goes at least: 1 in 10 off the vertical.
+/// Least slope of a wall, height over width: 1 in 10 off the vertical.
 const WALL_SLOPE: f64 = 10.0;
 /// Widest top of a wall, as a part of the ground. Wider: it is ground that ends in a step down.
 const WALL_WIDTH: f64 = 0.1;
@@ -118,7 +118,7 @@ fn ground_ends(state: &AppState) -> Option<[f64; 2]> {
     ends.reduce(|[a, b], [left, right]| [a.min(left), b.max(right)]).filter(|[left, right]| left < right)
 }
 
-/// Where ground of a width (m) begins, seen from one of its ends, m: at that end, or at the face of a wall.
+/// The place at which ground of a width (m) begins, seen from one of its ends, m: at that end, or at the face of a wall.
 fn inner_face<'a>(points_m: impl Iterator<Item = &'a Point>, width: f64) -> Option<f64> {
     let mut points = points_m.copied().peekable();
     let first = points.next()?;

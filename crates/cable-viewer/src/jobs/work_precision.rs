@@ -16,16 +16,16 @@ const REPEATED_WITHIN_S: f64 = 0.05;
 /// Most times that a solve is repeated.
 const MAX_REPEATS: usize = 5;
 
-/// What came of a setting.
+/// The result of a setting.
 #[derive(Clone, Debug)]
 pub struct Entry {
     /// Model and mesh.
     pub setting: Setting,
-    /// How its answer differs and the wall time it took (s), or why there is none.
+    /// The difference of its answer and the wall time it took (s), or the reason for having none.
     pub result: Result<(Compared, f64), Error>,
 }
 
-/// What came of all of them, and what they are compared with.
+/// The results of all settings, and the answer they are compared with.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The scene.
@@ -36,7 +36,7 @@ pub struct Outcome {
     pub entries: Vec<Entry>,
 }
 
-/// How far it is.
+/// Progress so far.
 pub type Progress = background::Progress<Outcome>;
 /// Settings being compared.
 pub type Job = background::Job<Outcome>;

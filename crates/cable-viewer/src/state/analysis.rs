@@ -22,7 +22,7 @@ pub struct Analysis {
     pub safe_reach: safe_reach::SafeReachState,
     /// What neglecting bending stiffness changes.
     pub neglected_bending: neglected_bending::NeglectedBendingState,
-    /// How error and cost of every model and mesh stand to each other.
+    /// Error over cost of every model and mesh.
     pub work_precision: work_precision::Progress,
     /// What less and more friction does.
     pub friction_range: friction_range::FrictionRangeState,

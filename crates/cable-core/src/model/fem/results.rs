@@ -385,7 +385,7 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     let mesh = &d.mesh;
     let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
-    // What a bar has to spare hangs or lies beside the round: on it the cable is taut.
+    // The slack of a bar hangs or lies beside the round: on it the cable is taut.
     let stretch = [0, 1]
         .map(|j| larger(paths[j].length / (mesh.arc_length[k + j] - mesh.arc_length[k + j - 1]), mesh.thermal_stretch));
     let (mark, sense, radius) = (node.end.mark, node.end.sense, node.end.radius);

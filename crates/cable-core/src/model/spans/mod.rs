@@ -235,7 +235,7 @@ impl SpansModel {
             let found = network.drawn(&self.layout, drawn.way(), work);
             found.or_else(|| self.laid_anew(drawn, start, work)).map(|n| tensions(&n))
         });
-        // Where there is more cable than its way needs it may as well lie loose.
+        // A cable that is longer than its way may as well lie loose.
         let heap = CableEquilibrium::heaped(&self.layout, &network.instant);
         let loose = heap.filter(|heap| heap.loose().is_some_and(|[material, _]| material > 0.0)).map(|n| tensions(&n));
         let all = || std::iter::once(laid).chain(drawn.into_iter().flatten()).chain(loose);
@@ -273,7 +273,7 @@ impl SpansModel {
         self.layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none))
     }
 
-    /// Whether the cable touches nothing that rubs, and drawn towards either end comes back to the
+    /// True if the cable touches nothing that rubs, and drawn towards either end comes back to the
     /// same tensions: then no history was found that leaves others.
     fn hangs_free(&self, histories: &Histories) -> bool {
         let Histories::Mobilised {

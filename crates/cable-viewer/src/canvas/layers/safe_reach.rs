@@ -51,7 +51,7 @@ fn corners(area: &Area, k: usize) -> Option<[(Point, f64); 4]> {
     inside.then_some(found)
 }
 
-/// Whether something is known of a square, and the cable reaches all of it.
+/// True if something is known of a square, and the cable reaches all of it.
 fn is_filled(corners: [(Point, f64); 4]) -> bool {
     corners.iter().all(|(_, n)| n.is_finite())
 }

@@ -135,7 +135,7 @@ fn chart(ui: &mut Ui, found: &Outcome, tolerance: f64) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_description(spoken.join("; ").as_str()));
 }
 
-/// What tells the models apart besides their colour.
+/// Marks that tell the models apart besides their colour.
 const SHAPES: [(Model, MarkerShape); 4] = [
     (Model::Catenary, MarkerShape::Diamond),
     (Model::Spans, MarkerShape::Square),

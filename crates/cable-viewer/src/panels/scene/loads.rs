@@ -46,7 +46,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-/// Where it acts and how strong it is.
+/// Place and strength of the load.
 fn head(ui: &mut Ui, state: &AppState, k: usize, load: &Load, commands: &mut Vec<Command>, faults: &mut Vec<String>) {
     let name = format!("load {}", k + 1);
     let set = |value: Load, commands: &mut Vec<Command>| {

@@ -13,7 +13,7 @@ use crate::state::{AppState, Item};
 use crate::units::unit::Unit;
 use crate::units::{format, labels};
 
-/// How far what belongs to a cable or a heading stands to the right of it, points.
+/// Indent of the rows that belong to a cable or a heading, points.
 const INDENT: f32 = 10.0;
 
 /// Draws it.

@@ -251,13 +251,7 @@ impl Dynamics {
 
     /// The same, corners as they are.
     fn accept_unknowns(&mut self, unknowns: &Unknowns, to: f64) {
-        self.cable.contacts.commit(
-            &self.cable.problem,
-            &self.cable.mesh,
-            &unknowns.x,
-            &self.cable.motion.x,
-            &unknowns.slide,
-        );
+        self.cable.commit_contacts(unknowns);
         self.cable.contacts.outline_motion = None;
         self.cable.motion.x.clone_from(&unknowns.x);
         self.cable.motion.v.fill(Vec2::zeros());

@@ -13,7 +13,7 @@ use crate::model::fem::state::moving_outline::MovingOutline;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::friction_state::{ContactPair, ContactSet, SLIDE, slip_at_rest};
 use crate::model::fem::system::loss::Loss;
-use crate::model::fem::system::step_input::{StepInput, load_scale, tolerance};
+use crate::model::fem::system::step_input::{StepInput, Unknowns, load_scale, tolerance};
 use crate::model::fem::touches_nothing;
 use crate::model::{Model, Settings};
 use crate::problem::{Problem, Series};
@@ -195,6 +195,11 @@ impl CableState {
     /// True if there is nothing to touch: no obstacle, and the cable can pass itself.
     pub(in crate::model::fem) fn meets_nothing(&self) -> bool {
         self.problem.world.is_empty() && !self.contacts.own.shape.is_on()
+    }
+
+    /// Takes the friction of a balanced step over into the memory of the contacts.
+    pub(in crate::model::fem) fn commit_contacts(&mut self, unknowns: &Unknowns) {
+        self.contacts.commit(&self.problem, &self.mesh, &unknowns.x, &self.motion.x, &unknowns.slide);
     }
 
     /// Forgets the steps before the present instant.

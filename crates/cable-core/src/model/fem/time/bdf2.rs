@@ -336,13 +336,7 @@ impl Dynamics {
         let given = self.cable.forces_in_step(&unknowns, self.solver.touches());
         let slid = self.cable.sliding_momentum();
         branches::relax(&mut self.cable, h, &unknowns.x);
-        self.cable.contacts.commit(
-            &self.cable.problem,
-            &self.cable.mesh,
-            &unknowns.x,
-            &self.cable.motion.x,
-            &unknowns.slide,
-        );
+        self.cable.commit_contacts(&unknowns);
         let (m, mesh) = (&mut self.cable.motion, &self.cable.mesh);
         for k in 0..unknowns.x.len() {
             let v = (unknowns.x[k] - weights.place(m, k)) * a;
