@@ -130,7 +130,16 @@ impl CablePart {
         let mut cable = whole.cable.clone();
         cable.length_m = length;
         cable.segments = Some(elements);
-        Problem { length, supports, loads, route: route(state), cable, similar: None, ..whole.clone() }
+        Problem {
+            length,
+            supports,
+            loads,
+            route: route(state),
+            cable,
+            similar: None,
+            wheels_as_posts: None,
+            ..whole.clone()
+        }
     }
 }
 

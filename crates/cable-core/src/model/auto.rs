@@ -55,8 +55,9 @@ pub(crate) fn choose_for_all(problems: &[Arc<Problem>], question: Question) -> (
     chosen.max_by_key(|(model, _)| model.rank()).unwrap_or((Model::Catenary, ModelReason::SupportsOnly))
 }
 
-/// Returns what is built where a model was chosen: `spans` and `fem` take turns.
+/// Returns what is built where a model was chosen: `spans` and `fem` take turns, and behind
+/// `catenary` stands one that meets the wheels which the cable leaves.
 #[must_use]
 pub(crate) fn built_for(chosen: Model) -> Model {
-    if chosen == Model::Spans { Model::Auto } else { chosen }
+    if matches!(chosen, Model::Spans | Model::Catenary) { Model::Auto } else { chosen }
 }

@@ -20,6 +20,7 @@ pub mod fem;
 pub mod gauge;
 pub(crate) mod initial_equilibrium;
 pub mod input_filter;
+mod leavable_wheels;
 pub mod mass_spring;
 pub mod mechanics;
 pub mod registry;

@@ -7,7 +7,7 @@ use super::auto::{self, Question};
 use super::mechanics::Mechanics;
 use super::settings::Settings;
 use super::switching::SwitchingModel;
-use super::{catenary, fem, mass_spring, similar, spans};
+use super::{catenary, fem, leavable_wheels, mass_spring, similar, spans};
 use crate::error::{SolveError, Unsupported};
 use crate::model_id::Model;
 use crate::problem::Problem;
@@ -245,5 +245,11 @@ fn construct(model: Model, problem: Arc<Problem>, settings: Settings) -> Built {
     let info = model.info();
     refuse_mobilised(model, &problem)?;
     let problem = if info.capabilities.robot_contact { problem } else { Problem::without_outline(problem) };
-    (info.construct)(problem, settings)
+    let inner = (info.construct)(problem.clone(), settings)?;
+    let Some(copy) = problem.wheels_as_posts.clone().filter(|_| info.capabilities.contact) else { return Ok(inner) };
+    let again: Arc<Constructor> = Arc::new(move |problem, settings| {
+        let problem = if info.capabilities.robot_contact { problem } else { Problem::without_outline(problem) };
+        (info.construct)(problem, settings)
+    });
+    Ok(Box::new(leavable_wheels::LeavableWheels::new(problem, copy, settings, again, inner)))
 }

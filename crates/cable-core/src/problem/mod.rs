@@ -6,6 +6,7 @@
 //! | `support_clearance.rs` | supports on a surface are moved off it by a cable radius |
 //! | `ground_route.rs`, `route_check.rs` | routes below the ground are lifted; routes through a beam are refused |
 //! | `robot_outline.rs` | the robot as an obstacle |
+//! | `wheels_as_posts.rs` | wheels that stand still as rounds which the cable may leave |
 //! | `describe_place.rs`, `rounding_error.rs` | places in words; what rounding leaves of an answer |
 //!
 //! Arc lengths are unstretched at rest temperature; temperature enters as the factor
@@ -18,6 +19,7 @@ mod robot_outline;
 mod rounding_error;
 mod route_check;
 mod support_clearance;
+pub(crate) mod wheels_as_posts;
 
 use std::sync::Arc;
 
@@ -75,6 +77,8 @@ pub struct Problem {
     /// The same cable at the scale solvers are made for, where this one is much shorter, longer or
     /// farther away.
     pub similar: Option<(Similarity, Arc<Problem>)>,
+    /// The same cable with posts in place of its wheels, where it has wheels that stand still.
+    pub(crate) wheels_as_posts: Option<Arc<wheels_as_posts::WheelsAsPosts>>,
 }
 
 /// Times nearer than this are the same, s: sums of steps come as near to a time as rounding lets
@@ -245,6 +249,7 @@ fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneEr
     let mut this = problem(scene, index, cable)?;
     support_clearance::clear_supports(&mut this)?;
     ground_route::lift_route(&mut this);
+    this.wheels_as_posts = wheels_as_posts::copy(scene, index, cable);
     let origin = this.supports.iter().find_map(|s| s.at).or(this.route.first().copied()).unwrap_or_else(Vec2::zeros);
     if scene.robot.is_none()
         && let Some(by) = Similarity::to_natural(cable.length_m, origin)
@@ -255,6 +260,7 @@ fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneEr
             copy.time_scale = by.time;
             support_clearance::clear_supports(&mut copy)?;
             ground_route::lift_route(&mut copy);
+            copy.wheels_as_posts = wheels_as_posts::copy(&scaled, index, cable);
             this.similar = Some((by, Arc::new(copy)));
         }
     }
@@ -337,6 +343,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         route: cable.route_m.iter().map(|p| vec2(*p)).collect(),
         notes: Vec::new(),
         similar: None,
+        wheels_as_posts: None,
         cable,
     })
 }

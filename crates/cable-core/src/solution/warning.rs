@@ -102,6 +102,8 @@ pub enum WarningKind {
     SupportHeld,
     /// The scene puts a support or the route into an obstacle: it was put outside.
     InitialPenetration,
+    /// It hangs clear of the wheel of a pulley, which carries nothing.
+    ClearOfWheel,
     /// It lies through the robot, of which the model knows nothing.
     ThroughRobot,
     /// Damping or velocity was raised to keep the motion stable.
@@ -114,7 +116,7 @@ pub enum WarningKind {
 
 impl WarningKind {
     /// Every kind.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::ServiceTension,
         Self::BreakingTension,
         Self::Broken,
@@ -130,6 +132,7 @@ impl WarningKind {
         Self::NotUnique,
         Self::SupportHeld,
         Self::InitialPenetration,
+        Self::ClearOfWheel,
         Self::ThroughRobot,
         Self::Stabilised,
         Self::EnergyGrows,
@@ -155,6 +158,7 @@ impl WarningKind {
             Self::NotUnique => "not-unique",
             Self::SupportHeld => "support-held",
             Self::InitialPenetration => "initial-penetration",
+            Self::ClearOfWheel => "clear-of-wheel",
             Self::ThroughRobot => "through-robot",
             Self::Stabilised => "stabilised",
             Self::EnergyGrows => "energy-grows",
@@ -174,6 +178,7 @@ impl WarningKind {
             | Self::Snag
             | Self::NotUnique
             | Self::SupportHeld
+            | Self::ClearOfWheel
             | Self::ThroughRobot
             | Self::Stabilised
             | Self::Accuracy => Quantity::Number,
@@ -321,6 +326,11 @@ pub enum WarningCause {
         pull_n: f64,
         /// Stiffness of its spring, N/m.
         stiffness_n_per_m: f64,
+    },
+    /// The cable hangs clear of a wheel.
+    ClearOfWheel {
+        /// The pulley's name.
+        pulley: String,
     },
     /// The route was below the ground.
     RouteBuried {
@@ -559,6 +569,7 @@ impl WarningCause {
             }
             Self::Blocked { .. } | Self::Lags { .. } | Self::HandLags { .. } => WarningKind::SupportHeld,
             Self::RouteBuried { .. } | Self::SupportOnSurface { .. } => WarningKind::InitialPenetration,
+            Self::ClearOfWheel { .. } => WarningKind::ClearOfWheel,
             Self::RobotIgnored { .. } => WarningKind::ThroughRobot,
             Self::SlidFromRoute { .. } | Self::SlidOn | Self::SpeedCut | Self::EnergyCut | Self::StiffPreview => {
                 WarningKind::Stabilised

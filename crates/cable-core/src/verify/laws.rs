@@ -278,15 +278,11 @@ impl CheckedCable<'_> {
         }
         // Between the pieces of a broken cable there is none.
         let is_cable = |k: usize| !near.of(k).is_empty() && !self.answer.breaks.contains(&(k + 1));
-        for (k, pair) in nodes.windows(2).enumerate().filter(|(k, _)| is_cable(*k)) {
-            // Between two nodes the cable is drawn straight where it is round.
-            let way = (pair[1].at() - pair[0].at()).norm();
-            let sagitta = pair.iter().map(|n| n.curvature_per_m.abs()).fold(0.0, larger) * way * way / 8.0;
+        for k in (0..nodes.len() - 1).filter(|k| is_cable(*k)) {
             for n in near.of(k) {
                 let value = radius - n.distance;
-                let end = n.at == pair[0].at() || n.at == pair[1].at();
                 let given = if held.contains(&n.at) { radius } else { 0.0 };
-                let limit = allowed + given + if end { 0.0 } else { sagitta };
+                let limit = allowed + given;
                 if !(value <= limit) {
                     let mut finding = self.finding(Law::Penetration, k, value, limit);
                     self.surroundings.name(n.body).clone_into(&mut finding.with);
@@ -834,7 +830,7 @@ fn point_forces(scene: &Scene, cable: &Cable, holds: &[SupportHold<'_>], time_s:
         let force = match hold.role {
             Role::Load => hold.dead_load(scene, time_s),
             Role::Held | Role::Pulley => hold.force(),
-            Role::Wheel { .. } | Role::Released => return None,
+            Role::Wheel { .. } | Role::Clear { .. } | Role::Released => return None,
         };
         Some(AppliedForce { arc_length: hold.arc_length, force })
     });

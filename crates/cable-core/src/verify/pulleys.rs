@@ -94,7 +94,7 @@ impl CheckedCable<'_> {
             let wheel = match hold.role {
                 Role::Pulley => None,
                 Role::Wheel { radius } => Some((hold.at, radius)),
-                Role::Held | Role::Load | Role::Released => continue,
+                Role::Held | Role::Clear { .. } | Role::Load | Role::Released => continue,
             };
             let near = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - same).min(nodes.len() - 1);
             let on = |k: usize| match wheel {

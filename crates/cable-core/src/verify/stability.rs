@@ -22,7 +22,7 @@ impl CheckedCable<'_> {
         let same = 1e-9 * self.cable.length_m;
         // The support that holds a node, and whether it may turn there.
         let mut holds = vec![None; nodes.len()];
-        for hold in self.holds.iter().filter(|h| !matches!(h.role, Role::Load | Role::Released)) {
+        for hold in self.holds.iter().filter(|h| !matches!(h.role, Role::Clear { .. } | Role::Load | Role::Released)) {
             let node = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - same);
             if let Some(held) = holds.get_mut(node) {
                 *held = Some(hold.support.kind == SupportKind::Clamped);

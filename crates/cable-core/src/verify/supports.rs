@@ -4,8 +4,8 @@ use super::laws::{CheckedCable, series};
 use super::surroundings::distance;
 use super::tolerance::SUPPORT_TOLERANCE;
 use super::{Law, Verification};
-use crate::math::{Vec2, larger, smaller};
-use crate::scene::{Cable, Scene, Support, SupportKind, View};
+use crate::math::{Vec2, cross, larger, smaller};
+use crate::scene::{Cable, PulleySide, Scene, Support, SupportKind, View};
 use crate::solution::{CableSolution, Node, SupportReaction};
 
 /// Present action of a support on the cable.
@@ -18,6 +18,11 @@ pub(super) enum Role {
     /// The cable runs over a wheel.
     Wheel {
         /// Of the centre line, m.
+        radius: f64,
+    },
+    /// The cable hangs clear of a wheel.
+    Clear {
+        /// Of the centre line round it, m.
         radius: f64,
     },
     /// A given force, or nothing.
@@ -47,7 +52,11 @@ pub(super) fn holds<'a>(cable: &'a Cable, answer: &'a CableSolution, time_s: f64
         let role = match support.kind {
             SupportKind::Load | SupportKind::Free => Role::Load,
             _ if released => Role::Released,
-            SupportKind::Pulley => wheel.map_or(Role::Pulley, |r| Role::Wheel { radius: r + 0.5 * cable.diameter_m }),
+            SupportKind::Pulley => wheel.map_or(Role::Pulley, |r| {
+                let radius = r + 0.5 * cable.diameter_m;
+                let pressed = reaction.reaction_x_n != 0.0 || reaction.reaction_y_n != 0.0;
+                if pressed { Role::Wheel { radius } } else { Role::Clear { radius } }
+            }),
             SupportKind::Fixed | SupportKind::Clamped | SupportKind::Robot => Role::Held,
         };
         let arc_length = match k {
@@ -83,7 +92,7 @@ impl CheckedCable<'_> {
         found.ask(Law::Support);
         let nodes = &self.answer.nodes;
         let limit = SUPPORT_TOLERANCE * self.cable.length_m;
-        for hold in &self.holds {
+        for (k, hold) in self.holds.iter().enumerate() {
             let to_bar = |p: &[Node]| distance(hold.at, hold.at, p[0].at(), p[1].at());
             // Most are there where the cable says that it runs past them.
             let to_cable = |enough: f64| {
@@ -95,6 +104,10 @@ impl CheckedCable<'_> {
                 Role::Load | Role::Released => continue,
                 Role::Pulley => (to_cable(limit), larger(limit, self.reach())),
                 Role::Wheel { radius } => (to_cable(radius + limit) - radius, larger(limit, self.reach())),
+                Role::Clear { radius } => {
+                    let inside = larger(radius - to_cable(0.0), 0.0);
+                    (if self.passes_on_its_side(k) { inside } else { radius + inside }, larger(limit, self.reach()))
+                }
                 Role::Held => {
                     let from = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - limit);
                     let here = nodes[from..].iter().take_while(|n| n.arc_length_m <= hold.arc_length + limit);
@@ -108,5 +121,24 @@ impl CheckedCable<'_> {
                 found.report(finding);
             }
         }
+    }
+
+    /// Returns whether the cable passes a wheel on the side that the scene says: seen from its
+    /// centre, the cable from the support before to the one after turns clockwise where it runs
+    /// over the wheel to the right.
+    fn passes_on_its_side(&self, k: usize) -> bool {
+        let beside = |k: Option<usize>| k.and_then(|k| self.holds.get(k));
+        let (Some(before), Some(after)) = (beside(k.checked_sub(1)), beside(Some(k + 1))) else { return true };
+        let (hold, nodes) = (&self.holds[k], &self.answer.nodes);
+        let node_at = |s: f64| nodes.partition_point(|n| n.arc_length_m < s).min(nodes.len() - 1);
+        let [first, last] = [before, after].map(|h| node_at(h.arc_length));
+        let turn = |p: &[Node]| {
+            let [a, b] = [p[0].at() - hold.at, p[1].at() - hold.at];
+            cross(a, b).atan2(a.dot(&b))
+        };
+        let swept: f64 = nodes[first..=last.max(first)].windows(2).map(turn).sum();
+        let over = hold.support.side.unwrap_or_default() == PulleySide::Over;
+        let clockwise = over == (after.at.x >= before.at.x);
+        if clockwise { swept < 0.0 } else { swept > 0.0 }
     }
 }

@@ -127,6 +127,9 @@ impl Sentence for Warning {
             Cause::Blocked { support } => {
                 format!("support `{support}` cannot reach where it is sent: an obstacle blocks it")
             }
+            Cause::ClearOfWheel { pulley } => {
+                format!("the cable hangs clear of the wheel of pulley `{pulley}`, which carries nothing")
+            }
             Cause::Lags { support, behind_m } => format!(
                 "support `{support}` lags {} behind where it is sent: it follows at {} at most",
                 f.length(*behind_m, 2),

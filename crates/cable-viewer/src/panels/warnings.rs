@@ -156,6 +156,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::Accuracy => (Severity::Caution, "Accuracy below target"),
         WarningKind::SupportHeld => (Severity::Caution, "Support blocked"),
         WarningKind::InitialPenetration => (Severity::Note, "Moved out of an obstacle"),
+        WarningKind::ClearOfWheel => (Severity::Note, "Clear of a wheel"),
         WarningKind::ThroughRobot => (Severity::Caution, "Lies through the robot"),
         WarningKind::Stabilised => (Severity::Caution, "Motion was stabilised"),
         WarningKind::EnergyGrows => (Severity::Stop, "Energy error"),
@@ -212,6 +213,7 @@ fn figures(warning: &Warning) -> Option<String> {
         WarningKind::InitialPenetration
         | WarningKind::NotUnique
         | WarningKind::SupportHeld
+        | WarningKind::ClearOfWheel
         | WarningKind::ThroughRobot
         | WarningKind::Stabilised => None,
     }

@@ -148,6 +148,7 @@ fn marks(kind: WarningKind) -> bool {
             | WarningKind::EnergyGrows
             | WarningKind::SupportHeld
             | WarningKind::InitialPenetration
+            | WarningKind::ClearOfWheel
     )
 }
 

@@ -132,7 +132,7 @@ impl Dynamics {
         }
         // A state in motion goes on as it is; one at rest is brought to rest on this mesh.
         let still = !state.in_motion && self.cable.motion.v.iter().all(|v| v.norm() == 0.0);
-        if !same && !still {
+        if !same {
             self.cable.follow_corners(state);
         }
         if !same || self.cable.refuse_buried().is_err() {
