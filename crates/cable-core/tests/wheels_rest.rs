@@ -16,8 +16,8 @@ use std::collections::BTreeMap;
 
 use cable_core::scene::obstacle::{Obstacle, Shape};
 use cable_core::scene::{PulleySide, Scene, Support, SupportKind, catalog};
-use cable_core::solution::{CableSolution, Node};
-use cable_core::{Model, Simulation};
+use cable_core::solution::{CableSolution, WarningKind};
+use cable_core::{Model, Simulation, Vec2};
 
 use self::dice::Dice;
 
@@ -250,45 +250,6 @@ fn difference(a: &CableSolution, b: &CableSolution, mirror: f64) -> f64 {
     if off == 0.0 { 0.0 } else { off / most }
 }
 
-/// The wheel that a refusal says the cable lifts off.
-fn named(scene: &Scene, why: &str) -> Option<usize> {
-    scene.cables[0].supports.iter().position(|s| {
-        let told = |words: &str| why.contains(&format!("{words} `{}`", s.name));
-        s.radius_m.is_some_and(|r| r > 0.0) && (told("lifts off the wheel of") || told("on the wheel of pulley"))
-    })
-}
-
-/// Whether a cable has no rest on its wheels: without the wheel that it is said to lift off, or any
-/// where none is named, it hangs clear of that wheel, on the side on which it was to run, so that
-/// it would have to be drawn to it.
-fn hangs_clear(scene: &Scene, why: &str) -> bool {
-    let wheels = 0..scene.cables[0].supports.len();
-    let round = |k: &usize| scene.cables[0].supports[*k].radius_m.is_some_and(|r| r > 0.0);
-    match named(scene, why) {
-        Some(k) => clear_without(scene, k, Vec::new()),
-        None => wheels.filter(round).any(|k| clear_without(scene, k, Vec::new())),
-    }
-}
-
-fn clear_without(scene: &Scene, k: usize, mut gone: Vec<Support>) -> bool {
-    let mut bare = scene.clone();
-    gone.push(bare.cables[0].supports.remove(k));
-    let found = match rest(&bare, Model::Spans).or_else(|_| rest(&bare, Model::Catenary)) {
-        Err(why) => return named(&bare, &why).is_some_and(|k| clear_without(&bare, k, gone)),
-        Ok(found) => found,
-    };
-    gone.iter().all(|wheel| {
-        let facing = if wheel.side == Some(PulleySide::Over) { 1.0 } else { -1.0 };
-        let (at, radius) = (wheel.at_m.unwrap(), wheel.radius_m.unwrap() + 0.5 * DIAMETER);
-        let off = |p: &Node| (p.x_m - at[0]).hypot(p.y_m - at[1]);
-        let near = found.nodes.iter().enumerate().min_by(|a, b| off(a.1).total_cmp(&off(b.1))).unwrap().0;
-        let near = near.clamp(1, found.nodes.len() - 2);
-        let [a, b, c] = [near - 1, near, near + 1].map(|k| &found.nodes[k]);
-        let side = (c.x_m - a.x_m) * (at[1] - b.y_m) - (c.y_m - a.y_m) * (at[0] - b.x_m);
-        off(b) > 0.999 * radius && facing * side < 0.0
-    })
-}
-
 /// A message without its figures.
 fn cause(message: &str) -> String {
     let plain: String = message.chars().map(|c| if c.is_ascii_digit() { '#' } else { c }).collect();
@@ -313,28 +274,23 @@ fn nearly_all_that_rest_are_found() {
     for (model, most) in [(Model::Spans, 200), (Model::Auto, 60)] {
         let (first, count) = (self::number("WHEELS_FIRST", 0), self::number("WHEELS_CASES", most));
         let mut refused: BTreeMap<(String, String), Vec<u64>> = BTreeMap::new();
-        let (mut kinds, mut clear): (BTreeMap<String, u64>, u64) = (BTreeMap::new(), 0);
+        let mut kinds: BTreeMap<String, u64> = BTreeMap::new();
         for k in first..first + count {
             let case = case(k);
             *kinds.entry(case.kind.clone()).or_default() += 1;
             if let Err(why) = rest(&case.scene, model) {
-                if hangs_clear(&case.scene, &why) {
-                    clear += 1;
-                    continue;
-                }
                 show(k, "refused", &case.scene);
                 refused.entry((cause(&why), case.kind)).or_default().push(k);
             }
         }
         let all: usize = refused.values().map(Vec::len).sum();
-        println!("{model}: {all} of {} refused, {clear} more hang clear of a wheel; {kinds:?}", count - clear);
+        println!("{model}: {all} of {count} refused; {kinds:?}");
         let mut sorted: Vec<_> = refused.iter().collect();
         sorted.sort_by_key(|(_, n)| std::cmp::Reverse(n.len()));
         for ((why, kind), n) in sorted {
             println!("  {:3} [{kind}] {why}: {:?}", n.len(), &n[..n.len().min(8)]);
         }
-        // `auto` adds what `fem` makes of what `spans` refuses: that is printed.
-        assert!(model != Model::Spans || 50 * all as u64 <= count - clear, "{model}: {refused:?}");
+        assert!(50 * all as u64 <= count, "{model}: {refused:?}");
     }
 }
 
@@ -406,4 +362,52 @@ fn a_wheel_that_the_taut_string_passes_is_laid_alike_from_either_end() {
         let off = difference(&found, &rest(&other, Model::Spans).unwrap(), mirror);
         assert!(off < 1e-9, "{off:e}");
     }
+}
+
+/// A cable above a low wheel between two high ones, which was refused: "the cable does not press on
+/// the wheel". It hangs clear of it, as the same cable does where that wheel is not there; it moves
+/// on from there, and where the wheel is drawn up into it, it lies on it.
+#[test]
+fn issue_015_a_cable_hangs_clear_of_a_wheel() {
+    let mut scene = case(0).scene;
+    (scene.obstacles, scene.loads) = (Vec::new(), Vec::new());
+    let wheel = |name: &str, at_m: [f64; 2], radius: f64| Support {
+        radius_m: Some(radius),
+        friction: Some(0.1),
+        ..Support::pulley(name, at_m)
+    };
+    let c = &mut scene.cables[0];
+    (c.length_m, c.linear_density_kg_per_m, c.axial_stiffness_n) = (14.7, 0.66, 4.5e5);
+    (c.bending_stiffness_n_m2, c.route_m, c.diameter_m) = (0.0, Vec::new(), 0.02);
+    c.supports = vec![
+        Support::fixed("a", [0.0, -0.35]),
+        wheel("left", [1.9, 2.55], 0.1),
+        wheel("low", [3.8, 0.6], 0.2),
+        wheel("right", [5.7, 2.45], 0.1),
+        Support::fixed("b", [7.65, -1.0]),
+    ];
+    let mut sim = Simulation::new(scene.clone(), Model::Auto).unwrap();
+    sim.settle().unwrap();
+    let found = sim.solution().cables[0].clone();
+    let low = &found.supports[2];
+    assert_eq!([low.reaction_x_n, low.reaction_y_n], [0.0; 2]);
+    assert!(sim.warnings().any(|w| w.kind == WarningKind::ClearOfWheel));
+    let middle = found.nodes.iter().filter(|n| (n.x_m - 3.8).abs() < 0.3).map(|n| n.y_m).fold(f64::MAX, f64::min);
+    assert!(middle > 0.81, "it runs over the wheel at {middle} m");
+
+    let mut bare = scene;
+    bare.cables[0].supports.remove(2);
+    let other = rest(&bare, Model::Auto).unwrap();
+    for (name, k) in [("a", 0), ("left", 1), ("right", 3), ("b", 4)] {
+        let [s, t] = [&found.supports[k], other.supports.iter().find(|s| s.name == name).unwrap()];
+        let off = (s.reaction_x_n - t.reaction_x_n).hypot(s.reaction_y_n - t.reaction_y_n);
+        assert!(off < 1e-6, "`{name}` differs by {off} N");
+    }
+
+    sim.step(0.05).unwrap();
+    assert_eq!(sim.solution().cables[0].supports.len(), 5);
+    sim.drag_support(0, 2, Vec2::new(3.8, 2.6));
+    sim.settle().unwrap();
+    let lifted = &sim.solution().cables[0].supports[2];
+    assert!(lifted.reaction_y_n < -1.0 && (lifted.y_m - 2.6).abs() < 1e-9, "{lifted:?}");
 }

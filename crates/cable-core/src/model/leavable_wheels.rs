@@ -190,17 +190,21 @@ impl Mechanics for LeavableWheels {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let error = match self.inner.settle() {
-            Ok(report) => return Ok(self.told(report)),
-            Err(error) => error,
+        let found = self.inner.settle();
+        let leaves = match &found {
+            Ok(_) => self.inner.refusal().is_some_and(leaves_wheel),
+            Err(error) => leaves_wheel(error),
         };
-        if !self.can_leave() || !leaves_wheel(&error) {
-            return Err(error);
+        if leaves && self.can_leave() {
+            let state = (self.inner.time_s() > 0.0).then(|| self.inner.state());
+            if let Ok(mut inner) = self.built(true, state.as_ref())
+                && let Ok(report) = inner.settle()
+            {
+                (self.inner, self.on_posts) = (inner, true);
+                return Ok(self.told(report));
+            }
         }
-        let Ok(mut inner) = self.built(true, None) else { return Err(error) };
-        let Ok(report) = inner.settle() else { return Err(error) };
-        (self.inner, self.on_posts) = (inner, true);
-        Ok(self.told(report))
+        found.map(|report| self.told(report))
     }
 
     fn advance_gauged(

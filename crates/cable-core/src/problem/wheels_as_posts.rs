@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use super::{Problem, ground_route, problem, route_check, support_clearance};
 use crate::error::SceneError;
-use crate::math::{Vec2, perp, vec2};
+use crate::math::{Vec2, larger, perp, vec2};
 use crate::scene::{Cable, Obstacle, PulleySide, Scene, Shape, SupportKind};
 
 /// Distance of the route from the centre of a wheel, in radii of the centre line round it. Smaller:
@@ -46,11 +46,11 @@ fn stands(cable: &Cable, k: usize) -> bool {
     inner && wheel && s.motion.is_none() && s.release_s.is_none() && s.at_m.is_some()
 }
 
-/// Returns the copy; None without such a wheel, or where the cable is laid by a route of its own or
-/// cannot be laid round the posts.
+/// Returns the copy; None without such a wheel, or where the cable cannot be laid round the posts:
+/// by its own route, or from support to support where that leads through a wheel.
 pub(super) fn copy(scene: &Scene, index: usize, cable: &Cable) -> Option<Arc<WheelsAsPosts>> {
     let replaced: Vec<bool> = (0..cable.supports.len()).map(|k| stands(cable, k)).collect();
-    if !replaced.contains(&true) || !cable.route_m.is_empty() {
+    if !replaced.contains(&true) {
         return None;
     }
     let mut scene = scene.clone();
@@ -66,28 +66,43 @@ pub(super) fn copy(scene: &Scene, index: usize, cable: &Cable) -> Option<Arc<Whe
         scene.obstacles.push(Obstacle { name: post.clone(), shape, friction: Some(support.friction.unwrap_or(0.0)) });
         wheels.push(WheelPost { support: k, post, center: vec2(center) });
     }
-    let mut cable = cable.clone();
-    cable.route_m = route(&scene, &cable, &replaced)?.into_iter().map(Into::into).collect();
-    let mut keep = replaced.iter().map(|r| !r);
-    cable.supports.retain(|_| keep.next().unwrap_or(true));
-    let laid = || -> Result<Problem, SceneError> {
-        let mut this = problem(&scene, index, &cable)?;
-        support_clearance::clear_supports(&mut this)?;
-        ground_route::lift_route(&mut this);
-        route_check::check_route(&this)?;
-        Ok(this)
+    let own = (!cable.route_m.is_empty()).then(|| cable.route_m.clone());
+    let past_wheels = || Some(route(&scene, cable, &replaced)?.into_iter().map(Into::into).collect());
+    let lay = |route_m| {
+        let mut keep = replaced.iter().map(|r| !r);
+        let mut cable = Cable { route_m, ..cable.clone() };
+        cable.supports.retain(|_| keep.next().unwrap_or(true));
+        laid(&scene, index, &cable).ok()
     };
-    let problem = Arc::new(laid().ok()?);
+    let problem = Arc::new(own.and_then(lay).or_else(|| past_wheels().and_then(lay))?);
     Some(Arc::new(WheelsAsPosts { problem, wheels, replaced }))
 }
 
-/// The way from support to support, past each wheel on its side; None where a support has no place.
+fn laid(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneError> {
+    let mut this = problem(scene, index, cable)?;
+    support_clearance::clear_supports(&mut this)?;
+    ground_route::lift_route(&mut this);
+    route_check::check_route(&this)?;
+    Ok(this)
+}
+
+/// The way from support to support, past each wheel on its side; None where an inner support has no
+/// place. An end without one is where its load draws it, or the weight.
 fn route(scene: &Scene, cable: &Cable, replaced: &[bool]) -> Option<Vec<Vec2>> {
     let place = |k: usize| match cable.supports[k].kind {
         SupportKind::Robot => scene.hitch_m(),
         _ => cable.supports[k].at_m,
     };
-    let places: Vec<Vec2> = (0..replaced.len()).map(|k| place(k).map(vec2)).collect::<Option<_>>()?;
+    let mut places: Vec<Option<Vec2>> = (0..replaced.len()).map(|k| place(k).map(vec2)).collect();
+    let inner: Vec<Vec2> = places.iter().flatten().copied().collect();
+    let way: f64 = inner.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+    let last = replaced.len() - 1;
+    for (end, beside) in [(0, inner.first()), (last, inner.last())] {
+        let force = cable.supports[end].force_n.map_or_else(Vec2::zeros, vec2);
+        let drawn = force.try_normalize(0.0).unwrap_or_else(|| Vec2::new(0.0, -1.0));
+        places[end] = places[end].or(Some(beside? + drawn * larger(cable.length_m - way, 0.0)));
+    }
+    let places: Vec<Vec2> = places.into_iter().collect::<Option<_>>()?;
     let mut route = Vec::new();
     for (k, at) in places.iter().enumerate() {
         if !replaced[k] {
