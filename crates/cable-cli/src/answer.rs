@@ -1,8 +1,8 @@
 //! This file makes the JSON object of an answer: SI units in the key names, never a number that is not finite.
 
 use cable_core::solution::{
-    Bend, CableSolution, ContactReport, ContactSample, ContactState, ModelReason, Node, Pressure, Solution,
-    SupportReaction, TensionPeaks, Warning,
+    Bend, CableSolution, ContactReport, ContactSample, ContactState, ModelReason, NextCheaper, Node, Pressure,
+    Solution, SupportReaction, TensionPeaks, Warning,
 };
 use cable_core::summary::{CableSummary, Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::timeline::RunPeaks;
@@ -17,6 +17,9 @@ pub struct Answer<'a> {
     pub time_s: Option<f64>,
     pub model: &'static str,
     pub reason: &'a ModelReason,
+    /// What the next cheaper choice would have cost in error, of a choice by `auto` at rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next_cheaper: Option<NextCheaper>,
     pub converged: bool,
     pub residual_n: f64,
     pub iterations: usize,
@@ -215,6 +218,7 @@ pub fn answer<'a>(
         time_s,
         model: s.model.name(),
         reason: &s.reason,
+        next_cheaper: s.next_cheaper,
         converged: true,
         residual_n: s.cost.residual_n,
         iterations: s.cost.iterations,

@@ -2,6 +2,7 @@
 //! `simulation/coupling.rs` steps robot and cables together.
 
 mod coupling;
+mod next_cheaper;
 
 use std::sync::Arc;
 
@@ -18,8 +19,8 @@ use crate::robot::Vehicle;
 use crate::scene::Scene;
 use crate::solution::ErrorEstimates;
 use crate::solution::{
-    CableSolution, Cost, Energy, Histories, MaxTension, ModelReason, Node, ShownEquilibrium, Solution, Warning,
-    WarningCause, WarningKind,
+    CableSolution, Cost, Energy, Histories, MaxTension, ModelReason, NextCheaper, Node, ShownEquilibrium, Solution,
+    Warning, WarningCause, WarningKind,
 };
 use crate::state::State;
 use crate::verify::{Depth, Verification, Verifier};
@@ -67,6 +68,8 @@ pub struct Simulation {
     warnings: Vec<Warning>,
     verifier: Arc<Verifier>,
     verification: Verification,
+    /// Of the present equilibrium; None in motion.
+    next_cheaper: Option<NextCheaper>,
 }
 
 /// The series of instants that an instant belongs to.
@@ -159,6 +162,7 @@ impl Simulation {
             vehicle: Vehicle::of(&scene),
             verifier: Arc::new(Verifier::new(&scene)),
             verification: Verification::default(),
+            next_cheaper: None,
             scene,
             requested: model,
             source,
@@ -208,6 +212,7 @@ impl Simulation {
         }
         self.warn_through_robot();
         self.verification = self.verify(&self.answers);
+        self.next_cheaper = None;
     }
 
     /// Returns what the laws say of answers for the cables, with the robot as it is.
@@ -298,6 +303,11 @@ impl Simulation {
         }
         found?;
         self.warn_not_unique();
+        if self.requested == Model::Auto && self.settings.histories {
+            let problems = self.cables.iter().map(BreakableCable::problem);
+            let cables = problems.zip(&self.answers).filter(|_| self.time_s() == 0.0);
+            self.next_cheaper = next_cheaper::next_cheaper(cables, self.reason(), self.settings);
+        }
         if self.start.is_none() {
             self.start = Some(self.cables.clone());
         }
@@ -599,6 +609,7 @@ impl Simulation {
             time_s: self.time_s(),
             model: self.model,
             reason: self.reason().clone(),
+            next_cheaper: self.next_cheaper,
             cables: self.answers.clone(),
             warnings,
             cost: self.cost,

@@ -10,8 +10,8 @@ use cable_core::math::Vec2;
 use cable_core::record::{LeftOut, ReadError, RowFault, RunStop, WriteError, WrittenNumber};
 use cable_core::scene::import::{ImportChange, ImportFault};
 use cable_core::solution::{
-    EndMove, Histories, LikelyBending, MeanTension, ModelReason, ShownEquilibrium, SlideReason, TakenStiffness,
-    Warning, WarningCause, WarningKind,
+    EndMove, Histories, LikelyBending, MeanTension, ModelReason, NeglectedEffect, NextCheaper, ShownEquilibrium,
+    SlideReason, TakenStiffness, Warning, WarningCause, WarningKind,
 };
 use cable_core::units::{Quantity, UnitSystem};
 use cable_core::verification::{Finding, Law, NotChecked, Verification};
@@ -206,12 +206,21 @@ fn others() -> Vec<Box<dyn Sentence>> {
         let feature = Unsupported::Unverified { finding, arc_length_m: 3.2, at_m: Vec2::new(1.0, -2.0) };
         SolveError::Unsupported { model, feature }
     };
+    let next = |force_error: Option<f64>| NextCheaper {
+        model: Model::Catenary,
+        neglects: NeglectedEffect::Obstacles,
+        force_error,
+        position_error_m: force_error.map(|_| 0.123),
+    };
     vec![
         Box::new(ModelReason::Requested),
         Box::new(ModelReason::NoAnswer(refusal())),
         Box::new(bending(LikelyBending::Taken(taken()))),
         Box::new(bending(LikelyBending::TakenWhereItMatters(taken()))),
         Box::new(bending(LikelyBending::NoAnswer(refusal()))),
+        Box::new(next(Some(0.69))),
+        Box::new(next(Some(2e-5))),
+        Box::new(next(None)),
         Box::new(NotChecked::MovingBalance { cable: name("main") }),
         Box::new(NotChecked::SelfContact { cable: name("main") }),
         Box::new(unverified(EquilibriumFault::LoadOutOfKink)),

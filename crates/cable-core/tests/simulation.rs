@@ -3,6 +3,7 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::scene::{Motion, Scene, catalog};
+use cable_core::solution::{ErrorEstimates, NeglectedEffect};
 use cable_core::{Model, Simulation, SolveError};
 
 /// Two spans: the first moves, the second is let go at both ends at 0.05 s.
@@ -161,4 +162,36 @@ fn nodes_say_how_far_they_came_and_how_their_speed_changes() {
         assert!((fell / (-0.5 * g * 0.0625) - 1.0).abs() < 1e-2, "{model}: {fell} m");
         assert!((pulled / -g - 1.0).abs() < 1e-3, "{model}: {pulled} m/s²");
     }
+}
+
+/// `auto` says what the next cheaper choice would have cost: for a cable over a beam, what the
+/// catenary differs by that falls through it; for a stiff cable, the flexible one; nothing for a
+/// catenary, for a model that was asked for, or once something moves.
+#[test]
+fn the_next_cheaper_choice_is_said_with_its_error() {
+    let answer = |scene: &Scene, model| {
+        let mut sim = Simulation::new(scene.clone(), model).unwrap();
+        let at_rest = sim.settle().unwrap();
+        sim.step_quasi_static(0.01).unwrap();
+        assert_eq!(sim.solution().next_cheaper, None);
+        at_rest
+    };
+    let scene = catalog::over_beam();
+    let found = answer(&scene, Model::Auto);
+    let next = found.next_cheaper.unwrap();
+    assert_eq!((next.model, next.neglects), (Model::Catenary, NeglectedEffect::Obstacles));
+    let mut bare = scene.clone();
+    bare.obstacles.clear();
+    let catenary = answer(&bare, Model::Auto);
+    assert_eq!(catenary.next_cheaper, None);
+    let apart = ErrorEstimates::between(&catenary.cables[0], &found.cables[0]);
+    assert_eq!(next.force_error, apart.relative(&found.cables[0]));
+    assert_eq!(next.position_error_m, apart.position_m);
+    assert_eq!(answer(&scene, Model::Spans).next_cheaper, None);
+
+    let mut stiff = bare;
+    stiff.cables[0].bending_stiffness_n_m2 = 1.0;
+    let next = answer(&stiff, Model::Auto).next_cheaper.unwrap();
+    assert_eq!((next.model, next.neglects), (Model::Catenary, NeglectedEffect::BendingStiffness));
+    assert!(next.force_error.unwrap() < 0.05, "{next:?}");
 }

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::gauge::TensionGauge;
-use super::registry::Constructor;
+use super::mechanics::Constructor;
 use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{RigidPose, Vec2};

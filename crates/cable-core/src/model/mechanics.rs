@@ -4,6 +4,7 @@ use std::any::Any;
 use std::sync::Arc;
 
 use super::gauge::TensionGauge;
+use super::settings::Settings;
 use crate::error::SolveError;
 use crate::math::{RigidPose, Vec2};
 use crate::model_id::Model;
@@ -49,6 +50,9 @@ pub struct OwnedResources {
     /// The cable, with obstacles that the model moves.
     pub(super) problem: Arc<Problem>,
 }
+
+/// A function that builds a model.
+pub type Constructor = dyn Fn(Arc<Problem>, Settings) -> Result<Box<dyn Mechanics>, SolveError> + Send + Sync;
 
 /// The interface of every model. One cable; time and positions in SI units.
 pub trait Mechanics: Send {

@@ -6,7 +6,7 @@
 //! | `mechanics.rs` | the trait and its reports; `settings.rs`: [`Settings`]; `gauge.rs`: tensions of the inner steps |
 //! | `registry.rs` | one entry a model: name, capabilities, constructor; [`build`] |
 //! | `auto.rs`, `switching.rs` | the choice of a model, and two models that take turns |
-//! | `initial_equilibrium.rs`, `input_filter.rs`, `similar.rs`, `arc_nodes.rs` | what several models share |
+//! | `initial_equilibrium.rs`, `input_filter.rs`, `similar.rs`, `leavable_wheels.rs`, `arc_nodes.rs` | what several models share |
 //! | `catenary/`, `spans/`, `fem/`, `mass_spring/` | the models |
 //!
 //! A model answers two kinds of question: where does the cable rest ([`Mechanics::settle`]), and

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::auto::{self, Question};
-use super::mechanics::Mechanics;
+use super::mechanics::{Constructor, Mechanics};
 use super::settings::Settings;
 use super::switching::SwitchingModel;
 use super::{catenary, fem, leavable_wheels, mass_spring, similar, spans};
@@ -166,9 +166,6 @@ impl Model {
         SOLVERS.iter().position(|info| info.model == self).unwrap_or(0)
     }
 }
-
-/// A function that builds a model of the program's own.
-pub type Constructor = dyn Fn(Arc<Problem>, Settings) -> Built + Send + Sync;
 
 /// The source of the mechanics of a cable, and of each piece into which it breaks.
 #[derive(Clone)]

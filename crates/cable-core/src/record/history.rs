@@ -113,6 +113,7 @@ mod tests {
             time_s,
             model: Model::Fem,
             reason: ModelReason::Requested,
+            next_cheaper: None,
             cables: vec![cable],
             warnings: Vec::new(),
             cost: Cost::default(),

@@ -36,6 +36,7 @@ fn solution(time_s: f64, values: [f64; NodeColumns::COUNT], name: &str) -> Solut
         time_s,
         model: Model::Fem,
         reason: ModelReason::Requested,
+        next_cheaper: None,
         cables: vec![CableSolution {
             name: name.to_owned(),
             nodes: vec![node],

@@ -6,10 +6,12 @@
 //! | `error_estimates.rs` | [`ErrorEstimates`]: how wrong each figure is |
 //! | `robot_report.rs` | [`robot_report::RobotReport`]: the vehicle at the same instant |
 //! | `model_reason.rs` | [`ModelReason`]: why that model answered |
+//! | `next_cheaper.rs` | [`NextCheaper`]: what the next cheaper choice would have cost |
 //! | `warning.rs` | [`Warning`]: what a user should know, as data |
 
 pub mod error_estimates;
 mod model_reason;
+mod next_cheaper;
 pub mod robot_report;
 mod warning;
 
@@ -21,6 +23,7 @@ use crate::verification::Verification;
 
 pub use self::error_estimates::ErrorEstimates;
 pub use self::model_reason::{LikelyBending, ModelReason, TakenStiffness};
+pub use self::next_cheaper::{NeglectedEffect, NextCheaper};
 use self::robot_report::RobotReport;
 pub use self::warning::{EndMove, Histories, MeanTension, ShownEquilibrium, SlideReason};
 pub use self::warning::{Warning, WarningCause, WarningKind};
@@ -34,6 +37,9 @@ pub struct Solution {
     pub model: Model,
     /// Why that model.
     pub reason: ModelReason,
+    /// What the next cheaper choice would have cost, of a choice by `auto` at rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next_cheaper: Option<NextCheaper>,
     /// One a cable, in the scene's order.
     pub cables: Vec<CableSolution>,
     /// Warnings for the user.

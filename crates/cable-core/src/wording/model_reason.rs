@@ -1,10 +1,10 @@
 //! These sentences say why an answer comes from its model.
 
 use super::{Figures, Sentence, display_in_si, serialize_in_si};
-use crate::solution::{LikelyBending, ModelReason, TakenStiffness};
+use crate::solution::{LikelyBending, ModelReason, NeglectedEffect, NextCheaper, TakenStiffness};
 use crate::units::{Quantity, UnitSystem};
 
-display_in_si!(ModelReason, LikelyBending);
+display_in_si!(ModelReason, LikelyBending, NextCheaper);
 serialize_in_si!(ModelReason);
 
 impl Sentence for ModelReason {
@@ -54,4 +54,29 @@ impl Sentence for LikelyBending {
             ),
         }
     }
+}
+
+impl Sentence for NextCheaper {
+    fn sentence(&self, units: UnitSystem) -> String {
+        let f = Figures(units);
+        let what = match self.neglects {
+            NeglectedEffect::BendingStiffness => "bending stiffness",
+            NeglectedEffect::SelfContact => "contact of the cable with itself",
+            NeglectedEffect::FloorFriction => "the friction of the floor",
+            NeglectedEffect::Obstacles => "obstacles",
+            NeglectedEffect::WheelFriction => "the friction of wheels",
+        };
+        let Some((force, place)) = self.force_error.zip(self.position_error_m) else {
+            return format!("{}, without {what}: no answer", self.model);
+        };
+        let percent = 100.0 * force;
+        let force = if percent < 0.1 { format!("{percent:.1e} %") } else { format!("{} %", round(percent)) };
+        let place = f.length(place, 3);
+        format!("{}, without {what}: off by {force} of the greatest tension, by {place} in shape", self.model)
+    }
+}
+
+/// The number with two digits.
+fn round(value: f64) -> f64 {
+    format!("{value:.1e}").parse().unwrap_or(value)
 }

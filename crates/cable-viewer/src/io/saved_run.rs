@@ -112,6 +112,7 @@ fn answers(scene: &Scene, history: &HistoryTable, nodes: Vec<NodeRow>, events: &
             time_s,
             model: Model::Auto,
             reason: ModelReason::Recorded,
+            next_cheaper: None,
             robot: robot(scene, history, k, &cables),
             verification: None,
             cables,

@@ -88,6 +88,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let why =
             if state.solver.model == Model::Auto { format!(": {}", sentence(&answer.reason)) } else { String::new() };
         ui.label(format!("Solved with {}{why}", model_name(answer.model)));
+        if let Some(next) = &answer.next_cheaper {
+            ui.weak(format!("Next cheaper: {}", sentence(next)));
+        }
     }
     if worker::engine::is_quasi_static(state.solver.model) {
         ui.weak("Time runs without inertia: supports and loads move, friction remembers, nothing swings");

@@ -170,6 +170,7 @@ mod tests {
             time_s,
             model: Model::Fem,
             reason: ModelReason::Requested,
+            next_cheaper: None,
             cables: vec![cable],
             warnings: if warned { vec![warning] } else { Vec::new() },
             cost: Cost::default(),

@@ -125,6 +125,7 @@ fn answer(scene: &Scene) -> Solution {
         cost: Cost { iterations: 7, halved_steps: 0, residual_n: 3.4e-7, inner_step_s: 1.0 / 240.0 },
         energy: Energy { kinetic_j: 12.5, gravity_j: 512.0, stretch_j: 0.9, bending_j: 0.0 },
         robot: None,
+        next_cheaper: None,
         verification: None,
     }
 }

@@ -141,6 +141,7 @@ fn contacts_dark() {
         time_s: 0.0,
         model: Model::Fem,
         reason: ModelReason::Requested,
+        next_cheaper: None,
         cables: vec![cable],
         warnings: Vec::new(),
         cost: Cost::default(),

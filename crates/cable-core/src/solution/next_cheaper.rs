@@ -1,0 +1,36 @@
+//! The next cheaper choice is reported beside an answer, with what it would have cost in error.
+
+use serde::{Deserialize, Serialize};
+
+use crate::model_id::Model;
+
+/// An effect that a cheaper model leaves out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum NeglectedEffect {
+    /// The bending stiffness of the cable.
+    BendingStiffness,
+    /// The contact of the cable with itself.
+    SelfContact,
+    /// The friction of the floor in plan view.
+    FloorFriction,
+    /// The obstacles.
+    Obstacles,
+    /// The friction of wheels and eyes.
+    WheelFriction,
+}
+
+/// What the next cheaper choice of a model would have cost in error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NextCheaper {
+    /// The model.
+    pub model: Model,
+    /// What it leaves out.
+    pub neglects: NeglectedEffect,
+    /// Greatest difference of a support's force and of the greatest tension, in parts of the
+    /// greatest tension; None where it has no answer.
+    pub force_error: Option<f64>,
+    /// Greatest distance of a point of the cable from where it is, m; None where it has no answer.
+    pub position_error_m: Option<f64>,
+}
