@@ -21,10 +21,21 @@ const TURN: f64 = 0.13;
 /// chords of such a drum cut it by more than is promised.
 const MOST_PARTS: f64 = 8192.0;
 
+fn sagitta_limit(cable_radius: f64) -> f64 {
+    smaller(SAGITTA_M, 2.0 * SAGITTA_DIAMETERS * cable_radius)
+}
+
+/// Angle (rad) before its tangent point at which a straight line to the next node may leave an arc
+/// of a radius (m): it comes inside by no more than the greatest sagitta.
+pub(in crate::model) fn early_leave(radius: f64, cable_radius: f64) -> f64 {
+    let sagitta = sagitta_limit(cable_radius);
+    if radius > sagitta { 2.0 * (0.5 * sagitta / radius).sqrt().asin() } else { TURN }
+}
+
 /// Parts that an arc of the centre line with a radius (m) and a turn (rad) is cut into, for a cable
 /// of a radius (m).
 pub(in crate::model) fn parts(radius: f64, turn: f64, cable_radius: f64) -> usize {
-    let sagitta = smaller(SAGITTA_M, 2.0 * SAGITTA_DIAMETERS * cable_radius);
+    let sagitta = sagitta_limit(cable_radius);
     let most = if radius > sagitta { smaller(TURN, 4.0 * (0.5 * sagitta / radius).sqrt().asin()) } else { TURN };
     let parts = if radius > 0.0 { (turn.abs() / most).ceil() } else { 1.0 };
     // NaN gives 1.

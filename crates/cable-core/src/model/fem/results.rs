@@ -397,7 +397,9 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     let sag = |j: usize, from: Vec2, to: Vec2| {
         let sag = sense * angle_between(from, to);
         let longer = radius * sag.abs().powi(3) / 6.0;
-        if same[j] || longer > PATH_EXCESS_DIAMETERS * 2.0 * d.problem.radius { 0.0 } else { sag }
+        let drawn = !same[j] && longer <= PATH_EXCESS_DIAMETERS * 2.0 * d.problem.radius;
+        // A bar that bulges away from the round leaves it sooner; drawn straight it would cut it.
+        if drawn { larger(sag, -arc_nodes::early_leave(radius, d.problem.radius)) } else { 0.0 }
     };
     let normal = |turned: f64| {
         let (sin, cos) = (sense * turned).sin_cos();
