@@ -414,12 +414,17 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     for _ in 0..SAG_ROUNDS {
         let ends = force_at(sagged);
         let sags = [sag(0, ends[0], paths[0].direction), sag(1, paths[1].direction, ends[1])];
-        sagged = [0, 1].map(|j| straight[j] + smaller(sags[j], room[j]));
+        // What bulges away may leave where the round is marked, but not before.
+        sagged = [0, 1].map(|j| larger(straight[j] + smaller(sags[j], room[j]), smaller(straight[j], 0.0)));
     }
     // As far round as it would run into an edge beside a corner it does not sag.
     let clear = |turned: f64| !d.is_over_an_edge(node, node.end.center + normal(turned) * radius, 0.0);
     let before = if clear(-sagged[0]) { sagged[0] } else { straight[0] };
     let after = if clear(sagged[1]) { sagged[1] } else { straight[1] };
+    // A last mark that the cable has come off, to be taken out after the step, is drawn with the
+    // round up to it.
+    let came_off = before + after <= 0.0 && (same[0] || same[1]);
+    let [before, after] = if came_off { [before, after].map(|arc| larger(arc, 0.0)) } else { [before, after] };
     let ends = force_at([before, after]);
     let whole = before + after;
     if !(whole > 0.0 && radius > 0.0) {
