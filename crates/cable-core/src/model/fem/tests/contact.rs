@@ -425,7 +425,7 @@ fn legs_rub_on_each_other_and_remember_it() {
     assert!(kept > 2 && kept * 2 > own.rubs.len(), "{kept} of {}", own.rubs.len());
 }
 
-/// A polish that asks for less than the rounding of short bars iterates for nothing: 60 times.
+/// A polish that asks for less than the rounding of short bars iterates for nothing.
 #[test]
 fn a_rest_of_many_bars_is_polished_as_far_as_its_bars_are_known() {
     let settings = Settings { segments: Some(10_000), ..Settings::default() };
