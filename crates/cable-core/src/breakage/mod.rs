@@ -552,14 +552,15 @@ impl Piece {
     ) -> Result<StepOutcome, SolveError> {
         let looks = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
         if looks > 1.0 && self.unwatched_steps == 0 {
-            let before = (self.mechanics.boxed_clone(), self.gauge.clone());
+            // What cannot break is never taken again.
+            let before = breaking_n.map(|_| (self.mechanics.boxed_clone(), self.gauge.clone()));
             let report = self.gauged_step(dt_s, breaking_n)?;
-            if self.gauge.reached().is_none() {
+            let Some(before) = before.filter(|_| self.gauge.reached().is_some()) else {
                 self.refresh_answer();
                 self.accumulate_momentum();
                 add(sum, report);
                 return Ok(StepOutcome::Intact);
-            }
+            };
             (self.mechanics, self.gauge) = before;
         }
         let (mut left_s, h) = (dt_s, dt_s / looks);

@@ -152,7 +152,7 @@ impl Dynamics {
             self.cable.open_folds();
         }
         let pieces = match inertia {
-            Inertia::Dynamic => (dt_s / self.pacing.pace.step - 1e-9).ceil().max(1.0),
+            Inertia::Dynamic => (dt_s / self.pacing.pace.longest_step() - 1e-9).ceil().max(1.0),
             Inertia::QuasiStatic => self.cable.pieces(end, dragged),
         };
         let h = dt_s / pieces;
@@ -229,6 +229,7 @@ impl Dynamics {
                 Ok(done) if finite => {
                     total = Converged { iterations: total.iterations + done.iterations, ..done };
                     if inertia == Inertia::Dynamic {
+                        self.pacing.pace.note_solved(done.iterations);
                         gauge.note(to, &self.cable.answers.gauged.arc_length, |k| self.cable.answers.gauged.tension[k]);
                         gauge.keep();
                     }
@@ -264,6 +265,9 @@ impl Dynamics {
                     *halved += 1;
                     depth += 1;
                     size *= 0.5;
+                    if inertia == Inertia::Dynamic {
+                        self.pacing.pace.note_refused(size);
+                    }
                     if inertia == Inertia::QuasiStatic && depth == QUIET_DEPTH {
                         // Then all that is left at once.
                         size = left;

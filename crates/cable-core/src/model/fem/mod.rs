@@ -538,7 +538,7 @@ impl Mechanics for FemModel {
     }
 
     fn inner_step_s(&self) -> f64 {
-        self.dynamics.pacing.pace.step
+        self.dynamics.pacing.pace.longest_step()
     }
 
     fn copy_to_keep(&self) -> Box<dyn Mechanics> {

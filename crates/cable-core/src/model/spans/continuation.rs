@@ -18,7 +18,7 @@ use crate::model::spans::newton;
 use crate::model::spans::newton::slip_predictor::predict_slip;
 use crate::model::spans::newton::{Solved, Work};
 use crate::model::spans::run::CableRun;
-use crate::model::spans::slack;
+use crate::model::spans::slack::{self, Sought};
 use crate::model::spans::verify::clearance;
 use crate::model::spans::verify::equilibrium;
 use crate::model::spans::verify::tension_loss;
@@ -136,7 +136,7 @@ impl CableEquilibrium {
     /// A cable that comes down in a heap and hangs over crests, without tension where it lies.
     pub fn heaped(layout: &Layout, instant: &BoundaryConditions) -> Option<Self> {
         let course = layout.course(layout.curves(), instant);
-        let strands = strands_of(layout, |k| slack::lay(layout, k, &course, instant))?;
+        let strands = strands_of(layout, |k| slack::lay(layout, k, &course, instant, Sought::AnyTension))?;
         Some(Self { strands, course, instant: instant.clone() })
     }
 
@@ -250,7 +250,7 @@ impl CableEquilibrium {
         let mut came = Vec::new();
         for k in 0..layout.strands.len() {
             let may = taut.is_none() && resolution.loose;
-            let loose = if may { slack::lay(layout, k, &self.course, &begin) } else { None };
+            let loose = if may { slack::lay(layout, k, &self.course, &begin, Sought::NoTension) } else { None };
             if let Some(strand) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
                 self.strands.push(strand);
                 came.push(Vec::new());
@@ -477,7 +477,7 @@ impl CableEquilibrium {
     /// A strand that lies loose goes on lying so while its supports stay where they are: as they
     /// move they draw its folds over the ground, and what that takes is not known here.
     fn lie(&mut self, layout: &Layout, k: usize) -> Result<StepStats, Failure> {
-        let found = slack::lay(layout, k, &self.course, &self.instant);
+        let found = slack::lay(layout, k, &self.course, &self.instant, Sought::AnyTension);
         let strand = &mut self.strands[k];
         let Some(found) = found.filter(|f| f.ties == strand.ties) else {
             return Err(Failure::Drawn { s: strand.from });

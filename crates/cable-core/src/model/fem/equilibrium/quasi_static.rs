@@ -56,6 +56,11 @@ const UNHELD_LOAD_FRACTION: f64 = 1e-4;
 /// ground is left as it slides.
 const POLISH_STAGES: [(f64, usize); 3] = [(1.0, 600), (0.1, 30), (1e-2, 30)];
 
+/// Roundings of a coordinate that the lengths of the bars beside a node may be off by together.
+/// Fewer: a polish of many short bars seeks what rounding hides, in all of its iterations (of
+/// 10 000 bars on a floor that was 0.7 of the work); more: coarser rests.
+const LENGTH_ROUNDINGS: f64 = 2.0;
+
 /// Times a resting place is sought again because corners were met or left on the way to it.
 const CORNER_ROUNDS: usize = 8;
 
@@ -203,14 +208,15 @@ impl Dynamics {
     /// Reduces the residual of an equilibrium, which adds up along the cable, to the level of
     /// round-off. It starts from the present shape, and changes nothing where it does not converge.
     pub(in crate::model::fem) fn polish(&mut self, found: Converged, dragged: &[Option<Vec2>]) -> Converged {
-        let kept = self.rollback.clone();
+        let kept = self.rollback.with_saved();
         let (exact, to) = (self.cable.input.tolerance, self.cable.motion.time);
+        let rounding = self.rounding_of_bars();
         let mut all = found;
         for (part, iterations) in POLISH_STAGES {
             self.rollback.save(&self.cable);
             self.cable.prepare_way([to, to], Some(dragged));
             self.cable.input.most_noise = exact;
-            (self.cable.input.tolerance, self.cable.input.max_iterations) = (part * exact, iterations);
+            (self.cable.input.tolerance, self.cable.input.max_iterations) = (larger(part * exact, rounding), iterations);
             let mut unknowns = self.solver.present_unknowns(&self.cable);
             let Ok(done) = self.solver.lag(&mut self.cable, &mut unknowns, LAG_ROUNDS) else {
                 self.rollback.restore(&mut self.cable);
@@ -223,6 +229,14 @@ impl Dynamics {
         self.cable.input.tolerance = exact;
         self.rollback = kept;
         all
+    }
+
+    /// Force that the rounding of coordinates makes at a node of even bars, N: it grows with the
+    /// number of bars.
+    fn rounding_of_bars(&self) -> f64 {
+        let (cable, problem) = (&self.cable, &self.cable.problem);
+        let farthest = cable.motion.x.iter().map(|x| x.norm()).fold(0.0, larger);
+        LENGTH_ROUNDINGS * f64::EPSILON * farthest * problem.axial_stiffness / cable.even()
     }
 
     /// Brings straight bars to rest that were laid on the sagging ones of statics: a step of the
@@ -266,7 +280,7 @@ impl Dynamics {
     /// itself. On the way what rounding hides may be any force: a cable laid in touch begins there.
     /// If that finds no equilibrium, it may not.
     pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
-        let kept = self.rollback.clone();
+        let kept = self.rollback.with_saved();
         self.rollback.save(&self.cable);
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
         if found.is_err_and(|f| {

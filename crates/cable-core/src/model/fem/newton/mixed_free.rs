@@ -34,8 +34,8 @@ const ROUNDING: f64 = 16.0;
 /// A symmetric 2×2 matrix: xx, xy, yy.
 type Symmetric = [f64; 3];
 
-/// Memory of the solver.
-#[derive(Clone, Debug, Default)]
+/// Memory of the solver; a copy of the model makes its own.
+#[derive(Debug, Default)]
 pub struct FreeStep {
     /// Pull of each bar, N.
     pull: Vec<f64>,
@@ -52,6 +52,12 @@ pub struct FreeStep {
     between: Vec<Symmetric>,
     step: Vec<Vec2>,
     start: Vec<Vec2>,
+}
+
+impl Clone for FreeStep {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 /// Residual of the equations.

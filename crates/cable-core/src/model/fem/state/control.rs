@@ -59,11 +59,24 @@ pub(in crate::model::fem) struct Pacing {
     pub(in crate::model::fem) due: f64,
 }
 
-/// The state to go back to where a step fails.
-#[derive(Clone, Debug, Default)]
+/// The state to go back to where a step fails; a copy of the model saves its own.
+#[derive(Debug, Default)]
 pub(in crate::model::fem) struct Rollback {
     /// The last one that was saved, and its memory.
     pub(in crate::model::fem) saved: Option<Box<Checkpoint>>,
     /// True if it is of the present step.
     pub(in crate::model::fem) can_restore: bool,
+}
+
+impl Rollback {
+    /// A copy with the state that is saved.
+    pub(in crate::model::fem) fn with_saved(&self) -> Self {
+        Self { saved: self.saved.clone(), can_restore: self.can_restore }
+    }
+}
+
+impl Clone for Rollback {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }

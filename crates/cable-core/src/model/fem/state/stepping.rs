@@ -11,12 +11,18 @@ pub(in crate::model::fem) struct StepSizeController {
     pub(in crate::model::fem) step: f64,
     /// Longest step of all, s.
     pub(in crate::model::fem) longest: f64,
+    /// Longest step that is tried after others were refused, s.
+    pub(in crate::model::fem) solvable: f64,
+    /// Most Newton iterations of a step of the present frame.
+    pub(in crate::model::fem) most_iterations: usize,
+    /// True if a step of the present frame was refused.
+    pub(in crate::model::fem) refused: bool,
 }
 
 impl StepSizeController {
     /// Nothing was seen yet.
     pub(in crate::model::fem) fn new(longest: f64) -> Self {
-        Self { seen: [0.0; 3], step: longest, longest }
+        Self { seen: [0.0; 3], step: longest, longest, solvable: longest, most_iterations: 0, refused: false }
     }
 
     /// Forgets the motion that was seen.

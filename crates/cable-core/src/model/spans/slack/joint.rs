@@ -19,7 +19,7 @@
 
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::loose::{Line, Part, Stretch};
-use crate::model::spans::slack::{Drape, HALVINGS, STRAIGHT_TURN};
+use crate::model::spans::slack::{Drape, HALVINGS, STRAIGHT_TURN, Sought};
 
 /// Doublings of the force across the load in the search for one that is too large.
 const MOST_DOUBLED: usize = 60;
@@ -63,6 +63,9 @@ impl Drape<'_> {
             let (s, enters) = (out.lies[k], out.leaves);
             out.enters[k] = enters;
             out.leaves = self.least(&s, side, enters, s.p[1 - side]);
+            if self.sought == Sought::NoTension && out.leaves > self.most {
+                return None;
+            }
             let first = if side == 0 { k } else { k.wrapping_sub(1) };
             let (Some(a), Some(b)) = (out.lies.get(first).copied(), out.lies.get(first.wrapping_add(1)).copied())
             else {

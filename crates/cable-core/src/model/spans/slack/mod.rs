@@ -72,12 +72,23 @@ impl Part {
     }
 }
 
+/// The shapes of cable that lies that are of use to who asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) enum Sought {
+    /// Any.
+    AnyTension,
+    /// Only those in which nothing that lies has tension ([`Loose::spreads`]). Then a crest that
+    /// draws ends the search, before the spans that it would hold are looked for.
+    NoTension,
+}
+
 /// The strand as it lies loose at an instant; None where it does not.
 pub(in crate::model::spans) fn lay(
     layout: &Layout,
     index: usize,
     course: &Course,
     instant: &BoundaryConditions,
+    sought: Sought,
 ) -> Option<CableRun> {
     let part = layout.strands.get(index)?;
     let (load, [from, to]) = (course.law.load, part.material);
@@ -92,7 +103,7 @@ pub(in crate::model::spans) fn lay(
         Some(_) => Vec2::zeros(),
     });
     let drawn = drawn[0] + drawn[1];
-    let drape = Drape { course, frame, most: CREST_CONE_ROUNDING * load.norm() * (to - from) };
+    let drape = Drape { course, frame, most: CREST_CONE_ROUNDING * load.norm() * (to - from), sought };
     let strand = |drained: Drained| {
         let lines = drape.lines(&roofs, &drained.legs);
         let parts = drape.parts(&lines, ends)?;
@@ -187,6 +198,7 @@ struct Drape<'a> {
     frame: Frame,
     /// Tension that is rounding, N.
     most: f64,
+    sought: Sought,
 }
 
 impl Drape<'_> {
@@ -498,5 +510,45 @@ impl Loose {
                 if let Line::Lies(s) = &p.form { (s.p[1] - s.p[0]) * s.place(course, s.p[0]).stretch } else { 0.0 };
             [material + p.s[1] - p.s[0], ground + way]
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::spans::boundary_conditions::CableEnd;
+    use crate::problem::problems;
+    use crate::scene::catalog;
+    use std::sync::Arc;
+
+    #[test]
+    fn a_shape_without_tension_is_the_same_whichever_shapes_are_sought() {
+        let (mut compared, mut found) = (0, 0);
+        for (id, mut scene) in catalog::all() {
+            scene.cables.iter_mut().for_each(|c| c.bending_stiffness_n_m2 = 0.0);
+            // Lengths from taut to loose.
+            for longer in [0.9, 1.0, 1.1, 1.3, 2.0] {
+                let mut scene = scene.clone();
+                scene.cables.iter_mut().for_each(|c| c.length_m *= longer);
+                for problem in problems(&scene).unwrap_or_default() {
+                    let Ok(layout) = Layout::new(&problem, CableEnd::Start, Arc::default()) else { continue };
+                    let mut instant = BoundaryConditions::default();
+                    layout.instant(&vec![None; problem.supports.len()], 0.0, &mut instant);
+                    let course = layout.course(layout.curves(), &instant);
+                    for k in 0..layout.strands.len() {
+                        let laid = |sought| {
+                            lay(&layout, k, &course, &instant, sought)
+                                .filter(|s| s.loose.as_ref().is_some_and(Loose::spreads))
+                        };
+                        let [any, none] = [Sought::AnyTension, Sought::NoTension].map(laid);
+                        assert_eq!(format!("{any:?}"), format!("{none:?}"), "{id}, {longer} times as long");
+                        compared += 1;
+                        found += usize::from(any.is_some());
+                    }
+                }
+            }
+        }
+        println!("{found} of {compared} lie without tension");
+        assert!(found >= 5 && compared > 2 * found, "{found} of {compared}");
     }
 }
