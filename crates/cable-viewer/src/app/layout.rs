@@ -20,17 +20,21 @@ const READ: &[Section] = &[
     ("Warnings", panels::warnings::ui),
     (SELECTED, panels::selected::ui),
     (MARKED, panels::analysis::tension_budget::ui),
-    ("Readouts", panels::readouts::ui),
+    (READOUTS, panels::readouts::ui),
     ("Safe reach", panels::analysis::safe_reach::ui),
     ("Compare", panels::analysis::compare::ui),
     (UNMARKED, panels::analysis::tension_budget::ui),
     ("Friction range", panels::analysis::friction_range::ui),
 ];
 
+/// Where there is a panel of their own for them, their head stands above what scrolls there.
+const READOUTS: &str = "Readouts";
 const SELECTED: &str = "Selected";
 const MARKED: &str = "Tension at the marked place";
 const UNMARKED: &str = "Tension at a place";
 
+/// Room for the bar beside what scrolls, points.
+const BAR: f32 = 6.0;
 /// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than
 /// its labels.
 const WIDE: f32 = 1000.0;
@@ -43,7 +47,7 @@ const LEAST_FOR_GRAPHS: f32 = 520.0;
 const OUTLINE_WIDTH: (f32, [f32; 2]) = (0.142, [164.0, 250.0]);
 /// As [`OUTLINE_WIDTH`], of the panel on the right; narrower: a name, a number and its unit do not
 /// fit in a line.
-const INSPECTOR_WIDTH: (f32, [f32; 2]) = (0.195, [244.0, 340.0]);
+const INSPECTOR_WIDTH: (f32, [f32; 2]) = (0.2, [250.0, 340.0]);
 /// Height of the graphs with the timeline as a part of the window's, and the least, points. Less:
 /// lines are not read in them; more: the canvas has less than 48 % of 1280×800.
 const GRAPHS_HEIGHT: (f32, f32) = (0.205, 150.0);
@@ -69,6 +73,8 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     if wide && open.results {
         side(ui, Panel::right("read"), part(INSPECTOR_WIDTH, width), |ui| {
             legend::beside(ui, state);
+            panels::readouts::head(ui, state, commands);
+            ui.separator();
             scroll(ui, "read", READ, state, commands);
         });
     }
@@ -149,6 +155,8 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
 }
 
 fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, commands: &mut Vec<Command>) {
+    // The bar stands beside figures, not over their last letters.
+    ui.spacing_mut().scroll.floating_allocated_width = BAR;
     // What is too wide scrolls: it must not push the canvas aside.
     ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
         let width = ui.available_width();
@@ -163,6 +171,8 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
             if hidden {
                 continue;
             }
+            let panel =
+                if *title == READOUTS && state.ui.legend_beside { &(panels::readouts::rest as PanelUi) } else { panel };
             let section = CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| {
                 // One section that is too wide does not widen the others.
                 ui.set_max_width(width);

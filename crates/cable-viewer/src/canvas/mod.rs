@@ -24,6 +24,10 @@ use crate::state::AppState;
 use crate::state::camera::{BORDER, BORDER_WITHOUT_LEGEND};
 use crate::units::labels;
 
+/// Room for the hints of the first minute at the foot of the canvas, points: they must not lie over
+/// the cable.
+const HINTS: f32 = 46.0;
+
 /// Draws the scene into the rest of the window and reads the pointer.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     // Not focusable: single keys go to the window while the canvas is in use.
@@ -39,7 +43,10 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     // What was fitted stays so in a canvas of another size.
     let resized = state.view.camera.fitted_to.is_some_and(|size| size != <[f32; 2]>::from(rect.size()));
     if (state.view.camera.fit_wanted || resized) && answered {
-        let border = if state.ui.legend_beside { BORDER_WITHOUT_LEGEND } else { BORDER };
+        let mut border = if state.ui.legend_beside { BORDER_WITHOUT_LEGEND } else { BORDER };
+        if !state.ui.first_steps.open().is_empty() {
+            border[3] += HINTS;
+        }
         let bounds = bounds::scene(state);
         state.view.camera.fit(rect, bounds, border);
     }

@@ -41,8 +41,36 @@ fn limits(sheet: &Sheet) -> impl Iterator<Item = (f64, &'static str, [u8; 3])> {
 
 /// Size of a drawing, points.
 const SIZE: [f64; 2] = [800.0, 420.0];
-/// Room for numbers and names round it: left, top, right, bottom.
-const ROOM: [f64; 4] = [70.0, 44.0, 20.0, 52.0];
+/// Room for numbers and names round it: left, top, right, bottom; for each line of the legend more.
+const ROOM: [f64; 4] = [70.0, 28.0, 24.0, 52.0];
+/// Height of a line of the legend, points.
+const LEGEND_LINE: f64 = 16.0;
+/// Length of a line's sample in the legend, points.
+const SWATCH: f64 = 20.0;
+/// Width of a letter, points: fonts of a reader are wider or narrower, and must not overlap.
+const LETTER: f64 = 7.0;
+
+/// Where the entries of the legend stand, points from the left and lines from above, so that none
+/// leaves the picture or lies on another; longer names are cut. Last: how many lines there are.
+fn legend(sheet: &Sheet) -> (Vec<(String, f64, usize)>, usize) {
+    let widest = SIZE[0] - ROOM[0] - ROOM[2];
+    let most = ((widest - SWATCH - 6.0) / LETTER) as usize;
+    let (mut at, mut row, mut entries) = (ROOM[0], 0, Vec::new());
+    for line in &sheet.lines {
+        let cut = line.name.chars().count() > most;
+        let mut name: String = line.name.chars().take(if cut { most - 1 } else { most }).collect();
+        if cut {
+            name.push('…');
+        }
+        let width = SWATCH + 6.0 + LETTER * name.chars().count() as f64;
+        if at > ROOM[0] && at + width > SIZE[0] - ROOM[2] {
+            (at, row) = (ROOM[0], row + 1);
+        }
+        entries.push((name, at, row));
+        at += width + 16.0;
+    }
+    (entries, if sheet.lines.is_empty() { 0 } else { row + 1 })
+}
 
 /// Writes what is in view in the format that the path's ending names.
 ///
@@ -102,20 +130,23 @@ fn escaped(text: &str) -> String {
 #[must_use]
 pub fn svg(sheet: &Sheet) -> String {
     let [left, bottom, right, top] = sheet.bounds;
-    let [width, height] = [SIZE[0] - ROOM[0] - ROOM[2], SIZE[1] - ROOM[1] - ROOM[3]];
+    let (entries, rows) = legend(sheet);
+    let under = ROOM[1] + LEGEND_LINE * rows as f64;
+    let [width, height] = [SIZE[0] - ROOM[0] - ROOM[2], SIZE[1] - ROOM[1] - LEGEND_LINE - ROOM[3]];
     let x = |v: f64| ROOM[0] + (v - left) / (right - left) * width;
-    let y = |v: f64| ROOM[1] + (top - v) / (top - bottom) * height;
-    let [w, h] = SIZE;
+    let y = |v: f64| under + (top - v) / (top - bottom) * height;
+    // The graph keeps its height however many lines are named above it.
+    let [w, h] = [SIZE[0], under + height + ROOM[3]];
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
          font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"{w}\" height=\"{h}\" fill=\"white\"/>\n\
-         <clipPath id=\"c\"><rect x=\"{}\" y=\"{}\" width=\"{width}\" height=\"{height}\"/></clipPath>\n",
-        ROOM[0], ROOM[1]
+         <clipPath id=\"c\"><rect x=\"{}\" y=\"{under}\" width=\"{width}\" height=\"{height}\"/></clipPath>\n",
+        ROOM[0]
     );
     for (value, across) in ticks(left, right).map(|v| (v, true)).chain(ticks(bottom, top).map(|v| (v, false))) {
         let text = crate::units::format::significant(value, 4);
         let (x1, y1, x2, y2) = if across {
-            (x(value), ROOM[1], x(value), ROOM[1] + height)
+            (x(value), under, x(value), under + height)
         } else {
             (ROOM[0], y(value), ROOM[0] + width, y(value))
         };
@@ -135,21 +166,35 @@ pub fn svg(sheet: &Sheet) -> String {
             "<polyline clip-path=\"url(#c)\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\"{dashes} points=\"{}\"/>",
             path.join(" ")
         );
-        let at = ROOM[0] + 150.0 * k as f64;
-        let _ = writeln!(out, "<text x=\"{at}\" y=\"36\" fill=\"{colour}\">{}</text>", escaped(&line.name));
+        if let Some((name, at, row)) = entries.get(k) {
+            let low = ROOM[1] + LEGEND_LINE * *row as f64 + 8.0;
+            let _ = writeln!(
+                out,
+                "<line x1=\"{at}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"{colour}\" stroke-width=\"2.5\"{dashes}/>\n\
+                 <text x=\"{}\" y=\"{low}\">{}</text>",
+                low - 4.0,
+                at + SWATCH,
+                low - 4.0,
+                at + SWATCH + 6.0,
+                escaped(name)
+            );
+        }
     }
     for (limit, name, [r, g, b]) in limits(sheet) {
         let (at, right, colour) = (y(limit), ROOM[0] + width, format!("#{r:02x}{g:02x}{b:02x}"));
         let _ = writeln!(
             out,
             "<line x1=\"{}\" y1=\"{at:.2}\" x2=\"{right}\" y2=\"{at:.2}\" stroke=\"{colour}\" stroke-dasharray=\"8 4\"/>\n\
-             <text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\" fill=\"{colour}\">{name}</text>",
+             <text x=\"{}\" y=\"{:.2}\" text-anchor=\"end\" fill=\"{colour}\">{name} {}</text>",
             ROOM[0],
             right - 6.0,
-            at - 5.0
+            // Below a limit that lies at the top: beside the names above the graph it would be
+            // taken for one.
+            if at - 18.0 < under { at + 14.0 } else { at - 5.0 },
+            crate::units::format::significant(limit, 4)
         );
     }
-    let (middle, low) = (ROOM[0] + width / 2.0, SIZE[1] - 14.0);
+    let (middle, low) = (ROOM[0] + width / 2.0, h - 14.0);
     let _ = writeln!(
         out,
         "<rect x=\"{}\" y=\"{}\" width=\"{width}\" height=\"{height}\" fill=\"none\" stroke=\"#444\"/>\n\
@@ -157,10 +202,10 @@ pub fn svg(sheet: &Sheet) -> String {
          <text x=\"16\" y=\"{}\" text-anchor=\"middle\" transform=\"rotate(-90 16 {})\">{}</text>\n\
          <text x=\"{}\" y=\"18\" font-weight=\"bold\">{}</text>\n</svg>",
         ROOM[0],
-        ROOM[1],
+        under,
         escaped(&sheet.across[0]),
-        ROOM[1] + height / 2.0,
-        ROOM[1] + height / 2.0,
+        under + height / 2.0,
+        under + height / 2.0,
         escaped(&sheet.up[0]),
         ROOM[0],
         escaped(&sheet.title)
@@ -209,7 +254,8 @@ fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
                         plot.line(drawn.style(style));
                     }
                     for (limit, name, [r, g, b]) in limits(&sheet) {
-                        let line = egui_plot::HLine::new(name, limit).color(egui::Color32::from_rgb(r, g, b));
+                        let text = format!("{name} {}", crate::units::format::significant(limit, 4));
+                        let line = egui_plot::HLine::new(text, limit).color(egui::Color32::from_rgb(r, g, b));
                         plot.hline(line.style(egui_plot::LineStyle::dashed_loose()));
                     }
                 });
@@ -265,6 +311,25 @@ mod tests {
         assert!(text.contains("Over &lt;time&gt;") && text.matches("<polyline").count() == 2 && !text.contains("NaN"));
         assert!(text.contains("service limit") && !text.contains("breaking limit"), "10 kN is not in view");
         assert!(!svg(&Sheet { bounds: [0.0, 0.0, 1.0, 1.0], si: [1.0; 2], ..Sheet::default() }).contains("NaN"));
+    }
+
+    /// From the sixth line on names stood outside the picture, and long ones lay on the next.
+    #[test]
+    fn names_in_a_drawing_neither_leave_it_nor_lie_on_each_other() {
+        let name = |k: usize| format!("Maximum of pinned run number {k}, tank out and back");
+        let lines = (0..9).map(|k| Series { name: name(k), ..sheet().lines[0].clone() });
+        let mut many = Sheet { lines: lines.collect(), ..sheet() };
+        many.lines[3].name = "a name without end ".repeat(20);
+        let (entries, rows) = legend(&many);
+        let end = |(name, at, _): &(String, f64, usize)| at + SWATCH + 6.0 + LETTER * name.chars().count() as f64;
+        assert!(entries.iter().all(|e| end(e) <= SIZE[0] && e.2 < rows), "{entries:?}");
+        assert!(entries.windows(2).all(|e| e[0].2 < e[1].2 || end(&e[0]) < e[1].1), "{entries:?}");
+        let text = svg(&many);
+        let height: f64 = text.split("height=\"").nth(1).and_then(|t| t.split('"').next()).unwrap().parse().unwrap();
+        for y in text.split(" y=\"").skip(1).filter_map(|t| t.split('"').next()) {
+            assert!((0.0..height).contains(&y.parse::<f64>().unwrap()), "{y} of {height}");
+        }
+        assert!(text.contains("service limit 0.8000"));
     }
 
     #[test]

@@ -80,7 +80,8 @@ fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 }
 
 fn real_time(ui: &mut Ui, state: &AppState) {
-    let Some(reached) = state.live.snapshot.real_speed else {
+    // The last frame keeps the speed that it was reached at.
+    let Some(reached) = state.live.snapshot.real_speed.filter(|_| !state.live.playback.paused) else {
         ui.weak(if state.live.playback.paused { "Paused" } else { "Starting…" });
         return;
     };

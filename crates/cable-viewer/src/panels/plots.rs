@@ -17,6 +17,8 @@ use crate::widgets::field;
 /// From this width on the timeline stands beside the choice of graphs, points. Less: its rail is too
 /// short to aim at.
 const ONE_ROW: f32 = 960.0;
+/// Room for the button that brings back what a reset put away, points.
+const UNDO_RESET: f32 = 90.0;
 /// Below this width the graphs stand one under the other, points.
 const SIDE_BY_SIDE: f32 = 480.0;
 /// Lowest graph that can still be read, points.
@@ -30,13 +32,16 @@ const WINDOWS: [(Option<f64>, &str); 4] =
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let id = Id::unique("plot view");
     let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
-    if ui.available_width() >= ONE_ROW {
+    let reset = if state.live.before_reset.is_some() { UNDO_RESET } else { 0.0 };
+    if ui.available_width() >= ONE_ROW + reset {
         ui.horizontal(|ui| {
             controls(ui, state, &mut view);
             ui.separator();
             timeline::in_row(ui, state, commands);
         });
     } else {
+        // Every point goes to the graphs.
+        ui.spacing_mut().item_spacing.y = 1.0;
         timeline::ui(ui, state, commands);
         ui.horizontal_wrapped(|ui| controls(ui, state, &mut view));
     }

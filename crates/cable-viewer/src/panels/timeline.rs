@@ -1,7 +1,7 @@
 //! The timeline shows what was recorded, what happened in it, and which of it is on screen.
 
 use cable_core::solution::WarningKind;
-use egui::{Color32, Rect, Sense, Slider, Stroke, Ui, pos2, vec2};
+use egui::{Color32, Label, Rect, RichText, Sense, Slider, Stroke, TextStyle, Ui, pos2, vec2};
 
 use crate::command::{Command, PlaybackCommand};
 use crate::state::AppState;
@@ -10,8 +10,8 @@ use crate::units::sentence::sentence;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::{field, highlight};
 
-/// Room for the words beside it, points.
-const BESIDE: f32 = 205.0;
+/// Shortest rail that can be aimed at, points.
+const LEAST_RAIL: f32 = 60.0;
 /// How near to a mark the pointer tells what it is, points.
 const MARK_REACH: f32 = 4.0;
 
@@ -67,7 +67,22 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
     }
     let [first, last] = span.unwrap_or([0.0, 1.0]);
-    ui.spacing_mut().slider_width = (ui.available_width() - BESIDE).max(80.0);
+    let text = match state.live.recording.shown_s {
+        _ if span.is_none() => "Press play to record".to_owned(),
+        Some(t) => format!("{t:.2} of {last:.2} s"),
+        None => format!("recorded {}", format::duration(last - first)),
+    };
+    let count = match state.live.recording.events().len() {
+        1 => "1 event".to_owned(),
+        n => format!("{n} events"),
+    };
+    // The row must not be wider than its panel: it would push the graphs below out of sight. Without
+    // room events are marks on the rail and stand in the hover text.
+    let beside = width(ui, &text);
+    let with_count = beside + width(ui, &count);
+    let counted =
+        span.is_some() && !state.live.recording.events().is_empty() && ui.available_width() - with_count >= LEAST_RAIL;
+    ui.spacing_mut().slider_width = (ui.available_width() - if counted { with_count } else { beside }).max(LEAST_RAIL);
     let mut time_s = state.live.recording.shown_s.unwrap_or(now_s).clamp(first, last);
     let slider = ui.add_enabled(span.is_some(), Slider::new(&mut time_s, first..=last).show_value(false));
     field::name(&slider, "Timeline");
@@ -78,19 +93,18 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         marks(ui, state, slider.rect, [first, last]);
     }
     slider.on_hover_text(state.live.recording.about()).on_disabled_hover_text(NOTHING);
-    let text = match state.live.recording.shown_s {
-        Some(t) => format!("showing {t:.2} s of {last:.2} s"),
-        None => format!("recorded {}", format::duration(last - first)),
-    };
-    if span.is_some() {
-        ui.label(text);
-    } else {
-        ui.weak("Press play to record");
+    let text = if span.is_some() { RichText::new(text) } else { RichText::new(text).weak() };
+    ui.add(Label::new(text).truncate()).on_hover_text(count.as_str());
+    if counted {
+        ui.weak(count);
     }
-    let count = state.live.recording.events().len();
-    if span.is_some() && count > 0 {
-        ui.weak(if count == 1 { "1 event".to_owned() } else { format!("{count} events") });
-    }
+}
+
+/// Width of a text and the space before it, points.
+fn width(ui: &Ui, text: &str) -> f32 {
+    let font = TextStyle::Body.resolve(ui.style());
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, Color32::WHITE);
+    galley.size().x.ceil() + ui.spacing().item_spacing.x + 1.0
 }
 
 /// Events as marks over the rail; a click on one shows its time.

@@ -20,10 +20,13 @@ pub fn times(factor: f64) -> String {
     with_symbol(significant(factor, 3), "×")
 }
 
+/// Smaller forces (N) are what rounding leaves of a balance: they read 0.
+const LEAST_FORCE_N: f64 = 1e-9;
+
 /// A force with N, kN or MN, N.
 #[must_use]
 pub fn force(value_n: f64) -> String {
-    scaled(value_n, system::Kind::Force)
+    scaled(if value_n.abs() < LEAST_FORCE_N { 0.0 } else { value_n }, system::Kind::Force)
 }
 
 /// A stress with Pa, kPa, MPa or GPa, Pa.
@@ -63,9 +66,16 @@ pub fn duration(value_s: f64) -> String {
     with_symbol(significant(value_s / si, DIGITS), symbol)
 }
 
+/// Smaller ratios are not written with their power of ten: nobody reads more into it than that it is
+/// very small.
+pub const LEAST_RATIO: f64 = 1e-6;
+
 /// A ratio in per cent with three digits.
 #[must_use]
 pub fn percent(ratio: f64) -> String {
+    if ratio.abs() < LEAST_RATIO && ratio != 0.0 {
+        return "< 0.0001 %".to_owned();
+    }
     format!("{} %", significant(ratio * 1e2, 3))
 }
 
@@ -175,6 +185,9 @@ mod tests {
         assert_eq!(force(12_345.0), "12.35 kN");
         assert_eq!(force(2.5e6), "2.500 MN");
         assert_eq!(force(-0.25), "−0.2500 N");
+        assert_eq!(force(6.042e-13), "0 N");
+        assert_eq!(percent(1.64e-12), "< 0.0001 %");
+        assert_eq!(percent(0.0), "0 %");
         assert_eq!(force(0.0), "0 N");
         assert_eq!(stress(1.3e6), "1.300 MPa");
         assert_eq!(stress(0.0), "0 Pa");

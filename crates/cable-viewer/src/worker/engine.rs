@@ -13,7 +13,7 @@ use crate::state::{NoAnswer, Playback, Snapshot};
 use crate::worker::draft::{self, Mesh};
 use crate::worker::passing;
 use crate::worker::request::{Drag, Edit, Request, Resume};
-use crate::worker::timing::{DRAFT_AFTER_S, FRAME_S, MAX_ANSWERS, QUIET_S};
+use crate::worker::timing::{COARSE_AFTER_S, DRAFT_AFTER_S, DRAFT_FIRST_S, FRAME_S, MAX_ANSWERS, QUIET_S};
 
 /// What `auto` is asked once time runs.
 const MOTION: Question = Question::History(Inertia::Dynamic);
@@ -205,7 +205,7 @@ impl Engine {
             solved = true;
         } else if let Some(edit) = request.edit {
             let stays = self.playback.paused && !request.reset && request.steps == 0;
-            result = if stays && self.show_draft(&edit) { Ok(()) } else { self.take_edit(edit) };
+            result = if stays && self.show_draft(&edit, request.hurried) { Ok(()) } else { self.take_edit(edit) };
         } else if self.draft() && (request.reset || request.steps > 0 || !self.playback.paused) {
             // Time goes on from the answer, never from a draft of it.
             result = self.solve_draft();
@@ -337,11 +337,13 @@ impl Engine {
         self.playback.paused = true;
     }
 
-    /// Shows an edit with few segments, if answering it in full would take long; whether it did.
-    fn show_draft(&mut self, edit: &Edit) -> bool {
+    /// Shows an edit with few segments, if answering it in full would take long; whether it did. A
+    /// single edit is answered at once: a draft from an answer takes 0.1 s itself.
+    fn show_draft(&mut self, edit: &Edit, hurried: bool) -> bool {
         let Some(last) = &self.edit else { return false };
         let same = !edit.fresh && last.model == edit.model && last.settings == edit.settings;
-        let (true, Some(old)) = (self.drafts && same && self.solve_s > DRAFT_AFTER_S, &self.simulation) else {
+        let slow = self.solve_s > if hurried || self.draft() { DRAFT_AFTER_S } else { DRAFT_FIRST_S };
+        let (true, Some(old)) = (self.drafts && same && slow, &self.simulation) else {
             return false;
         };
         let falls = draft::settling_draft(edit, old);
@@ -469,7 +471,7 @@ impl Engine {
     fn drag(&mut self, drag: Drag) -> Result<(), Error> {
         if self.coarse() {
             self.phase = Phase::CoarseMotion { moved_at: Instant::now() };
-        } else if self.drafts && self.playing() && self.tick_s > DRAFT_AFTER_S {
+        } else if self.drafts && self.playing() && self.tick_s > COARSE_AFTER_S {
             self.enter_coarse();
         }
         let Drag { cable, support, to_m, .. } = drag;

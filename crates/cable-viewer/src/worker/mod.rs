@@ -27,7 +27,7 @@ use std::time::{Duration, Instant};
 use crate::state::WorkerStatus;
 use crate::worker::engine::{Engine, Report};
 use crate::worker::request::Request;
-use crate::worker::timing::{FRAME_S, MAX_ANSWERS, QUIET_S};
+use crate::worker::timing::{FRAME_S, LEAST_QUIET_S, MAX_ANSWERS, QUIET_EDITS, QUIET_S};
 
 /// The window's end.
 pub struct Worker {
@@ -130,6 +130,8 @@ impl Worker {
         match &mut self.kind {
             Kind::Thread { shared, .. } => {
                 let mut slots = shared.lock();
+                let mut request = request;
+                request.hurried = request.edit.is_some() && slots.solve.is_some();
                 slots.asked_at.get_or_insert_with(Instant::now);
                 match &mut slots.request {
                     Some(waiting) => waiting.merge(request),
@@ -168,7 +170,9 @@ impl Worker {
         }
         let Some(asked_at) = slots.asked_at else { return };
         let Some(waiting) = slots.request.as_ref().filter(|r| r.solves() || r.cancel) else { return };
-        let wait = if waiting.cancel { Duration::ZERO } else { patience.wait };
+        // The next draft goes on from the one on screen: its answer may be given up at once.
+        let of_draft = slots.solve.as_ref().is_some_and(|s| s.request.is_none());
+        let wait = if waiting.cancel || of_draft { Duration::ZERO } else { patience.wait };
         let old = slots.solve.as_ref().is_some_and(|s| s.began.elapsed() >= wait);
         if !old || asked_at.elapsed() < wait || Arc::strong_count(shared) > MAX_THREADS {
             return;
@@ -230,7 +234,7 @@ const LEAST_SHARE: f64 = 0.4;
 
 /// Time (s) that a request waits for a solve that it makes worthless. Shorter: a drag restarts solves
 /// that would have been in the next frames; longer: an undo is felt to hang.
-const GIVE_UP_AFTER: Duration = Duration::from_millis(70);
+const GIVE_UP_AFTER: Duration = Duration::from_millis(40);
 /// Most threads with the window's own handle counted: more would share the processor with the one
 /// that is listened to.
 const MAX_THREADS: usize = 6;
@@ -247,6 +251,7 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
     let mut last_tick = next_tick;
     // When a draft has stood long enough to be replaced by the answer.
     let mut refine_at = next_tick;
+    let mut edited_at: Option<Instant> = None;
     loop {
         let request = {
             let mut slots = shared.lock();
@@ -287,6 +292,16 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
         let report = match request {
             Some(request) => {
                 let drag = request.drag.is_some();
+                // A single edit is answered at once, a hand that goes on is waited for.
+                let pause_s = if engine.draft() || request.hurried {
+                    let between = edited_at.map_or(QUIET_S, |at| at.elapsed().as_secs_f64());
+                    (QUIET_EDITS * between).clamp(LEAST_QUIET_S, QUIET_S)
+                } else {
+                    0.0
+                };
+                if request.edit.is_some() {
+                    edited_at = Some(Instant::now());
+                }
                 let mut report = guarded(&mut engine, |e| e.handle(request));
                 let passed = last_tick.elapsed().as_secs_f64() / FRAME_S;
                 if drag && engine.playing() && passed > LEAST_SHARE {
@@ -296,7 +311,7 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
                     next_tick = last_tick + frame;
                     report.merge(guarded(&mut engine, |e| e.tick_part(passed.min(1.0))));
                 }
-                refine_at = Instant::now() + Duration::from_secs_f64(QUIET_S);
+                refine_at = Instant::now() + Duration::from_secs_f64(pause_s);
                 if engine.draft() {
                     next_tick = Instant::now() + frame;
                 }

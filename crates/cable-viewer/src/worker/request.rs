@@ -27,6 +27,8 @@ pub struct Request {
     pub playback: Option<Playback>,
     /// Single steps to take.
     pub steps: u32,
+    /// Came while an earlier edit was being solved: edits come faster than answers.
+    pub hurried: bool,
     /// Number of the last edit, reset or step in it.
     pub number: u64,
 }
@@ -107,6 +109,7 @@ impl Request {
         self.robot = later.robot.or(self.robot);
         self.playback = later.playback.or(self.playback);
         self.steps = (self.steps + later.steps).min(MAX_STEPS);
+        self.hurried |= later.hurried;
         self.number = self.number.max(later.number);
     }
 

@@ -112,7 +112,7 @@ fn answer(scene: &Scene) -> Solution {
     Solution {
         time_s: 9.983,
         model: Model::Fem,
-        reason: ModelReason::Obstacles,
+        reason: ModelReason::Inertia,
         cables: vec![CableSolution {
             name: cable.name.clone(),
             nodes,

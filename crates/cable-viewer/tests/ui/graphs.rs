@@ -38,7 +38,7 @@ fn a_drag_in_the_graph_over_time_moves_the_playhead_of_all() {
     let shown = shown_s(&harness).expect("an earlier time is shown");
     let solution = harness.state().state.live.snapshot.solution.clone().unwrap();
     assert!((solution.time_s - shown).abs() < 1.0 / 60.0 && shown < 1.9, "{shown} {}", solution.time_s);
-    harness.get_by_label_contains(&format!("showing {shown:.2} s"));
+    harness.get_by_label_contains(&format!("{shown:.2} of "));
     assert!(harness.state().state.live.playback.paused);
     assert_eq!(plot::hovered(&harness.ctx, "along"), None);
 }

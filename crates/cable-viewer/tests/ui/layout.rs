@@ -2,8 +2,8 @@
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
-use cable_viewer::command::{Command, SceneCommand, ViewCommand};
-use cable_viewer::state::{Item, OpenPanels};
+use cable_viewer::command::{Command, PlaybackCommand, SceneCommand, ViewCommand};
+use cable_viewer::state::{FirstSteps, Item, OpenPanels};
 use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -137,4 +137,101 @@ fn the_result_is_always_on_top() {
     harness.get_by_label(&text).click();
     harness.run_steps(3);
     assert!(harness.state().state.view.camera.points_per_m > 1.5 * before, "a click zooms on it");
+}
+
+/// A selected form pushed the results out of sight: the greatest tension, its share of the limits and the verdict stand
+/// above everything that scrolls, at every usual size.
+#[test]
+fn results_stand_above_the_form_of_what_is_selected() {
+    for size in [[1024.0, 640.0], [1280.0, 800.0], [1920.0, 1080.0]] {
+        let mut harness = open(catalog::tank());
+        harness.set_size(Vec2::from(size));
+        for item in [Item::Support { cable: 0, support: 1 }, Item::Cable(0), Item::Obstacle(0)] {
+            let select = ViewCommand::Select(Some(item));
+            apply(&mut harness, Command::View(select));
+            harness.run_steps(4);
+            let form = harness.get_by_label("Selected").rect();
+            for text in
+                ["Max tension", " of service 800.0 N", " of break 10.00 kN", "Ends ", "verified", "13.1 % of service"]
+            {
+                let figures = harness.query_all_by_label_contains(text).map(|n| n.rect());
+                let seen = figures.filter(|r| r.min.x >= 0.0 && r.max.x <= size[0] && r.max.y < form.min.y).count();
+                assert!(seen > 0, "{size:?}, {item:?}: {text}");
+            }
+        }
+    }
+}
+
+/// Words beside the timeline made its row wider than the panel, and so the graphs, whose export was cut.
+#[test]
+fn a_recording_with_events_does_not_push_the_graphs_out_of_sight() {
+    let mut scene = catalog::tank_robot();
+    scene.cables[0].service_tension_n = 100.0;
+    let mut harness = open(scene);
+    // Nothing is recorded yet, so nothing happened.
+    assert!(harness.query_by_label_contains("event").is_none());
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    harness.run_steps(40);
+    assert!(!harness.state().state.live.recording.events().is_empty());
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+    let last = harness.state().state.live.recording.span_s().expect("a recording")[1];
+    for shown in [None, Some(0.5 * last)] {
+        apply(&mut harness, Command::Playback(PlaybackCommand::Show(shown)));
+        for size in [[1280.0, 800.0], [1024.0, 640.0]] {
+            harness.set_size(Vec2::from(size));
+            harness.run_steps(4);
+            let results = harness.get_by_label("Max tension").rect().min.x;
+            for name in ["Export Along the cable", "Along the cable"] {
+                let right = harness.query_all_by_label(name).map(|n| n.rect().max.x).fold(0.0, f32::max);
+                assert!(right < results, "{size:?}, {shown:?}: {name} ends at {right}, the panel at {results}");
+            }
+        }
+    }
+    // The speed of the last frame stood there as if time still ran.
+    assert!(harness.query_by_label_contains("Runs at").is_none());
+    harness.get_by_label("Paused");
+}
+
+/// Forces on supports, and the range of the greatest tension, were cut at the right.
+#[test]
+fn forces_on_supports_are_not_cut() {
+    let mut harness = open(catalog::tank_robot());
+    harness.set_size(Vec2::new(1280.0, 1400.0));
+    harness.run_steps(4);
+    for text in [" right, ", " left, "] {
+        let row = harness.get_by_label_contains(text).rect();
+        assert!(row.max.x <= 1280.0 && row.min.x > 1030.0, "{text} at {row}");
+    }
+}
+
+/// The height of the robot was cut to "0.03" in a field that reached beyond its panel.
+#[test]
+fn fields_of_what_is_selected_end_within_their_panel() {
+    let mut harness = open(catalog::tank_robot());
+    for item in [Item::Robot, Item::Cable(0), Item::Support { cable: 0, support: 0 }, Item::Obstacle(4)] {
+        for size in [[1024.0, 640.0], [1280.0, 800.0], [1920.0, 1080.0]] {
+            harness.set_size(Vec2::from(size));
+            apply(&mut harness, Command::View(ViewCommand::Select(Some(item))));
+            harness.run_steps(4);
+            let fields = harness.query_all_by_role(egui::accesskit::Role::TextInput).map(|n| n.rect());
+            let right = fields.map(|r| r.max.x).fold(0.0, f32::max);
+            assert!(right > 0.5 * size[0] && right <= size[0] - 4.0, "{item:?}, {size:?}: a field ends at {right}");
+        }
+    }
+}
+
+/// The hints of the first minute lay over the foot of a pile.
+#[test]
+fn hints_do_not_lie_over_the_cable() {
+    let mut harness = open(catalog::pile());
+    harness.state_mut().state.ui.first_steps = FirstSteps::default();
+    apply(&mut harness, Command::View(ViewCommand::Fit));
+    harness.run_steps(4);
+    let canvas = harness.get_by_label("Canvas").rect();
+    let hints = harness.get_by_label("Start here…").rect();
+    let state = &harness.state().state;
+    let lowest =
+        state.live.snapshot.solution.as_ref().unwrap().cables[0].nodes.iter().map(|n| n.y_m).fold(9.0, f64::min);
+    let foot = state.view.camera.to_screen(canvas, [0.0, lowest]).y;
+    assert!(foot < hints.top(), "the cable ends at {foot}, hints begin at {}", hints.top());
 }

@@ -24,6 +24,7 @@ fn refusal(text: &str) -> NoAnswer {
 fn compare(name: &str, mut state: AppState, theme: Theme) {
     // The canvas alone explains its colours itself.
     state.ui.legend_beside = false;
+    state.ui.first_steps.hide();
     let renderer = match renderer() {
         Ok(renderer) => renderer,
         Err(why) if std::env::var("CI").is_ok_and(|v| v == "true") => panic!("{why}"),

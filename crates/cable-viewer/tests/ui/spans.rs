@@ -263,7 +263,7 @@ fn a_flexible_answer_is_compared_with_a_stiff_one() {
     harness.run_steps(2);
     let with = found[0].greatest_tension_n.unwrap();
     assert!(with < 0.99 * flexible, "{with} N of {flexible} N");
-    let said = format!("neglected: {:+.2} %", 100.0 * (with / flexible - 1.0));
+    let said = format!("ignored: {:+.2} %", 100.0 * (with / flexible - 1.0));
     harness.get_by_label(&said);
     // It is of this answer: another one has not been compared.
     let item = cable_viewer::state::Item::Support { cable: 0, support: 1 };

@@ -5,7 +5,7 @@ use cable_core::analysis::tension_budget::{Cause, Contribution, StartEnd, Tensio
 use cable_core::scene::View;
 use cable_core::solution::Node;
 use cable_core::{Scene, Solution};
-use egui::{Color32, Grid, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use egui::{Align, Color32, Label, Layout, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use crate::command::{Command, ViewCommand};
 use crate::state::{AppState, TensionMarker};
@@ -218,16 +218,22 @@ fn figures(
     title: &dyn Fn(&Contribution) -> String,
     how: &dyn Fn(&Contribution) -> String,
 ) {
-    Grid::new("origin").num_columns(4).min_col_width(0.0).spacing([7.0, 3.0]).show(ui, |ui| {
-        for t in listed {
+    for t in listed {
+        let sign = if t.tension_n < 0.0 { "" } else { "+" };
+        ui.horizontal(|ui| {
             let (rect, _) = ui.allocate_exact_size(vec2(10.0, 10.0), Sense::hover());
             let line = Stroke::new(1.0, ui.visuals().weak_text_color());
             ui.painter().rect(rect, 1.0, colour(t), line, egui::StrokeKind::Inside);
-            ui.label(title(t));
-            let sign = if t.tension_n < 0.0 { "" } else { "+" };
-            ui.label(format!("{sign}{}", format::force(t.tension_n)));
-            ui.weak(how(t)).on_hover_text("Tension beyond it over tension before it, on the way from the end");
-            ui.end_row();
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                ui.label(format!("{sign}{}", format::force(t.tension_n)));
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.add(Label::new(title(t)).truncate()));
+            });
+        });
+        let how = how(t);
+        if !how.is_empty() {
+            ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+                ui.weak(how).on_hover_text("Tension beyond it over tension before it, on the way from the end");
+            });
         }
-    });
+    }
 }

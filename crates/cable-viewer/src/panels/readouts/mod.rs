@@ -6,12 +6,12 @@
 pub(crate) mod figures;
 mod reactions;
 
-use cable_core::Cable;
 use cable_core::scene::View;
 use cable_core::solution::{CableSolution, ContactState, Node};
 use cable_core::summary::{CablePlace, CableSummary, EndForce, summary};
 use cable_core::timeline::{RunPeaks, TensionRanges};
-use egui::{Color32, ProgressBar, RichText, Ui};
+use cable_core::{Cable, Scene};
+use egui::{Color32, Label, ProgressBar, RichText, Ui};
 
 use crate::command::{Command, ViewCommand};
 use crate::jobs::background::Progress;
@@ -27,41 +27,74 @@ use crate::widgets::{field, readout};
 /// was there cannot be read at all.
 pub const DIMMED: f32 = 0.4;
 
-/// Draws it.
+/// Draws them all.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    head(ui, state, commands);
+    ui.separator();
+    rest(ui, state, commands);
+}
+
+/// The present cable as it was solved, which may not be the one being typed; else why there is none.
+fn shown(state: &AppState) -> Result<(&Scene, &Cable, &CableSolution), &'static str> {
     let index = state.current_cable();
-    let Some(answer) = state.live.snapshot.solution.as_deref() else {
-        ui.weak("Nothing solved yet");
-        return;
-    };
-    // The figures belong to the scene that was solved, which may not be the one being typed.
+    let answer = state.live.snapshot.solution.as_deref().ok_or("Nothing solved yet")?;
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
-    let (Some(cable), Some(solved)) = (scene.cables.get(index), answer.cables.get(index)) else {
-        ui.weak("This cable is not solved yet");
-        return;
+    match (scene.cables.get(index), answer.cables.get(index)) {
+        (Some(cable), Some(solved)) => Ok((scene, cable, solved)),
+        _ => Err("This cable is not solved yet"),
+    }
+}
+
+/// What stands above everything that scrolls: the greatest tension, its share of the limits, the ends
+/// and the sag.
+pub fn head(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let (scene, cable, solved) = match shown(state) {
+        Ok(shown) => shown,
+        Err(why) => {
+            ui.weak(why);
+            return;
+        }
     };
     let freshness = state.freshness();
     let (said, help) = match freshness {
         Freshness::Current => ("", ""),
-        Freshness::Solving => ("Solving… these figures are of the scene before", "They belong to the last answer"),
+        Freshness::Solving => ("Solving… figures of the scene before", "They belong to the last answer"),
         Freshness::Draft => ("Draft, not at rest yet", "Few segments follow the hand; the answer comes once it rests"),
         Freshness::Outdated => ("Last valid result, not this scene", "The present scene has no answer"),
     };
-    if freshness != Freshness::Current {
-        ui.horizontal(|ui| {
-            let colour = ui.visuals().warn_fg_color;
-            icon::sign(ui, Icon::Caution, colour);
-            ui.colored_label(colour, said);
-        })
-        .response
-        .on_hover_text(help);
+    ui.scope(|ui| {
+        if freshness != Freshness::Current {
+            ui.horizontal(|ui| {
+                let colour = ui.visuals().warn_fg_color;
+                icon::sign(ui, Icon::Caution, colour);
+                ui.colored_label(colour, said);
+            })
+            .response
+            .on_hover_text(help);
+            ui.multiply_opacity(DIMMED);
+        }
+        if state.live.snapshot.solution.as_ref().is_some_and(|s| s.cables.len() > 1) {
+            ui.strong(&solved.name);
+        }
+        tension(ui, cable, solved, freshness == Freshness::Current, commands);
+        let time_s = state.live.snapshot.solution.as_ref().map_or(0.0, |s| s.time_s);
+        let first = summary(scene, cable, solved, time_s);
+        let ends: Vec<String> = first.ends.iter().map(|e| format::force(e.tension_n)).collect();
+        let sag = first.sag.map_or_else(|| "–".to_owned(), |s| format::length(s.sag_m));
+        let text = RichText::new(format!("Ends {} · sag {sag}", ends.join(", "))).small();
+        ui.add(Label::new(text).truncate()).on_hover_text("Tension at the start and at the end, and the greatest sag");
+    });
+}
+
+/// What stands below it.
+pub fn rest(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let index = state.current_cable();
+    let (Ok((scene, cable, solved)), Some(answer)) = (shown(state), state.live.snapshot.solution.as_deref()) else {
+        return;
+    };
+    if state.freshness() != Freshness::Current {
         ui.multiply_opacity(DIMMED);
     }
-    if answer.cables.len() > 1 {
-        ui.strong(&solved.name);
-    }
-    tension(ui, cable, solved, freshness == Freshness::Current, commands);
-    ui.separator();
     ui.push_id(("figures", index), |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
         let first = summary(scene, cable, solved, answer.time_s);
@@ -89,7 +122,8 @@ fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, current: bool, co
         ui.label(RichText::new(format::force(tension_n)).strong().size(18.0));
         place(ui, "Show the largest tension", &node, commands);
     });
-    ui.weak(format!("at {} along the cable, {}", along(&node), format::position([node.x_m, node.y_m])));
+    let at = format!("at {} along the cable", along(&node));
+    ui.weak(at).on_hover_text(format::position([node.x_m, node.y_m]));
     for (name, limit_n, help) in [
         ("service", cable.service_tension_n, "Share of the tension of the first warning"),
         ("break", cable.breaking_tension_n, "Share of the tension at which it breaks"),
@@ -226,7 +260,7 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSum
     let place =
         |b: cable_core::solution::Bend| node(CablePlace { arc_length_m: b.arc_length_m, x_m: b.x_m, y_m: b.y_m });
     let Some(bend) = first.tightest_bend else {
-        figure(ui, "Min bend radius", "straight".to_owned(), "No bend anywhere", None);
+        figure(ui, "Tightest bend", "straight".to_owned(), "No bend anywhere", None);
         return;
     };
     let help = "Tightest bend of the cable's line; what a support of no radius turns sharply is not counted";
@@ -237,7 +271,7 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSum
     };
     let judged = first.judged_bend.filter(|j| j.bend.radius_m > bend.radius_m);
     let text = if judged.is_none() { radius(bend.radius_m) } else { format::length(bend.radius_m) };
-    figure(ui, "Min bend radius", text, help, Some((&place(bend), &mut *commands)));
+    figure(ui, "Tightest bend", text, help, Some((&place(bend), &mut *commands)));
     if let Some(j) = judged {
         let help = format!(
             "Sharpest bend where something leads it, at sharp corners with a bending stiffness of {}: this is what is warned of",
@@ -265,6 +299,9 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSum
     }
 }
 
+/// Friction of this part of all there is is what the solver leaves. More: friction that holds a light
+/// end is hidden; less: rounding is read as friction.
+const NO_FRICTION: f64 = 1e-6;
 /// An error of this part of the greatest tension is one of rounding. More: meshes that are very
 /// fine are called exact; less: models without a mesh show their rounding as if it mattered.
 const ROUNDED: f64 = 1e-9;
@@ -272,21 +309,18 @@ const ROUNDED: f64 = 1e-9;
 /// The greatest tension since the run began, and what coarser runs beside it leave open.
 fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
     let most = format::force(run.peaks.greatest.tension_n);
-    let text = match run.ranges {
-        Some(TensionRanges { greatest_n: [from, to], .. }) => {
-            format!("{most} ({} to {})", format::force(from), format::force(to))
-        }
-        None => most,
-    };
     let help = match run.ranges.is_some_and(|r| r.depend_on_small_differences()) {
         true => {
-            "Greatest tension of any inner step since the start; in brackets from what to what it may be. It depends on small differences: two coarser runs beside this one do not converge, and another mesh, step or start has another"
+            "Greatest tension of any inner step since the start, and from what to what it may be. It depends on small differences: two coarser runs beside this one do not converge, and another mesh, step or start has another"
         }
         false => {
-            "Greatest tension of any inner step since the start; in brackets from what to what it may be, as two coarser runs beside this one differ from it"
+            "Greatest tension of any inner step since the start, and from what to what it may be, as two coarser runs beside this one differ from it"
         }
     };
-    figure(ui, "Greatest so far", text, help, None);
+    figure(ui, "Greatest so far", most, help, None);
+    if let Some(TensionRanges { greatest_n: [from, to], .. }) = run.ranges {
+        figure(ui, "  may be", format!("{} to {}", format::force(from), format::force(to)), help, None);
+    }
 }
 
 /// Whether bending stiffness was taken into account, and what it changes where it was not.
@@ -309,7 +343,7 @@ fn bending_stiffness(
         figure(ui, name, text, &format!("{help}{more}"), None);
         return;
     }
-    readout::row(ui, name, "neglected", &help, |ui| {
+    readout::row(ui, name, "ignored", &help, |ui| {
         let can = bending_query(state).is_some();
         let button = ui.add_enabled(can, egui::Button::new("Compare").small());
         field::name(&button, "Compare with the likely bending stiffness");
@@ -326,16 +360,16 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(
     if !bending_query_fits(state) {
         return None;
     }
-    let neglected = "neglected".to_owned();
+    let ignored = "ignored".to_owned();
     let found = match &state.analysis.neglected_bending.progress {
         Progress::None => return None,
-        Progress::Running(..) => return Some(("neglected, being compared".to_owned(), String::new())),
-        Progress::Failed(why) => return Some((neglected, format!(". {why}"))),
+        Progress::Running(..) => return Some(("ignored, being compared".to_owned(), String::new())),
+        Progress::Failed(why) => return Some((ignored, format!(". {why}"))),
         Progress::Done(found) => found.iter().find(|b| b.cable == cable.name)?,
     };
     let Some(with) = found.greatest_tension_n else {
         let why = found.unknown.as_ref().map_or_else(|| "not sought".to_owned(), sentence);
-        return Some((neglected, format!(". No answer was found with that: {why}")));
+        return Some((ignored, format!(". No answer was found with that: {why}")));
     };
     let most = figures::greatest(solved, |n| n.tension_n).map_or(0.0, |(tension, _)| tension);
     let change = if most > 0.0 { format!("{:+.2} %", 100.0 * (with / most - 1.0)) } else { format::force(with) };
@@ -348,12 +382,13 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(
         part(found.changes.support_force_n, format::force),
         part(found.changes.position_m, format::length),
     );
-    Some((format!("neglected: {change}"), details))
+    Some((format!("ignored: {change}"), details))
 }
 
 fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
     let text = match solved.error_estimate {
         Some(e) if e < ROUNDED => "exact for this model".to_owned(),
+        Some(e) if e < format::LEAST_RATIO => format::percent(e),
         Some(e) => format!("± {}", format::percent(e)),
         None => "not estimated".to_owned(),
     };
@@ -372,7 +407,8 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
         figure(ui, "Contact force", format::force(normal_n), "Sum of the normal forces", None);
     }
     if let Some(f) = &first.friction {
-        let text = format!("{} of {}", format::force(f.used_n), format::force(f.available_n));
+        let used_n = if f.used_n.abs() < NO_FRICTION * f.available_n.abs() { 0.0 } else { f.used_n };
+        let text = format!("{} of {}", format::force(used_n), format::force(f.available_n));
         let help = format!(
             "Friction called upon of all there is; `{}` uses {} of its own",
             f.obstacle,

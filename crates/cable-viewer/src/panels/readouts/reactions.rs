@@ -1,12 +1,12 @@
-//! The table of reactions gives the force on each support: size, direction as an arrow, components.
+//! The reactions give the force on each support: size, direction as an arrow, components.
 
 use cable_core::Cable;
 use cable_core::solution::{CableSolution, SupportReaction};
-use egui::{Align2, Grid, RichText, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
+use egui::{Align, Align2, Label, Layout, RichText, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
 
 use crate::command::{Command, ViewCommand};
 use crate::units::{format, unit};
-use crate::widgets::{field, readout};
+use crate::widgets::field;
 
 /// Side of the square an arrow is drawn in, points.
 const ARROW: f32 = 18.0;
@@ -18,27 +18,28 @@ pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec
     ui.label(RichText::new("Force of the cable on its supports").strong())
         .on_hover_text("What each support must hold; the force on the cable is the opposite");
     let largest = solved.supports.iter().map(size).fold(0.0, f64::max);
-    readout::wide(ui, "reactions", |ui| {
-        Grid::new(("reactions", &solved.name)).num_columns(5).spacing([8.0, 3.0]).show(ui, |ui| {
-            for text in ["", "Support", "Force", "Right", "Up"] {
-                ui.weak(text);
-            }
-            ui.end_row();
-            for (k, s) in solved.supports.iter().enumerate() {
-                arrow(ui, s, largest);
-                let name = if s.name.is_empty() { format!("support {}", k + 1) } else { s.name.clone() };
-                let link = ui.add(egui::Button::new(&name).frame(false).truncate());
-                field::name(&link, &format!("Show support {name}"));
-                if link.on_hover_text(explanation(cable, s)).clicked() {
-                    commands.push(Command::View(ViewCommand::CentreOn([s.x_m, s.y_m])));
-                }
+    for (k, s) in solved.supports.iter().enumerate() {
+        let name = if s.name.is_empty() { format!("support {}", k + 1) } else { s.name.clone() };
+        ui.horizontal(|ui| {
+            arrow(ui, s, largest);
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 ui.label(format::force(size(s)));
-                ui.label(format::force(s.reaction_x_n));
-                ui.label(format::force(s.reaction_y_n));
-                ui.end_row();
-            }
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                    let link = ui.add(egui::Button::new(&name).frame(false).truncate());
+                    field::name(&link, &format!("Show support {name}"));
+                    if link.on_hover_text(explanation(cable, s)).clicked() {
+                        commands.push(Command::View(ViewCommand::CentreOn([s.x_m, s.y_m])));
+                    }
+                });
+            });
         });
-    });
+        let across = if s.reaction_x_n < 0.0 { "left" } else { "right" };
+        let along = if s.reaction_y_n < 0.0 { "down" } else { "up" };
+        let (x, y) = (format::force(s.reaction_x_n.abs()), format::force(s.reaction_y_n.abs()));
+        ui.with_layout(Layout::right_to_left(Align::Min), |ui| {
+            ui.add(Label::new(RichText::new(format!("{x} {across}, {y} {along}")).weak()).truncate());
+        });
+    }
     for s in &solved.supports {
         hand(ui, s);
     }

@@ -8,7 +8,7 @@ use cable_core::{Robot, Scene};
 use egui::{ComboBox, Ui};
 
 use crate::command::{Command, SceneCommand, support_kind};
-use crate::panels::scene::rows::{coordinates, show_faults};
+use crate::panels::scene::rows::{coordinates, place, show_faults};
 use crate::panels::scene_errors;
 use crate::state::AppState;
 use crate::units::unit::Unit;
@@ -104,15 +104,10 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
 
 fn placed(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
     let mut faults = Vec::new();
-    let at = format!("Position, {}", Unit::M.display().symbol);
-    labelled(ui, &at, "Robot position", |ui| {
-        let label = ui.weak("x, y");
+    place(ui, |ui| {
         if let Some(at_m) = coordinates(ui, "robot", robot.at_m, &mut faults) {
             set(Some(Robot { at_m, ..robot.clone() }), commands);
         }
-        label.on_hover_text(
-            "Where the middle of its tracks touches the ground; dragged on the canvas it stays on the ground",
-        )
     });
     labelled(ui, "Facing", "Robot facing", |ui| {
         let mut heading = robot.heading;
