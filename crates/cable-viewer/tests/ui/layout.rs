@@ -1,4 +1,5 @@
-//! Room for the picture: how much of the window the canvas has, and that nothing but the user changes that.
+//! Room for the picture: how much of the window the canvas has, and that nothing but the user
+//! changes that.
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
@@ -79,7 +80,8 @@ fn the_window_opens_on_a_robot_without_a_warning() {
     assert!(harness.state().state.live.snapshot.solution.as_ref().unwrap().time_s > 29.0);
 }
 
-/// D10.4: the side panels grew with what was in them, from 624 to 505 points of canvas in one sitting.
+/// D10.4: the side panels grew with what was in them, from 624 to 505 points of canvas in one
+/// sitting.
 #[test]
 fn what_is_in_a_panel_does_not_move_the_canvas() {
     let mut harness = open(catalog::tank());
@@ -121,7 +123,8 @@ fn a_fitted_scene_is_fitted_again_when_the_window_changes() {
     assert_eq!(harness.state().state.view.camera, camera);
 }
 
-/// The greatest tension, its utilisation and the verdict are in sight whatever is scrolled or folded.
+/// The greatest tension, its utilisation and the verdict are in sight whatever is scrolled or
+/// folded.
 #[test]
 fn the_result_is_always_on_top() {
     let mut harness = open(catalog::tank());

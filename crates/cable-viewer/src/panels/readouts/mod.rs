@@ -23,8 +23,8 @@ use crate::units::{format, unit};
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::{field, readout};
 
-/// Opacity of figures that are not of the scene as it is. More: they are read as answers; less: what
-/// was there cannot be read at all.
+/// Opacity of figures that are not of the scene as it is. More: they are read as answers; less:
+/// what was there cannot be read at all.
 pub const DIMMED: f32 = 0.4;
 
 /// Draws it.
