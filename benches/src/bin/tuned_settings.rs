@@ -6,7 +6,8 @@
 //! Words that name models choose these (all without any), a number is that of random scenes, and
 //! other words keep the constants whose names contain one of them. Each cable of the catalogue is
 //! solved at rest, in a motion where the model has one, and in slow motion; a random scene is a
-//! cable over hills and posts whose end a hand draws slowly. `docs/notes/settings.md` has the
+//! cable over hills and posts, or over pulleys where the model has no contact, whose end a hand
+//! draws slowly. `docs/notes/settings.md` has the
 //! tables.
 
 use std::error::Error;
@@ -14,8 +15,8 @@ use std::sync::Arc;
 
 use cable_core::model::catenary::CatenaryModel;
 use cable_core::model::catenary::settings::CatenarySettings;
-use cable_core::model::mass_spring::MassSpringModel;
-use cable_core::model::mass_spring::settings::Tuning;
+use cable_core::model::fem::{self, FemModel};
+use cable_core::model::mass_spring::{self, MassSpringModel};
 use cable_core::model::spans::SpansModel;
 use cable_core::model::spans::settings::SpansSettings;
 use cable_core::model::{Inertia, Mechanics, Settings};
@@ -69,8 +70,16 @@ fn tuned_models() -> Result<Vec<Tuned>, Box<dyn Error>> {
             },
         },
         Tuned {
+            model: Model::Fem,
+            constants: serde_json::to_value(fem::settings::Tuning::default())?,
+            build: |problem, c| {
+                let tuning = Arc::new(serde_json::from_value(c)?);
+                Ok(Box::new(FemModel::with_tuning(problem, Settings::default(), tuning)?))
+            },
+        },
+        Tuned {
             model: Model::MassSpring,
-            constants: serde_json::to_value(Tuning::default())?,
+            constants: serde_json::to_value(mass_spring::settings::Tuning::default())?,
             build: |problem, c| {
                 Ok(Box::new(MassSpringModel::with_tuning(
                     problem,
@@ -102,7 +111,7 @@ struct Case {
 struct Outcome {
     /// Kind of the error that ended it.
     refused: Option<String>,
-    /// Greatest tension and forces on supports of each compared answer, N.
+    /// Greatest tension, its stated error and forces on supports of each compared answer, N.
     forces: Vec<f64>,
     work: usize,
 }
@@ -188,7 +197,7 @@ fn scaled(value: &Value, path: &str, factor: f64) -> Option<Value> {
 
 /// The catalogue and random scenes.
 fn cases(model: Model, random: u64) -> Result<Vec<Case>, Box<dyn Error>> {
-    let moves = model.info().capabilities.inertia;
+    let (moves, touches) = (model.info().capabilities.inertia, model.info().capabilities.contact);
     let mut all = Vec::new();
     for (name, scene) in catalog::all() {
         for (k, problem) in problems(&scene)?.into_iter().enumerate() {
@@ -199,7 +208,7 @@ fn cases(model: Model, random: u64) -> Result<Vec<Case>, Box<dyn Error>> {
         }
     }
     for seed in 0..random {
-        let (scene, hand) = random_scene(seed);
+        let (scene, hand) = if touches { over_hills(seed) } else { over_pulleys(seed) };
         for problem in problems(&scene)? {
             let name = format!("random {seed}");
             all.push(Case { name, problem, question: Question::Slow, hand: Some(hand) });
@@ -209,7 +218,7 @@ fn cases(model: Model, random: u64) -> Result<Vec<Case>, Box<dyn Error>> {
 }
 
 /// A cable over hills and posts, and where a hand draws its end, m.
-fn random_scene(seed: u64) -> (Scene, Vec2) {
+fn over_hills(seed: u64) -> (Scene, Vec2) {
     let mut dice = Dice(seed);
     let width = dice.between(5.0, 30.0);
     let support = |name: &str, at_m| Support { at_m: Some(at_m), ..Support::new(name, SupportKind::Fixed) };
@@ -230,6 +239,32 @@ fn random_scene(seed: u64) -> (Scene, Vec2) {
         scene.obstacles.push(Obstacle { name: format!("post {k}"), shape, friction: None });
     }
     let hand = Vec2::new(width + dice.between(-3.0, 1.0), ends[1][1] + dice.between(-1.0, 2.0));
+    (scene, hand)
+}
+
+/// A cable over up to three pulleys in the air, and where a hand draws its end, m.
+fn over_pulleys(seed: u64) -> (Scene, Vec2) {
+    let mut dice = Dice(seed);
+    let width = dice.between(5.0, 30.0);
+    let ends = [[0.0, dice.between(0.5, 6.0)], [width, dice.between(0.5, 6.0)]];
+    let mut supports = vec![Support::fixed("left", ends[0])];
+    for k in 0..seed % 4 {
+        #[expect(clippy::cast_precision_loss, reason = "at most three")]
+        let x = width * (k + 1) as f64 / (seed % 4 + 1) as f64;
+        let pulley = Support::pulley(format!("pulley {k}"), [x, dice.between(4.0, 9.0)]);
+        let radius_m = (dice.between(0.0, 1.0) < 0.5).then(|| dice.between(0.05, 0.3));
+        supports.push(Support { radius_m, friction: Some(dice.between(0.0, 0.4)), ..pulley });
+    }
+    supports.push(Support::fixed("right", ends[1]));
+    let straight = |s: &[Support]| {
+        let at = |s: &Support| s.at_m.unwrap_or_default();
+        let legs = s.windows(2).map(|w| [at(&w[0]), at(&w[1])]);
+        legs.map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).sum::<f64>()
+    };
+    let length = straight(&supports) * dice.between(1.01, 1.4);
+    let stiffness = 10f64.powf(dice.between(4.0, 6.5));
+    let scene = catalog::cable_alone([length, dice.between(0.1, 2.0), stiffness], supports);
+    let hand = Vec2::new(width + dice.between(-1.0, 0.2), ends[1][1] + dice.between(-0.5, 0.5));
     (scene, hand)
 }
 
@@ -287,7 +322,8 @@ fn follow(model: &mut dyn Mechanics, case: &Case, most_work: usize, out: &mut Ou
 
 fn push(outcome: &mut Outcome, model: &dyn Mechanics) {
     let answer = model.solution();
-    outcome.forces.push(answer.nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max));
+    let greatest = answer.nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max);
+    outcome.forces.extend([greatest, greatest * answer.error_estimate.unwrap_or(0.0)]);
     outcome.forces.extend(answer.supports.iter().flat_map(|s| [s.reaction_x_n, s.reaction_y_n]));
 }
 

@@ -228,8 +228,6 @@ pub struct ChangeSettings {
     /// Depth inside an obstacle from which it is met, of the strand. Smaller: rounding at touch
     /// points is met. Larger: it is seen.
     pub depth_fraction: f64,
-    /// The same at most, m.
-    pub max_depth_m: f64,
     /// Extent (m or rad) by which the interval of a contact has turned round when it is released.
     /// Smaller: rounding releases what touches in a point. Larger: a contact that pulls is
     /// accepted.
@@ -347,7 +345,6 @@ impl Default for ChangeSettings {
             shed_length_fraction: 1e-4,
             catch_distance_fraction: 0.02,
             depth_fraction: 1e-9,
-            max_depth_m: 1e-6,
             release_overlap: 1e-10,
             corner_search_points: 64,
             lying_fraction: 0.02,

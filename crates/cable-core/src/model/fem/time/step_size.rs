@@ -8,25 +8,9 @@
 //! of the cable, which falls or is carried along.
 
 use crate::math::{Vec2, bounded};
+use crate::model::fem::settings::StepTuning;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::stepping::StepSizeController;
-
-/// The shortest step is this part of the longest, 1/240 s: frequencies up to 17 Hz are exact to
-/// 1e-3, those of 40 Hz to 6e-3. Smaller: a vibrating cable costs more than its vibration is worth;
-/// larger: only lower frequencies are exact.
-const SHORTEST_STEP_FRACTION: f64 = 0.125;
-
-/// Vibrations of less than this part of the cable's length are left as they are: what is left over
-/// from coming to rest rings at any frequency, and 0.1 mm in 10 m is no motion that a user sees.
-const VIBRATION_FRACTION: f64 = 1e-5;
-
-/// Change of the step from one frame to the next. BDF2 is stable up to 2.4.
-const STEP_CHANGE_LIMIT: f64 = 2.0;
-
-/// Time constant of the memory of a motion, s. Half a period of a motion that needs shorter steps
-/// passes in it: with less the step would be short where a vibration turns and long where it is
-/// fastest.
-const MEMORY: f64 = 0.25;
 
 impl StepSizeController {
     /// Looks at a step of `h` (s) just made. A cable that falls or lands does not vibrate.
@@ -54,15 +38,15 @@ impl StepSizeController {
 
     /// Chooses the longest step of the next frame, after one of `dt` (s), of a cable of a length
     /// (m) whose frequency may be off by a part `tolerance`.
-    pub(in crate::model::fem) fn choose(&mut self, tolerance: f64, length: f64, dt: f64) {
+    pub(in crate::model::fem) fn choose(&mut self, tuning: &StepTuning, tolerance: f64, length: f64, dt: f64) {
         let [changes, speeds, time] = self.seen;
         let frequency = (changes / speeds).sqrt();
         let amplitude = (speeds / (time * length)).sqrt() / frequency;
-        let matters = frequency.is_finite() && amplitude > VIBRATION_FRACTION * length;
+        let matters = frequency.is_finite() && amplitude > tuning.vibration_fraction * length;
         let wanted = if matters { (3.0 * tolerance).sqrt() / frequency } else { self.longest };
-        let near = bounded(wanted, self.step / STEP_CHANGE_LIMIT, self.step * STEP_CHANGE_LIMIT);
-        self.step = near.clamp(SHORTEST_STEP_FRACTION * self.longest, self.longest);
-        let left = (-dt / MEMORY).exp();
+        let near = bounded(wanted, self.step / tuning.max_change, self.step * tuning.max_change);
+        self.step = near.clamp(tuning.shortest_fraction * self.longest, self.longest);
+        let left = (-dt / tuning.memory_s).exp();
         self.seen = self.seen.map(|s| s * left);
     }
 }
@@ -72,6 +56,6 @@ fn is_string(cable: &CableState) -> bool {
     let (problem, mesh, motion) = (&cable.problem, &cable.mesh, &cable.motion);
     let weight = problem.body_force(motion.time).norm() * problem.length;
     let taut = |e: usize| mesh.bar(e).tension(mesh.path(e, &motion.x).length) > weight;
-    let alone = cable.contacts.rubs.is_empty() && cable.contacts.own.rubs.is_empty();
+    let alone = cable.contacts.friction_contacts.is_empty() && cable.contacts.own.friction_contacts.is_empty();
     alone && (0..mesh.rest_length.len()).all(taut)
 }
