@@ -89,8 +89,8 @@ fn step(c: &mut Criterion) {
     group.finish();
 }
 
-/// A span, and a rope over a rubbing wheel, so stiff that mass-spring previews them: time of a simulated second. The aim is
-/// 5 ms at N = 100.
+/// A span, and a rope over a rubbing wheel, so stiff that mass-spring previews them: time of a
+/// simulated second. The aim is 5 ms at N = 100.
 fn preview(c: &mut Criterion) {
     let mut group = c.benchmark_group("preview of a stiff cable, one simulated second");
     group.sample_size(10).measurement_time(Duration::from_secs(2)).warm_up_time(Duration::from_millis(500));

@@ -1,5 +1,6 @@
-//! What `fem` costs: a Newton iteration and a step of a free span by the number of bars, the swing of a chain, and contact
-//! with the ground as a part of real time. Printed beside criterion's own lines; on one core.
+//! What `fem` costs: a Newton iteration and a step of a free span by the number of bars, the swing
+//! of a chain, and contact with the ground as a part of real time. Printed beside criterion's own
+//! lines; on one core.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 #![allow(missing_docs)] // criterion's macros
@@ -171,7 +172,8 @@ fn steps(c: &mut Criterion) {
 
 fn chain(c: &mut Criterion) {
     let start = horizontal_chain();
-    // In its first second the tip is off by up to 4.0e-4 m at 240 Hz and 3.5e-4 m here (`crates/cable-core/tests/dynamics/falling_chain.rs`).
+    // In its first second the tip is off by up to 4.0e-4 m at 240 Hz and 3.5e-4 m here
+    // (`crates/cable-core/tests/dynamics/falling_chain.rs`).
     const STEPS: u32 = 480;
     let second = |m: &mut FemModel| {
         for _ in 0..STEPS {

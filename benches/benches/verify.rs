@@ -1,5 +1,6 @@
-//! What it costs to check an answer against the laws, beside what it took to find it: in nanoseconds a node and as a part of the first
-//! rest. Both in one run; the least of some repetitions.
+//! What it costs to check an answer against the laws, beside what it took to find it: in
+//! nanoseconds a node and as a part of the first rest. Both in one run; the least of some
+//! repetitions.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 #![allow(missing_docs)] // criterion's macros

@@ -1,9 +1,9 @@
-//! What a motion costs: processor time as a part of the time that passes in the scene, Newton iterations and halved
-//! steps, interval by interval.
+//! What a motion costs: processor time as a part of the time that passes in the scene, Newton
+//! iterations and halved steps, interval by interval.
 //!
-//! `cargo run --release -p cable-benches --example motion_cost rubble 1000 4`: `rubble` and `floor` are a cable let go
-//! above uneven and above flat ground, anything else is a scene file; how many elements; for how many seconds; and
-//! `sum` for one line only.
+//! `cargo run --release -p cable-benches --example motion_cost rubble 1000 4`: `rubble` and `floor`
+//! are a cable let go above uneven and above flat ground, anything else is a scene file; how many
+//! elements; for how many seconds; and `sum` for one line only.
 
 #![allow(clippy::expect_used)] // a tool for a developer: it may stop
 

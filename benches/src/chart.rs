@@ -1,5 +1,5 @@
-//! Log–log charts as SVG text. Four fixed panels need axes, marks and a legend and nothing else, which is less
-//! code than a plotting library's set-up and no dependency.
+//! Log–log charts as SVG text. Four fixed panels need axes, marks and a legend and nothing else,
+//! which is less code than a plotting library's set-up and no dependency.
 
 use std::fmt::Write;
 
@@ -8,7 +8,8 @@ use std::fmt::Write;
 pub struct Series {
     /// What the legend calls it; empty: it is not in the legend.
     pub name: String,
-    /// Stroke and fill, from the palette of M. Okabe and K. Ito (2008), told apart with any colour vision.
+    /// Stroke and fill, from the palette of M. Okabe and K. Ito (2008), told apart with any colour
+    /// vision.
     pub colour: &'static str,
     /// Corners of its mark: 0 a disc, 3, 4 … a polygon, so that colour is not needed either.
     pub corners: u32,

@@ -1,11 +1,14 @@
-//! Every scene of the catalogue, `fem`, `mass-spring` and `spans` side by side: error against a reference, and cost.
+//! Every scene of the catalogue, `fem`, `mass-spring` and `spans` side by side: error against a
+//! reference, and cost.
 //!
-//! Where nothing rubs or nothing moves the question is where it rests; where friction decides and a support is drawn, which
-//! place of the many it comes to at the end of that motion, slowly: there everything slides, and one place is right.
+//! Where nothing rubs or nothing moves the question is where it rests; where friction decides and a
+//! support is drawn, which place of the many it comes to at the end of that motion, slowly: there
+//! everything slides, and one place is right.
 //!
-//! The reference is the elastic catenary where it can answer, else `spans` (no discretisation error either), else the finest `fem`,
-//! uncertain by what half as many elements change. The error is the largest of a support's force and of the largest tension, over the
-//! largest tension. All models are laid the same at first.
+//! The reference is the elastic catenary where it can answer, else `spans` (no discretisation error
+//! either), else the finest `fem`, uncertain by what half as many elements change. The error is the
+//! largest of a support's force and of the largest tension, over the largest tension. All models
+//! are laid the same at first.
 
 use std::time::Instant;
 
@@ -102,8 +105,8 @@ pub struct Row {
     pub said: Option<f64>,
 }
 
-/// Whether elements of so fine a mesh are shorter than a cable that lies in itself is thick: each then touches its neighbours'
-/// neighbours, and an answer takes minutes.
+/// Whether elements of so fine a mesh are shorter than a cable that lies in itself is thick: each
+/// then touches its neighbours' neighbours, and an answer takes minutes.
 #[must_use]
 pub fn lies_in_itself(scene: &Scene, segments: usize) -> bool {
     scene.cables.iter().any(|c| c.self_contact && c.length_m < c.diameter_m * segments as f64)
@@ -162,8 +165,8 @@ impl Reference {
     }
 }
 
-/// Where nodes have a point of the material, m: on the cubic with the direction of the tension at both nodes,
-/// or on a straight line where there is none.
+/// Where nodes have a point of the material, m: on the cubic with the direction of the tension at
+/// both nodes, or on a straight line where there is none.
 fn position(nodes: &[Node], arc_length_m: f64) -> Option<[f64; 2]> {
     let next = nodes.partition_point(|n| n.arc_length_m < arc_length_m).clamp(1, nodes.len().checked_sub(1)?);
     let [a, b] = [nodes.get(next - 1)?, nodes.get(next)?];

@@ -20,7 +20,8 @@ pub struct Line {
     pub name: String,
     /// Small print beside it.
     pub note: String,
-    /// Up to here (same unit as the dots) a value of the left column says nothing: drawn as a grey bar.
+    /// Up to here (same unit as the dots) a value of the left column says nothing: drawn as a grey
+    /// bar.
     pub blind_to: f64,
     /// Left and right column.
     pub dots: [Vec<Dot>; 2],

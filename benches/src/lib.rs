@@ -1,4 +1,5 @@
-//! What the benches and the charts share: the grid of spans, and scenes brought to a model and a mesh.
+//! What the benches and the charts share: the grid of spans, and scenes brought to a model and a
+//! mesh.
 
 pub mod chart;
 pub mod compare;
@@ -15,7 +16,8 @@ use cable_core::{Model, Scene, Settings, Simulation, Vec2};
 /// Weight of the grid's spans, N/m.
 const GRID_WEIGHT_N_PER_M: f64 = 10.0;
 
-/// Level, inclined, steep, vertical, falling, reversed and folded spans × slack × stiffness: 150 of them.
+/// Level, inclined, steep, vertical, falling, reversed and folded spans × slack × stiffness: 150 of
+/// them.
 #[must_use]
 pub fn span_grid() -> Vec<Span> {
     let shapes = [(100.0, 0.0), (100.0, 50.0), (1.0, 100.0), (0.0, 100.0), (100.0, -50.0), (-30.0, 40.0)];
@@ -44,7 +46,8 @@ pub fn span_grid() -> Vec<Span> {
     out
 }
 
-/// The span of a scene of one cable between two supports at fixed places, whatever else is in it; None of any other scene.
+/// The span of a scene of one cable between two supports at fixed places, whatever else is in it;
+/// None of any other scene.
 #[must_use]
 pub fn span_of(scene: &Scene) -> Option<Span> {
     let [cable] = scene.cables.as_slice() else { return None };
@@ -59,8 +62,8 @@ pub fn span_of(scene: &Scene) -> Option<Span> {
     })
 }
 
-/// A simulation of a scene by a model at `segments` elements a cable, at rest. None, with a line on stderr,
-/// where the model cannot answer the scene.
+/// A simulation of a scene by a model at `segments` elements a cable, at rest. None, with a line on
+/// stderr, where the model cannot answer the scene.
 #[must_use]
 pub fn settled(scene: &Scene, model: Model, segments: Option<usize>) -> Option<Simulation> {
     let mut simulation = fresh(scene, model, segments)?;

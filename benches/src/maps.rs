@@ -1,7 +1,7 @@
 //! Maps of stability: what a model does over two parameters, cell by cell, against a closed form.
 //!
-//! A cell is right, refused with a cause, says that it is uncertain, or is wrong in silence. A refusal
-//! where another model is right counts against the model, and is told apart.
+//! A cell is right, refused with a cause, says that it is uncertain, or is wrong in silence. A
+//! refusal where another model is right counts against the model, and is told apart.
 
 use cable_core::catenary::{Catenary, Span};
 use cable_core::scene::{Motion as Path, Obstacle, STANDARD_GRAVITY as G, Scene, Shape, Support, SupportKind, catalog};
@@ -252,7 +252,8 @@ const LOAD_N: f64 = 10.0;
 /// Steps of the second half of a way, in which everything slides.
 const COUNTED_STEPS: u32 = 6;
 
-/// Draws the last support on, and compares its mean pull over the load in the second half of the way.
+/// Draws the last support on, and compares its mean pull over the load in the second half of the
+/// way.
 fn drawn(scene: Scene, model: Model, ratio: f64) -> Result<Asked, Error> {
     let (mut simulation, answer) = settled(scene, model, 40)?;
     let mut warned = warned(&answer);
@@ -279,7 +280,8 @@ fn moving(name: &str, from: [f64; 2], to: [f64; 2], seconds: f64) -> Support {
 const RAMP_KNOTS: u32 = 8;
 const RAMP_PART: f64 = 0.2;
 
-/// An end that gets to a velocity (m/s) evenly in a fifth of a time (s), and keeps it to the end of that time.
+/// An end that gets to a velocity (m/s) evenly in a fifth of a time (s), and keeps it to the end of
+/// that time.
 fn moving_evenly(name: &str, from: [f64; 2], velocity: f64, seconds: f64) -> Support {
     let step = RAMP_PART * seconds / f64::from(RAMP_KNOTS);
     // The last knot, at which it stops, is not reached.

@@ -1,4 +1,5 @@
-//! Motions with one figure to be read off each, and what that figure should be: what convergence is measured on.
+//! Motions with one figure to be read off each, and what that figure should be: what convergence is
+//! measured on.
 
 use std::time::Instant;
 
@@ -295,7 +296,8 @@ fn fold(state: &mut State) {
     }
 }
 
-/// Time (s) to fall by `x` (m) with v² = g x (2L − x)/(L − x): ∫dx/v with x = u², so that the root is gone.
+/// Time (s) to fall by `x` (m) with v² = g x (2L − x)/(L − x): ∫dx/v with x = u², so that the root
+/// is gone.
 fn calkin_march_s(length: f64, x: f64) -> f64 {
     let n = 2000;
     let h = x.sqrt() / f64::from(n);
@@ -333,7 +335,8 @@ fn euler(angle: f64) -> Vec2 {
     Vec2::new((RUBS * angle).exp(), 0.0)
 }
 
-/// A cord of no weight wound by an angle (rad) round a rod, a weight on one end, a hand on the other that draws it on.
+/// A cord of no weight wound by an angle (rad) round a rod, a weight on one end, a hand on the
+/// other that draws it on.
 fn wound(angle: f64, elements: usize) -> Scene {
     use std::f64::consts::PI;
     let (radius, free, cord) = (0.1, 0.3, 0.001);

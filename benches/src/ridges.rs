@@ -25,7 +25,8 @@ fn over(points_m: Vec<[f64; 2]>, (a, b): ([f64; 2], [f64; 2]), length_m: f64) ->
     scene
 }
 
-/// So many ridges a metre apart, on a rise, so that a taut cable bends at each; with `fine` more corners on each flank.
+/// So many ridges a metre apart, on a rise, so that a taut cable bends at each; with `fine` more
+/// corners on each flank.
 #[must_use]
 pub fn ridges(count: usize, fine: usize) -> Scene {
     arched(count, fine, 0.02 * (count as f64 + 1.0))

@@ -1,6 +1,6 @@
-//! What a warm step and a first rest of `spans` cost, in Newton iterations: a change of the method that costs more is seen
-//! without a clock. One iteration is one evaluation of all equations and one elimination (`benches/benches/spans.rs` has the
-//! same scenes, and times).
+//! What a warm step and a first rest of `spans` cost, in Newton iterations: a change of the method
+//! that costs more is seen without a clock. One iteration is one evaluation of all equations and
+//! one elimination (`benches/benches/spans.rs` has the same scenes, and times).
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -10,7 +10,8 @@ use cable_core::model::spans::SpansModel;
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::problems;
 
-/// A held end goes to and fro by 2 mm: every step reverses all friction that acts. Most iterations of a step, and of the rest.
+/// A held end goes to and fro by 2 mm: every step reverses all friction that acts. Most iterations
+/// of a step, and of the rest.
 fn cost(count: usize) -> (usize, usize) {
     let scene = ridges(count, 1);
     let last = scene.cables[0].supports[1].at_m.expect("a place");

@@ -1,8 +1,10 @@
-//! Two models that share no solver, over random scenes: what `fem` says with ever more elements tends to what `spans` says.
+//! Two models that share no solver, over random scenes: what `fem` says with ever more elements
+//! tends to what `spans` says.
 //!
-//! Both begin with the same rest and the same friction in it ([`Mechanics::warm_start`]), then an end is drawn about without
-//! inertia. `AGREE_CASES=200 cargo test -p cable-tests --test agreement -- --nocapture` prints how far apart the forces on the
-//! supports are after that, of the greatest tension; CI looks at a few.
+//! Both begin with the same rest and the same friction in it ([`Mechanics::warm_start`]), then an
+//! end is drawn about without inertia.
+//! `AGREE_CASES=200 cargo test -p cable-tests --test agreement -- --nocapture` prints how far apart
+//! the forces on the supports are after that, of the greatest tension; CI looks at a few.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -20,10 +22,12 @@ use std::sync::Arc;
 /// Elements of `fem`, coarse to fine.
 const ELEMENTS: [usize; 3] = [60, 120, 240];
 
-/// Scenes looked at whatever the number: an end is drawn back after both corners of a beam slid, and they must hold at once.
+/// Scenes looked at whatever the number: an end is drawn back after both corners of a beam slid,
+/// and they must hold at once.
 const DRAWN_BACK: [usize; 3] = [64, 81, 95];
 
-/// The same: the cable is let down, so that a front of contact runs over the ground, or a contact goes while corners hold.
+/// The same: the cable is let down, so that a front of contact runs over the ground, or a contact
+/// goes while corners hold.
 const LET_DOWN: [usize; 5] = [1, 71, 135, 173, 194];
 
 /// Steps in which the end goes from one corner of its way to the next.

@@ -92,7 +92,8 @@ fn a_step_of_fem_that_lands_takes_no_memory() {
     assert_eq!(warm_steps(&mut model, 1.0 / 240.0), 0);
 }
 
-/// Over a beam with friction, an end to and fro: neither unknowns, histories nor shapes take memory anew.
+/// Over a beam with friction, an end to and fro: neither unknowns, histories nor shapes take memory
+/// anew.
 #[test]
 fn a_warm_step_of_spans_takes_no_memory() {
     let mut scene = catalog::over_beam();

@@ -1,6 +1,7 @@
-//! Whole scenes of `data/composite.json` that the models without a mesh answer, at rest and in slow motion: `spans` floors and
-//! corners, beams, posts, pulleys, stick bands, reversals, drags, loads and wind; `catenary` pulleys, loads and wind. The same
-//! checks as the program's acceptance run, through the library, held to a part of the stated tolerance.
+//! Whole scenes of `data/composite.json` that the models without a mesh answer, at rest and in slow
+//! motion: `spans` floors and corners, beams, posts, pulleys, stick bands, reversals, drags, loads
+//! and wind; `catenary` pulleys, loads and wind. The same checks as the program's acceptance run,
+//! through the library, held to a part of the stated tolerance.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

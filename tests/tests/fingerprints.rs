@@ -1,11 +1,14 @@
-//! Every catalogue scene by every model, at rest, in motion and in slow motion, is the same to the bit as when `tests/data/fingerprints.txt` was written.
+//! Every catalogue scene by every model, at rest, in motion and in slow motion, is the same to the
+//! bit as when `tests/data/fingerprints.txt` was written.
 //!
-//! A change of the code's plan must not change a number; one that means to writes the file anew and says so:
+//! A change of the code's plan must not change a number; one that means to writes the file anew and
+//! says so:
 //! ```text
 //! cargo test --locked -p cable-tests --test fingerprints -- --ignored
 //! UPDATE_FINGERPRINTS=1 cargo test --locked -p cable-tests --test fingerprints -- --ignored
 //! ```
-//! Ignored by default: functions such as the sine differ by a rounding between machines, which a chaotic motion makes a whole difference of.
+//! Ignored by default: functions such as the sine differ by a rounding between machines, which a
+//! chaotic motion makes a whole difference of.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

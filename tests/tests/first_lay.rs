@@ -1,4 +1,5 @@
-//! With friction many places of rest are right. All models begin at the same one: that of the least sliding.
+//! With friction many places of rest are right. All models begin at the same one: that of the least
+//! sliding.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -20,7 +21,8 @@ fn apart(a: &Solution, b: &Solution) -> f64 {
     off.fold(0.0, f64::max) / a.max_tension().tension_n
 }
 
-/// Laid by itself `fem` differed by 26 % on the robot's floor (its slack stood in folds), by 6 % in the tank.
+/// Laid by itself `fem` differed by 26 % on the robot's floor (its slack stood in folds), by 6 % in
+/// the tank.
 #[test]
 fn all_models_begin_at_the_same_rest() {
     let scenes = [
@@ -46,8 +48,9 @@ fn all_models_begin_at_the_same_rest() {
     assert!(!wrong);
 }
 
-/// On 14 of 44 meshes `fem` was off by 24 % on the robot's floor, and in the tank on two by 5 %: where Newton's method alone did not
-/// come from the shape of `spans` to that of bars, they were laid by themselves.
+/// On 14 of 44 meshes `fem` was off by 24 % on the robot's floor, and in the tank on two by 5 %:
+/// where Newton's method alone did not come from the shape of `spans` to that of bars, they were
+/// laid by themselves.
 #[test]
 fn every_mesh_begins_at_the_same_rest() {
     let scenes = [
@@ -63,7 +66,8 @@ fn every_mesh_begins_at_the_same_rest() {
     }
 }
 
-/// Laid by itself a cable of 0.05 N m² differed from one that does not resist bending at all by 22 % on the robot's floor.
+/// Laid by itself a cable of 0.05 N m² differed from one that does not resist bending at all by 22
+/// % on the robot's floor.
 #[test]
 fn a_little_bending_stiffness_changes_little() {
     for (id, mut scene) in [
@@ -90,7 +94,8 @@ fn supports_that_let_go_later_hold_the_first_lay() {
     assert!(apart(&held, &rest(&scene, Model::Fem, Some(100))) < 1e-9);
 }
 
-/// A free end drawn by hand falls on what is below it: it does not hang from its support through the ground.
+/// A free end drawn by hand falls on what is below it: it does not hang from its support through
+/// the ground.
 #[test]
 fn a_free_end_drawn_above_the_ground_lies_on_it() {
     let mut scene = catalog::floor_drag();
@@ -106,7 +111,8 @@ fn a_free_end_drawn_above_the_ground_lies_on_it() {
     assert!(top.iter().all(|t| (t / top[0] - 1.0).abs() < 0.02), "{top:?}");
 }
 
-/// Bars too long for the ground would keep a pull of 220 % where friction holds both their ends: such a lay is not taken over.
+/// Bars too long for the ground would keep a pull of 220 % where friction holds both their ends:
+/// such a lay is not taken over.
 #[test]
 fn a_coarse_mesh_is_not_jammed() {
     let scene = catalog::robot_drive();

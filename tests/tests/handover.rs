@@ -42,8 +42,8 @@ fn greatest(a: &CableSolution) -> f64 {
     a.nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max)
 }
 
-/// How far the nodes of one answer are from the curve of another, m, and the greatest difference of the supports'
-/// forces, of the greatest tension.
+/// How far the nodes of one answer are from the curve of another, m, and the greatest difference of
+/// the supports' forces, of the greatest tension.
 fn apart(fine: &CableSolution, coarse: &CableSolution) -> (f64, f64) {
     let mut shape = 0.0_f64;
     for n in &coarse.nodes {
@@ -68,7 +68,8 @@ fn spans_go_on_from_their_own_answer_as_if_nothing_had_been() {
         let mut new = model(scene, Model::Spans, None).unwrap();
         new.warm_start(&old.solution(), old.time_s()).unwrap_or_else(|e| panic!("{name}: {e}"));
         let (shape, force) = apart(&old.solution(), &new.solution());
-        // Their nodes lie elsewhere on the curve, and between nodes it is a chord. Of the cone 1e-5 is left unused.
+        // Their nodes lie elsewhere on the curve, and between nodes it is a chord. Of the cone 1e-5
+        // is left unused.
         assert!(shape < 1e-3 && force < 2e-5, "{name}: {shape:.1e} m, {force:.1e}");
         tried += 1;
     }
@@ -116,11 +117,13 @@ fn friction_holds_on_when_fem_goes_on_from_spans_and_back() {
     );
     assert!(tried >= 60 && refused <= 1, "{tried} {refused}");
     assert!(last.iter().all(|v| *v <= 1e-3), "after 1.5 s: {last:?}");
-    // At the beginning of a pull tensions are a few newtons, and the front of sliding is as wide as a bar.
+    // At the beginning of a pull tensions are a few newtons, and the front of sliding is as wide as
+    // a bar.
     assert!(worst.iter().all(|v| *v < 1e-2) && 20 * within >= 17 * tried, "{within} of {tried}: {worst:?}");
 }
 
-/// A cable of 10 m on a floor, whose end is let down until more of it lies there than there is way, and drawn up again.
+/// A cable of 10 m on a floor, whose end is let down until more of it lies there than there is way,
+/// and drawn up again.
 fn let_down() -> Scene {
     Scene::from_toml(
         r#"
@@ -164,7 +167,8 @@ friction = 0.3
     .unwrap()
 }
 
-/// Once with two models in turn, once with `fem` alone: who answers, and the force on the end that moves.
+/// Once with two models in turn, once with `fem` alone: who answers, and the force on the end that
+/// moves.
 #[test]
 fn auto_hands_a_cable_that_goes_slack_to_fem_and_takes_it_back() {
     let run = |model: Model| {

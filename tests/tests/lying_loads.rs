@@ -1,5 +1,5 @@
-//! Dead loads and free ends that come down onto obstacles, are dragged over them and lift off again: `spans` beside `fem`, and
-//! beside what statics asks of it.
+//! Dead loads and free ends that come down onto obstacles, are dragged over them and lift off
+//! again: `spans` beside `fem`, and beside what statics asks of it.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -293,7 +293,8 @@ fn loads_and_ends_that_come_down_answer_as_finite_elements_do() {
         let spans = run(&scene, name, Model::Spans, None, seconds);
         let off = [75, 150, 300].map(|n| apart(&scene, &spans, &run(&scene, name, Model::Fem, Some(n), seconds)));
         println!("{name}: fem with 75, 150, 300 elements off by {:.1e} {:.1e} {:.1e}", off[0], off[1], off[2]);
-        // In a kink the barrier of `fem` keeps a node 1e-4 m off both edges, whatever the mesh: as it slides in it is there later.
+        // In a kink the barrier of `fem` keeps a node 1e-4 m off both edges, whatever the mesh: as
+        // it slides in it is there later.
         let most = if name.contains("kink") { 8e-4 } else { 4e-4 };
         assert!(off[2] <= most && off[2] <= 1.2 * off[0] && off[1] <= 1.2e-3, "{name}: {off:?}");
     }
@@ -315,7 +316,8 @@ fn what_lies_on_flat_ground_balances_and_keeps_its_cone() {
             let greatest = greatest(a);
             let mut sum = Vec2::new(wx, wy - weight) * cable.length_m;
             for s in &cable.supports {
-                // What a support feels of the cable the cable feels of it; what a load feels is minus the load.
+                // What a support feels of the cable the cable feels of it; what a load feels is
+                // minus the load.
                 sum -= reaction(a, &s.name);
             }
             for c in &a.contacts {

@@ -1,4 +1,5 @@
-//! What a user of `cable-core` can name is listed in `docs/public-api.txt`: this test compares the list with the crate.
+//! What a user of `cable-core` can name is listed in `docs/public-api.txt`: this test compares the
+//! list with the crate.
 //!
 //! A change that means to add or take away a public item writes the list anew:
 //! ```text
@@ -24,13 +25,15 @@ fn name_after(line: &str, keyword: &str) -> Option<String> {
     Some(rest[..end].to_owned())
 }
 
-/// Public items of a module and of the public modules inside it. Items begin a line; methods are indented once.
+/// Public items of a module and of the public modules inside it. Items begin a line; methods are
+/// indented once.
 fn list(module: &str, file: &Path, folder: &Path, out: &mut BTreeSet<String>) {
     let text = std::fs::read_to_string(file).expect("a source");
     let mut owner = String::new();
     for line in text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or_default().lines() {
         if line.starts_with("impl") {
-            // `impl<T> Trait for Type {` and `impl Type {`: the last word that begins with a capital is the type.
+            // `impl<T> Trait for Type {` and `impl Type {`: the last word that begins with a
+            // capital is the type.
             let head = line.trim_end_matches([' ', '{']);
             let head = head.rsplit(" for ").next().unwrap_or(head);
             let head = head.strip_prefix("impl").unwrap_or(head).trim();

@@ -1,8 +1,8 @@
-//! The free-span families of `data/statics.json` (catenary, degenerate, point loads, thermal, wind) against
-//! the core, each with an identity that does not use the solver.
+//! The free-span families of `data/statics.json` (catenary, degenerate, point loads, thermal, wind)
+//! against the core, each with an identity that does not use the solver.
 //!
-//! Tolerance: 1e-9 of the case's largest force or length; 1e-8 for stiff spans within 0.1 % of taut, whose
-//! digits double precision loses to L − chord (data/README says 4 to 5 of them).
+//! Tolerance: 1e-9 of the case's largest force or length; 1e-8 for stiff spans within 0.1 % of
+//! taut, whose digits double precision loses to L − chord (data/README says 4 to 5 of them).
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -240,8 +240,9 @@ fn wind_family() {
     for (case, input, out) in family("wind") {
         let x = number(&input, "X");
         if input["p_per_horizontal"].is_number() {
-            // Load per horizontal metre: the parabola, whose length the case states. The catenary's weight per
-            // metre of cable cannot give it; checked is that the numbers are those of H = pX²/8f.
+            // Load per horizontal metre: the parabola, whose length the case states. The catenary's
+            // weight per metre of cable cannot give it; checked is that the numbers are those of
+            // H = pX²/8f.
             let (p, f) = (number(&input, "p_per_horizontal"), number(&input, "sag"));
             near(&case, "H", p * x * x / (8.0 * f), number(&out, "H"), TOLERANCE * number(&out, "H"));
             continue;

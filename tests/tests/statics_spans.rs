@@ -1,5 +1,6 @@
-//! `data/statics.json` through the whole of `spans`: free spans, pegs, cable on flat and sloping ground, capstans light and
-//! heavy, cables draped over posts, beams and pegs. Each is a scene that is settled or moved, never the formula alone.
+//! `data/statics.json` through the whole of `spans`: free spans, pegs, cable on flat and sloping
+//! ground, capstans light and heavy, cables draped over posts, beams and pegs. Each is a scene that
+//! is settled or moved, never the formula alone.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -122,7 +123,8 @@ fn anchored(case: &Value) -> Scene {
     let of = |key: &str| number(case, "in", key);
     let (sin, cos) = of("alpha_deg").to_radians().sin_cos();
     let end = [of("X"), of("Z")];
-    // From half way to where all of it would lie or hang straight down, and not farther than a twentieth of it.
+    // From half way to where all of it would lie or hang straight down, and not farther than a
+    // twentieth of it.
     let least = (of("L") - of("Z")) / (1.0 - sin) * cos;
     let back = (0.5 * (end[0] - least)).clamp(1e-3, 0.05 * of("L")) / cos;
     let near = [end[0] - back * cos, end[1] - back * sin];
@@ -200,8 +202,9 @@ fn drawn_over_flat_ground_and_held_on_a_slope() {
     }
 }
 
-/// A cable drawn round a post by a hand against a dead load: the post's contact, which slides. φ counts from the top along
-/// the cable; `from` where the load's tail comes up to it, `turn` how far it goes round.
+/// A cable drawn round a post by a hand against a dead load: the post's contact, which slides. φ
+/// counts from the top along the cable; `from` where the load's tail comes up to it, `turn` how far
+/// it goes round.
 fn round_a_post(
     (w, ea): (f64, f64),
     radius: f64,
@@ -211,7 +214,8 @@ fn round_a_post(
     pull: f64,
 ) -> ContactReport {
     let r = radius + THIN;
-    // The line of the load and of the hand, tangent to the post at φ: point r(sin φ, cos φ), direction (cos φ, −sin φ).
+    // The line of the load and of the hand, tangent to the post at φ: point r(sin φ, cos φ),
+    // direction (cos φ, −sin φ).
     let tangent = |phi: f64| ([r * phi.sin(), r * phi.cos()], [phi.cos(), -phi.sin()]);
     let (a, t) = tangent(from);
     let (b, u) = tangent(from + turn);
@@ -342,7 +346,8 @@ fn draped_cables_hold_to_the_limit() {
             if limit < 0.05 {
                 continue;
             }
-            // The route of a polygon inside a round is shorter than its arc, which takes as much off the tails.
+            // The route of a polygon inside a round is shorter than its arc, which takes as much
+            // off the tails.
             let off = 1e-3;
             let (inside, outside) = if key == "h2_max" { (1.0 - off, 1.0 + off) } else { (1.0 + off, 1.0 - off) };
             holds(limit * inside).unwrap_or_else(|e| panic!("{name}: {key} {limit} does not hold just inside: {e}"));

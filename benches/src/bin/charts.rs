@@ -1,11 +1,13 @@
-//! Speed against accuracy: the error of the largest tension and of the shape against what an answer costs, for a
-//! slack and a nearly taut span, into `docs/charts/speed_accuracy.csv` and `.svg`; and every scene of the catalogue,
-//! `fem`, `mass-spring` and `spans` side by side, into `scenes.csv`, `scenes.svg` (100 elements) and `scenes_ladder.svg` (25 to 400).
+//! Speed against accuracy: the error of the largest tension and of the shape against what an answer
+//! costs, for a slack and a nearly taut span, into `docs/charts/speed_accuracy.csv` and `.svg`; and
+//! every scene of the catalogue, `fem`, `mass-spring` and `spans` side by side, into `scenes.csv`,
+//! `scenes.svg` (100 elements) and `scenes_ladder.svg` (25 to 400).
 //!
-//! Run from the root of the repository: `cargo run --release -p cable-benches --bin charts`; with `-- scenes` only the catalogue
-//! is measured, with `-- draw` the scenes are drawn again from their table, and nothing is measured. The exact answer is
-//! the elastic catenary's, tested to 1e-9 against 40-digit references; the catenary's own points show the
-//! round-off between two ways to it. A cost is that of settling from the first route, without building the model.
+//! Run from the root of the repository: `cargo run --release -p cable-benches --bin charts`; with
+//! `-- scenes` only the catalogue is measured, with `-- draw` the scenes are drawn again from their
+//! table, and nothing is measured. The exact answer is the elastic catenary's, tested to 1e-9
+//! against 40-digit references; the catenary's own points show the round-off between two ways to
+//! it. A cost is that of settling from the first route, without building the model.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -153,8 +155,8 @@ fn measure(id: &'static str, scene: &Scene, exact: &Catenary, model: Model, segm
     Some(Row { scene: id, model, segments, cost_s, tension_error, shape_error })
 }
 
-/// Relative error of the largest tension, and the largest distance of a node from where that material point is,
-/// over the length.
+/// Relative error of the largest tension, and the largest distance of a node from where that
+/// material point is, over the length.
 fn errors(answer: &Solution, exact: &Catenary) -> (f64, f64) {
     let tension = (answer.max_tension().tension_n / exact.max_tension() - 1.0).abs();
     let Some(cable) = answer.cables.first() else { return (f64::NAN, f64::NAN) };

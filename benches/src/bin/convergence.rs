@@ -1,8 +1,9 @@
-//! How errors of motions fall with elements and steps: each motion of [`cable_benches::motion`] on a ladder of meshes at the finest
-//! step, and of steps on the finest mesh, into `docs/convergence.md`.
+//! How errors of motions fall with elements and steps: each motion of [`cable_benches::motion`] on
+//! a ladder of meshes at the finest step, and of steps on the finest mesh, into
+//! `docs/convergence.md`.
 //!
-//! Run from the root of the repository: `cargo run --release -p cable-benches --bin convergence`; `-- swing fold` takes some motions
-//! and prints their tables without writing them.
+//! Run from the root of the repository: `cargo run --release -p cable-benches --bin convergence`;
+//! `-- swing fold` takes some motions and prints their tables without writing them.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -12,7 +13,8 @@ use cable_core::{Model, Vec2};
 
 const FILE: &str = "docs/convergence.md";
 
-/// Steps of the ladder, s. `mass-spring` takes its own steps within them: the longest that its mesh is stable with.
+/// Steps of the ladder, s. `mass-spring` takes its own steps within them: the longest that its mesh
+/// is stable with.
 const STEPS: [f64; 5] = [1.0 / 120.0, 1.0 / 240.0, 1.0 / 480.0, 1.0 / 960.0, 1.0 / 1920.0];
 
 /// A mesh is not tried where the one before took longer than this, s.

@@ -1,7 +1,7 @@
 //! The page of scaling: time and memory over elements, contacts, corners of the ground, and cables.
 //!
-//! Run from the root of the repository: `cargo run --release -p cable-benches --bin scaling-page`. It writes
-//! `docs/charts/scaling.csv`, `scaling.svg` and `scaling.md`.
+//! Run from the root of the repository: `cargo run --release -p cable-benches --bin scaling-page`.
+//! It writes `docs/charts/scaling.csv`, `scaling.svg` and `scaling.md`.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -289,7 +289,8 @@ fn table(measured: &Measured) -> Result<(), Box<dyn Error>> {
     Ok(csv.flush()?)
 }
 
-/// Exponent of the time over the greatest sizes, by least squares of logarithms; None of fewer than two.
+/// Exponent of the time over the greatest sizes, by least squares of logarithms; None of fewer than
+/// two.
 fn exponent(points: &[(usize, Cost)]) -> Option<f64> {
     let most = points.last()?.0 as f64;
     let logs: Vec<(f64, f64)> = points

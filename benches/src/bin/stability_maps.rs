@@ -1,8 +1,9 @@
 //! Maps of stability, see [`cable_benches::maps`]: 20 × 20 cells each.
 //!
-//! Run from the root of the repository: `cargo run --release -p cable-benches --bin stability-maps`. It writes
-//! `docs/charts/maps.csv`, `maps.svg` and `maps.md`, and fails where a cell is wrong in silence; `-- drag-fem`
-//! measures some maps and prints what is not right.
+//! Run from the root of the repository:
+//! `cargo run --release -p cable-benches --bin stability-maps`. It writes `docs/charts/maps.csv`,
+//! `maps.svg` and `maps.md`, and fails where a cell is wrong in silence; `-- drag-fem` measures
+//! some maps and prints what is not right.
 
 use std::error::Error;
 use std::fmt::Write as _;

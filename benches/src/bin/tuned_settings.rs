@@ -1,92 +1,189 @@
-//! Halves and doubles each tuned constant of a model, one at a time, over the catalogue, and prints which answers move.
+//! Halves and doubles each tuned constant of a model, one at a time, and prints which answers move.
 //!
-//! Run from the root of the repository: `cargo run --release -p cable-benches --bin tuned-settings -- mass-spring`; words after the
-//! model keep the constants whose names contain one of them. Each scene is solved at rest, for a second of motion and for a second of
-//! quasi-static motion. `docs/notes/settings.md` explains the table.
+//! Run from the root of the repository:
+//! `cargo run --release -p cable-benches --bin tuned-settings -- spans 50 newton/max drag`
+//!
+//! Words that name models choose these (all without any), a number is that of random scenes, and
+//! other words keep the constants whose names contain one of them. Each cable of the catalogue is
+//! solved at rest, in a motion where the model has one, and in slow motion; a random scene is a
+//! cable over hills and posts, or over pulleys where the model has no contact, whose end a hand
+//! draws slowly. `docs/notes/settings.md` has the
+//! tables.
 
-use std::collections::BTreeMap;
 use std::error::Error;
 use std::sync::Arc;
 
-use cable_core::model::mass_spring::MassSpringModel;
+use cable_core::model::catenary::CatenaryModel;
+use cable_core::model::catenary::settings::CatenarySettings;
+use cable_core::model::fem::{self, FemModel};
+use cable_core::model::mass_spring::{self, MassSpringModel};
+use cable_core::model::spans::SpansModel;
+use cable_core::model::spans::settings::SpansSettings;
 use cable_core::model::{Inertia, Mechanics, Settings};
 use cable_core::problem::{Problem, problems};
-use cable_core::scene::catalog;
-use serde::Serialize;
-use serde::de::DeserializeOwned;
+use cable_core::scene::{Shape, Support, SupportKind, catalog};
+use cable_core::{Model, Obstacle, Scene, SolveError, Vec2};
 use serde_json::Value;
 
+/// Random scenes unless told otherwise.
+const RANDOM_SCENES: u64 = 20;
 /// Frames of a motion, and the length of one, s.
-const FRAMES: usize = 60;
+const FRAMES: usize = 30;
 const FRAME_S: f64 = 1.0 / 60.0;
+/// Steps of a slow motion, and the length of one, s.
+const SLOW_STEPS: usize = 10;
+const SLOW_STEP_S: f64 = 0.1;
 /// Frames between two answers that are compared.
 const COMPARED_EVERY: usize = 10;
-/// Relative change of tension below which an answer counts as unmoved: round-off of a motion.
-const UNMOVED: f64 = 1e-9;
+/// Change of a force, of the greatest, below which an answer counts as unmoved: rounding.
+const ROUNDING: f64 = 1e-6;
+/// Change of the work, of itself, below which it counts as unmoved.
+const SAME_WORK: f64 = 0.01;
+/// Work, of that with the values of the program, beyond which a motion is not followed further.
+const MOST_WORK: usize = 20;
 
-type Build<T> = fn(Arc<Problem>, Settings, T) -> Result<Box<dyn Mechanics>, cable_core::SolveError>;
-
-/// A question of a scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Question {
-    Rest,
-    Motion,
-    QuasiStatic,
+/// A model with the default values of its tuned constants.
+struct Tuned {
+    model: Model,
+    constants: Value,
+    build: fn(Arc<Problem>, Value) -> Built,
 }
 
-/// The answer of one question: figures, or the error that refused it.
+type Built = Result<Box<dyn Mechanics>, Box<dyn Error>>;
+
+fn tuned_models() -> Result<Vec<Tuned>, Box<dyn Error>> {
+    Ok(vec![
+        Tuned {
+            model: Model::Catenary,
+            constants: serde_json::to_value(CatenarySettings::default())?,
+            build: |problem, c| Ok(Box::new(CatenaryModel::with_settings(problem, serde_json::from_value(c)?)?)),
+        },
+        Tuned {
+            model: Model::Spans,
+            constants: serde_json::to_value(SpansSettings::default())?,
+            build: |problem, c| {
+                Ok(Box::new(SpansModel::with_settings(
+                    problem,
+                    Settings::default(),
+                    Arc::new(serde_json::from_value(c)?),
+                )?))
+            },
+        },
+        Tuned {
+            model: Model::Fem,
+            constants: serde_json::to_value(fem::settings::Tuning::default())?,
+            build: |problem, c| {
+                let tuning = Arc::new(serde_json::from_value(c)?);
+                Ok(Box::new(FemModel::with_tuning(problem, Settings::default(), tuning)?))
+            },
+        },
+        Tuned {
+            model: Model::MassSpring,
+            constants: serde_json::to_value(mass_spring::settings::Tuning::default())?,
+            build: |problem, c| {
+                Ok(Box::new(MassSpringModel::with_tuning(
+                    problem,
+                    Settings::default(),
+                    Arc::new(serde_json::from_value(c)?),
+                )?))
+            },
+        },
+    ])
+}
+
+/// A motion that is asked of a cable after its rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Question {
+    Motion,
+    Slow,
+}
+
+/// A cable, a motion of it, and where a hand draws its last support, m.
+struct Case {
+    name: String,
+    problem: Arc<Problem>,
+    question: Question,
+    hand: Option<Vec2>,
+}
+
+/// The answers to a case.
 #[derive(Clone, Debug, Default)]
 struct Outcome {
+    /// Kind of the error that ended it.
     refused: Option<String>,
-    /// Greatest tension and forces on supports of each compared answer, N.
+    /// Greatest tension, its stated error and forces on supports of each compared answer, N.
     forces: Vec<f64>,
     work: usize,
 }
 
-type Outcomes = BTreeMap<(String, Question), Outcome>;
-
 fn main() -> Result<(), Box<dyn Error>> {
-    let mut words = std::env::args().skip(1);
-    let model = words.next().unwrap_or_default();
-    let names: Vec<String> = words.collect();
-    match model.as_str() {
-        "mass-spring" => measure(&names, |problem, settings, tuning| {
-            Ok(Box::new(MassSpringModel::with_tuning(problem, settings, Arc::new(tuning))?))
-        }),
-        _ => Err("name a model: mass-spring".into()),
-    }
-}
-
-/// Prints a line for each constant and factor.
-fn measure<T: Serialize + DeserializeOwned + Default>(names: &[String], build: Build<T>) -> Result<(), Box<dyn Error>> {
-    let default = serde_json::to_value(T::default())?;
-    let mut paths = Vec::new();
-    constants(&default, "", &mut paths);
-    let before = solve_all(build, &default)?;
-    let total: usize = before.values().map(|o| o.work).sum();
-    println!("{} questions, {} refused, {total} iterations or sub-steps", before.len(), refusals(&before));
-    println!("| constant | factor | moved | refused anew | answered anew | greatest change | work |");
-    println!("|---|---|---|---|---|---|---|");
-    for path in paths.iter().filter(|p| names.is_empty() || names.iter().any(|n| p.contains(n))) {
-        for factor in [0.5, 2.0] {
-            let Some(changed) = scaled(&default, path, factor) else { continue };
-            let after = solve_all(build, &changed)?;
-            println!("| {path} | {factor} | {} |", compared(&before, &after));
+    let (mut models, mut names, mut random) = (Vec::new(), Vec::new(), RANDOM_SCENES);
+    for word in std::env::args().skip(1) {
+        match (Model::SOLVERS.into_iter().find(|m| m.to_string() == word), word.parse()) {
+            (Some(model), _) => models.push(model),
+            (_, Ok(number)) => random = number,
+            _ => names.push(word),
         }
+    }
+    for tuned in tuned_models()?.iter().filter(|t| models.is_empty() || models.contains(&t.model)) {
+        measure(tuned, random, &names)?;
     }
     Ok(())
 }
 
-/// Paths of all numbers of a value (`group/name`).
-fn constants(value: &Value, path: &str, out: &mut Vec<String>) {
+/// Prints a line for each constant of a model.
+fn measure(tuned: &Tuned, random: u64, names: &[String]) -> Result<(), Box<dyn Error>> {
+    let cases = cases(tuned.model, random)?;
+    let solve_all = |constants: &Value, usual: Option<&[Outcome]>| -> Vec<Outcome> {
+        let limit = |k: usize| usual.map_or(usize::MAX, |u| MOST_WORK * u[k].work.max(100));
+        cases.iter().enumerate().map(|(k, case)| solve(tuned, constants, case, limit(k))).collect()
+    };
+    let usual = solve_all(&tuned.constants, None);
+    let refused = usual.iter().filter(|o| o.refused.is_some()).count();
+    let work: usize = usual.iter().map(|o| o.work).sum();
+    println!("`{}`: {} questions, {refused} of them refused, {work} iterations or sub-steps", tuned.model, usual.len());
+    println!("\n| constant | value | answers moved | greatest change | refused anew | answered anew | work |");
+    println!("|---|---|---|---|---|---|---|");
+    let mut paths = Vec::new();
+    constants(&tuned.constants, "", &mut paths);
+    let mut without_effect = Vec::new();
+    for (path, value) in paths.iter().filter(|(p, _)| names.is_empty() || names.iter().any(|n| p.contains(n))) {
+        let effects = [0.5, 2.0].map(|factor| {
+            scaled(&tuned.constants, path, factor)
+                .map_or_else(Effect::default, |c| compared(&cases, &usual, &solve_all(&c, Some(&usual))))
+        });
+        let cell = |text: fn(&Effect) -> String| effects.each_ref().map(text).join(" / ");
+        println!(
+            "| {} | {value} | {} | {} | {} | {} | {} |",
+            path.trim_start_matches('/'),
+            cell(|e| e.moved.to_string()),
+            cell(|e| if e.greatest > ROUNDING { format!("{:.0e}", e.greatest) } else { "0".to_owned() }),
+            cell(|e| e.refused.len().to_string()),
+            cell(|e| e.answered.to_string()),
+            cell(|e| format!("{:+.0} %", 100.0 * e.work)),
+        );
+        for (effect, factor) in effects.iter().zip(["halved", "doubled"]) {
+            effect.refused.iter().for_each(|case| eprintln!("{path} {factor}: {case}"));
+        }
+        if effects.iter().all(Effect::is_none) {
+            without_effect.push(path.trim_start_matches('/').to_owned());
+        }
+    }
+    println!("\nWithout effect: {}\n", without_effect.join(", "));
+    Ok(())
+}
+
+/// Names (`/group/name`) and values of all numbers.
+fn constants<'a>(value: &'a Value, path: &str, out: &mut Vec<(String, &'a Value)>) {
     match value {
         Value::Object(fields) => fields.iter().for_each(|(name, v)| constants(v, &format!("{path}/{name}"), out)),
-        Value::Number(_) => out.push(path.to_owned()),
+        Value::Array(parts) => parts.iter().enumerate().for_each(|(k, v)| constants(v, &format!("{path}/{k}"), out)),
+        Value::Number(_) => out.push((path.to_owned(), value)),
         _ => {}
     }
 }
 
-/// A value with one of its numbers scaled; None if that leaves it as it is.
+/// The constants with one of them scaled; None if that leaves it as it is.
 fn scaled(value: &Value, path: &str, factor: f64) -> Option<Value> {
     let mut out = value.clone();
     let number = out.pointer_mut(path)?;
@@ -98,37 +195,126 @@ fn scaled(value: &Value, path: &str, factor: f64) -> Option<Value> {
     (out != *value).then_some(out)
 }
 
-fn solve_all<T: DeserializeOwned>(build: Build<T>, tuning: &Value) -> Result<Outcomes, Box<dyn Error>> {
-    let mut out = Outcomes::new();
+/// The catalogue and random scenes.
+fn cases(model: Model, random: u64) -> Result<Vec<Case>, Box<dyn Error>> {
+    let (moves, touches) = (model.info().capabilities.inertia, model.info().capabilities.contact);
+    let mut all = Vec::new();
     for (name, scene) in catalog::all() {
         for (k, problem) in problems(&scene)?.into_iter().enumerate() {
-            for question in [Question::Rest, Question::Motion, Question::QuasiStatic] {
-                let tuning = serde_json::from_value(tuning.clone())?;
-                let mut outcome = Outcome::default();
-                let solved = build(problem.clone(), Settings::default(), tuning)
-                    .and_then(|mut model| solve(model.as_mut(), question, &mut outcome));
-                // Two errors of one kind are the same refusal.
-                let kind = |e| format!("{e:?}").split(|c: char| !c.is_alphanumeric()).next().map(str::to_owned);
-                outcome.refused = solved.err().and_then(kind);
-                out.insert((format!("{name}/{k}"), question), outcome);
+            for question in [Question::Motion, Question::Slow].into_iter().filter(|q| moves || *q == Question::Slow) {
+                let name = format!("{name}, cable {k}, {question:?}");
+                all.push(Case { name, problem: problem.clone(), question, hand: None });
             }
         }
     }
-    Ok(out)
+    for seed in 0..random {
+        let (scene, hand) = if touches { over_hills(seed) } else { over_pulleys(seed) };
+        for problem in problems(&scene)? {
+            let name = format!("random {seed}");
+            all.push(Case { name, problem, question: Question::Slow, hand: Some(hand) });
+        }
+    }
+    Ok(all)
 }
 
-fn solve(model: &mut dyn Mechanics, question: Question, outcome: &mut Outcome) -> Result<(), cable_core::SolveError> {
-    outcome.work += model.settle()?.cost.iterations;
-    push(outcome, model);
-    let inertia = match question {
-        Question::Rest => return Ok(()),
-        Question::Motion => Inertia::Dynamic,
-        Question::QuasiStatic => Inertia::QuasiStatic,
+/// A cable over hills and posts, and where a hand draws its end, m.
+fn over_hills(seed: u64) -> (Scene, Vec2) {
+    let mut dice = Dice(seed);
+    let width = dice.between(5.0, 30.0);
+    let support = |name: &str, at_m| Support { at_m: Some(at_m), ..Support::new(name, SupportKind::Fixed) };
+    let ends = [[0.0, dice.between(0.5, 6.0)], [width, dice.between(0.5, 6.0)]];
+    let length = width * dice.between(1.02, 1.4) + (ends[0][1] - ends[1][1]).abs();
+    let stiffness = 10f64.powf(dice.between(4.0, 6.5));
+    let mut scene = catalog::cable_alone(
+        [length, dice.between(0.1, 2.0), stiffness],
+        vec![support("left", ends[0]), support("right", ends[1])],
+    );
+    scene.cables[0].friction = if dice.between(0.0, 1.0) < 0.3 { 0.0 } else { dice.between(0.05, 0.6) };
+    let points_m = (0..=8).map(|k| [width * f64::from(k - 1) / 6.0, dice.between(-3.0, 0.3)]).collect();
+    let ground = Shape::Terrain { points_m };
+    scene.obstacles.push(Obstacle { name: "ground".to_owned(), shape: ground, friction: None });
+    for k in 0..3 {
+        let center_m = [width * (0.2 + 0.3 * f64::from(k)), dice.between(0.5, 3.0)];
+        let shape = Shape::Circle { center_m, radius_m: dice.between(0.05, 0.4) };
+        scene.obstacles.push(Obstacle { name: format!("post {k}"), shape, friction: None });
+    }
+    let hand = Vec2::new(width + dice.between(-3.0, 1.0), ends[1][1] + dice.between(-1.0, 2.0));
+    (scene, hand)
+}
+
+/// A cable over up to three pulleys in the air, and where a hand draws its end, m.
+fn over_pulleys(seed: u64) -> (Scene, Vec2) {
+    let mut dice = Dice(seed);
+    let width = dice.between(5.0, 30.0);
+    let ends = [[0.0, dice.between(0.5, 6.0)], [width, dice.between(0.5, 6.0)]];
+    let mut supports = vec![Support::fixed("left", ends[0])];
+    for k in 0..seed % 4 {
+        #[expect(clippy::cast_precision_loss, reason = "at most three")]
+        let x = width * (k + 1) as f64 / (seed % 4 + 1) as f64;
+        let pulley = Support::pulley(format!("pulley {k}"), [x, dice.between(4.0, 9.0)]);
+        let radius_m = (dice.between(0.0, 1.0) < 0.5).then(|| dice.between(0.05, 0.3));
+        supports.push(Support { radius_m, friction: Some(dice.between(0.0, 0.4)), ..pulley });
+    }
+    supports.push(Support::fixed("right", ends[1]));
+    let straight = |s: &[Support]| {
+        let at = |s: &Support| s.at_m.unwrap_or_default();
+        let legs = s.windows(2).map(|w| [at(&w[0]), at(&w[1])]);
+        legs.map(|[a, b]| (a[0] - b[0]).hypot(a[1] - b[1])).sum::<f64>()
     };
-    for frame in 1..=FRAMES {
-        outcome.work += model.advance(FRAME_S, inertia)?.cost.iterations;
-        if frame % COMPARED_EVERY == 0 {
-            push(outcome, model);
+    let length = straight(&supports) * dice.between(1.01, 1.4);
+    let stiffness = 10f64.powf(dice.between(4.0, 6.5));
+    let scene = catalog::cable_alone([length, dice.between(0.1, 2.0), stiffness], supports);
+    let hand = Vec2::new(width + dice.between(-1.0, 0.2), ends[1][1] + dice.between(-0.5, 0.5));
+    (scene, hand)
+}
+
+/// Random numbers: splitmix64.
+struct Dice(u64);
+
+impl Dice {
+    #[expect(clippy::cast_precision_loss, reason = "53 bits are exact")]
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Answers a case, with at most so much work.
+fn solve(tuned: &Tuned, constants: &Value, case: &Case, most_work: usize) -> Outcome {
+    let mut outcome = Outcome::default();
+    let built = (tuned.build)(case.problem.clone(), constants.clone());
+    outcome.refused = match built.map(|mut model| follow(model.as_mut(), case, most_work, &mut outcome)) {
+        Ok(Ok(())) => None,
+        // Two errors of one kind are the same refusal.
+        Ok(Err(error)) => format!("{error:?}").split(|c: char| !c.is_alphanumeric()).next().map(str::to_owned),
+        Err(_) => Some("Unsupported".to_owned()),
+    };
+    outcome
+}
+
+fn follow(model: &mut dyn Mechanics, case: &Case, most_work: usize, out: &mut Outcome) -> Result<(), SolveError> {
+    out.work += model.settle()?.cost.iterations;
+    push(out, model);
+    let (steps, dt_s, inertia, every) = match case.question {
+        Question::Motion => (FRAMES, FRAME_S, Inertia::Dynamic, COMPARED_EVERY),
+        Question::Slow => (SLOW_STEPS, SLOW_STEP_S, Inertia::QuasiStatic, 1),
+    };
+    let start = case.problem.supports.last().and_then(|s| s.at);
+    for step in 1..=steps {
+        if let (Some(hand), Some(start)) = (case.hand, start) {
+            #[expect(clippy::cast_precision_loss, reason = "few steps")]
+            let part = step as f64 / steps as f64;
+            model.drag_support(case.problem.supports.len() - 1, start + (hand - start) * part);
+        }
+        out.work += model.advance(dt_s, inertia)?.cost.iterations;
+        if step % every == 0 {
+            push(out, model);
+        }
+        if out.work > most_work {
+            break;
         }
     }
     Ok(())
@@ -136,39 +322,48 @@ fn solve(model: &mut dyn Mechanics, question: Question, outcome: &mut Outcome) -
 
 fn push(outcome: &mut Outcome, model: &dyn Mechanics) {
     let answer = model.solution();
-    outcome.forces.push(answer.nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max));
+    let greatest = answer.nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max);
+    outcome.forces.extend([greatest, greatest * answer.error_estimate.unwrap_or(0.0)]);
     outcome.forces.extend(answer.supports.iter().flat_map(|s| [s.reaction_x_n, s.reaction_y_n]));
 }
 
-fn refusals(outcomes: &Outcomes) -> usize {
-    outcomes.values().filter(|o| o.refused.is_some()).count()
+/// The effect of a constant scaled.
+#[derive(Default)]
+struct Effect {
+    moved: usize,
+    /// Greatest change of a force, of the greatest one of its case.
+    greatest: f64,
+    /// Cases that are refused now.
+    refused: Vec<String>,
+    answered: usize,
+    /// Change of the work, of itself, over the cases that are answered both times.
+    work: f64,
 }
 
-/// Greatest difference of the forces of two outcomes, of the greatest force.
-fn change(before: &Outcome, after: &Outcome) -> f64 {
-    let scale = before.forces.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let pairs = before.forces.iter().zip(&after.forces);
-    pairs.map(|(a, b)| (a - b).abs() / scale).fold(0.0, f64::max)
-}
-
-/// The columns of a line.
-fn compared(before: &Outcomes, after: &Outcomes) -> String {
-    let (mut moved, mut refused, mut answered) = (0, Vec::new(), 0);
-    let mut worst = (0.0, String::new());
-    for (key, old) in before {
-        let Some(new) = after.get(key) else { continue };
-        match (&old.refused, &new.refused) {
-            (None, Some(kind)) => refused.push(format!("{} {:?} {kind}", key.0, key.1)),
-            (Some(_), None) => answered += 1,
-            _ => {}
-        }
-        let change = change(old, new);
-        moved += usize::from(change > UNMOVED || old.refused != new.refused);
-        if change > worst.0 {
-            worst = (change, format!("{} {:?}", key.0, key.1));
-        }
+impl Effect {
+    fn is_none(&self) -> bool {
+        self.moved == 0 && self.work.abs() < SAME_WORK
     }
-    let work = |o: &Outcomes| o.values().map(|o| o.work).sum::<usize>() as f64;
-    let refused = if refused.is_empty() { "0".to_owned() } else { refused.join(", ") };
-    format!("{moved} | {refused} | {answered} | {:.1e} {} | {:.3}", worst.0, worst.1, work(after) / work(before))
+}
+
+fn compared(cases: &[Case], before: &[Outcome], after: &[Outcome]) -> Effect {
+    let mut effect = Effect::default();
+    let mut work = [0usize; 2];
+    for ((case, old), new) in cases.iter().zip(before).zip(after) {
+        match (&old.refused, &new.refused) {
+            (None, Some(kind)) => effect.refused.push(format!("{} {kind}", case.name)),
+            (Some(_), None) => effect.answered += 1,
+            _ => work = [work[0] + old.work, work[1] + new.work],
+        }
+        let scale = old.forces.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let pairs = old.forces.iter().zip(&new.forces);
+        let change = pairs.map(|(a, b)| (a - b).abs() / scale).fold(0.0, f64::max);
+        let longer = old.forces.len() != new.forces.len();
+        effect.moved += usize::from(change > ROUNDING || longer || old.refused != new.refused);
+        effect.greatest = effect.greatest.max(change);
+    }
+    #[expect(clippy::cast_precision_loss, reason = "far below 2^53")]
+    let [old, new] = work.map(|w| w as f64);
+    effect.work = if old > 0.0 { new / old - 1.0 } else { 0.0 };
+    effect
 }

@@ -1,11 +1,13 @@
-//! Work–precision charts: the error of every model over what it costs, on its meshes and steps, for every scene
-//! of the catalogue and every motion of [`cable_benches::motion`], with other programs beside them.
+//! Work–precision charts: the error of every model over what it costs, on its meshes and steps, for
+//! every scene of the catalogue and every motion of [`cable_benches::motion`], with other programs
+//! beside them.
 //!
-//! Run from the root of the repository: `cargo run --release -p cable-benches --bin work-precision`. It measures,
-//! and writes `docs/charts/work_precision.csv`, a chart a scene into `docs/charts/work_precision/` and the page
-//! `docs/charts/work_precision.md`. `-- tank swing` measures some of them and prints their points; `-- draw`
-//! draws the table again. Points of other programs are read from `docs/charts/peers.csv`, which
-//! `benches/peers/run` writes.
+//! Run from the root of the repository:
+//! `cargo run --release -p cable-benches --bin work-precision`. It measures, and writes
+//! `docs/charts/work_precision.csv`, a chart a scene into `docs/charts/work_precision/` and the
+//! page `docs/charts/work_precision.md`. `-- tank swing` measures some of them and prints their
+//! points; `-- draw` draws the table again. Points of other programs are read from
+//! `docs/charts/peers.csv`, which `benches/peers/run` writes.
 //!
 //! A cost is the least elapsed time of several solves, on one core, without building the model.
 
@@ -49,8 +51,8 @@ const LEAST_ERROR: f64 = 1e-13;
 /// Errors for which the cheapest way is told.
 const GOALS: [f64; 3] = [1e-2, 1e-3, 1e-6];
 
-/// Colour and mark of everyone who answers. Colours are those of M. Okabe and K. Ito, "Color universal design"
-/// (2008), and grey tones for peers beyond eight.
+/// Colour and mark of everyone who answers. Colours are those of M. Okabe and K. Ito, "Color
+/// universal design" (2008), and grey tones for peers beyond eight.
 const MARKS: [(&str, &str, u32); 14] = [
     ("catenary", "#000000", 4),
     ("spans", "#009E73", 3),
@@ -171,7 +173,8 @@ fn measured(
     Some(point)
 }
 
-/// The catenary as a function, without a simulation, of a scene of one span; its closure is its error.
+/// The catenary as a function, without a simulation, of a scene of one span; its closure is its
+/// error.
 fn catenary_alone(id: &str, scene: &Scene) -> Option<Point> {
     let flexible = scene.cables.iter().all(|c| c.bending_stiffness_n_m2 == 0.0);
     let span = span_of(scene).filter(|_| scene.obstacles.is_empty() && scene.loads.is_empty() && flexible)?;

@@ -1,4 +1,5 @@
-//! This file makes the JSON object of an answer: SI units in the key names, never a number that is not finite.
+//! This file makes the JSON object of an answer: SI units in the key names, never a number that is
+//! not finite.
 
 use cable_core::solution::{
     Bend, CableSolution, ContactReport, ContactSample, ContactState, ModelReason, NextCheaper, Node, Pressure,

@@ -28,7 +28,8 @@ pub enum Command {
     Solve(SolveArguments),
     /// Follow the scene over time and write a run folder
     Run(RunArguments),
-    /// Say whether a scene can be solved, without solving it; of a run folder, whether it is complete and how far it came
+    /// Say whether a scene can be solved, without solving it; of a run folder, whether it is
+    /// complete and how far it came
     Check {
         /// Scene file (TOML), or run folder
         scene: PathBuf,
@@ -60,17 +61,21 @@ pub struct Common {
 pub struct SolveArguments {
     #[command(flatten)]
     pub common: Common,
-    /// Also say how stiffly the cable holds its ends: a dozen small moves of each, without inertia, friction remembered
+    /// Also say how stiffly the cable holds its ends: a dozen small moves of each, without inertia,
+    /// friction remembered
     #[arg(long)]
     pub stiffness: bool,
-    /// Leave out what the likely bending stiffness of a preset would change where it was neglected, which takes a second answer
+    /// Leave out what the likely bending stiffness of a preset would change where it was neglected,
+    /// which takes a second answer
     #[arg(long)]
     pub no_bending: bool,
-    /// Also answer by every model, on 25 to 400 elements where it has any, and say by how much each differs and how long it took
+    /// Also answer by every model, on 25 to 400 elements where it has any, and say by how much each
+    /// differs and how long it took
     #[arg(long)]
     pub compare: bool,
-    /// Bending stiffness of cables that are flexible in the scene: as-written (none), likely (what their preset is likely to have), or
-    /// where-it-matters (that, of cables which without it are bent too tightly, curl up or cross themselves)
+    /// Bending stiffness of cables that are flexible in the scene: as-written (none), likely (what
+    /// their preset is likely to have), or where-it-matters (that, of cables which without it are
+    /// bent too tightly, curl up or cross themselves)
     #[arg(long, default_value = "as-written", value_parser = bending)]
     pub bending: Bending,
 }
@@ -90,7 +95,8 @@ pub struct RunArguments {
     /// Time between steps; outputs do not change it [default: 1/240 s, without inertia 1/60 s]
     #[arg(long, value_parser = interval_s)]
     pub step: Option<f64>,
-    /// Time between outputs, which changes nothing but what is written [default: 1/60 s, with inertia at most a 500th of the run]
+    /// Time between outputs, which changes nothing but what is written [default: 1/60 s, with
+    /// inertia at most a 500th of the run]
     #[arg(long, value_parser = interval_s)]
     pub every: Option<f64>,
     /// Without inertia: supports move infinitely slowly, friction remembers
@@ -100,17 +106,20 @@ pub struct RunArguments {
     /// half as long, at most so often; each time takes four times as long
     #[arg(long, value_name = "TIMES", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6), conflicts_with = "no_errors")]
     pub refine: u32,
-    /// Leave out the two coarser runs beside one with inertia, which say its errors for a third of its cost
+    /// Leave out the two coarser runs beside one with inertia, which say its errors for a third of
+    /// its cost
     #[arg(long)]
     pub no_errors: bool,
     /// Stepping of mass-spring: auto, explicit or preview
     #[arg(long, default_value = "auto", value_parser = stepping)]
     pub stepping: Stepping,
-    /// Time between outputs to nodes.csv, which is by far the largest table, or "never" [default: as --every]
+    /// Time between outputs to nodes.csv, which is by far the largest table, or "never" [default:
+    /// as --every]
     #[arg(long, value_name = "TIME", value_parser = node_interval)]
     pub nodes_every: Option<NodeInterval>,
-    /// Columns of nodes.csv beside time_s and cable, with commas between: arc_length_m, x_m, y_m, vx_m_per_s, vy_m_per_s,
-    /// tension_n, strain, stress_pa, curvature_per_m, dx_m, dy_m, ax_m_per_s2, ay_m_per_s2 [default: all]
+    /// Columns of nodes.csv beside time_s and cable, with commas between: arc_length_m, x_m, y_m,
+    /// vx_m_per_s, vy_m_per_s, tension_n, strain, stress_pa, curvature_per_m, dx_m, dy_m,
+    /// ax_m_per_s2, ay_m_per_s2 [default: all]
     #[arg(long, value_name = "COLUMNS", value_parser = node_columns)]
     pub node_columns: Option<NodeColumns>,
     /// Folder to write into: a new one, an empty one, or that of an earlier run
@@ -123,7 +132,8 @@ fn model(text: &str) -> Result<Model, String> {
 }
 
 impl RunArguments {
-    /// Time between outputs, s. Who follows a cable for half a second wants to see what happens in it.
+    /// Time between outputs, s. Who follows a cable for half a second wants to see what happens in
+    /// it.
     pub fn every_s(&self) -> f64 {
         let part = if self.quasi_static { f64::INFINITY } else { self.duration_s / 500.0 };
         self.every.unwrap_or((1.0_f64 / 60.0).min(part))

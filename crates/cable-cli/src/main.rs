@@ -1,6 +1,7 @@
 //! The headless program `cable` finds where a cable rests and how it moves, and checks scenes.
 //!
-//! Exit codes: 0 answered, 1 no solution or not converged, 2 bad input, 74 could not write; 130 and 143 where SIGINT or SIGTERM ended a run.
+//! Exit codes: 0 answered, 1 no solution or not converged, 2 bad input, 74 could not write; 130 and
+//! 143 where SIGINT or SIGTERM ended a run.
 
 mod answer;
 mod args;

@@ -1,7 +1,8 @@
 //! `cable run` settles a scene, then steps it, and writes an answer at every output time.
 //!
-//! A thread of its own solves and writes; the first thread waits for it and for signals, so that one which arrives in the midst of a
-//! long step, or while a reader of standard output is slow, ends the run at once with what was written.
+//! A thread of its own solves and writes; the first thread waits for it and for signals, so that
+//! one which arrives in the midst of a long step, or while a reader of standard output is slow,
+//! ends the run at once with what was written.
 
 use std::path::PathBuf;
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
@@ -197,7 +198,8 @@ impl Begun {
     }
 }
 
-/// Time between two looks for a signal, s. Longer is felt by who waits for the end; shorter wakes the processor for nothing.
+/// Time between two looks for a signal, s. Longer is felt by who waits for the end; shorter wakes
+/// the processor for nothing.
 const LOOK_EVERY_S: f64 = 0.02;
 
 /// Stack of the thread that solves, bytes: that of a first thread, 2 MiB is what others get.
@@ -261,7 +263,8 @@ pub fn run(a: RunArguments) -> Done {
             Err(RecvTimeoutError::Timeout) => {
                 if let Some(signal) = signals.arrived() {
                     let place = shared.place();
-                    // The tables are readable and marked as partial already, whether this can be noted or not.
+                    // The tables are readable and marked as partial already, whether this can be
+                    // noted or not.
                     let _ = shared.finish(RunEnd::Partial(RunStop::Interrupted { signal: signal.name().to_owned() }));
                     wait_for_line(&printing);
                     return Err(Failure::Interrupted(signal, place));
@@ -317,7 +320,8 @@ fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began:
     Ok(())
 }
 
-/// A run without outputs for every time it is to be finer, until errors are as asked: the simulation to begin with, settled, and its step.
+/// A run without outputs for every time it is to be finer, until errors are as asked: the
+/// simulation to begin with, settled, and its step.
 fn refined(
     mut simulation: Simulation,
     inertia: Inertia,

@@ -97,7 +97,8 @@ fn compared(scene: &Scene, given: &Solution, a: &Common) -> Vec<ComparedEntry> {
     Setting::all().map(ask).collect()
 }
 
-/// Largest table of a run that is checked, bytes. More would not fit into the memory of a small machine.
+/// Largest table of a run that is checked, bytes. More would not fit into the memory of a small
+/// machine.
 const MOST_TABLE_BYTES: u64 = 2 << 30;
 
 /// Says on a terminal, every few seconds, that there is no answer yet.

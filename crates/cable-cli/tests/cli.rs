@@ -189,7 +189,8 @@ fn run_prints_an_object_a_line_and_its_folder_reads_back() {
     assert_eq!(cable_core::Scene::from_toml(&scene).unwrap(), catalog::hanging_span());
 }
 
-/// A cable drawn over the floor: errors are above a hundredth, and below it on elements and steps of a half or a quarter.
+/// A cable drawn over the floor: errors are above a hundredth, and below it on elements and steps
+/// of a half or a quarter.
 #[test]
 fn run_says_its_errors_and_refines_until_they_are_as_asked() {
     let folder = tempfile::tempdir().unwrap();
@@ -215,7 +216,8 @@ fn run_says_its_errors_and_refines_until_they_are_as_asked() {
     assert!(run(&["--no-errors"]).contains("not known"));
 }
 
-/// A drop on rubble: the greatest tension of the run has a range, and it is said that it depends on small differences.
+/// A drop on rubble: the greatest tension of the run has a range, and it is said that it depends on
+/// small differences.
 #[test]
 fn run_says_that_a_greatest_tension_depends_on_small_differences() {
     let folder = tempfile::tempdir().unwrap();
@@ -259,7 +261,8 @@ fn a_reader_that_leaves_is_no_error() {
     assert!(o.stderr.is_empty());
 }
 
-/// A flexible cable drawn over a pipe of 0.2 m: bent to the pipe's and its own radius, pressed with tension over radius.
+/// A flexible cable drawn over a pipe of 0.2 m: bent to the pipe's and its own radius, pressed with
+/// tension over radius.
 #[test]
 fn solve_tells_the_tightest_bend_and_the_highest_pressure() {
     let folder = tempfile::tempdir().unwrap();
@@ -375,7 +378,8 @@ fn solve_tells_what_is_read_first() {
     assert_eq!(cable(&["solve", file.to_str().unwrap(), "--bending", "some"]).status.code(), Some(2));
 }
 
-/// A run that says a limit is exceeded says so once in its text, in its JSON with its place, and in its events.
+/// A run that says a limit is exceeded says so once in its text, in its JSON with its place, and in
+/// its events.
 #[test]
 fn run_tells_the_warnings_that_begin() {
     let folder = tempfile::tempdir().unwrap();

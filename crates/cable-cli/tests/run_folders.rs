@@ -1,6 +1,8 @@
-//! Run folders from outside: whatever ends a run, its tables read back, and nothing that was there before is lost.
+//! Run folders from outside: whatever ends a run, its tables read back, and nothing that was there
+//! before is lost.
 //!
-//! The full campaign (200 kills, 50 interrupts and 50 terminations, and a disk of 2 MiB, which needs root to be mounted):
+//! The full campaign (200 kills, 50 interrupts and 50 terminations, and a disk of 2 MiB, which
+//! needs root to be mounted):
 //! `cargo test -p cable-cli --test run_folders -- --ignored --nocapture`.
 
 #![cfg(unix)] // signals, pipes and symbolic links
@@ -29,7 +31,8 @@ fn cable(arguments: &[&str]) -> Command {
     command
 }
 
-/// A run that takes minutes and writes all the time: 320 kB for each of its instants a millisecond or so apart.
+/// A run that takes minutes and writes all the time: 320 kB for each of its instants a millisecond
+/// or so apart.
 fn long_run(scene: &Path, out: &Path) -> Command {
     let mut command = cable(&["run", "--for", "10000s", "--every", "0.01s", "--quasi-static"]);
     command.arg(scene).arg("--out").arg(out);
@@ -131,7 +134,8 @@ fn until(path: &Path, bytes: u64) {
     }
 }
 
-/// Runs that are ended by a signal some milliseconds after they began: how many tables cannot be read, of how many runs with tables.
+/// Runs that are ended by a signal some milliseconds after they began: how many tables cannot be
+/// read, of how many runs with tables.
 fn interrupted(count: u32, name: &str) -> (usize, usize) {
     let folder = tempfile::tempdir().unwrap();
     let scene = span(folder.path());
@@ -172,7 +176,8 @@ fn interrupted(count: u32, name: &str) -> (usize, usize) {
     (bad, with_tables)
 }
 
-/// Runs killed at any moment from their first, their folders begun again: how many folders cannot be read or be run into.
+/// Runs killed at any moment from their first, their folders begun again: how many folders cannot
+/// be read or be run into.
 fn killed_at_once(count: u32) -> usize {
     let folder = tempfile::tempdir().unwrap();
     let scene = span(folder.path());
@@ -219,7 +224,8 @@ fn a_run_within_a_long_step_ends_when_it_is_told_to() {
     for (name, code) in [("TERM", 143), ("INT", 130)] {
         let mut command = cable(&["run", "--for", "60s", "--every", "60s", "--model", "mass-spring", "--json"]);
         command.args(["--stepping", "explicit"]);
-        // Once nobody reads what is printed, which is more than a pipe holds; once it goes to a file.
+        // Once nobody reads what is printed, which is more than a pipe holds; once it goes to a
+        // file.
         let printed = folder.path().join("printed");
         if name == "INT" {
             command.stdout(std::fs::File::create(&printed).unwrap());
@@ -382,7 +388,8 @@ fn two_runs_at_once_into_a_folder_are_refused() {
     assert_eq!(o.status.code(), Some(0), "{}", said(&o));
 }
 
-/// The same, with files that may not grow beyond so many blocks of 512 bytes: as a full disk, but for the name of the error.
+/// The same, with files that may not grow beyond so many blocks of 512 bytes: as a full disk, but
+/// for the name of the error.
 fn with_short_files(command: &Command, blocks: u32) -> Output {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
     let mut limited = Command::new("sh");
@@ -413,7 +420,8 @@ fn a_run_that_fills_the_disk_leaves_readable_tables_and_the_earlier_run() {
     }
 }
 
-/// A line that lies on two pages of its file is cut where a run is killed between them, once in some hundred times.
+/// A line that lies on two pages of its file is cut where a run is killed between them, once in
+/// some hundred times.
 #[test]
 fn no_line_lies_on_two_pages() {
     let folder = tempfile::tempdir().unwrap();

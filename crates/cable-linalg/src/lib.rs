@@ -1,14 +1,16 @@
 //! Symmetric band matrices and their factorisation `A = L D Lᵀ`, and sparse ones with faer.
 //!
-//! A chain of nodes numbered along the cable fills nothing outside its band, so the factor has the shape of the matrix and needs
-//! no symbolic part. Row j of L and d_j follow from the rows before it (v_k = L_jk d_k, k from j − b on; G. Golub, C. Van Loan,
-//! *Matrix Computations*, Johns Hopkins University Press, section on symmetric band systems):
+//! A chain of nodes numbered along the cable fills nothing outside its band, so the factor has the
+//! shape of the matrix and needs no symbolic part. Row j of L and d_j follow from the rows before
+//! it (v_k = L_jk d_k, k from j − b on; G. Golub, C. Van Loan, *Matrix Computations*, Johns Hopkins
+//! University Press, section on symmetric band systems):
 //! ```text
 //! v_i = a_ji − Σ_{k<i} v_k L_ik,     L_ji = v_i / d_i,     d_j = a_jj − Σ_i v_i L_ji
 //! ```
-//! [`BandFactor::factor`] and [`BandFactor::solve_in_place`] allocate nothing. There is no pivoting, so a pivot ≤ 0 (or NaN) means
-//! "not positive definite" and is reported with its row, which tells the node where a structure is not stable. What couples nodes
-//! far apart is left to faer's sparse Cholesky with a fill-reducing order ([`solve_coupled`]).
+//! [`BandFactor::factor`] and [`BandFactor::solve_in_place`] allocate nothing. There is no
+//! pivoting, so a pivot ≤ 0 (or NaN) means "not positive definite" and is reported with its row,
+//! which tells the node where a structure is not stable. What couples nodes far apart is left to
+//! faer's sparse Cholesky with a fill-reducing order ([`solve_coupled`]).
 
 use faer::prelude::Solve;
 use faer::sparse::linalg::LltError;
@@ -18,7 +20,8 @@ use thiserror::Error;
 
 /// Half-bandwidth of two coordinates a node when each node sees its neighbours (bars).
 pub const BARS_HALF_BANDWIDTH: usize = 3;
-/// Half-bandwidth of two coordinates a node when each node sees two neighbours on each side (bending).
+/// Half-bandwidth of two coordinates a node when each node sees two neighbours on each side
+/// (bending).
 pub const BENDING_HALF_BANDWIDTH: usize = 5;
 
 /// Widest half-bandwidth there is.
@@ -43,8 +46,9 @@ pub enum FactorError {
     },
 }
 
-/// A symmetric matrix with entries up to `half_bandwidth` b away from the diagonal. The upper triangle is stored, b + 1 numbers a
-/// column with the diagonal last; those above the first row are zeros.
+/// A symmetric matrix with entries up to `half_bandwidth` b away from the diagonal. The upper
+/// triangle is stored, b + 1 numbers a column with the diagonal last; those above the first row are
+/// zeros.
 #[derive(Clone, Debug)]
 pub struct BandMatrix {
     rows: usize,
@@ -95,8 +99,8 @@ impl BandMatrix {
         self.values[k] += value;
     }
 
-    /// Adds a 2×2 block in rows i, i + 1 and columns j, j + 1 with i ≤ j and, by symmetry, its mirror; of a block on the
-    /// diagonal (i = j) the entry below it is not read.
+    /// Adds a 2×2 block in rows i, i + 1 and columns j, j + 1 with i ≤ j and, by symmetry, its
+    /// mirror; of a block on the diagonal (i = j) the entry below it is not read.
     pub fn add_block(&mut self, i: usize, j: usize, block: [[f64; 2]; 2]) {
         for c in 0..2 {
             let first = (j + c + 1) * self.half_bandwidth + i;
@@ -107,8 +111,8 @@ impl BandMatrix {
         }
     }
 
-    /// Adds the 2×2 block [xx, xy; xy, yy] in rows i, i + 1 and again in rows i + 2, i + 3 on the diagonal, and its negative
-    /// between them: a spring between two neighbouring nodes.
+    /// Adds the 2×2 block [xx, xy; xy, yy] in rows i, i + 1 and again in rows i + 2, i + 3 on the
+    /// diagonal, and its negative between them: a spring between two neighbouring nodes.
     pub fn add_spring(&mut self, i: usize, [xx, xy, yy]: [f64; 3]) {
         let b = self.half_bandwidth;
         let Some(w) = self.values.get_mut((i + 1) * b + i..).and_then(|w| w.get_mut(..3 * b + 4)) else { return };
@@ -189,8 +193,9 @@ impl BandFactor {
     /// Factorises `a`, which must have the rows and band this was made for.
     ///
     /// # Errors
-    /// `NotPositive` with the first row whose pivot is not positive. If only the sign was wrong the factor is
-    /// still there and [`Self::solve_in_place`] solves with it (a saddle); after a zero or NaN pivot it is not.
+    /// `NotPositive` with the first row whose pivot is not positive. If only the sign was wrong the
+    /// factor is still there and [`Self::solve_in_place`] solves with it (a saddle); after a zero
+    /// or NaN pivot it is not.
     pub fn factor(&mut self, a: &BandMatrix) -> Result<(), FactorError> {
         debug_assert!(a.rows == self.rows && a.half_bandwidth == self.half_bandwidth);
         // With the band known when this is compiled its loops are unrolled: three times as fast.
@@ -201,7 +206,8 @@ impl BandFactor {
         }
     }
 
-    /// Number of negative pivots of the last factorisation: how many directions the matrix bends down in.
+    /// Number of negative pivots of the last factorisation: how many directions the matrix bends
+    /// down in.
     #[must_use]
     pub fn negative_pivots(&self) -> usize {
         self.inverse.iter().skip(self.half_bandwidth).filter(|&&d| !(d > 0.0)).count()
@@ -281,8 +287,8 @@ fn solve(b: usize, lower: &[f64], inverse: &[f64], x: &mut [f64]) {
     }
 }
 
-/// Solves `(A + C) x = b`, where C are symmetric entries outside the band, each given once for (i, j) with i ≠ j; `b`
-/// becomes `x`. Sparse Cholesky with a fill-reducing order; it allocates.
+/// Solves `(A + C) x = b`, where C are symmetric entries outside the band, each given once for (i,
+/// j) with i ≠ j; `b` becomes `x`. Sparse Cholesky with a fill-reducing order; it allocates.
 ///
 /// # Errors
 /// `NotPositive` when the sum is not positive definite, `TooLarge` when there is no memory for it.

@@ -10,7 +10,8 @@ pub type Point = [f64; 2];
 pub enum Expect {
     /// There is a resting place.
     Rests,
-    /// There is one, and these are the forces of the cable on its first and last support, N, within this part of the greatest.
+    /// There is one, and these are the forces of the cable on its first and last support, N, within
+    /// this part of the greatest.
     Forces([Point; 2], f64),
     /// Nothing holds it.
     Slides,

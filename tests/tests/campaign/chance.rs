@@ -1,6 +1,7 @@
 //! Numbers drawn from a seed, the same on every machine.
 
-/// A linear congruential generator (D. Knuth, "The art of computer programming", volume 2, 1981, 3.3.4) whose high bits are used.
+/// A linear congruential generator (D. Knuth, "The art of computer programming", volume 2, 1981,
+/// 3.3.4) whose high bits are used.
 pub struct Chance(u64);
 
 impl Chance {

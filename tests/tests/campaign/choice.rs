@@ -56,7 +56,8 @@ fn off(case: &Case, answer: &Solution, reference: &Solution) -> f64 {
     (0..2).map(|k| distance(own[k], right[k])).fold(0.0, f64::max) / greatest
 }
 
-/// Asks `cases` scenes of each family whose rest is one: without friction, as with it several rests are right.
+/// Asks `cases` scenes of each family whose rest is one: without friction, as with it several rests
+/// are right.
 pub fn compare(first: u64, cases: usize, names: &[String]) -> Choices {
     let mut out = Choices::default();
     let tolerance = Settings::default().tolerance;

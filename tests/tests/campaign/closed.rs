@@ -2,10 +2,12 @@
 
 use super::case::{Point, apart};
 
-/// Forces of a free elastic cable on what holds its two ends, N (H. M. Irvine, "Cable structures", 1981, chapter 1).
+/// Forces of a free elastic cable on what holds its two ends, N (H. M. Irvine, "Cable structures",
+/// 1981, chapter 1).
 ///
-/// With b the load per metre, the force in the cable grows by −b s. The way from end to end is the gradient of the complementary energy
-/// ∫ T + T²/2EA ds − F₀·Δ, which is convex in the force F₀ at the start: Newton's method with Armijo's rule finds its least value.
+/// With b the load per metre, the force in the cable grows by −b s. The way from end to end is the
+/// gradient of the complementary energy ∫ T + T²/2EA ds − F₀·Δ, which is convex in the force F₀ at
+/// the start: Newton's method with Armijo's rule finds its least value.
 pub fn free_span(ends: [Point; 2], length: f64, body: Point, ea: f64) -> Option<[Point; 2]> {
     let b = body[0].hypot(body[1]);
     // Axes across and against the load.
@@ -86,9 +88,10 @@ impl Span {
     }
 }
 
-/// Forces on anchor and upper end of a cable whose anchor lies on level ground without friction, and which leaves it somewhere; the
-/// upper end is `high` above the ground and `far` from the anchor. None where nothing lies, or where more lies than the tension draws
-/// out. Bisection of the horizontal force.
+/// Forces on anchor and upper end of a cable whose anchor lies on level ground without friction,
+/// and which leaves it somewhere; the upper end is `high` above the ground and `far` from the
+/// anchor. None where nothing lies, or where more lies than the tension draws out. Bisection of the
+/// horizontal force.
 pub fn mooring([far, high]: Point, length: f64, w: f64, ea: f64) -> Option<[Point; 2]> {
     // Hanging length for a horizontal force, from its height.
     let hanging = |h: f64| {

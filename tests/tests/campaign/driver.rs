@@ -224,7 +224,8 @@ fn solve(scene: &Scene, model: Model, segments: Option<usize>, limit_s: u64) -> 
     }
 }
 
-/// Whether the answer says itself that it breaks a law: only `mass-spring` may, where it was asked for by name.
+/// Whether the answer says itself that it breaks a law: only `mass-spring` may, where it was asked
+/// for by name.
 fn unsound(answer: &Solution) -> bool {
     answer.model == Model::MassSpring && answer.verification.as_ref().is_some_and(|v| !v.is_sound())
 }
@@ -277,7 +278,8 @@ fn judge_case(plan: &Plan, case: &Case, seed: u64) -> Verdict {
                 Expect::Perhaps => v.excused = true,
                 _ => v.refused = Some(why.clone()),
             }
-            // A refusal by `fem` does not hide that of `spans`, unless that says no more than that the scene is not for it.
+            // A refusal by `fem` does not hide that of `spans`, unless that says no more than that
+            // the scene is not for it.
             if case.model == Model::Auto
                 && why.starts_with("the answer of fem")
                 && let Err(first) = solve(&case.scene, Model::Spans, None, plan.limit_s)

@@ -1,5 +1,5 @@
-//! Laws that an answer at rest must obey, asked with what is written here alone: brute force over all obstacles, no code of the library's
-//! checker or of its contact geometry.
+//! Laws that an answer at rest must obey, asked with what is written here alone: brute force over
+//! all obstacles, no code of the library's checker or of its contact geometry.
 
 use cable_core::Model;
 use cable_core::scene::{Cable, Scene, Shape, SupportKind, View};
@@ -37,7 +37,8 @@ const CONE: f64 = 2e-3;
 /// Way too long for the material, of the material.
 const TOO_LONG: f64 = 1e-6;
 
-/// What one obstacle is to a point: its signed distance, the direction away from it, and how much it rubs.
+/// What one obstacle is to a point: its signed distance, the direction away from it, and how much
+/// it rubs.
 struct Near {
     gap: f64,
     normal: V,
@@ -96,7 +97,8 @@ impl World {
         }
     }
 
-    /// Where a piece is nearest to each corner and each round within `reach` of it, as parts of the piece.
+    /// Where a piece is nearest to each corner and each round within `reach` of it, as parts of the
+    /// piece.
     fn passed(&self, a: V, b: V, reach: f64) -> Vec<f64> {
         let way = sub(b, a);
         let mut out = Vec::new();
@@ -119,7 +121,8 @@ impl World {
     fn solid(p: V, points: &[V], closed: bool, (reach, friction): (f64, f64), out: &mut Vec<Near>) {
         let n = points.len();
         let edges = || (0..if closed { n } else { n - 1 }).map(|k| (points[k], points[(k + 1) % n]));
-        // Crossings of a ray upwards, signed: into solid ground from an edge that runs to the right.
+        // Crossings of a ray upwards, signed: into solid ground from an edge that runs to the
+        // right.
         let mut sum = 0;
         for (a, b) in edges() {
             let right = a[0] <= p[0] && p[0] < b[0];
@@ -247,7 +250,8 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
     let thermal = 1.0 + cable.thermal_expansion_per_k * scene.environment.temperature_change_k;
     let flexible = cable.bending_stiffness_n_m2 == 0.0;
     let length = cable.length_m;
-    // A mesh lumps the weight of a bar at its nodes: next to a contact half a bar's is carried by the wrong one.
+    // A mesh lumps the weight of a bar at its nodes: next to a contact half a bar's is carried by
+    // the wrong one.
     let lump = if matches!(answer.model, Model::Spans | Model::Catenary) { 0.0 } else { size(load) };
 
     // Ends of the material, and what holds them.
@@ -349,7 +353,8 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
         let turn = turn_between(w[0].force_n, w[1].force_n).min(1.0);
         let way = size(sub(b, a));
         let sagitta = (bend * way * way / 8.0).max(turn * way / 8.0);
-        // Evenly, and where the piece passes corners and rounds: there it leans on them, across itself.
+        // Evenly, and where the piece passes corners and rounds: there it leans on them, across
+        // itself.
         let even = (0..=PARTS).map(|k| k as f64 / PARTS as f64);
         for u in even.chain(world.passed(a, b, reach + sagitta)) {
             let p = add(a, mul(sub(b, a), u));
@@ -463,7 +468,8 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
         let ds = w[1].arc_length_m - w[0].arc_length_m;
         let chord = size(sub([w[1].x_m, w[1].y_m], [w[0].x_m, w[0].y_m]));
         let tension = w[0].tension_n.max(w[1].tension_n).max(size(w[0].force_n));
-        // What stands between supports and rounds may be off by the discretisation, of the second order in the turn.
+        // What stands between supports and rounds may be off by the discretisation, of the second
+        // order in the turn.
         let turn = turn_between(w[0].force_n, w[1].force_n)
             .max((w[0].curvature_per_m.abs().max(w[1].curvature_per_m.abs())) * ds);
         // A node has the mean of the tensions beside it.
@@ -484,9 +490,10 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
         let tight = turn < 0.5;
         if tight && missing > ds * (0.1 * turn * turn + 1e-5) + 1e-9 * length {
             loose += missing;
-            // Loose material lies: without tension, on something; in the air where nothing pulls it down. The force in a piece
-            // follows from that just beyond its first node, whatever acts at the nodes. A slack piece is drawn as its chord c,
-            // and hangs below that by √(3/8 c · missing): it may lie on what it meets there.
+            // Loose material lies: without tension, on something; in the air where nothing pulls it
+            // down. The force in a piece follows from that just beyond its first node, whatever
+            // acts at the nodes. A slack piece is drawn as its chord c, and hangs below that by
+            // √(3/8 c · missing): it may lie on what it meets there.
             let below = mul(load, (0.375 * chord * missing).sqrt() / size(load).max(1e-300));
             let mut met = Vec::new();
             for i in 1..PARTS {

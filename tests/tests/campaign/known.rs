@@ -1,6 +1,7 @@
 //! Open faults: the least that is known to go wrong, so that nothing more does.
 
-/// Of the scenes of a family how many are known to be wrong, refused, and outside of what they say, and why.
+/// Of the scenes of a family how many are known to be wrong, refused, and outside of what they say,
+/// and why.
 pub struct Open {
     pub family: &'static str,
     pub wrong: usize,

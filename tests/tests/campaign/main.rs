@@ -1,6 +1,7 @@
 //! Random scenes of every kind of rest, against laws that are written here alone.
 //!
-//! `CAMPAIGN_SEED=7 CAMPAIGN_CASES=200 cargo test --release -p cable-tests --test campaign -- --include-ignored --nocapture`
+//! `CAMPAIGN_SEED=7 CAMPAIGN_CASES=200 cargo test --release -p cable-tests
+//! --test campaign -- --include-ignored --nocapture`
 //!
 //! | variable | meaning |
 //! |---|---|
@@ -42,8 +43,8 @@ fn names() -> Vec<String> {
     all.split(',').filter(|n| !n.is_empty()).map(str::to_owned).collect()
 }
 
-/// What fails a campaign: wrong answers, words that no user can read, and more than 2 % of scenes refused that have a resting place;
-/// open faults are counted off.
+/// What fails a campaign: wrong answers, words that no user can read, and more than 2 % of scenes
+/// refused that have a resting place; open faults are counted off.
 fn judged(tallies: &[Tally], open: &[known::Open]) {
     let mut failures = Vec::new();
     for t in tallies {

@@ -78,7 +78,8 @@ pub fn reversed(scene: &Scene) -> Scene {
     s
 }
 
-/// All lengths k times as long under the same forces: weight and wind per metre fall, EI grows with k².
+/// All lengths k times as long under the same forces: weight and wind per metre fall, EI grows with
+/// k².
 pub fn longer(scene: &Scene, k: f64) -> Scene {
     let mut s = scene.clone();
     map_points(&mut s, |p| [k * p[0], k * p[1]]);

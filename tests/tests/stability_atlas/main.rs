@@ -1,9 +1,11 @@
 //! The stability atlas: where methods are known to fail, what each model does there.
 //!
-//! Every regime has an answer that does not come from the model asked: a closed form, a balance, a bound on energy, a wall
-//! nothing may enter. A model may be right, may refuse with a typed error, or may say how uncertain it is. Wrong in silence
-//! fails the test. The verdicts stand in `docs/charts/stability.csv` and `.md`; `UPDATE_CHARTS=1 cargo test -p cable-tests
-//! --test stability_atlas` writes them, without it they are compared.
+//! Every regime has an answer that does not come from the model asked: a closed form, a balance, a
+//! bound on energy, a wall nothing may enter. A model may be right, may refuse with a typed error,
+//! or may say how uncertain it is. Wrong in silence fails the test. The verdicts stand in
+//! `docs/charts/stability.csv` and `.md`;
+//! `UPDATE_CHARTS=1 cargo test -p cable-tests --test stability_atlas` writes them, without it they
+//! are compared.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -134,8 +136,8 @@ fn charts() -> PathBuf {
     std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/charts")
 }
 
-/// Regime and model of each row of a table, and how good its verdict is. Its figures are left out: they differ in the last
-/// digits from machine to machine.
+/// Regime and model of each row of a table, and how good its verdict is. Its figures are left out:
+/// they differ in the last digits from machine to machine.
 fn ranks(csv: &str) -> Vec<(String, u8)> {
     let rank = |verdict: &str| match verdict {
         "right" => 3,
@@ -150,7 +152,8 @@ fn ranks(csv: &str) -> Vec<(String, u8)> {
     csv.lines().skip(1).map(row).collect()
 }
 
-/// What every model does in every regime, by regime; each thread takes the next one that nobody has begun.
+/// What every model does in every regime, by regime; each thread takes the next one that nobody has
+/// begun.
 fn verdicts(regimes: &[Regime]) -> Vec<Vec<Verdict>> {
     let jobs: Vec<(usize, Model)> = (0..regimes.len()).flat_map(|r| Model::SOLVERS.map(|m| (r, m))).collect();
     let (next, done) = (AtomicUsize::new(0), Mutex::new(vec![Vec::new(); regimes.len()]));

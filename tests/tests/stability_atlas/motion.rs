@@ -46,7 +46,8 @@ fn energy(sim: &Simulation) -> f64 {
     out
 }
 
-/// A chain of 10 m let go from the horizontal: the most energy it ever has more than at the start, over mgL.
+/// A chain of 10 m let go from the horizontal: the most energy it ever has more than at the start,
+/// over mgL.
 fn swing(model: Model, ea: f64, dt: f64, steps: usize) -> Result<Verdict, SolveError> {
     let scene =
         cable([10.0, 1.0, ea], vec![Support::fixed("wall", [0.0, 0.0]), Support::new("tip", SupportKind::Free)]);
@@ -126,7 +127,8 @@ fn rubble(model: Model) -> Result<Verdict, SolveError> {
     let mut most = 0.0f64;
     for _ in 0..120 {
         sim.step(1.0 / 60.0)?;
-        // The centre line may come to the ground itself where a node lies between two stones, not below.
+        // The centre line may come to the ground itself where a node lies between two stones, not
+        // below.
         most = most.max(deepest(&sim, &ground));
     }
     Ok(Verdict::of(most, 0.05, &sim.solution()))

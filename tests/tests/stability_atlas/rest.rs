@@ -1,12 +1,14 @@
-//! Spans at rest that solvers are known to miss. The answer is judged by Irvine's formula alone: the force a model gives at the
-//! start, integrated along the unstretched length, must end at the other support (H. M. Irvine, "Cable structures", 1981).
+//! Spans at rest that solvers are known to miss. The answer is judged by Irvine's formula alone:
+//! the force a model gives at the start, integrated along the unstretched length, must end at the
+//! other support (H. M. Irvine, "Cable structures", 1981).
 
 use cable_core::scene::Support;
 use cable_core::{Model, SolveError};
 
 use super::{G, Regime, Verdict, cable, load, simulation};
 
-/// Where a cable of weight `w` (N/m) ends that leaves the origin with tension components `h`, `v` (N).
+/// Where a cable of weight `w` (N/m) ends that leaves the origin with tension components `h`, `v`
+/// (N).
 fn end([h, v]: [f64; 2], w: f64, length: f64, ea: f64) -> [f64; 2] {
     let top = v + w * length;
     let hung = if h.abs() < 1e-9 * w * length { 0.0 } else { h / w * ((top / h).asinh() - (v / h).asinh()) };
@@ -16,8 +18,8 @@ fn end([h, v]: [f64; 2], w: f64, length: f64, ea: f64) -> [f64; 2] {
     [x, length / ea * (v + 0.5 * w * length) + roots]
 }
 
-/// A span of length over chord `ratio` between the origin and `to`, judged by where its start force leads: the miss, over
-/// what that force would have to change by, as part of the largest tension.
+/// A span of length over chord `ratio` between the origin and `to`, judged by where its start force
+/// leads: the miss, over what that force would have to change by, as part of the largest tension.
 fn span(model: Model, to: [f64; 2], length: f64, ea: f64, most: f64) -> Result<Verdict, SolveError> {
     let density = 1.0;
     let scene = cable([length, density, ea], vec![Support::fixed("A", [0.0, 0.0]), Support::fixed("B", to)]);
@@ -30,7 +32,8 @@ fn span(model: Model, to: [f64; 2], length: f64, ea: f64, most: f64) -> Result<V
         let e = end(f, w, length, ea);
         [e[0] - to[0], e[1] - to[1]]
     };
-    // One Newton step of the formula, its derivatives by differences, tells how far the force is off.
+    // One Newton step of the formula, its derivatives by differences, tells how far the force is
+    // off.
     let top = answer.max_tension().tension_n;
     let d = 1e-6 * top;
     let m = miss(force);
@@ -41,7 +44,8 @@ fn span(model: Model, to: [f64; 2], length: f64, ea: f64, most: f64) -> Result<V
     Ok(Verdict::of(change[0].hypot(change[1]) / top, bound(model, most), &answer))
 }
 
-/// Straight springs are second order: at 100 of them what a slack or stiff span allows; others as asked.
+/// Straight springs are second order: at 100 of them what a slack or stiff span allows; others as
+/// asked.
 fn bound(model: Model, most: f64) -> f64 {
     match model {
         Model::MassSpring => 2e-2,

@@ -54,7 +54,8 @@ fn reversal(model: Model) -> Result<Verdict, SolveError> {
     Ok(Verdict::of(off.abs(), 1e-2, &answer))
 }
 
-/// Light for its pull (its weight changes tension by 5e-4), over a beam that turns it by 40°, a dead load on one end and a hand on the other.
+/// Light for its pull (its weight changes tension by 5e-4), over a beam that turns it by 40°, a
+/// dead load on one end and a hand on the other.
 fn over_a_beam(radius_m: Option<f64>) -> Scene {
     let half = 20f64.to_radians();
     let (sin, cos) = half.sin_cos();
@@ -72,8 +73,8 @@ fn over_a_beam(radius_m: Option<f64>) -> Scene {
     scene
 }
 
-/// Pull of the hand: the load, turned from its direction to the tangent from the hand to the round, and what the cable
-/// weighs between (N/m) up and down.
+/// Pull of the hand: the load, turned from its direction to the tangent from the hand to the round,
+/// and what the cable weighs between (N/m) up and down.
 fn exact(radius: f64, hand: [f64; 2], load: [f64; 2]) -> f64 {
     let (round, weight) = (radius + 0.01, 5e-3 * G);
     let (x, y) = (hand[0], hand[1] + radius);

@@ -1,5 +1,6 @@
-//! A chain of rods that falls from rest, by rapier2d: `peer-rapier2d JOINT N STEP_S ITERATIONS END_S
-//! X Y [X Y …]` with `JOINT` multibody or impulse, N + 1 places of the nodes, the first of them held.
+//! A chain of rods that falls from rest, by rapier2d:
+//! `peer-rapier2d JOINT N STEP_S ITERATIONS END_S X Y [X Y …]` with `JOINT` multibody or impulse,
+//! N + 1 places of the nodes, the first of them held.
 //!
 //! Prints the least cost of the steps (s), and the place of the last node after each, as JSON.
 

@@ -66,8 +66,8 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     badge(ui, rect, state, commands);
 }
 
-/// Time (s) after which a solve is said on the canvas, and after which it can be cancelled. Shorter:
-/// they flicker in a drag.
+/// Time (s) after which a solve is said on the canvas, and after which it can be cancelled.
+/// Shorter: they flicker in a drag.
 const BADGE_AFTER_S: [f64; 2] = [0.25, 0.8];
 
 /// That an answer is being sought, for how long, and a way out.

@@ -74,8 +74,8 @@ pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
     }
 }
 
-/// Most corners of obstacles that a moved support is kept clear of. More: each edit of a drag over a
-/// map of a million points waits for their tree.
+/// Most corners of obstacles that a moved support is kept clear of. More: each edit of a drag over
+/// a map of a million points waits for their tree.
 const MAX_CORNERS: usize = 20_000;
 /// Times a support is pushed out of one obstacle and into the next; in a corner of 30° twenty leave
 /// a millionth of the way.

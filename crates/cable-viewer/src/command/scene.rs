@@ -193,8 +193,8 @@ fn pulls_past_length(state: &AppState, before: &Scene, cable: usize, support: us
     wanted && state.document.scene.validate().is_err() && before.validate().is_ok()
 }
 
-/// The hand goes on to a point (m) and pulls by its spring; in the scene the support stays where the
-/// cable last reached it.
+/// The hand goes on to a point (m) and pulls by its spring; in the scene the support stays where
+/// the cable last reached it.
 fn pull_past_length(
     state: &mut AppState,
     before: Scene,

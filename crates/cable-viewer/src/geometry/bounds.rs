@@ -85,9 +85,9 @@ fn add_ground(state: &AppState, bounds: &mut Bounds) {
     }
 }
 
-/// The part of a rectangle that lies between the ends of the ground, where there is ground, and holds
-/// a point: beyond the wall of a tank, and above it, there is nothing to stand on. Corners and point
-/// in m.
+/// The part of a rectangle that lies between the ends of the ground, where there is ground, and
+/// holds a point: beyond the wall of a tank, and above it, there is nothing to stand on. Corners
+/// and point in m.
 #[must_use]
 pub fn above_ground(state: &AppState, point: Option<Point>, [mut low, mut high]: [Point; 2]) -> [Point; 2] {
     if let Some([left, right]) = ground_ends(state) {
@@ -118,7 +118,8 @@ fn ground_ends(state: &AppState) -> Option<[f64; 2]> {
     ends.reduce(|[a, b], [left, right]| [a.min(left), b.max(right)]).filter(|[left, right]| left < right)
 }
 
-/// The place at which ground of a width (m) begins, seen from one of its ends, m: at that end, or at the face of a wall.
+/// The place at which ground of a width (m) begins, seen from one of its ends, m: at that end, or
+/// at the face of a wall.
 fn inner_face<'a>(points_m: impl Iterator<Item = &'a Point>, width: f64) -> Option<f64> {
     let mut points = points_m.copied().peekable();
     let first = points.next()?;

@@ -1,5 +1,5 @@
-//! A job solves a scene at rest by every model and on several meshes, and keeps how far each answer is
-//! from that of the settings in use, and how long it took.
+//! A job solves a scene at rest by every model and on several meshes, and keeps how far each answer
+//! is from that of the settings in use, and how long it took.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -10,8 +10,8 @@ use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 
 use crate::jobs::background;
 
-/// Time within which short solves are repeated, s: the shortest counts. Less: the first solve, which
-/// finds cold memory, counts; more: nobody waits for it.
+/// Time within which short solves are repeated, s: the shortest counts. Less: the first solve,
+/// which finds cold memory, counts; more: nobody waits for it.
 const REPEATED_WITHIN_S: f64 = 0.05;
 /// Most times that a solve is repeated.
 const MAX_REPEATS: usize = 5;

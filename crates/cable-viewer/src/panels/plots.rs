@@ -1,5 +1,5 @@
-//! The plots panel shows a quantity over time and along the cable, with cursors and export, and above
-//! them the timeline.
+//! The plots panel shows a quantity over time and along the cable, with cursors and export, and
+//! above them the timeline.
 
 use egui::{ComboBox, Id, Ui};
 
@@ -14,8 +14,8 @@ use crate::state::dialog::Dialog;
 use crate::state::questions::friction_answer;
 use crate::widgets::field;
 
-/// From this width on the timeline stands beside the choice of graphs, points. Less: its rail is too
-/// short to aim at.
+/// From this width on the timeline stands beside the choice of graphs, points. Less: its rail is
+/// too short to aim at.
 const ONE_ROW: f32 = 960.0;
 /// Room for the button that brings back what a reset put away, points.
 const UNDO_RESET: f32 = 90.0;

@@ -95,7 +95,8 @@ fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
     judged(ui, name, &format!("≈ {worst:.1e}"), help, wrong);
 }
 
-/// The greatest kinetic energy of the last span and of that before, J; None where less was recorded.
+/// The greatest kinetic energy of the last span and of that before, J; None where less was
+/// recorded.
 #[must_use]
 pub fn kinetic_peaks_j(history: &History) -> Option<[f64; 2]> {
     let now_s = history.samples.back()?.time_s;

@@ -1,5 +1,5 @@
-//! What is selected is edited here, with the answer about it: the force on a support, the contacts of
-//! an obstacle, the tension at a load, the motion of the robot. Cables, the environment and the
+//! What is selected is edited here, with the answer about it: the force on a support, the contacts
+//! of an obstacle, the tension at a load, the motion of the robot. Cables, the environment and the
 //! solver have panels of their own, which stand here once they are selected.
 
 use cable_core::Solution;

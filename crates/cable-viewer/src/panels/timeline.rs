@@ -76,8 +76,8 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         1 => "1 event".to_owned(),
         n => format!("{n} events"),
     };
-    // The row must not be wider than its panel: it would push the graphs below out of sight. Without
-    // room events are marks on the rail and stand in the hover text.
+    // The row must not be wider than its panel: it would push the graphs below out of sight.
+    // Without room events are marks on the rail and stand in the hover text.
     let beside = width(ui, &text);
     let with_count = beside + width(ui, &count);
     let counted =

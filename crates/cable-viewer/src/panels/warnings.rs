@@ -259,8 +259,8 @@ fn wheel(state: &AppState, answer: &Solution, warning: &Warning, cable: usize) -
     Some(Fix { label, command: Command::Scene(command) })
 }
 
-/// One line: severity, what, value of limit, place, cut where the panel ends. A click on it shows the
-/// place; the text and the fix are behind the sign at its end, and the text is told on hover.
+/// One line: severity, what, value of limit, place, cut where the panel ends. A click on it shows
+/// the place; the text and the fix are behind the sign at its end, and the text is told on hover.
 fn row(ui: &mut Ui, number: usize, entry: &Entry, commands: &mut Vec<Command>) {
     let (colour, sign) = look(ui, entry.severity);
     // Remembered by what it says: the next warning in its place is another one. Where there is no

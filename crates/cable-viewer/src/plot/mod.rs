@@ -62,8 +62,8 @@ const EXPORT: f32 = 62.0;
 /// More: frames with long runs take longer; fewer: a few swings lose their dashes.
 const OSCILLATION_RATIO: f64 = 40.0;
 
-/// Opacity of the band between least and greatest. More: it hides the lines behind; less: it cannot be
-/// told from the background.
+/// Opacity of the band between least and greatest. More: it hides the lines behind; less: it cannot
+/// be told from the background.
 const BAND_OPACITY: f32 = 0.45;
 
 /// Length of a line in the legend, points.
@@ -383,8 +383,8 @@ fn tick(mark: GridMark) -> String {
     format!("{:.decimals$}", mark.value + 0.0).replace('-', "−")
 }
 
-/// As [`tick`]; the last number that is not cut by the end of its axis has the unit, so that no line of
-/// the graph is spent on it.
+/// As [`tick`]; the last number that is not cut by the end of its axis has the unit, so that no
+/// line of the graph is spent on it.
 fn tick_with_unit(mark: GridMark, shown: &RangeInclusive<f64>, symbol: &str) -> String {
     let end = shown.end() - UNIT_MARGIN * (shown.end() - shown.start());
     let last = mark.value <= end && mark.value + mark.step_size > end;

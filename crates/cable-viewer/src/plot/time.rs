@@ -126,7 +126,8 @@ fn own(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], column
         let points = |samples: &[&Sample]| samples.iter().map(|s| [s.time_s, of(s) * scale]).collect::<Vec<_>>();
         match columns.filter(|c| samples.len() > 2 * c) {
             None => Series { name, points: points(&samples), ..Series::default() },
-            // Denser than columns: what happens in each, and its mean, instead of a line up and down.
+            // Denser than columns: what happens in each, and its mean, instead of a line up and
+            // down.
             Some(c) => {
                 let (points, band) = envelope(points(&samples).into_iter(), points(&means).into_iter(), ends, c);
                 Series { name, points, band, reference: None }

@@ -45,7 +45,8 @@ pub struct Palette {
     pub support: Color32,
     /// Picked and hovered things.
     pub accent: Color32,
-    /// The light of an answer whose laws were all asked and hold: told from red by its brightness too.
+    /// The light of an answer whose laws were all asked and hold: told from red by its brightness
+    /// too.
     pub sound: Color32,
     /// A share of a limit as a bar with text on it: below the limit, above service, above break.
     pub bars: [Color32; 3],

@@ -1,5 +1,5 @@
-//! Whether what is on screen answers the scene as it is: figures, warnings and verdicts are only shown
-//! as such where it does.
+//! Whether what is on screen answers the scene as it is: figures, warnings and verdicts are only
+//! shown as such where it does.
 
 use crate::state::app_state::AppState;
 

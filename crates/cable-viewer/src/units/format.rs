@@ -66,8 +66,8 @@ pub fn duration(value_s: f64) -> String {
     with_symbol(significant(value_s / si, DIGITS), symbol)
 }
 
-/// Smaller ratios are not written with their power of ten: nobody reads more into it than that it is
-/// very small.
+/// Smaller ratios are not written with their power of ten: nobody reads more into it than that it
+/// is very small.
 pub const LEAST_RATIO: f64 = 1e-6;
 
 /// A ratio in per cent with three digits.

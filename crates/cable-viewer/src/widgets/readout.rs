@@ -1,5 +1,5 @@
-//! A readout is a name, a figure on the right, and at most a button beside it. It keeps to the width
-//! of its panel: what is too long is cut and stands in full in the hover text.
+//! A readout is a name, a figure on the right, and at most a button beside it. It keeps to the
+//! width of its panel: what is too long is cut and stands in full in the hover text.
 
 use egui::{Align, Label, Layout, Ui};
 

@@ -160,8 +160,8 @@ impl Worker {
         }
     }
 
-    /// Gives up a solve that nobody waits for any more, or that the user has cancelled; to be called
-    /// often.
+    /// Gives up a solve that nobody waits for any more, or that the user has cancelled; to be
+    /// called often.
     fn give_up_what_is_worthless(&mut self) {
         let Kind::Thread { shared, shown, handle, patience } = &mut self.kind else { return };
         let mut slots = shared.lock();
@@ -232,8 +232,8 @@ fn keep(slot: &mut Option<Report>, report: Report) {
 /// mouse; larger: the hand waits.
 const LEAST_SHARE: f64 = 0.4;
 
-/// Time (s) that a request waits for a solve that it makes worthless. Shorter: a drag restarts solves
-/// that would have been in the next frames; longer: an undo is felt to hang.
+/// Time (s) that a request waits for a solve that it makes worthless. Shorter: a drag restarts
+/// solves that would have been in the next frames; longer: an undo is felt to hang.
 const GIVE_UP_AFTER: Duration = Duration::from_millis(40);
 /// Most threads with the window's own handle counted: more would share the processor with the one
 /// that is listened to.

@@ -9,8 +9,8 @@ use cable_core::contact::World;
 use cable_core::math::{Point, Vec2};
 use cable_core::scene::{Obstacle, Shape};
 
-/// Nearest points of a way, as a part of the cable's length. Nearer: the way is as long as the mesh;
-/// farther: it leads through what the cable was led round.
+/// Nearest points of a way, as a part of the cable's length. Nearer: the way is as long as the
+/// mesh; farther: it leads through what the cable was led round.
 const SPACING: f64 = 0.01;
 /// How far round a point obstacles are asked for, m.
 const SEARCH_RADIUS_M: f64 = 1e3;

@@ -17,18 +17,18 @@ pub const LEAST_QUIET_S: f64 = 0.06;
 /// an answer is begun between two edits of an uneven hand; larger: the draft stays.
 pub const QUIET_EDITS: f64 = 3.0;
 
-/// A solve that took longer (s) is drafted while edits come faster than answers. Longer: the picture
-/// lags behind the hand; shorter: drafts where the answer itself would be in the next two frames.
-/// The tank takes 15 to 25 ms.
+/// A solve that took longer (s) is drafted while edits come faster than answers. Longer: the
+/// picture lags behind the hand; shorter: drafts where the answer itself would be in the next two
+/// frames. The tank takes 15 to 25 ms.
 pub const DRAFT_AFTER_S: f64 = 0.035;
 
-/// A solve that took longer (s) is drafted even after a single edit. Longer: an edit shows nothing for
-/// as long; shorter: the draft, 0.1 s at first, delays an answer that takes little more.
+/// A solve that took longer (s) is drafted even after a single edit. Longer: an edit shows nothing
+/// for as long; shorter: the draft, 0.1 s at first, delays an answer that takes little more.
 pub const DRAFT_FIRST_S: f64 = 0.4;
 
-/// A frame of motion that takes longer (s) has the cable follow a hand on a coarse mesh. Longer: the
-/// cable lags behind the hand; shorter: the mesh changes where nobody would feel it. Tuned on the
-/// tank at 200 segments.
+/// A frame of motion that takes longer (s) has the cable follow a hand on a coarse mesh. Longer:
+/// the cable lags behind the hand; shorter: the mesh changes where nobody would feel it. Tuned on
+/// the tank at 200 segments.
 pub const COARSE_AFTER_S: f64 = 0.012;
 
 /// Most answers waiting for a window that does not look: ten seconds of them. Fewer: a window that

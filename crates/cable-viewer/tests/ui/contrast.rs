@@ -1,4 +1,5 @@
-//! Both themes pass WCAG 2.2 AA: 4.5 : 1 for text (1.4.3), 3 : 1 for what graphics and controls are known by (1.4.11).
+//! Both themes pass WCAG 2.2 AA: 4.5 : 1 for text (1.4.3), 3 : 1 for what graphics and controls are
+//! known by (1.4.11).
 
 use cable_viewer::canvas::layers::safe_reach;
 use cable_viewer::plot;
@@ -112,15 +113,16 @@ fn text_and_graphics_stand_off_what_is_behind_them_in_both_themes() {
         for (what, colour) in [("service", plot::SERVICE), ("breaking", plot::BREAKING), ("time", plot::TIME_MARK)] {
             ask(&format!("mark of {what} in a graph"), colour, visuals.extreme_bg_color, 3.0);
         }
-        // Lines of risk lie on the safe-reach map from the service tension on, each over one of the background: either
-        // the line or what it lies on stands off the map.
+        // Lines of risk lie on the safe-reach map from the service tension on, each over one of the
+        // background: either the line or what it lies on stands off the map.
         for share in [0.9, 1.0, 2.0, 12.5] {
             let map = over(safe_reach::colour(share), p.background);
             let better = if ratio(p.risk, map) > ratio(p.background, map) { p.risk } else { p.background };
             ask(&format!("line of risk on the map at {share} of service"), better, map, 3.0);
         }
         ask("line of risk on what it lies on", p.risk, p.background, 3.0);
-        // The end of the map is drawn in the colour of surfaces: its darkest colours are near the background's.
+        // The end of the map is drawn in the colour of surfaces: its darkest colours are near the
+        // background's.
         ask("end of the map", p.surface, p.background, 3.0);
         let [least, most] = [0.0, 1.0].map(|share| over(safe_reach::colour(share), p.background));
         ask("nothing beside the service tension on the map", least, most, 3.0);

@@ -1,4 +1,5 @@
-//! No control is lost when the window is laid out anew: each that it had is still found by its name.
+//! No control is lost when the window is laid out anew: each that it had is still found by its
+//! name.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +11,8 @@ use egui::Vec2;
 
 use crate::{apply, open};
 
-/// Names of the controls of several scenes with several things picked, a line each, as they were before the outline.
+/// Names of the controls of several scenes with several things picked, a line each, as they were
+/// before the outline.
 const BEFORE: &str = include_str!("controls.txt");
 
 fn names() -> BTreeSet<String> {

@@ -1,5 +1,5 @@
-//! Defects that a first user met in motion, behind slow solves and with long cables: D2, D3, D5a and D7. The tests of D2
-//! and D3 also show that they see the defect where there is one.
+//! Defects that a first user met in motion, behind slow solves and with long cables: D2, D3, D5a
+//! and D7. The tests of D2 and D3 also show that they see the defect where there is one.
 
 use std::time::{Duration, Instant};
 
@@ -28,7 +28,8 @@ fn graph_most_n(harness: &Harness<'_, ViewerApp>) -> f64 {
     state(harness).live.history.samples.iter().map(|s| s.max_tension_n).fold(0.0, f64::max)
 }
 
-/// A scene played while its hitch is drawn inwards by 5.2 m at 1.1 m/s, a pixel of the mouse at a time.
+/// A scene played while its hitch is drawn inwards by 5.2 m at 1.1 m/s, a pixel of the mouse at a
+/// time.
 fn slackened(scene: Scene) -> Harness<'static, ViewerApp> {
     let mut harness = open(scene);
     harness.key_press(Key::F);
@@ -65,7 +66,8 @@ fn a_cable_that_is_slackened_does_not_break_and_one_that_breaks_shows_why_in_the
     assert!(hitch < 4.0, "the hitch follows the hand: {hitch} m");
     assert!(!broke(&harness), "{:?}", answer(&harness).warnings);
     assert!(graph_most_n(&harness) < 200.0, "{} N", graph_most_n(&harness));
-    // One that holds less than its weight pulls with breaks: the graph has the tension of which it did.
+    // One that holds less than its weight pulls with breaks: the graph has the tension of which it
+    // did.
     let mut weak = catalog::over_beam();
     (weak.cables[0].service_tension_n, weak.cables[0].breaking_tension_n) = (60.0, 70.0);
     let harness = slackened(weak);
@@ -73,7 +75,8 @@ fn a_cable_that_is_slackened_does_not_break_and_one_that_breaks_shows_why_in_the
     assert!(graph_most_n(&harness) >= 70.0, "{} N", graph_most_n(&harness));
 }
 
-/// D2: the cable dropped on rubble broke without any mouse, with three times in the graph what it can hold.
+/// D2: the cable dropped on rubble broke without any mouse, with three times in the graph what it
+/// can hold.
 #[test]
 fn a_cable_dropped_on_rubble_does_not_break() {
     let mut harness = open(catalog::rubble_drop());
@@ -83,7 +86,8 @@ fn a_cable_dropped_on_rubble_does_not_break() {
     assert!(!broke(&harness) && graph_most_n(&harness) < holds_n, "{} N of {holds_n} N", graph_most_n(&harness));
 }
 
-/// Nodes with many times the tension of both neighbours, of a part of the greatest: no cable has such.
+/// Nodes with many times the tension of both neighbours, of a part of the greatest: no cable has
+/// such.
 fn spikes(nodes: &[Node], greatest_n: f64) -> Vec<[f64; 2]> {
     let lone = |w: &&[Node]| {
         let beside = w[0].tension_n.max(w[2].tension_n);
@@ -92,7 +96,8 @@ fn spikes(nodes: &[Node], greatest_n: f64) -> Vec<[f64; 2]> {
     nodes.windows(3).filter(lone).map(|w| [w[1].arc_length_m, w[1].tension_n]).collect()
 }
 
-/// D3: in a tank whose hitch stood still the greatest tension flickered between 104 and 165 N, from one node.
+/// D3: in a tank whose hitch stood still the greatest tension flickered between 104 and 165 N, from
+/// one node.
 #[test]
 fn at_rest_the_greatest_tension_is_still_and_no_node_stands_out() {
     let mut harness = open(catalog::tank());
@@ -227,7 +232,8 @@ fn a_picture_that_is_older_than_the_scene_is_said_to_be_while_a_beam_is_dragged_
     println!("{} frames were late and said so, {unsettled} in one long solve", watch.late_frames);
 }
 
-/// D7: 70 m in the tank were one clean line on 3.5 m of floor, 5000 m went through its wall, and nothing warned.
+/// D7: 70 m in the tank were one clean line on 3.5 m of floor, 5000 m went through its wall, and
+/// nothing warned.
 #[test]
 fn a_cable_that_is_far_too_long_is_said_to_lie_loose_and_stays_in_the_tank() {
     let mut harness = open(catalog::tank());

@@ -1,4 +1,5 @@
-//! Editing on the canvas and by keys: several things at once, copies, cables, the robot's path, forces by their arrows.
+//! Editing on the canvas and by keys: several things at once, copies, cables, the robot's path,
+//! forces by their arrows.
 
 use cable_core::scene::{RobotTask, Shape, SupportKind, catalog};
 use cable_core::{Load, Obstacle};

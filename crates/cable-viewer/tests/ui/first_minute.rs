@@ -1,4 +1,5 @@
-//! The first minute of somebody who has never seen the window: what to do, where to begin, and a file to open.
+//! The first minute of somebody who has never seen the window: what to do, where to begin, and a
+//! file to open.
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
@@ -84,7 +85,8 @@ fn start_here_leads_to_the_guides() {
     assert_eq!(harness.state().state.ui.dialog, Some(Dialog::StartHere));
 }
 
-/// A guide frames the control that it speaks of, wherever that is scrolled to, and nothing once it ends.
+/// A guide frames the control that it speaks of, wherever that is scrolled to, and nothing once it
+/// ends.
 #[test]
 fn guides_point_at_what_they_speak_of() {
     for (tutorial, guide) in TUTORIALS.iter().enumerate() {

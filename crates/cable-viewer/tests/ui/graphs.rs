@@ -1,4 +1,5 @@
-//! One playhead: the timeline, the graphs over time, the graph along the cable and the canvas show the same instant.
+//! One playhead: the timeline, the graphs over time, the graph along the cable and the canvas show
+//! the same instant.
 
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, PlaybackCommand};

@@ -1,4 +1,5 @@
-//! Rows of the users' list done by hand, as they are written: with the widgets of the window, or with keys alone.
+//! Rows of the users' list done by hand, as they are written: with the widgets of the window, or
+//! with keys alone.
 
 use cable_core::math::Point;
 use cable_core::scene::catalog;
@@ -65,8 +66,9 @@ fn least_gap(answer: &Solution, apart: f64) -> f64 {
     least
 }
 
-/// The cable comes down on itself and stops on itself: at no time is a part of it inside another. Without self-contact, switched off
-/// in the cable panel, the same cable falls through itself, and what it does is named.
+/// The cable comes down on itself and stops on itself: at no time is a part of it inside another.
+/// Without self-contact, switched off in the cable panel, the same cable falls through itself, and
+/// what it does is named.
 #[test]
 fn s05_the_cable_stops_on_itself_and_what_tangles_is_named() {
     let mut harness = open(catalog::pile());
@@ -96,8 +98,8 @@ fn s05_the_cable_stops_on_itself_and_what_tangles_is_named() {
     assert!(told, "what tangles is named: {:?}", answer(&harness).warnings);
 }
 
-/// A map is picked in the scene panel while time runs, and ground from another program is pasted; both are there at once, the cable
-/// lies on what is there, and undo takes them back.
+/// A map is picked in the scene panel while time runs, and ground from another program is pasted;
+/// both are there at once, the cable lies on what is there, and undo takes them back.
 #[test]
 fn s09_maps_are_picked_and_pasted_while_the_window_runs() {
     let mut harness = open(catalog::slack_to_floor());
@@ -147,8 +149,9 @@ fn s09_maps_are_picked_and_pasted_while_the_window_runs() {
     assert_eq!(state(&harness).document.scene.obstacles, before.obstacles);
 }
 
-/// Friction is typed at the obstacle. With it the cable truly sticks while it is pulled by less than e^{μφ}: it does not move at
-/// all; beyond, it slides and the tensions differ by that factor. Without it they are alike.
+/// Friction is typed at the obstacle. With it the cable truly sticks while it is pulled by less
+/// than e^{μφ}: it does not move at all; beyond, it slides and the tensions differ by that factor.
+/// Without it they are alike.
 #[test]
 fn s19_friction_typed_at_an_obstacle_sticks_slides_and_changes_the_tension() {
     let run = |friction: &str| {
@@ -185,8 +188,9 @@ fn s19_friction_typed_at_an_obstacle_sticks_slides_and_changes_the_tension() {
     assert!(most(&drawn) > 1.5 * most(&smooth), "{} {}", most(&drawn), most(&smooth));
 }
 
-/// The pointer takes an end while time runs and is held still a metre away: a spring holds the end, its force is in the readouts and balances the cable; let go, the
-/// end stays where it came to, in the scene as well.
+/// The pointer takes an end while time runs and is held still a metre away: a spring holds the end,
+/// its force is in the readouts and balances the cable; let go, the end stays where it came to, in
+/// the scene as well.
 #[test]
 fn s06_a_pointer_holds_an_end_by_a_spring_while_time_runs() {
     let mut harness = open(catalog::hanging_span());

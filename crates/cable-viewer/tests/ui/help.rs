@@ -1,4 +1,5 @@
-//! What helps: guided scenes, hover help and a name on every control, the picture in words, the keyboard alone.
+//! What helps: guided scenes, hover help and a name on every control, the picture in words, the
+//! keyboard alone.
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
@@ -130,7 +131,8 @@ fn u11_every_entry_of_the_menus_explains_itself_on_hover() {
         assert!(entries.len() >= 6, "{menu}: {entries:?}");
         let mut silent = Vec::new();
         for (name, _, at) in entries {
-            // The pointer comes from beside: a menu that has just opened takes no notice of one that was there.
+            // The pointer comes from beside: a menu that has just opened takes no notice of one
+            // that was there.
             for by in [3.0, 0.0] {
                 harness.hover_at(at + egui::Vec2::new(by, 0.0));
                 harness.run_steps(2);
@@ -193,7 +195,8 @@ fn t01_six_guided_scenes_lead_from_step_to_step() {
     assert_eq!(state(&harness).ui.tutorial, None);
 }
 
-/// Each step of each guide, done as it says: the guide sees it and goes on, and what it says happens.
+/// Each step of each guide, done as it says: the guide sees it and goes on, and what it says
+/// happens.
 #[test]
 fn t01_every_step_of_every_guide_can_be_done_as_it_says() {
     fn at(harness: &Harness<'_, ViewerApp>) -> Option<usize> {
@@ -375,7 +378,8 @@ fn fields_stand_off_dialogs_and_panels() {
     }
 }
 
-/// Where there is no room for graphs below the canvas they are in the one panel, and the canvas is larger than its labels.
+/// Where there is no room for graphs below the canvas they are in the one panel, and the canvas is
+/// larger than its labels.
 #[test]
 fn small_windows_keep_a_canvas_and_have_all_panels() {
     let mut harness = open(catalog::robot_drive());
@@ -430,7 +434,8 @@ fn the_keyboard_alone_opens_edits_runs_and_reads() {
     key(&mut harness, Key::Enter);
     harness.run_steps(3);
     assert_eq!(state(&harness).analysis.references.len(), 1);
-    // Tab walks the controls: after the first press something has the focus, and the next is another.
+    // Tab walks the controls: after the first press something has the focus, and the next is
+    // another.
     let mut seen = std::collections::BTreeSet::new();
     for _ in 0..40 {
         key(&mut harness, Key::Tab);

@@ -1,4 +1,5 @@
-//! A tank job set up from the first scene by someone who knows nothing of it: map, robot, opening; every model asked about it.
+//! A tank job set up from the first scene by someone who knows nothing of it: map, robot, opening;
+//! every model asked about it.
 
 use cable_core::scene::ground::Ground;
 use cable_core::scene::{SupportKind, catalog, preset};

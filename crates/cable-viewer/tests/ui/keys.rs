@@ -1,4 +1,5 @@
-//! What had needed a pointer, by keys: the view, graphs, picking several things; and dialogs in the smallest window.
+//! What had needed a pointer, by keys: the view, graphs, picking several things; and dialogs in the
+//! smallest window.
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;

@@ -1,4 +1,5 @@
-//! Room for the picture: how much of the window the canvas has, and that nothing but the user changes that.
+//! Room for the picture: how much of the window the canvas has, and that nothing but the user
+//! changes that.
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
@@ -79,7 +80,8 @@ fn the_window_opens_on_a_robot_without_a_warning() {
     assert!(harness.state().state.live.snapshot.solution.as_ref().unwrap().time_s > 29.0);
 }
 
-/// D10.4: the side panels grew with what was in them, from 624 to 505 points of canvas in one sitting.
+/// D10.4: the side panels grew with what was in them, from 624 to 505 points of canvas in one
+/// sitting.
 #[test]
 fn what_is_in_a_panel_does_not_move_the_canvas() {
     let mut harness = open(catalog::tank());
@@ -121,7 +123,8 @@ fn a_fitted_scene_is_fitted_again_when_the_window_changes() {
     assert_eq!(harness.state().state.view.camera, camera);
 }
 
-/// The greatest tension, its utilisation and the verdict are in sight whatever is scrolled or folded.
+/// The greatest tension, its utilisation and the verdict are in sight whatever is scrolled or
+/// folded.
 #[test]
 fn the_result_is_always_on_top() {
     let mut harness = open(catalog::tank());
@@ -139,8 +142,8 @@ fn the_result_is_always_on_top() {
     assert!(harness.state().state.view.camera.points_per_m > 1.5 * before, "a click zooms on it");
 }
 
-/// A selected form pushed the results out of sight: the greatest tension, its share of the limits and the verdict stand
-/// above everything that scrolls, at every usual size.
+/// A selected form pushed the results out of sight: the greatest tension, its share of the limits
+/// and the verdict stand above everything that scrolls, at every usual size.
 #[test]
 fn results_stand_above_the_form_of_what_is_selected() {
     for size in [[1024.0, 640.0], [1280.0, 800.0], [1920.0, 1080.0]] {
@@ -162,7 +165,8 @@ fn results_stand_above_the_form_of_what_is_selected() {
     }
 }
 
-/// Words beside the timeline made its row wider than the panel, and so the graphs, whose export was cut.
+/// Words beside the timeline made its row wider than the panel, and so the graphs, whose export was
+/// cut.
 #[test]
 fn a_recording_with_events_does_not_push_the_graphs_out_of_sight() {
     let mut scene = catalog::tank_robot();

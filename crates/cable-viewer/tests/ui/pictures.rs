@@ -20,7 +20,8 @@ fn refusal(text: &str) -> NoAnswer {
     NoAnswer::Error(SceneError { path: String::new(), fault, at: None }.into())
 }
 
-/// Compares the canvas of a state with its picture. Skips with a notice where nothing can draw, except in CI.
+/// Compares the canvas of a state with its picture. Skips with a notice where nothing can draw,
+/// except in CI.
 fn compare(name: &str, mut state: AppState, theme: Theme) {
     // The canvas alone explains its colours itself.
     state.ui.legend_beside = false;
@@ -191,7 +192,8 @@ fn safe_reach_and_path_dark() {
     compare("safe_reach_and_path_dark", state, Theme::Dark);
 }
 
-/// A robot that has backed over its own slack cable and pushes it as a heap: what of it the cable meets is dashed, above the ground.
+/// A robot that has backed over its own slack cable and pushes it as a heap: what of it the cable
+/// meets is dashed, above the ground.
 #[test]
 fn robot_pushes_its_cable_dark() {
     let mut scene = catalog::robot_drive();

@@ -184,7 +184,8 @@ fn a_support_dragged_while_time_runs_is_followed_and_never_jumps() {
     }
 }
 
-/// A model on a scene it can do, and one it cannot: the refusal is shown beside the greyed last good picture.
+/// A model on a scene it can do, and one it cannot: the refusal is shown beside the greyed last
+/// good picture.
 #[test]
 fn u12_every_model_answers_what_it_can_and_refuses_the_rest_in_words() {
     let ends_only = |mut scene: Scene| {
@@ -232,7 +233,8 @@ fn figures_have_errors_while_time_runs() {
     assert!(solution(&harness).time_s > 4.0 * FRAME_S);
     let at_rest = error(&harness).expect("errors in motion");
     assert!(at_rest < 0.2 * largest(&harness), "{at_rest} N");
-    // A hand that pulls is felt by the coarser runs, too: what they differ by grows, but they do not stay behind.
+    // A hand that pulls is felt by the coarser runs, too: what they differ by grows, but they do
+    // not stay behind.
     let last = harness.state().state.document.scene.cables[0].supports.len() - 1;
     let at = harness.state().state.document.scene.cables[0].supports[last].at_m.expect("held");
     let item = Item::Support { cable: 0, support: last };

@@ -1,4 +1,5 @@
-//! The chart of error over cost: every model and mesh, on demand, with progress and an end on request.
+//! The chart of error over cost: every model and mesh, on demand, with progress and an end on
+//! request.
 
 use std::time::{Duration, Instant};
 
@@ -42,7 +43,8 @@ fn every_model_and_mesh_is_charted_with_the_choice_and_its_reason() {
         let own = found.entries.iter().filter(|e| e.setting.model == model);
         own.map(|e| e.result.as_ref().map(|(c, _)| c.force_difference)).collect::<Vec<_>>()
     };
-    // The same model has the same answer, finer meshes come nearer, and a model that cannot says why.
+    // The same model has the same answer, finer meshes come nearer, and a model that cannot says
+    // why.
     assert!(errors(Model::Spans)[0].is_ok_and(|e| e < 1e-6));
     let fem: Vec<f64> = errors(Model::Fem).into_iter().map(|e| e.unwrap()).collect();
     assert!(fem.len() == 5 && fem[4] < fem[0], "{fem:?}");

@@ -1,4 +1,5 @@
-//! D10.9: dragging an end past the length while time runs. Refused unless the user wants it to pull.
+//! D10.9: dragging an end past the length while time runs. Refused unless the user wants it to
+//! pull.
 
 use cable_core::Settings;
 use cable_viewer::ViewerApp;

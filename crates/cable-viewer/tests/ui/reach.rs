@@ -196,7 +196,8 @@ fn what_is_taken_somewhere_is_the_robot_else_what_is_picked_else_an_end_and_can_
     assert_eq!(moved(&harness), Some(ReachSubject::Support { cable: 0, support: 0 }));
 }
 
-/// D10.11: cancelling threw away what was found, nobody knew how long it takes, and a place outside the tank was safe.
+/// D10.11: cancelling threw away what was found, nobody knew how long it takes, and a place outside
+/// the tank was safe.
 #[test]
 fn a_cancelled_search_keeps_what_it_found_and_none_of_it_lies_outside_the_tank() {
     let mut harness = tall(catalog::tank());

@@ -1,4 +1,5 @@
-//! The `spans` model in the window: contacts as stretches, slip fronts, where a tension comes from, drags without a sawtooth.
+//! The `spans` model in the window: contacts as stretches, slip fronts, where a tension comes from,
+//! drags without a sawtooth.
 
 use cable_core::analysis::tension_budget::{Cause, StartEnd, tension_budget};
 use cable_core::scene::{Obstacle, Shape, Support, SupportKind, catalog};
@@ -118,8 +119,8 @@ fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
     assert!(state(&harness).analysis.tension_marker.is_none());
 }
 
-/// Greatest fourth difference of evenly spaced values over their size: what is smooth has next to none, a sawtooth 16 of its
-/// height.
+/// Greatest fourth difference of evenly spaced values over their size: what is smooth has next to
+/// none, a sawtooth 16 of its height.
 fn ripple(values: &[f64]) -> f64 {
     let size = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     let fourth = values.windows(5).map(|w| (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).abs());
@@ -151,7 +152,8 @@ fn a_recorded_drag_over_a_right_angle_has_no_sawtooth() {
     // The measure would see one of a hundred-thousandth.
     let sawn: Vec<f64> = pulls.iter().enumerate().map(|(k, p)| p * (1.0 + 1e-5 * (k % 2) as f64)).collect();
     assert!(ripple(&sawn) > 1e-6);
-    // It follows the capstan: a heavy cable on a round of its own radius, to what its weight there can do.
+    // It follows the capstan: a heavy cable on a round of its own radius, to what its weight there
+    // can do.
     let last = sliding.last().unwrap();
     let exact = (0.3 * last.turn_deg.abs().to_radians()).exp();
     let found = last.tension_before_n / last.tension_after_n;
@@ -174,7 +176,8 @@ fn ribbon(
     panic!("no ribbon in half a minute");
 }
 
-/// A hand draws the cable down while time runs: the ribbon is of that run, its middle one what is on screen.
+/// A hand draws the cable down while time runs: the ribbon is of that run, its middle one what is
+/// on screen.
 #[test]
 fn s19_the_ribbon_of_friction_repeats_what_a_hand_did() {
     let mut scene = catalog::draped_slipping();

@@ -1,5 +1,6 @@
-//! How fast the window is drawn (printed, never asserted): cables of 1000 and 100 000 segments over ground of 1000 points at
-//! 1280×800, through the same renderer as the pictures, in software where there is no GPU.
+//! How fast the window is drawn (printed, never asserted): cables of 1000 and 100 000 segments over
+//! ground of 1000 points at 1280×800, through the same renderer as the pictures, in software where
+//! there is no GPU.
 //!
 //! The figures: `cargo test --workspace --test ui speed -- --nocapture --test-threads 1`.
 
@@ -32,8 +33,8 @@ pub fn big(segments: usize, points: usize) -> Scene {
     scene
 }
 
-/// What a window does with a frame: tessellates it, hands it to the graphics driver, waits for the picture. Nothing is read back:
-/// a window shows it where it is.
+/// What a window does with a frame: tessellates it, hands it to the graphics driver, waits for the
+/// picture. Nothing is read back: a window shows it where it is.
 struct Screen {
     state: RenderState,
     view: Option<wgpu::TextureView>,
@@ -106,10 +107,12 @@ fn figures(mut ms: Vec<f64>) -> String {
     format!("median {:.1} ms, 95 % {:.1} ms", at(0.5), at(0.95))
 }
 
-/// CPU time of this process so far, s, of all its threads: what a frame costs, whoever else uses the machine. Linux only.
+/// CPU time of this process so far, s, of all its threads: what a frame costs, whoever else uses
+/// the machine. Linux only.
 fn cpu_s() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // After the name, which may hold spaces: user and system time are the 12th and 13th, in hundredths.
+    // After the name, which may hold spaces: user and system time are the 12th and 13th, in
+    // hundredths.
     let mut fields = stat.rsplit(')').next()?.split_whitespace().skip(11);
     let mut next = || fields.next()?.parse::<f64>().ok();
     Some((next()? + next()?) / 100.0)
@@ -223,7 +226,8 @@ fn speed_of_import() {
     }
 }
 
-/// Drawn by our own shader the window looks as egui draws it, but for the rounding of the font's edges.
+/// Drawn by our own shader the window looks as egui draws it, but for the rounding of the font's
+/// edges.
 #[test]
 fn software_drawing_looks_the_same() {
     [1.0, 1.5].into_iter().for_each(software_drawing_looks_the_same_at);
@@ -273,8 +277,8 @@ fn software_drawing_looks_the_same_at(scale: f32) {
     assert!(share(2) < 1e-3 && share(40) == 0.0, "at {scale} {} of the pixels differ, {} much", share(2), share(40));
 }
 
-/// A window whose graphs show all of a million samples of a held run and of a history that is full, printed and not asserted: a
-/// 60th of a second is 16.7 ms.
+/// A window whose graphs show all of a million samples of a held run and of a history that is full,
+/// printed and not asserted: a 60th of a second is 16.7 ms.
 #[test]
 fn speed_of_graphs() {
     use cable_viewer::record::run::Run;

@@ -77,7 +77,8 @@ fn s08_pause_step_back_scrub_and_go_on() {
     harness.run_steps(2);
     assert!(time_s(&harness) > now);
 
-    // Scrubbed to the middle, everything on screen is of that time; played, it runs to the present and on.
+    // Scrubbed to the middle, everything on screen is of that time; played, it runs to the present
+    // and on.
     apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.25))));
     assert!((time_s(&harness) - 0.25).abs() < 1.0 / 60.0);
     harness.get_by_label_contains("0.25 of ");

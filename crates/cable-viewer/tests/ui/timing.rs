@@ -1,5 +1,5 @@
-//! The worker on its own thread: how long an edit takes to be on screen (printed, never asserted), and that a
-//! flood of edits ends at the last one.
+//! The worker on its own thread: how long an edit takes to be on screen (printed, never asserted),
+//! and that a flood of edits ends at the last one.
 //!
 //! The figures: `cargo test --workspace --test ui timed -- --nocapture --test-threads 1`.
 
@@ -66,8 +66,8 @@ fn print(what: &str, mut ms: Vec<f64>) {
     );
 }
 
-/// Drags the last support of a scene's first cable round a small circle: from each edit to the end of the first frame
-/// that shows it, frames being a 60th of a second apart as on a screen.
+/// Drags the last support of a scene's first cable round a small circle: from each edit to the end
+/// of the first frame that shows it, frames being a 60th of a second apart as on a screen.
 fn timed_drag(name: &str, (scene, segments): (Scene, usize), how: (bool, f64)) {
     timed(name, (threaded(scene, segments), segments), how);
 }
@@ -187,11 +187,12 @@ fn a_drag_of_a_slow_scene_ends_at_the_answer_and_not_at_a_draft() {
     }
 }
 
-/// From an edit to the first frame whose figures are those of the edited scene, and so not dimmed, with the model that
-/// `auto` chooses: median, 95 % and worst of twenty edits a scene, printed. `SCENE=tank` asks for one scene.
+/// From an edit to the first frame whose figures are those of the edited scene, and so not dimmed,
+/// with the model that `auto` chooses: median, 95 % and worst of twenty edits a scene, printed.
+/// `SCENE=tank` asks for one scene.
 ///
-/// The last support that stands somewhere is moved; in the opening scene the robot holds the last one, so the first is
-/// moved, and the robot as well.
+/// The last support that stands somewhere is moved; in the opening scene the robot holds the last
+/// one, so the first is moved, and the robot as well.
 #[test]
 fn timed_edits_to_undimmed_figures() {
     let only = std::env::var("SCENE").ok();

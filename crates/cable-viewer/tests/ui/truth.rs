@@ -1,5 +1,6 @@
-//! One truth on the screen: figures, warnings and verdicts belong to the scene as it is, and the same scene has the
-//! same answer however it was come by. D1 to D10 are defects that a first user found by hand.
+//! One truth on the screen: figures, warnings and verdicts belong to the scene as it is, and the
+//! same scene has the same answer however it was come by. D1 to D10 are defects that a first user
+//! found by hand.
 
 use std::time::{Duration, Instant};
 
@@ -79,8 +80,8 @@ fn figures(answer: &Solution) -> impl PartialEq + std::fmt::Debug + use<> {
     )
 }
 
-/// A hitch that is dragged beyond the cable's length left the figures of a draft on screen for ever, labelled as those
-/// of the last scene that was solved.
+/// A hitch that is dragged beyond the cable's length left the figures of a draft on screen for
+/// ever, labelled as those of the last scene that was solved.
 #[test]
 fn a_scene_without_an_answer_shows_no_figure_of_a_draft() {
     let mut harness = threaded(catalog::tank(), Model::Fem);
@@ -231,7 +232,8 @@ fn an_edit_elsewhere_does_not_move_the_cable_through_a_beam() {
             .fold(f64::NEG_INFINITY, f64::max)
     };
     assert!(low(&harness) < 6.0, "it hangs below");
-    // The ends come down with the beam above the cable: it stays below, then a waypoint is added far from the beam.
+    // The ends come down with the beam above the cable: it stays below, then a waypoint is added
+    // far from the beam.
     for (k, y) in [(0, 9.0), (1, 9.0)] {
         let x = state(&harness).document.scene.cables[0].supports[k].at_m.unwrap()[0];
         let item = Item::Support { cable: 0, support: k };
@@ -328,7 +330,8 @@ fn pins_belong_to_their_scene() {
     assert!(state(&harness).analysis.references.is_empty());
 }
 
-/// D10.9: an end dragged beyond the length while time runs stopped time, and the window went on saying that it starts.
+/// D10.9: an end dragged beyond the length while time runs stopped time, and the window went on
+/// saying that it starts.
 #[test]
 fn time_that_is_stopped_by_an_impossible_edit_is_said_to_stand() {
     let mut harness = open(catalog::hanging_span());

@@ -1,6 +1,7 @@
-//! Every row that was asked for, done by hand, with a picture of the whole window at its main states: to be looked at, nothing is
-//! asserted but that there is a picture. `KEEP_PICTURES=FOLDER cargo test --workspace --test ui walk`; without the folder
-//! nothing is done.
+//! Every row that was asked for, done by hand, with a picture of the whole window at its main
+//! states: to be looked at, nothing is asserted but that there is a picture.
+//! `KEEP_PICTURES=FOLDER cargo test --workspace --test ui walk`; without the folder nothing is
+//! done.
 
 use std::path::PathBuf;
 

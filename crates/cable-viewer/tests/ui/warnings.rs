@@ -1,4 +1,5 @@
-//! Warnings as rows: a line each, whatever the width of the panel; the place by a click, the words on demand.
+//! Warnings as rows: a line each, whatever the width of the panel; the place by a click, the words
+//! on demand.
 
 use cable_core::scene::catalog;
 use cable_core::solution::WarningKind;

@@ -247,8 +247,8 @@ fn t04_fast_moves_of_the_camera_neither_lose_it_nor_touch_the_scene() {
     assert_eq!(state(&harness).document.scene, scene);
 }
 
-/// Sunny: four good marks are kept. Rainy: a low mark is not taken without what confused, and that is kept with what was on
-/// screen.
+/// Sunny: four good marks are kept. Rainy: a low mark is not taken without what confused, and that
+/// is kept with what was on screen.
 #[test]
 fn t05_marks_are_kept_and_a_low_one_with_what_confused() {
     use cable_viewer::io::feedback::QUESTIONS;

@@ -7,7 +7,8 @@ use cable_core::scene::{STANDARD_GRAVITY, Scene, Support};
 const D: f64 = 0.03;
 const R: f64 = 0.5 * D;
 
-/// A stiff cable between two ends, longer than their distance by a part; EI from 1e-3 to 1e4 as the scene's size bears it.
+/// A stiff cable between two ends, longer than their distance by a part; EI from 1e-3 to 1e4 as the
+/// scene's size bears it.
 fn stiff(r: &mut Chance, supports: Vec<Support>, far: f64, slack: f64) -> Scene {
     let length = far * (1.0 + slack);
     let w = r.scale(0.1, 10.0);

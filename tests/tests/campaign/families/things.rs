@@ -38,7 +38,8 @@ fn passed(r: &mut Chance, side: f64) -> Case {
     let mut route = vec![a];
     route.extend(round(center, 1.1 * tight, [side * (turn + 0.3), side * (turn - 0.3)]));
     route.push(b);
-    // Under a post the cable has to be taut to stay on it: any slack leaves it, which is an answer, too.
+    // Under a post the cable has to be taut to stay on it: any slack leaves it, which is an answer,
+    // too.
     let slack = if r.says(0.5) { r.within(-1e-4, 1e-3) } else { r.scale(1e-3, 0.3) };
     let mut s = along(r, route, slack);
     put(&mut s, post(center, radius), r.or_nothing(0.3, 0.05, 0.8));

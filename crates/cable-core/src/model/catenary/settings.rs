@@ -1,10 +1,12 @@
 //! The settings of `catenary` are its tuned constants in one place.
 //!
 //! Tolerances that rounding fixes stand beside the code that they belong to. The program
-//! `tuned-settings-spans` halves and doubles each setting and prints what moves.
+//! `tuned-settings` halves and doubles each setting and prints what moves.
+
+use serde::{Deserialize, Serialize};
 
 /// All settings of the model.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CatenarySettings {
     /// Greatest move of a support in one solve of a slow motion, of the cable's length. Smaller:
     /// more solves for the same answer. Larger: slip that starts and reverses inside a step is

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use crate::error::SolveError;
 use crate::math::Vec2;
-use crate::model::fem::mesh::sliding_node::Seat;
+use crate::model::fem::mesh::sliding_node::SlideOver;
 use crate::model::fem::newton::mixed_free::FreeStep;
+use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::{HandDrive, Memory, Pacing, Rollback, SolverMemory};
 use crate::model::fem::state::stepping::Sleep;
@@ -17,36 +18,6 @@ use crate::model::input_filter::held_warning;
 use crate::model::{Inertia, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::solution::{Cost, Warning, WarningCause};
-
-/// Longest inner time step, s. At 1/240 the tip of a falling chain of 10 m is within 5e-4 m of that
-/// of rigid links (`tests/dynamics`).
-pub(super) const INNER_STEP: f64 = 1.0 / 240.0;
-
-/// Times the barrier's stiffness for its tension that a step is tried again with: the tension may
-/// grow in it.
-const RETRY_STIFFENING_LIMIT: f64 = 8.0;
-
-/// Change of the barrier's stiffness from one step to the next: up, so that it follows a snatch,
-/// and down.
-pub(super) const STIFFNESS_CHANGE: [f64; 2] = [2.0, 0.8];
-
-/// Halvings of a step without inertia before the cable is let down to its rest instead. Fewer: on
-/// the way down corners slip, and keep that (1 to 3 % of the tension in 4 of 200 scenes); more:
-/// cables that need it take longer.
-const QUIET_DEPTH: usize = 4;
-
-/// A step is halved this often before the robot has to wait for the cable. Less: it jerks; more: it
-/// costs.
-const HALVINGS_BEFORE_ROBOT_WAITS: usize = 3;
-
-/// A step is halved at most this often.
-const MAX_DEPTH: usize = 10;
-
-/// Part of a step that the first one of a motion takes, the next ones each as long as all before.
-/// It has no history: implicit Euler carries a cable let go ½ a h² too far, and BDF2 makes ¾ a h²
-/// of that. Larger: a free fall at 1/240 s is off by ¾ of this part's square times 1.7e-4 m;
-/// smaller: one step more for each halving.
-const FIRST_STEP_FRACTION: f64 = 0.125;
 
 /// The moving cable, or the resting one where it can touch something.
 #[derive(Clone, Debug)]
@@ -65,8 +36,9 @@ impl Dynamics {
     ///
     /// # Errors
     /// None today: a feature that the model lacks is refused when it is asked for.
-    pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
-        let cable = CableState::new(problem, settings);
+    pub fn new(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Result<Self, SolveError> {
+        let longest = tuning.step.longest_s;
+        let cable = CableState::new(problem, settings, tuning);
         Ok(Self {
             rollback: Rollback::default(),
             solver: SolverMemory {
@@ -77,7 +49,7 @@ impl Dynamics {
                 work_left: WorkBudget::Unlimited,
             },
             pacing: Pacing {
-                pace: StepSizeController::new(settings.inner_step_s.unwrap_or(INNER_STEP)),
+                pace: StepSizeController::new(settings.inner_step_s.unwrap_or(longest)),
                 sleep: Sleep::default(),
                 tolerance: settings.tolerance,
                 due: f64::INFINITY,
@@ -164,7 +136,12 @@ impl Dynamics {
         self.cable.motion.time = end;
         if inertia == Inertia::Dynamic {
             self.cable.motion.account.ends_at(end);
-            self.pacing.pace.choose(self.pacing.tolerance, self.cable.problem.length, dt_s);
+            self.pacing.pace.choose(
+                &self.cable.mesh.tuning.step,
+                self.pacing.tolerance,
+                self.cable.problem.length,
+                dt_s,
+            );
             if self.pacing.sleep.falls_asleep(&self.cable) {
                 self.cable.motion.v.fill(Vec2::zeros());
                 self.cable.motion.w.fill(0.0);
@@ -195,8 +172,8 @@ impl Dynamics {
         loop {
             let begins =
                 self.cable.motion.step_before == 0.0 && inertia == Inertia::Dynamic && self.cable.meets_nothing();
-            if begins && depth == 0 && left > FIRST_STEP_FRACTION * h {
-                (began, size) = (Some(left), FIRST_STEP_FRACTION * left);
+            if begins && depth == 0 && left > self.cable.mesh.tuning.step.first_fraction * h {
+                (began, size) = (Some(left), self.cable.mesh.tuning.step.first_fraction * left);
             }
             self.rollback.save(&self.cable);
             let start = self.cable.motion.time;
@@ -211,7 +188,9 @@ impl Dynamics {
                     let mut aims = std::mem::take(&mut self.hand_drive.aims);
                     self.cable.aim(&mut aims, dragged, piece / (due - start));
                     let tried = self.quiet_step(to, &aims).or_else(|failure| {
-                        if failure.cause == FailureCause::CornerPulls || depth < QUIET_DEPTH {
+                        if failure.cause == FailureCause::CornerPulls
+                            || depth < self.cable.mesh.tuning.equilibrium.halvings_before_relaxation
+                        {
                             return Err(failure);
                         }
                         self.rollback.restore(&mut self.cable);
@@ -256,24 +235,26 @@ impl Dynamics {
                         continue;
                     }
                     // A cable that cannot get out of the way of the robot holds it.
-                    if depth >= HALVINGS_BEFORE_ROBOT_WAITS && self.cable.outline_waits() {
+                    if depth >= self.cable.mesh.tuning.step.halvings_before_robot_waits && self.cable.outline_waits() {
                         (depth, size) = (0, left);
                         continue;
                     }
                     // The barrier may be too soft for what this step does.
-                    self.cable.adapt_stiffness([2.0, 1.0], RETRY_STIFFENING_LIMIT);
+                    self.cable.adapt_stiffness([2.0, 1.0], self.cable.mesh.tuning.contact.retry_stiffening);
                     *halved += 1;
                     depth += 1;
                     size *= 0.5;
                     if inertia == Inertia::Dynamic {
-                        self.pacing.pace.note_refused(size);
+                        self.pacing.pace.note_refused(&self.cable.mesh.tuning.step, size);
                     }
-                    if inertia == Inertia::QuasiStatic && depth == QUIET_DEPTH {
+                    if inertia == Inertia::QuasiStatic
+                        && depth == self.cable.mesh.tuning.equilibrium.halvings_before_relaxation
+                    {
                         // Then all that is left at once.
                         size = left;
                     }
                     self.cable.motion.step_before = 0.0;
-                    if depth > MAX_DEPTH {
+                    if depth > self.cable.mesh.tuning.step.max_halvings {
                         return Err(SolveError::StepFailed {
                             model: Model::Fem,
                             time_s: self.cable.motion.time,
@@ -291,8 +272,8 @@ impl Dynamics {
     pub(super) fn report(&self, done: Converged, halved_steps: usize, inner_step_s: f64) -> StepReport {
         let cost = Cost { iterations: done.iterations, halved_steps, residual_n: done.residual, inner_step_s };
         let node_of = |k: usize| {
-            let seat = Seat::Pulley(k);
-            let sliding = || self.cable.mesh.sliding.iter().position(|s| s.is_some_and(|s| s.seat == seat));
+            let slide_over = SlideOver::Pulley(k);
+            let sliding = || self.cable.mesh.sliding.iter().position(|s| s.is_some_and(|s| s.slide_over == slide_over));
             self.cable.meshing.support_node.get(k).copied().flatten().or_else(sliding)
         };
         let held = self.cable.answers.held_back.iter().filter_map(|&k| {

@@ -27,9 +27,6 @@ use crate::solution::ErrorEstimates;
 
 /// Fewer bars than this have no half of use.
 const LEAST_BARS: usize = 8;
-/// Most bars to which the mesh is refined by itself. More: 1e-3 is met by more scenes, each twice
-/// as dear as with half as many.
-const MOST_BARS: usize = 800;
 /// Part of what the coarser two of three meshes differ by that the error of the finest is at least:
 /// that of the first order.
 const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
@@ -85,7 +82,7 @@ impl TwoMeshes {
             self.errors = beside(&answer, &exact.answer, problem);
             while refinement == Refinement::Allowed
                 && exceeds(&self.errors, &answer, settings)
-                && 2 * fine.cable.meshing.even_bars <= MOST_BARS
+                && 2 * fine.cable.meshing.even_bars <= fine.cable.mesh.tuning.start.max_refined_bars
             {
                 let bars = 2 * fine.cable.meshing.even_bars;
                 let Some(finer) = laid_over(problem, settings, fine, bars, &exact.answer, dragged) else { break };
@@ -190,7 +187,9 @@ fn laid_over(
     answer: &CableSolution,
     dragged: &[Option<Vec2>],
 ) -> Option<Dynamics> {
-    let mut other = Dynamics::new(problem.clone(), Settings { segments: Some(bars), ..settings }).ok()?;
+    let mut other =
+        Dynamics::new(problem.clone(), Settings { segments: Some(bars), ..settings }, like.cable.mesh.tuning.clone())
+            .ok()?;
     other.cable.meshing.slides = like.cable.meshing.slides;
     other.warm_start(answer, like.cable.time(), dragged).ok()?;
     if !other.rested {

@@ -13,6 +13,7 @@
 //! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
 //! | `obstacle`, `transfer` | the robot's outline; states and answers of other models |
 //! | `results`, `mesh_comparison` | the answer of a state, and its errors |
+//! | `settings` | the tuned constants |
 //!
 //! [`FemModel`] decides which part answers, and hands the state over when the question changes.
 
@@ -26,6 +27,7 @@ pub(in crate::model) mod newton;
 mod obstacle;
 mod remesh;
 mod results;
+pub mod settings;
 mod state;
 pub mod system;
 #[cfg(test)]
@@ -39,6 +41,7 @@ use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::model::fem::mesh_comparison::{Refinement, TwoMeshes};
+use crate::model::fem::settings::Tuning;
 use crate::model::fem::system::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;
 use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
@@ -50,30 +53,12 @@ use crate::solution::{CableSolution, Cost, Node, Warning, WarningCause};
 use crate::state::State;
 use elastica::Elastica;
 
-/// The solution of `spans` is accepted as the initial equilibrium if no support force changes by
-/// more than this part of the greatest tension. Smaller: coarse meshes reject it and relax into
-/// folds. Larger: bars that are too long for the ground, held by friction at both ends, keep a
-/// tension that nothing else requires (25 bars on a robot's ground: 220 %).
-const SUPPORT_FORCE_CHANGE_LIMIT: f64 = 0.1;
-
-/// The same limit for a stiff cable, whose initial shape is that of a flexible one: its bending
-/// contributes to the support forces.
-const STIFF_SUPPORT_FORCE_CHANGE_LIMIT: f64 = 0.5;
-
-/// Number of segments from which on the search for the initial equilibrium begins at that of a
-/// coarser mesh. Fewer: meshes that need no help are solved twice; more: a relaxation of a thousand
-/// bars takes minutes.
-const TWO_MESH_START_SEGMENTS: usize = 500;
-/// Ratio of the bar lengths of the two meshes. Smaller: more meshes, each nearer to the next;
-/// larger: the coarse solution differs from that of the fine mesh.
-const FIRST_MESH_COARSENING: usize = 8;
-
 /// The outcome of starting from the solution of `spans`.
-enum Laid {
+enum FirstEquilibrium {
     /// The mesh rests in it too; with the warnings about it.
-    TakenOver(Vec<Warning>),
+    Accepted(Vec<Warning>),
     /// The mesh does not rest in it and relaxes from its own initial guess.
-    Alone,
+    Rejected,
     /// Nothing.
     Unknown,
 }
@@ -103,7 +88,7 @@ pub struct FemModel {
     dynamics: dynamics::Dynamics,
     present: Part,
     /// True if a first rest with contact goes on from that of `spans`, where there is one.
-    laid_evenly: bool,
+    starts_from_spans: bool,
     settings: Settings,
     /// The estimate of the error in contact by another mesh.
     meshes: TwoMeshes,
@@ -122,15 +107,23 @@ impl FemModel {
     /// # Errors
     /// `Unsupported` when the scene needs what the model lacks.
     pub fn new(problem: Arc<Problem>, settings: Settings) -> Result<Self, SolveError> {
+        Self::with_tuning(problem, settings, Arc::default())
+    }
+
+    /// The same with other tuned constants.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_tuning(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Result<Self, SolveError> {
         let statics = free::statics::Statics::new(problem.clone(), settings)?;
-        let dynamics = dynamics::Dynamics::new(problem.clone(), settings)?;
+        let dynamics = dynamics::Dynamics::new(problem.clone(), settings, tuning)?;
         let present = if touches_nothing(&problem) { Part::Statics } else { Part::Dynamics };
         Ok(Self {
             dragged: vec![None; problem.supports.len()],
             statics,
             dynamics,
             present,
-            laid_evenly: true,
+            starts_from_spans: true,
             meshes: TwoMeshes::default(),
             settings,
             led: problem.outline.as_ref().map(|o| o.placement),
@@ -140,10 +133,15 @@ impl FemModel {
         })
     }
 
+    /// The tuned constants by which it is solved.
+    fn tuning(&self) -> &Arc<Tuning> {
+        &self.dynamics.cable.mesh.tuning
+    }
+
     /// The same, but `spans` is not asked how the cable is laid: it was, and has no answer.
     #[must_use]
-    pub fn laid_alone(mut self) -> Self {
-        self.laid_evenly = false;
+    pub fn without_spans_start(mut self) -> Self {
+        self.starts_from_spans = false;
         self
     }
 
@@ -153,9 +151,9 @@ impl FemModel {
     ///
     /// # Errors
     /// That it slides from where it is laid.
-    fn lay(&mut self) -> Result<(Laid, Option<InitialEquilibrium>), SolveError> {
+    fn lay(&mut self) -> Result<(FirstEquilibrium, Option<InitialEquilibrium>), SolveError> {
         let laid = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.led)?;
-        let Some(lay) = laid else { return Ok((Laid::Unknown, None)) };
+        let Some(lay) = laid else { return Ok((FirstEquilibrium::Unknown, None)) };
         // A stiff cable is laid as a flexible one: that is where it begins, not how it lies.
         let flexible = self.problem.bending_stiffness == 0.0;
         let before = self.dynamics.clone();
@@ -165,16 +163,14 @@ impl FemModel {
         let found = self.dynamics.cable.solution();
         let pairs = lay.answer.supports.iter().zip(&found.supports);
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
-        let jammed = if self.problem.bending_stiffness > 0.0 {
-            STIFF_SUPPORT_FORCE_CHANGE_LIMIT
-        } else {
-            SUPPORT_FORCE_CHANGE_LIMIT
-        };
+        let tuning = self.tuning().start;
+        let jammed =
+            if self.problem.bending_stiffness > 0.0 { tuning.max_stiff_force_change } else { tuning.max_force_change };
         if taken && off.fold(0.0, larger) <= jammed * greatest {
-            return Ok((Laid::TakenOver(lay.warnings.clone()), flexible.then_some(lay)));
+            return Ok((FirstEquilibrium::Accepted(lay.warnings.clone()), flexible.then_some(lay)));
         }
         self.dynamics = before;
-        Ok((Laid::Alone, flexible.then_some(lay)))
+        Ok((FirstEquilibrium::Rejected, flexible.then_some(lay)))
     }
 
     /// The resting place where nothing can be touched. From the flexible cable up in EI a stiff one
@@ -200,18 +196,18 @@ impl FemModel {
     /// The resting place where something may be touched.
     fn rest_in_touch(&mut self) -> Result<StepReport, SolveError> {
         let begins = !self.dynamics.rested && self.dynamics.cable.time() == 0.0;
-        let (laid, exact) = match begins && self.laid_evenly {
+        let (laid, exact) = match begins && self.starts_from_spans {
             true => self.lay().map_or_else(|slides| (Err(slides), None), |(laid, exact)| (Ok(laid), exact)),
-            false => (Ok(Laid::Unknown), None),
+            false => (Ok(FirstEquilibrium::Unknown), None),
         };
-        let taken = matches!(laid, Ok(Laid::TakenOver(_)));
+        let taken = matches!(laid, Ok(FirstEquilibrium::Accepted(_)));
         if begins && !taken && self.statics.settle(&self.dragged).is_ok() {
             self.dynamics.begin_at(&self.statics.state(), &self.dragged);
         }
         if begins && !taken {
             self.begin_coarse();
         }
-        let known = matches!(laid, Ok(Laid::TakenOver(_) | Laid::Alone));
+        let known = matches!(laid, Ok(FirstEquilibrium::Accepted(_) | FirstEquilibrium::Rejected));
         let start = self.dynamics.cable.state();
         let before = if known { None } else { Some(self.dynamics.clone()) };
         let mut found = self.dynamics.settle(&self.dragged);
@@ -220,8 +216,8 @@ impl FemModel {
             found = Err(SolveError::NoRestingPlace { why });
         }
         let said = match laid {
-            Ok(Laid::TakenOver(said)) => said,
-            Ok(Laid::Alone | Laid::Unknown) => Vec::new(),
+            Ok(FirstEquilibrium::Accepted(said)) => said,
+            Ok(FirstEquilibrium::Rejected | FirstEquilibrium::Unknown) => Vec::new(),
             // A cable that slides from its first place may come to rest elsewhere.
             Err(slides) => {
                 let answer = self.dynamics.cable.solution();
@@ -269,12 +265,13 @@ impl FemModel {
     /// takes as many steps as waves of slack run along the bars, which a coarse mesh does cheaply.
     fn begin_coarse(&mut self) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
-        if fine <= TWO_MESH_START_SEGMENTS {
+        let tuning = self.tuning().clone();
+        if fine <= tuning.start.two_mesh_bars {
             return;
         }
-        let settings = Settings { segments: Some(fine / FIRST_MESH_COARSENING), ..self.settings };
-        let Ok(coarse) = Self::new(self.problem.clone(), settings) else { return };
-        let mut coarse = Self { dragged: self.dragged.clone(), ..coarse.laid_alone() };
+        let settings = Settings { segments: Some(fine / tuning.start.mesh_ratio), ..self.settings };
+        let Ok(coarse) = Self::with_tuning(self.problem.clone(), settings, tuning) else { return };
+        let mut coarse = Self { dragged: self.dragged.clone(), ..coarse.without_spans_start() };
         if let Some(to) = self.led {
             coarse.set_robot_pose(to);
         }
@@ -415,7 +412,7 @@ impl Mechanics for FemModel {
         if let Some(report) = self.bend() {
             return Ok(report);
         }
-        self.dynamics.solver.work_left = WorkBudget::Left(equilibrium::quasi_static::REST_WORK);
+        self.dynamics.solver.work_left = WorkBudget::Left(self.tuning().equilibrium.max_work);
         let found = self.rest_in_touch();
         self.dynamics.solver.work_left = WorkBudget::Unlimited;
         found

@@ -4,7 +4,7 @@ use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
-use crate::model::fem::mesh::sliding_node::{Balanced, Load, ONE_MARK_BAR_FRACTION, Seat, SlidingNode};
+use crate::model::fem::mesh::sliding_node::{Balanced, Load, SlideOver, SlidingNode};
 use crate::model::fem::mesh::tangent_path::angle_between;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::assembly::Mesh;
@@ -242,7 +242,7 @@ fn free_end(d: &CableState, node: usize) -> Option<Vec2> {
 /// Normal and friction force of edges and floor on a node, N.
 fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
     let mut sum = Vec2::zeros();
-    for rub in d.contacts.rubs.iter().filter(|r| r.touch.node == node && !r.touch.on_segment) {
+    for rub in d.contacts.friction_contacts.iter().filter(|r| r.touch.node == node && !r.touch.on_segment) {
         sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + rub_force(&d.contacts, rub, x);
     }
     if let Some(&limit) = d.input.floor_limit.get(node) {
@@ -267,7 +267,7 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
     for touch in &touches {
         sum += touch.pair.gap.normal * touch.load(&d.contacts.barrier);
     }
-    for rub in &d.contacts.rubs {
+    for rub in &d.contacts.friction_contacts {
         sum += rub_force(&d.contacts, rub, x);
     }
     for k in 0..x.len() {
@@ -450,7 +450,7 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     // On a round that is small beside its bars, friction of the weight that hangs over it from them
     // is beside it: on the round it is no more than its turn there allows.
     let grown = (b / last).ln();
-    let small = same == [false; 2] && whole * radius < ONE_MARK_BAR_FRACTION * d.even();
+    let small = same == [false; 2] && whole * radius < d.mesh.tuning.remesh.one_mark_bars * d.even();
     let most = node.friction * whole;
     let rate = if small && grown.abs() > HANGING_TENSION_GROWTH * most { most.copysign(grown) } else { grown };
     // The load beside it acts where the weight hangs: before the round and after it by the angle
@@ -555,8 +555,8 @@ fn shear(mesh: &Mesh, moments: &[f64], e: usize, x: &[Vec2]) -> Vec2 {
 
 /// The force of the cable on a pulley with its tensions and arc length.
 fn pulley(d: &CableState, support: usize, x: &[Vec2], tension: &[f64]) -> Option<SupportReaction> {
-    let seat = Seat::Pulley(support);
-    let on = |k: &usize| d.mesh.sliding[*k].is_some_and(|s| s.seat == seat);
+    let slide_over = SlideOver::Pulley(support);
+    let on = |k: &usize| d.mesh.sliding[*k].is_some_and(|s| s.slide_over == slide_over);
     let first = (1..x.len() - 1).find(on)?;
     let last = (1..x.len() - 1).rev().find(on)?;
     let (before, after) = (d.load(first)?, d.load(last)?);
@@ -684,7 +684,7 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
         let first = k;
         k += 1;
         let Some(node) = d.mesh.sliding[first] else { continue };
-        let Seat::Obstacle { obstacle, .. } = node.seat else { continue };
+        let SlideOver::Obstacle { obstacle, .. } = node.slide_over else { continue };
         while k + 1 < n && d.mesh.sliding[k].is_some_and(|s| s.shares_round(&node)) {
             k += 1;
         }
@@ -762,7 +762,7 @@ fn report(
         normal += t.pair.gap.normal * load;
     }
     let mut slips = 0.0;
-    let rubs = d.contacts.rubs.iter().filter(|r| {
+    let rubs = d.contacts.friction_contacts.iter().filter(|r| {
         r.touch.pair.gap.obstacle == first.pair.gap.obstacle && (first.node..=last.node).contains(&r.touch.node)
     });
     for rub in rubs.clone() {

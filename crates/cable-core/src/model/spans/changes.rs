@@ -226,7 +226,7 @@ fn meet(strand: &mut CableRun, course: &Course, world: &World, sought: Sought) -
         return Ok(false);
     }
     let tuned = &course.settings.changes;
-    let deep = smaller(tuned.depth_fraction * (strand.to - strand.from), tuned.max_depth_m);
+    let deep = tuned.depth_fraction * (strand.to - strand.from);
     let mut any = false;
     // From the last span, so that those before keep their number.
     for k in (0..strand.spans()).rev() {

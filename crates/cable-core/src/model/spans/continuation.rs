@@ -221,9 +221,9 @@ impl CableEquilibrium {
         work: &mut Work,
     ) -> Result<Self, Failure> {
         let mut first = None;
-        for within in layout.settings.continuation.adopted_cone_fractions {
+        for unused in layout.settings.continuation.unused_cone_fractions {
             let course = layout.course(layout.curves(), instant);
-            let Some(strands) = from_solution::take(layout, &course, instant, nodes, within) else { continue };
+            let Some(strands) = from_solution::take(layout, &course, instant, nodes, 1.0 - unused) else { continue };
             let mut network = Self { strands, course, instant: instant.clone() };
             match network.step(layout, instant, work) {
                 Ok(_) => return Ok(network),

@@ -5,11 +5,12 @@
 //! that they belong to, as do the tolerances by which the model checks its own answers.
 //!
 //! The values were found on the scenes of the catalogue and on random scenes; the program
-//! `tuned-settings-spans` halves and doubles each and prints what moves. A field whose text says
-//! that nothing moved was changed by a factor of two either way there, without another answer.
+//! `tuned-settings` halves and doubles each and prints what moves (`docs/notes/settings.md`).
+
+use serde::{Deserialize, Serialize};
 
 /// All settings of the model.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SpansSettings {
     /// Newton's method for a strand.
     pub newton: NewtonSettings,
@@ -24,7 +25,7 @@ pub struct SpansSettings {
 }
 
 /// Newton's method for a strand, and the prediction of slip before it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NewtonSettings {
     /// Most iterations. Smaller: steps are halved that would have converged. Larger: a failure
     /// costs more, and is not cured.
@@ -71,7 +72,7 @@ pub struct NewtonSettings {
 }
 
 /// The prediction of which contacts slide in a step, before it is solved.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SlipSettings {
     /// Rounds of changing sides, over two for each contact. Smaller: no prediction where many
     /// contacts change. Larger: a cycle costs more.
@@ -94,7 +95,7 @@ pub struct SlipSettings {
 }
 
 /// Steps from an equilibrium to another, and the way to the first.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContinuationSettings {
     /// Greatest move of a support in one solve, of the cable's length. Smaller: more solves.
     /// Larger: sliding that starts and reverses inside a step is missed, and what is laid down in a
@@ -145,11 +146,11 @@ pub struct ContinuationSettings {
     /// Part of the load that acts at first. Smaller: nothing gained. Larger: a long span sags into
     /// what is below it before it can be met step by step.
     pub first_load_fraction: f64,
-    /// Parts of the cone of friction that a cable taken over from another model may use, in turn:
-    /// along the very edge of the cone sliding from an end would stop anywhere, and Newton stalls.
-    /// The first changes nothing that shows, the second holds a little first. Smaller: less of what
-    /// the other model holds is held. Larger: Newton stalls.
-    pub adopted_cone_fractions: [f64; 3],
+    /// Parts of the cone of friction that a cable taken over from another model may not use, in
+    /// turn: along the very edge of the cone sliding from an end would stop anywhere, and Newton
+    /// stalls. The first changes nothing that shows, the second holds a little first. Smaller:
+    /// Newton stalls. Larger: less of what the other model holds is held.
+    pub unused_cone_fractions: [f64; 3],
     /// Friction over what there is that is first tried where a cable slides, as a part of it; then
     /// twice that, and so on. Smaller: more of them are tried. Larger: what is missing is bracketed
     /// by more.
@@ -164,7 +165,7 @@ pub struct ContinuationSettings {
 }
 
 /// The first shape: which contacts the route has, and how the cable is laid on them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct InitialSettings {
     /// Distance within which an end of a route lies on a boundary, of the cable's radius. Smaller:
     /// an end drawn roughly hangs beside what it lies on. Larger: an end held just above a surface
@@ -209,7 +210,7 @@ pub struct InitialSettings {
 }
 
 /// Contacts that are made, joined, extended and released between solves.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChangeSettings {
     /// Most changes in one solve; a cold start over 24 corners takes 60. Smaller: a long route
     /// fails. Larger: a cycle costs more.
@@ -227,8 +228,6 @@ pub struct ChangeSettings {
     /// Depth inside an obstacle from which it is met, of the strand. Smaller: rounding at touch
     /// points is met. Larger: it is seen.
     pub depth_fraction: f64,
-    /// The same at most, m.
-    pub max_depth_m: f64,
     /// Extent (m or rad) by which the interval of a contact has turned round when it is released.
     /// Smaller: rounding releases what touches in a point. Larger: a contact that pulls is
     /// accepted.
@@ -248,7 +247,7 @@ pub struct ChangeSettings {
 }
 
 /// Causes of failures, and corners that a step passed through.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VerifySettings {
     /// Force across the load, of the weight of a span, up to which it hangs in one line. Smaller: a
     /// fold is not told. Larger: a span that sags is told to fold.
@@ -312,7 +311,7 @@ impl Default for ContinuationSettings {
             first_tension_weights: 4.0,
             second_tension_weights: 400.0,
             first_load_fraction: 1e-3,
-            adopted_cone_fractions: [1.0 - 1e-5, 1.0 - 1e-3, 0.99],
+            unused_cone_fractions: [1e-5, 1e-3, 1e-2],
             first_missing_part: 0.04,
             max_missing_part: 1e4,
             mobilised_fraction: 2e-2,
@@ -346,7 +345,6 @@ impl Default for ChangeSettings {
             shed_length_fraction: 1e-4,
             catch_distance_fraction: 0.02,
             depth_fraction: 1e-9,
-            max_depth_m: 1e-6,
             release_overlap: 1e-10,
             corner_search_points: 64,
             lying_fraction: 0.02,

@@ -102,8 +102,8 @@ fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], mesh: &m
     }
 }
 
-/// A line of risk over one of the background: one of the two stands off every colour of the map that is
-/// above the service tension, in both themes.
+/// A line of risk over one of the background: one of the two stands off every colour of the map
+/// that is above the service tension, in both themes.
 fn stroke(view: &CanvasView<'_>, ends: [Pos2; 2], width: f32) -> [Shape; 2] {
     let line = |width: f32, colour: Color32| Shape::line_segment(ends, Stroke::new(width, colour));
     [line(width + 2.0, view.palette.background), line(width, view.palette.risk)]

@@ -37,8 +37,8 @@ pub fn draw(view: &CanvasView<'_>, state: &AppState) {
             let p = view.at(at);
             if let Some(ends) = hand_spring(state, cable, support) {
                 spring(view, ends.map(|p| view.at(p)));
-                // The pointer may be ahead of the hand, which is no faster than it may be. Past the length of
-                // the cable the scene keeps a place behind the hand.
+                // The pointer may be ahead of the hand, which is no faster than it may be. Past the
+                // length of the cable the scene keeps a place behind the hand.
                 let leads = state.selection.spring_support == Some((cable, support)) && !state.solver.pulls_past_length;
                 if let Some(to) = s.at_m.filter(|_| leads) {
                     let ends = [ends[1], to].map(|p| view.at(p));

@@ -21,8 +21,8 @@ use crate::widgets::field;
 const TITLE: &str = "Error over cost";
 /// Height of the chart, points.
 const HEIGHT: f32 = 190.0;
-/// Distance of powers of ten below which their numbers are left out, and from which they are as dark as
-/// text, points.
+/// Distance of powers of ten below which their numbers are left out, and from which they are as
+/// dark as text, points.
 const LABELS_APART: Rangef = Rangef { min: 18.0, max: 26.0 };
 /// Differences below this are drawn at it: they are rounding.
 const LEAST_DIFFERENCE: f64 = 1e-10;

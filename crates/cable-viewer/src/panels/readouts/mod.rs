@@ -23,8 +23,8 @@ use crate::units::{format, unit};
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::{field, readout};
 
-/// Opacity of figures that are not of the scene as it is. More: they are read as answers; less: what
-/// was there cannot be read at all.
+/// Opacity of figures that are not of the scene as it is. More: they are read as answers; less:
+/// what was there cannot be read at all.
 pub const DIMMED: f32 = 0.4;
 
 /// Draws them all.
@@ -34,7 +34,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     rest(ui, state, commands);
 }
 
-/// The present cable as it was solved, which may not be the one being typed; else why there is none.
+/// The present cable as it was solved, which may not be the one being typed; else why there is
+/// none.
 fn shown(state: &AppState) -> Result<(&Scene, &Cable, &CableSolution), &'static str> {
     let index = state.current_cable();
     let answer = state.live.snapshot.solution.as_deref().ok_or("Nothing solved yet")?;
@@ -45,8 +46,8 @@ fn shown(state: &AppState) -> Result<(&Scene, &Cable, &CableSolution), &'static 
     }
 }
 
-/// What stands above everything that scrolls: the greatest tension, its share of the limits, the ends
-/// and the sag.
+/// What stands above everything that scrolls: the greatest tension, its share of the limits, the
+/// ends and the sag.
 pub fn head(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let (scene, cable, solved) = match shown(state) {
         Ok(shown) => shown,
@@ -299,8 +300,8 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSum
     }
 }
 
-/// Friction of this part of all there is is what the solver leaves. More: friction that holds a light
-/// end is hidden; less: rounding is read as friction.
+/// Friction of this part of all there is is what the solver leaves. More: friction that holds a
+/// light end is hidden; less: rounding is read as friction.
 const NO_FRICTION: f64 = 1e-6;
 /// An error of this part of the greatest tension is one of rounding. More: meshes that are very
 /// fine are called exact; less: models without a mesh show their rounding as if it mattered.

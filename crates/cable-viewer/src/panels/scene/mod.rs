@@ -1,4 +1,5 @@
-//! The scene panel edits the name, the map and the robot of the scene; the outline lists its things.
+//! The scene panel edits the name, the map and the robot of the scene; the outline lists its
+//! things.
 //!
 //! - `outline`: everything in the scene as a tree that selects
 //! - `map`, `robot`: pickers of known tanks and robots

@@ -1,5 +1,5 @@
-//! The outline is everything in the scene as a tree: a click on a thing selects it, and the panel on
-//! the right edits it.
+//! The outline is everything in the scene as a tree: a click on a thing selects it, and the panel
+//! on the right edits it.
 
 use cable_core::scene::preset::robot_preset;
 use cable_core::scene::{RobotTask, View};

@@ -13,7 +13,8 @@ use crate::widgets::property::labelled;
 
 /// Width of a number beside another, points: “−12.345” fits.
 pub const NUMBER_WIDTH: f32 = 47.0;
-/// Between a line and the canvas, points: a text that is cut may be a little wider than it is given.
+/// Between a line and the canvas, points: a text that is cut may be a little wider than it is
+/// given.
 const RIGHT_MARGIN: f32 = 6.0;
 /// What a field has beside its text, points.
 const FIELD_MARGIN: f32 = 8.0;

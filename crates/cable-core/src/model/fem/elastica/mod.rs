@@ -225,7 +225,7 @@ pub fn rest(
     let chain = match &bent {
         // An equilibrium may be one that a cable runs away from: a chain that is let go there
         // tells.
-        Some((answer, _)) => match relax::let_go(problem, time_s, dragged, answer) {
+        Some((answer, _)) => match relax::settle_chain(problem, time_s, dragged, answer) {
             LetGo::Stays | LetGo::Unknown => return bent,
             LetGo::Leaves(chain) => *chain,
             LetGo::Totters => return None,

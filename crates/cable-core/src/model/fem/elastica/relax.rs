@@ -187,7 +187,7 @@ pub(super) enum LetGo<'a> {
 }
 
 /// Lets a chain go from an answer for the stiff cable.
-pub(super) fn let_go<'a>(
+pub(super) fn settle_chain<'a>(
     problem: &'a Problem,
     time_s: f64,
     dragged: &[Option<Vec2>],

@@ -2,26 +2,10 @@
 //! then renewed, until nothing changes.
 
 use crate::math::{bounded, larger};
-use crate::model::fem::newton::minimize::DRIFT;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::SolverMemory;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, StepInput, Unknowns};
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 use crate::model::fem::time::step_setup::StickSlipChanges;
-use crate::model::fem::time::step_solver::ROUNDS_EACH;
-
-/// Rounds of refreshing the normal forces that friction uses, in a step without inertia.
-pub(in crate::model::fem) const LAG_ROUNDS: usize = 25;
-
-/// Rounds after which normal forces are taken halfway to the new ones only: where a contact that
-/// rubs more lifts its neighbour, which then rubs less, they go round and round. Fewer: what
-/// converges by itself takes longer; more: fewer rounds are left to halve what is off.
-const PLAIN_ROUNDS: usize = 8;
-
-/// Least part of the way that friction is taken towards its new normal forces, and by what that
-/// part changes from round to round.
-const LEAST_PART: f64 = 0.03;
-const RESISTANCE_GROWTH: f64 = 1.1;
-const RESISTANCE_SHRINKAGE: f64 = 0.6;
 
 /// A solution with refreshed normal forces, grips and factors.
 #[derive(Clone, Copy, Debug)]
@@ -34,8 +18,8 @@ pub(in crate::model::fem) struct Lagged {
 
 impl Lagged {
     /// True if friction is what the normal forces allow, at sliding nodes and elsewhere.
-    pub(in crate::model::fem) fn is_lawful(&self, input: &StepInput) -> bool {
-        self.grips.hold() && self.off <= DRIFT * input.tolerance
+    pub(in crate::model::fem) fn is_lawful(&self, cable: &CableState) -> bool {
+        self.grips.hold() && self.off <= cable.mesh.tuning.newton.stretch_residual * cable.input.tolerance
     }
 }
 
@@ -58,22 +42,23 @@ impl SolverMemory {
         unknowns: &mut Unknowns,
         rounds: usize,
     ) -> Result<Lagged, Failure> {
+        let tuning = cable.mesh.tuning.equilibrium;
         let (mut total, mut grips) = (Converged::default(), StickSlipChanges::FOUND);
-        let (mut fewest, mut spare) = (usize::MAX, PLAIN_ROUNDS);
+        let (mut fewest, mut spare) = (usize::MAX, tuning.whole_lag_rounds);
         let (mut off, mut part) = (0.0, 1.0);
-        let mut before = Vec::with_capacity(cable.contacts.rubs.capacity());
+        let mut before = Vec::with_capacity(cable.contacts.friction_contacts.capacity());
         for round in 0..rounds {
             cable.contacts.look_around(&cable.problem, &cable.mesh, &unknowns.x, |_| 0.0);
-            std::mem::swap(&mut before, &mut cable.contacts.rubs);
+            std::mem::swap(&mut before, &mut cable.contacts.friction_contacts);
             cable.contacts.prepare(&cable.problem, &cable.mesh, &unknowns.x, &cable.motion.x);
             if round > 0 {
                 let now = cable.contacts.ease(&before, part);
                 // Forces that go to and fro get no nearer by steps as long as before.
-                if round >= PLAIN_ROUNDS {
+                if round >= tuning.whole_lag_rounds {
                     part = if now < (1.0 - 0.5 * part) * off {
-                        bounded(RESISTANCE_GROWTH * part, 0.0, 1.0)
+                        bounded(tuning.lag_growth * part, 0.0, 1.0)
                     } else {
-                        larger(RESISTANCE_SHRINKAGE * part, LEAST_PART)
+                        larger(tuning.lag_shrinkage * part, tuning.min_lag_fraction)
                     };
                 }
                 off = now;
@@ -83,13 +68,13 @@ impl SolverMemory {
             total = Converged { iterations: total.iterations + done.iterations, ..done };
             grips = cable.update_grips(unknowns, spare == 0);
             if grips.wrong < fewest {
-                (fewest, spare) = (grips.wrong, PLAIN_ROUNDS);
+                (fewest, spare) = (grips.wrong, tuning.whole_lag_rounds);
             } else {
                 spare = spare.saturating_sub(1);
             }
             // A round that needed no iteration found the normal forces it had used.
             let found = done.iterations == 0 && off <= cable.input.tolerance;
-            if (found || cable.contacts.rubs.is_empty()) && grips.wrong == 0 && grips.same {
+            if (found || cable.contacts.friction_contacts.is_empty()) && grips.wrong == 0 && grips.same {
                 return Ok(Lagged { done: total, grips, off: 0.0 });
             }
         }
@@ -103,8 +88,12 @@ impl SolverMemory {
         unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
         let sliding = cable.mesh.sliding.iter().flatten().count();
-        let found = self.lag_until(cable, unknowns, LAG_ROUNDS + ROUNDS_EACH * sliding)?;
-        if found.is_lawful(&cable.input) {
+        let found = self.lag_until(
+            cable,
+            unknowns,
+            cable.mesh.tuning.equilibrium.lag_rounds + cable.mesh.tuning.step.grip_rounds_each * sliding,
+        )?;
+        if found.is_lawful(cable) {
             return Ok(found.done);
         }
         let node = cable.mesh.sliding.iter().position(Option::is_some).unwrap_or(0);

@@ -3,71 +3,18 @@
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::equilibrium::lagged_friction::LAG_ROUNDS;
 use crate::model::fem::newton::initial_guess::{bow, depenetrate};
-use crate::model::fem::newton::minimize::DRIFT;
 use crate::model::fem::results;
-use crate::model::fem::state::cable::{CableState, REACH};
-use crate::model::fem::state::moving_outline::MovingOutline;
-use crate::model::fem::system::friction_state::SLIDE;
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 use crate::model::fem::system::step_input::{load_scale, tolerance};
 use crate::model::{Inertia, Model, StepReport};
 use crate::state::State;
 
-/// Work budget of one search for an equilibrium: iterations times nodes. Smaller: scenes that
-/// converge slowly are refused; larger: a search that fails reports it after minutes. The value is
-/// 20 000 iterations of 200 nodes, and takes some 10 s.
-pub(in crate::model::fem) const REST_WORK: usize = 4_000_000;
-
-/// Length of a cable with self-contact, in lengths of its way, from which it begins on an arc. At
-/// 2.4 the first parts that may touch do, laid along a straight line. Smaller: cables that need no
-/// arc begin there, and take longer; larger: some begin pressed on themselves.
-const SPARE_LENGTH_RATIO: f64 = 2.0;
-
-/// Newton iterations of a step without inertia.
-const REST_ITERATIONS: usize = 150;
-
-/// The same in a step of relaxation.
-const RELAX_LAG_ROUNDS: usize = 8;
-
-/// Steps of relaxation before it is given up.
-const MAX_RELAX: usize = 600;
-
-/// Whole load, in weights of the cable, from which dead loads set the first resistance. Less: a way
-/// down with a little load is slower than it need be; more: loads of that many weights throw the
-/// cable about.
-const DEAD_LOAD_RATIO: f64 = 2.0;
-
-/// Unbalanced force, in tolerances, that is accepted at rest where contact forces are known no
-/// better: 1e-3 of the whole load. More: a node a rounding away from a corner makes any force a
-/// rest (6e10 N were taken for one); less: cables that a support squeezes find none.
-const RESIDUAL_LIMIT_TOLERANCES: f64 = 1e3;
-
-/// Part of all loads on a cable that may be held by nothing. Larger: what slides slowly is said to
-/// rest. Smaller: what rests is refused for what its nodes are let off with. Of slopes, posts,
-/// beams and drapes at random those that held left up to 4e-5, those with 0.3 % too little friction
-/// 3e-4 and more.
-const UNHELD_LOAD_FRACTION: f64 = 1e-4;
-/// Unbalanced force of a polished rest, in tolerances, and the iterations that each part of the way
-/// to it may take. Less force left: nothing but rounding is gained; more: what is left at a hundred
-/// nodes of a lay that all but slides is seen in the balance of the whole. The first has what the
-/// search left by coming to its last iteration; fewer for it: what slides as a whole on smooth
-/// ground is left as it slides.
-const POLISH_STAGES: [(f64, usize); 3] = [(1.0, 600), (0.1, 30), (1e-2, 30)];
-
 /// Roundings of a coordinate that the lengths of the bars beside a node may be off by together.
 /// Fewer: a polish of many short bars seeks what rounding hides, in all of its iterations (of
 /// 10 000 bars on a floor that was 0.7 of the work); more: coarser rests.
 const LENGTH_ROUNDINGS: f64 = 2.0;
-
-/// Times a resting place is sought again because corners were met or left on the way to it.
-const CORNER_ROUNDS: usize = 8;
-
-/// Turn (rad) the wrong way round a corner from which a step without inertia is taken again without
-/// that corner. Larger: other corners slip by what it pulls (at 0.02 and 50 N by 2 %), and keep
-/// that. Smaller: more steps are taken twice.
-const LEAST_PULL: f64 = 1e-4;
 
 impl CableState {
     /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
@@ -80,7 +27,11 @@ impl CableState {
     /// under 100 N, laid through a post, was thrown about and found no rest.
     fn first_resistance(&self) -> f64 {
         let whole = load_scale(&self.problem).1 / self.meshing.even_bars as f64;
-        if whole > DEAD_LOAD_RATIO * self.meshing.bar_weight { whole / 0.1 } else { self.soft_shift() }
+        if whole > self.mesh.tuning.equilibrium.dead_load_weights * self.meshing.bar_weight {
+            whole / 0.1
+        } else {
+            self.soft_shift()
+        }
     }
 
     /// Why a cable that nothing but friction holds does not rest where it was brought: what each
@@ -91,7 +42,8 @@ impl CableState {
         }
         let left = results::unbalanced(self, &self.motion.x, self.motion.time).norm();
         let scale = load_scale(&self.problem).1;
-        (left > UNHELD_LOAD_FRACTION * scale).then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
+        (left > self.mesh.tuning.equilibrium.unheld_load_fraction * scale)
+            .then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
     }
 
     /// Least distance (m) that both ends have moved to `sought`, if that is more than the length of
@@ -122,7 +74,7 @@ impl CableState {
 
     /// True if the cable is in touch with itself.
     pub(in crate::model::fem) fn touches_itself(&self) -> bool {
-        self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, REACH).is_some()
+        self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, self.mesh.tuning.contact.reach_m).is_some()
     }
 
     /// True if two bars of the cable cross.
@@ -140,7 +92,7 @@ impl CableState {
                 most = most.max((at - now).norm());
             }
         }
-        let carried = self.outline.as_ref().map_or(0.0, MovingOutline::pieces);
+        let carried = self.outline.as_ref().map_or(0.0, |o| o.pieces(self.mesh.tuning.outline.max_way_m));
         larger(most / (0.5 * even), carried).ceil().clamp(1.0, 1e4)
     }
 }
@@ -161,23 +113,26 @@ impl Dynamics {
         to: f64,
         dragged: &[Option<Vec2>],
     ) -> Result<Converged, Failure> {
-        self.rest_rounds(to, dragged, LEAST_PULL)
+        self.rest_rounds(to, dragged, self.cable.mesh.tuning.equilibrium.max_corner_pull_rad)
     }
 
     fn rest_rounds(&mut self, to: f64, dragged: &[Option<Vec2>], pull: f64) -> Result<Converged, Failure> {
         let (mut total, mut settled) = (Converged::default(), false);
-        for round in 0..CORNER_ROUNDS {
+        for round in 0..self.cable.mesh.tuning.equilibrium.corner_rounds {
             self.cable.prepare_way([to, to], Some(dragged));
             self.cable.adapt_slip();
             self.cable.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
-            self.cable.input.max_iterations = REST_ITERATIONS;
-            self.cable.input.most_noise = RESIDUAL_LIMIT_TOLERANCES * self.cable.input.tolerance;
+            self.cable.input.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;
+            self.cable.input.most_noise =
+                self.cable.mesh.tuning.equilibrium.squeezed_residual * self.cable.input.tolerance;
             let mut unknowns = self.solver.present_unknowns(&self.cable);
             let mut done = self.solver.lag_wholly(&mut self.cable, &mut unknowns);
-            if done.is_err_and(|f| f.cause != FailureCause::WorkSpent) && self.cable.contacts.slip < SLIDE {
+            if done.is_err_and(|f| f.cause != FailureCause::WorkSpent)
+                && self.cable.contacts.slip < self.cable.contacts.tuning.slip_m
+            {
                 // A cable whose grips change all along it, as at the first shape, comes to rest
                 // more easily on ground that gives way.
-                self.cable.contacts.set_slip(SLIDE);
+                self.cable.contacts.set_slip(self.cable.contacts.tuning.slip_m);
                 unknowns = self.solver.present_unknowns(&self.cable);
                 done = self.solver.lag_wholly(&mut self.cable, &mut unknowns);
             }
@@ -192,7 +147,7 @@ impl Dynamics {
             total = Converged { iterations: total.iterations + done.iterations, ..done };
             self.accept_unknowns(&unknowns, to);
             // The mesh stays as it balances if corners are met and left by turns to the last.
-            if settled || round + 1 == CORNER_ROUNDS {
+            if settled || round + 1 == self.cable.mesh.tuning.equilibrium.corner_rounds {
                 break;
             }
             let found = self.cable.remesh(Inertia::QuasiStatic);
@@ -212,13 +167,15 @@ impl Dynamics {
         let (exact, to) = (self.cable.input.tolerance, self.cable.motion.time);
         let rounding = self.rounding_of_bars();
         let mut all = found;
-        for (part, iterations) in POLISH_STAGES {
+        let tuning = self.cable.mesh.tuning.equilibrium;
+        for (part, iterations) in tuning.polish_residuals.into_iter().zip(tuning.polish_iterations) {
             self.rollback.save(&self.cable);
             self.cable.prepare_way([to, to], Some(dragged));
             self.cable.input.most_noise = exact;
-            (self.cable.input.tolerance, self.cable.input.max_iterations) = (larger(part * exact, rounding), iterations);
+            (self.cable.input.tolerance, self.cable.input.max_iterations) =
+                (larger(part * exact, rounding), iterations);
             let mut unknowns = self.solver.present_unknowns(&self.cable);
-            let Ok(done) = self.solver.lag(&mut self.cable, &mut unknowns, LAG_ROUNDS) else {
+            let Ok(done) = self.solver.lag(&mut self.cable, &mut unknowns, tuning.lag_rounds) else {
                 self.rollback.restore(&mut self.cable);
                 break;
             };
@@ -284,10 +241,11 @@ impl Dynamics {
         self.rollback.save(&self.cable);
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
         if found.is_err_and(|f| {
-            f.cause != FailureCause::WorkSpent && f.residual > RESIDUAL_LIMIT_TOLERANCES * self.cable.input.tolerance
+            f.cause != FailureCause::WorkSpent
+                && f.residual > self.cable.mesh.tuning.equilibrium.squeezed_residual * self.cable.input.tolerance
         }) {
             self.rollback.restore(&mut self.cable);
-            found = self.relax_within(RESIDUAL_LIMIT_TOLERANCES, to, dragged);
+            found = self.relax_within(self.cable.mesh.tuning.equilibrium.squeezed_residual, to, dragged);
         }
         self.rollback = kept;
         found
@@ -307,7 +265,7 @@ impl Dynamics {
         let mut stubborn = false;
         let mut total = 0;
         let mut last = Failure { node: 0, residual: f64::NAN, cause: FailureCause::StillMoves };
-        for round in 0..MAX_RELAX {
+        for round in 0..self.cable.mesh.tuning.equilibrium.max_relaxation_steps {
             self.cable.prepare_input(to, Some(dragged));
             self.cable.adapt_slip();
             let even = self.cable.problem.length / self.cable.meshing.even_bars as f64;
@@ -321,7 +279,8 @@ impl Dynamics {
             // A first lay carries no normal force yet: without refreshing, it would slide as if on
             // ice.
             let mut unknowns = self.solver.present_unknowns(&self.cable);
-            let done = self.solver.lag_until(&mut self.cable, &mut unknowns, RELAX_LAG_ROUNDS);
+            let rounds = self.cable.mesh.tuning.equilibrium.relaxation_lag_rounds;
+            let done = self.solver.lag_until(&mut self.cable, &mut unknowns, rounds);
             self.cable.input.tolerance = exact;
             match done {
                 Ok(found) => {
@@ -335,7 +294,7 @@ impl Dynamics {
                         moved = moved.max(way);
                         let free = if self.cable.mesh.held[k] { 0.0 } else { self.cable.input.inertia[k] };
                         drift = if free > 0.0 { drift + (a - b) * free } else { Vec2::zeros() };
-                        let force = larger(way * free, drift.norm() / DRIFT);
+                        let force = larger(way * free, drift.norm() / self.cable.mesh.tuning.newton.stretch_residual);
                         if force > resists {
                             (resists, slowest) = (force, k);
                         }
@@ -349,9 +308,9 @@ impl Dynamics {
                     if remeshed {
                         moved = moved.max(0.1);
                     } else if stubborn
-                        && found.is_lawful(&self.cable.input)
+                        && found.is_lawful(&self.cable)
                         && resists <= exact
-                        && done.residual <= RESIDUAL_LIMIT_TOLERANCES * exact
+                        && done.residual <= self.cable.mesh.tuning.equilibrium.squeezed_residual * exact
                     {
                         self.cable.motion.time = to;
                         return Ok(Converged { iterations: total, residual: done.residual + resists });
@@ -396,7 +355,7 @@ impl Dynamics {
         self.cable.motion.hands.fill(None);
         if !self.rested && self.cable.put_outline() {
             let mut x = std::mem::take(&mut self.cable.motion.x);
-            depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
+            depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
             self.cable.motion.x = x;
             self.forget_history();
         }
@@ -415,7 +374,7 @@ impl Dynamics {
                 }
                 if f.cause == FailureCause::WorkSpent {
                     let (model, segments) = (Model::Fem, self.cable.mesh.rest_length.len());
-                    let iterations = REST_WORK / self.cable.mesh.nodes().max(1);
+                    let iterations = self.cable.mesh.tuning.equilibrium.max_work / self.cable.mesh.nodes().max(1);
                     let (residual_n, place) = (f.residual, self.cable.place(f.node));
                     return Err(SolveError::TooMuchWork { model, iterations, segments, residual_n, place });
                 }
@@ -426,7 +385,7 @@ impl Dynamics {
                 let place = self.cable.problem.place(arc_length, at_m, self.cable.motion.time);
                 Err(SolveError::NotConverged {
                     model: Model::Fem,
-                    iterations: MAX_RELAX,
+                    iterations: self.cable.mesh.tuning.equilibrium.max_relaxation_steps,
                     residual_n: f.residual,
                     place,
                 })
@@ -450,7 +409,10 @@ impl Dynamics {
         let (x, geometry) = (&self.cable.motion.x, self.cable.problem.world.geometry());
         let clear = (0..self.cable.mesh.rest_length.len()).all(|e| {
             let [[a, b], [c, d]] = [self.cable.mesh.straight(e, x), self.cable.mesh.straight(e, &to)];
-            geometry.parts(a.inf(&b).inf(&c.inf(&d)), a.sup(&b).sup(&c.sup(&d)), REACH).next().is_none()
+            geometry
+                .parts(a.inf(&b).inf(&c.inf(&d)), a.sup(&b).sup(&c.sup(&d)), self.cable.contacts.barrier.reach)
+                .next()
+                .is_none()
         });
         if !clear {
             return;
@@ -460,7 +422,7 @@ impl Dynamics {
         // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so
         // that little force is left over.
         self.cable.prepare_input(self.cable.motion.time, Some(dragged));
-        self.cable.input.max_iterations = REST_ITERATIONS;
+        self.cable.input.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;
         let exact = self.cable.input.tolerance;
         self.cable.input.tolerance = tolerance(&self.cable.problem, 0.0);
         let mut unknowns = self.solver.present_unknowns(&self.cable);
@@ -505,7 +467,9 @@ impl Dynamics {
     fn begin_on_a_bow(&mut self) {
         let cable = &mut self.cable;
         let way: f64 = cable.motion.x.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
-        if !cable.problem.cable.route_m.is_empty() || cable.problem.length < SPARE_LENGTH_RATIO * way {
+        if !cable.problem.cable.route_m.is_empty()
+            || cable.problem.length < cable.mesh.tuning.start.arc_length_ratio * way
+        {
             return;
         }
         let Some(arc) = bow(&cable.problem, &cable.mesh, &cable.motion.x) else { return };

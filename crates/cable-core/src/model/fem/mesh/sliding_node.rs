@@ -18,16 +18,9 @@ use crate::contact::geometry::Geometry;
 use crate::math::Vec2;
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
 
-/// An arc of more than this (rad) from the tangent to the first mark gets another mark, in the
-/// middle of it.
-pub(in crate::model::fem) const MARKED_ARC_LIMIT: f64 = 0.8;
-
-/// Rounds with less than this part of an even bar on them keep one mark.
-pub(in crate::model::fem) const ONE_MARK_BAR_FRACTION: f64 = 0.3;
-
 /// The corner, post or pulley of a sliding node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Seat {
+pub enum SlideOver {
     /// The pulley that is this support.
     Pulley(usize),
     /// A corner or circle of an obstacle.
@@ -59,7 +52,7 @@ pub struct SlidingNode {
     /// Coulomb friction.
     pub friction: f64,
     /// The corner, post or pulley over which it runs.
-    pub seat: Seat,
+    pub slide_over: SlideOver,
     /// State of its friction.
     pub grip: StickSlip,
     /// γ.
@@ -80,11 +73,11 @@ pub struct SlidingNode {
 impl SlidingNode {
     /// One on a round, through which nothing has slid yet.
     #[must_use]
-    pub fn new(end: End, friction: f64, seat: Seat) -> Self {
+    pub fn new(end: End, friction: f64, slide_over: SlideOver) -> Self {
         Self {
             end,
             friction,
-            seat,
+            slide_over,
             grip: StickSlip::Stick,
             factor: 1.0,
             exponent: 0.0,
@@ -109,16 +102,16 @@ impl SlidingNode {
     /// The feature it runs over.
     #[must_use]
     pub fn feature(&self) -> Option<usize> {
-        match self.seat {
-            Seat::Obstacle { feature, .. } => Some(feature),
-            Seat::Pulley(_) => None,
+        match self.slide_over {
+            SlideOver::Obstacle { feature, .. } => Some(feature),
+            SlideOver::Pulley(_) => None,
         }
     }
 
     /// True if both sit on one round.
     #[must_use]
     pub fn shares_round(&self, other: &Self) -> bool {
-        self.seat == other.seat
+        self.slide_over == other.slide_over
     }
 }
 

@@ -23,30 +23,11 @@ use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::Vec2;
 use crate::model::fem::newton::gap_constraint::Stop;
-use crate::model::fem::newton::minimize::{StepContext, Workspace};
-use crate::model::fem::newton::step_bound::longest;
+use crate::model::fem::newton::step_context::{StepContext, longest};
+use crate::model::fem::settings::NewtonTuning;
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::Coupling;
-use crate::model::fem::system::step_input::Unknowns;
-
-/// Rounds of adding constraints. More find nothing new where a front of contact runs along the
-/// cable.
-const MAX_ROUNDS: usize = 6;
-
-/// Part of a Newton step that may be free without looking for what is in its way.
-const FREE_STEP_FRACTION: f64 = 0.99;
-
-/// Least descent of a step held by contacts ahead, part of that of the free one. Less: steps that
-/// only bend round corners and gain nothing; more: good ones are given up.
-const LEAST_DESCENT_FRACTION: f64 = 0.1;
-
-/// Landing gap, part of the barrier's reach: about where the barrier holds a node that lands.
-const LANDING_GAP_FRACTION: f64 = 0.5;
-
-/// Part of its gap that a contact within the barrier may lose in one step: less than the search of
-/// the step lets it.
-const GAP_LOSS_FRACTION: f64 = 0.45;
 
 /// The contacts that a step is about to make.
 #[derive(Clone, Debug)]
@@ -95,7 +76,7 @@ impl PredictedContacts {
         self.look(step, x, direction);
         for touch in self.touches.iter().filter(|t| !t.on_segment && t.pair.weight > 0.0 && mesh.is_free(t.node)) {
             let (n, k) = (touch.pair.gap.normal, 2 * touch.node);
-            let least = landing(touch.pair.gap.gap_m, contacts.barrier.reach);
+            let least = landing(&mesh.tuning.newton, touch.pair.gap.gap_m, contacts.barrier.reach);
             let over = least - touch.pair.gap.gap_m - n.dot(&moved(touch, direction));
             if over > 0.0 {
                 direction[k] += n.x * over;
@@ -125,19 +106,19 @@ impl PredictedContacts {
         let reach = contacts.barrier.reach;
         self.stops.clear();
         for touch in self.touches.iter().filter(|t| t.pair.weight > 0.0) {
-            self.stops.push(Stop::of(touch, mesh, system, landing(touch.pair.gap.gap_m, reach)));
+            self.stops.push(Stop::of(touch, mesh, system, landing(&mesh.tuning.newton, touch.pair.gap.gap_m, reach)));
         }
         if contacts.own.shape.is_on() {
             let within = reach + 2.0 * longest(direction);
             contacts.own.shape.pairs(x, &mesh.arc_length, within, &mut self.order, &mut self.pairs);
             for pair in self.pairs.iter().filter(|p| p.weight > 0.0) {
-                self.stops.push(Stop::of_own(pair, system, landing(pair.gap_m, reach)));
+                self.stops.push(Stop::of_own(pair, mesh, system, landing(&mesh.tuning.newton, pair.gap_m, reach)));
             }
         }
         let Self { stops, right, step, .. } = self;
         step.clear();
         step.extend_from_slice(direction);
-        for _ in 0..MAX_ROUNDS {
+        for _ in 0..mesh.tuning.newton.active_set_rounds {
             let (mut stiffer, mut changed) = (false, false);
             for stop in stops.iter_mut() {
                 let [new, moved] = stop.hold(system, coupling, right, mesh, x, step);
@@ -165,34 +146,9 @@ impl PredictedContacts {
     }
 }
 
-impl Workspace {
-    /// Slope of Φ along the direction, J.
-    pub(in crate::model::fem) fn slope(&self) -> f64 {
-        self.direction.iter().zip(&self.system.gradient).map(|(d, g)| d * g).sum()
-    }
-
-    /// Finds the direction again if something is in its way; returns how much of it is free.
-    pub(in crate::model::fem) fn look_ahead(&mut self, step: &StepContext<'_>, unknowns: &Unknowns) -> f64 {
-        let free = self.free_from_here(step, unknowns, 1.0);
-        if free >= FREE_STEP_FRACTION {
-            return free;
-        }
-        let downhill = self.slope();
-        self.plain.clone_from(&self.direction);
-        let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
-        self.ahead.solve(step, equations, &unknowns.x, &mut self.direction);
-        // The undamped Newton does not use the energy.
-        if self.carried.is_empty() && !(self.slope() <= LEAST_DESCENT_FRACTION * downhill) {
-            self.direction.clone_from(&self.plain);
-            return free;
-        }
-        self.free_from_here(step, unknowns, 1.0)
-    }
-}
-
 /// The gap at which a step is stopped.
-fn landing(gap: f64, reach: f64) -> f64 {
-    if gap > reach { LANDING_GAP_FRACTION * reach } else { (1.0 - GAP_LOSS_FRACTION) * gap }
+fn landing(tuning: &NewtonTuning, gap: f64, reach: f64) -> f64 {
+    if gap > reach { tuning.landing_gap_fraction * reach } else { (1.0 - tuning.gap_loss_fraction) * gap }
 }
 
 /// Displacement of the touching point in a step.
@@ -204,10 +160,10 @@ fn moved(touch: &ContactPair, step: &[f64]) -> Vec2 {
 
 #[cfg(test)]
 mod tests {
-    use super::Workspace;
     use crate::math::Vec2;
     use crate::model::fem::dynamics::Dynamics;
-    use crate::model::fem::state::cable::REACH;
+    use crate::model::fem::newton::minimize::Workspace;
+    use crate::model::fem::settings::ContactTuning;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Obstacle, Shape, Support, catalog};
@@ -226,11 +182,11 @@ mod tests {
         c.supports = vec![hook("a", 0.0), hook("b", 9.95)];
         let radius = 0.5 * c.diameter_m;
         let settings = Settings { segments: Some(100), ..Settings::default() };
-        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap();
+        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
         d.settle(&[]).unwrap();
         d.advance(STEP, Inertia::Dynamic, &[]).unwrap();
         for (k, (x, v)) in d.cable.motion.x.iter_mut().zip(&mut d.cable.motion.v).enumerate() {
-            let gap = 5.0 * REACH + 8e-3 * (1.0 + (0.13 * k as f64).sin());
+            let gap = 5.0 * ContactTuning::default().reach_m + 8e-3 * (1.0 + (0.13 * k as f64).sin());
             (*x, *v) = (Vec2::new(0.1 * k as f64, radius + gap), Vec2::new(0.0, -5.0));
         }
         d.forget_history();

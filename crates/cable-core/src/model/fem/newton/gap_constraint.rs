@@ -6,13 +6,6 @@ use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::{Coupling, couple};
 
-/// Stiffness of a constraint in units of the largest stiffness at its nodes. Softer: nodes still
-/// run into the barrier; much harder: rounding.
-const HARDNESS: f64 = 1e5;
-
-/// Change of the way a constraint leaves, in gaps left, that is not followed.
-const DIRECTION_CHANGE_TOLERANCE: f64 = 0.05;
-
 /// The point or edge about which a bar turns.
 #[derive(Clone, Copy, Debug)]
 enum Pivot {
@@ -49,7 +42,7 @@ impl Stop {
         let shares = [(touch.node, a), (next, b), (next, 0.0)];
         Self {
             shares,
-            stiffness: stiffness(system, &shares),
+            stiffness: stiffness(mesh, system, &shares),
             normal: gap.normal,
             gap: gap.gap_m,
             least,
@@ -59,12 +52,12 @@ impl Stop {
     }
 
     /// A contact of the cable with itself.
-    pub fn of_own(pair: &SelfPair, system: &System, least: f64) -> Self {
+    pub fn of_own(pair: &SelfPair, mesh: &Mesh, system: &System, least: f64) -> Self {
         let inside = pair.fraction > 0.0 && pair.fraction < 1.0;
         let shares = pair.shares();
         Self {
             shares,
-            stiffness: stiffness(system, &shares),
+            stiffness: stiffness(mesh, system, &shares),
             normal: pair.normal,
             gap: pair.gap_m,
             least,
@@ -124,7 +117,7 @@ impl Stop {
             way -= part * self.normal.dot(&Vec2::new(step[2 * k], step[2 * k + 1]));
         }
         let change = way - self.held_to.unwrap_or(0.0);
-        if !new && change.abs() <= DIRECTION_CHANGE_TOLERANCE * self.least {
+        if !new && change.abs() <= mesh.tuning.newton.constraint_tolerance * self.least {
             return [false, false];
         }
         self.held_to = Some(way);
@@ -146,11 +139,11 @@ impl Stop {
 }
 
 /// Spring of a constraint at these nodes, N/m.
-fn stiffness(system: &System, shares: &[(usize, f64)]) -> f64 {
+fn stiffness(mesh: &Mesh, system: &System, shares: &[(usize, f64)]) -> f64 {
     let at = |&(k, part): &(usize, f64)| {
         if part == 0.0 { 0.0 } else { system.hessian.get(2 * k, 2 * k) + system.hessian.get(2 * k + 1, 2 * k + 1) }
     };
-    HARDNESS * shares.iter().map(at).fold(0.0, larger)
+    mesh.tuning.newton.constraint_hardness * shares.iter().map(at).fold(0.0, larger)
 }
 
 #[cfg(test)]
@@ -166,8 +159,8 @@ mod tests {
     fn mesh(obstacles: Vec<Obstacle>) -> Dynamics {
         let mut scene = catalog::hanging_span();
         scene.obstacles = obstacles;
-        Dynamics::new(problems(&scene).unwrap().remove(0), Settings { segments: Some(4), ..Settings::default() })
-            .unwrap()
+        let settings = Settings { segments: Some(4), ..Settings::default() };
+        Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap()
     }
 
     proptest! {
@@ -207,7 +200,7 @@ mod tests {
                 found.into_iter().find(|p| (p.node, p.segment) == (4, 0)).unwrap()
             };
             let (before, after) = (pair(&x), pair(&then));
-            let stop = Stop::of_own(&before, &System::new(&d.cable.mesh), 0.0);
+            let stop = Stop::of_own(&before, &d.cable.mesh, &System::new(&d.cable.mesh), 0.0);
             let change = stop.opening(&moves) + stop.bend(&x, &moves);
             prop_assert!((after.gap_m - before.gap_m - change).abs() < 1e-12);
         }

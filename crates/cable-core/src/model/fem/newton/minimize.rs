@@ -15,27 +15,17 @@ use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
-use crate::model::fem::newton::active_set::PredictedContacts;
+use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
+use crate::model::fem::newton::step_context::StepContext;
 use crate::model::fem::system::assembly::{Mesh, System};
 use crate::model::fem::system::bar_energy;
-use crate::model::fem::system::contact_energy::{add_floor, add_rubs, add_touch};
-use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
+use crate::model::fem::system::contact_energy::{add_floor, add_friction, add_touch};
+use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact;
-use crate::model::fem::system::self_contact::Coupling;
+use crate::model::fem::system::self_contact::{Coupling, SelfContactLaws};
 use crate::model::fem::system::step_input::{
     Converged, Failure, FailureCause, StepInput, Unknowns, WORK_MAGNITUDE_FRACTION, WorkBudget, node_scale,
 };
-use crate::problem::Problem;
-
-/// Sufficient decrease (Armijo).
-const DECREASE: f64 = 1e-4;
-
-/// Line search halvings before the step is given up.
-const MAX_HALVINGS: usize = 30;
-
-/// Unbalanced force, in tolerances, that is accepted where iterating gains nothing more: 3e-5 of
-/// the whole load.
-const STALLED_RESIDUAL_TOLERANCES: f64 = 30.0;
 
 /// Energies are trusted to this part of the sum of their magnitudes.
 const ENERGY_NOISE: f64 = 1e-13;
@@ -44,28 +34,6 @@ const ENERGY_NOISE: f64 = 1e-13;
 /// gap of 1e-7 m fails for 0.01 N in 1e6; larger: contact forces are known worse than they could
 /// be.
 const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
-
-/// Unbalanced force of a stretch of cable at rest, in tolerances: those of its nodes add up. More:
-/// the laws, which ask this of stretches to 1e-5 of the forces, refuse steps; less: iterations for
-/// nothing that shows.
-pub(in crate::model::fem) const DRIFT: f64 = 4.0;
-
-/// Short moves of held nodes towards their targets before they are stopped. Fewer: supports lag
-/// that could have got there; more: iterations spent on what the next step does as well.
-const MAX_PUSHES: usize = 12;
-
-/// The input of the solve of a step: cable, mesh, contacts, and the input of the step.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::model::fem) struct StepContext<'a> {
-    /// The cable and its obstacles.
-    pub problem: &'a Problem,
-    /// Its nodes and bars.
-    pub mesh: &'a Mesh,
-    /// The barrier, and friction as it is frozen for the step.
-    pub contacts: &'a ContactSet,
-    /// Forces, inertia and targets of the step.
-    pub input: &'a StepInput,
-}
 
 /// The unbalanced force at the worst node.
 #[derive(Clone, Copy, Debug)]
@@ -128,7 +96,7 @@ pub struct Workspace {
     pub(in crate::model::fem) ahead: PredictedContacts,
     /// Pulls carried as unknowns; empty: those of the present lengths.
     pub(in crate::model::fem) carried: Vec<bar_energy::Carried>,
-    /// Branches of the friction of `rubs`, where that is being found out; empty: those of the
+    /// Branches of the friction of contacts, where that is being found out; empty: those of the
     /// present unknowns.
     pub(in crate::model::fem) branches: Vec<friction::Branch>,
     /// Slide of each node before an iteration, m.
@@ -262,14 +230,15 @@ impl Workspace {
             let rounding = GAP_ROUNDING * x[touch.node].norm();
             round.add(&contacts.barrier, touch.pair.gap.gap_m, stiffness, rounding);
         }
-        value += add_rubs(s, mesh, input, contacts, &self.branches, x);
+        value += add_friction(s, mesh, input, contacts, &self.branches, x);
         value += add_floor(s, mesh, input, contacts, unknowns);
         self.touches = touches;
         if contacts.own.shape.is_on() {
             contacts.own.shape.pairs(x, &mesh.arc_length, contacts.barrier.reach, &mut self.order, &mut self.own_pairs);
             self.coupling.clear();
+            let laws = SelfContactLaws { own: &contacts.own, barrier: &contacts.barrier, slip: contacts.tuning.slip_m };
             let (energy, size) =
-                self_contact::add(&mut self.system, &mut self.coupling, contacts, &self.own_pairs, x, curvature);
+                self_contact::add(&mut self.system, &mut self.coupling, laws, &self.own_pairs, x, curvature);
             value += energy;
             self.magnitude += size;
             for pair in &self.own_pairs {
@@ -301,7 +270,7 @@ impl Workspace {
             let slides = mesh.sliding[node].is_some();
             let r = if slides { left.x.abs() } else { left.norm() };
             drift = if slides || input.moves { Vec2::zeros() } else { drift + left };
-            let adds_up = drift.norm() / DRIFT;
+            let adds_up = drift.norm() / mesh.tuning.newton.stretch_residual;
             let most = larger(adds_up, worst.drift);
             let excess = larger(r, adds_up) / accepted;
             if !(excess <= worst.excess) && !worst.excess.is_nan() {
@@ -396,7 +365,7 @@ impl Workspace {
             if excess <= 1.0 && !left {
                 return Ok(done);
             }
-            let enough = larger(residual, drift) <= STALLED_RESIDUAL_TOLERANCES * input.tolerance && !left;
+            let enough = larger(residual, drift) <= mesh.tuning.newton.stalled_residual * input.tolerance && !left;
             if done.iterations >= input.max_iterations && enough {
                 return Ok(done);
             }
@@ -443,9 +412,9 @@ impl Workspace {
                     }
                     if left && fraction < 0.5 {
                         pushes += 1;
-                        if pushes > MAX_PUSHES && !input.may_lag {
+                        if pushes > mesh.tuning.newton.max_pushes && !input.may_lag {
                             return failed(FailureCause::SupportShort);
-                        } else if pushes > MAX_PUSHES {
+                        } else if pushes > mesh.tuning.newton.max_pushes {
                             self.goal.clone_from(&unknowns.x);
                         }
                     }
@@ -465,6 +434,29 @@ impl Workspace {
         }
     }
 
+    /// Slope of Φ along the direction, J.
+    pub(in crate::model::fem) fn slope(&self) -> f64 {
+        self.direction.iter().zip(&self.system.gradient).map(|(d, g)| d * g).sum()
+    }
+
+    /// Finds the direction again if something is in its way; returns how much of it is free.
+    pub(in crate::model::fem) fn look_ahead(&mut self, step: &StepContext<'_>, unknowns: &Unknowns) -> f64 {
+        let free = self.free_from_here(step, unknowns, 1.0);
+        if free >= step.mesh.tuning.newton.free_step_fraction {
+            return free;
+        }
+        let downhill = self.slope();
+        self.plain.clone_from(&self.direction);
+        let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
+        self.ahead.solve(step, equations, &unknowns.x, &mut self.direction);
+        // The undamped Newton does not use the energy.
+        if self.carried.is_empty() && !(self.slope() <= step.mesh.tuning.newton.min_descent_fraction * downhill) {
+            self.direction.clone_from(&self.plain);
+            return free;
+        }
+        self.free_from_here(step, unknowns, 1.0)
+    }
+
     /// Moves `unknowns` along the direction as far as is free and lowers Φ; None if nothing does.
     /// Returns Φ and the part of the step taken; the system is assembled there.
     fn search(&mut self, step: &StepContext<'_>, unknowns: &mut Unknowns, descent: Descent) -> Option<(f64, f64)> {
@@ -474,7 +466,7 @@ impl Workspace {
         let whole = self.whole(input);
         let mut fraction = self.free_from_here(step, unknowns, whole);
         let noise = ENERGY_NOISE * (self.magnitude.abs() + value.abs());
-        for _ in 0..MAX_HALVINGS {
+        for _ in 0..mesh.tuning.newton.max_halvings {
             let mut trial = std::mem::take(&mut self.trial);
             for k in 0..n {
                 let moves = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * fraction;
@@ -492,7 +484,7 @@ impl Workspace {
             }
             let new_value = self.assemble(step, &trial, Curvature::Exact);
             self.trial = trial;
-            let lower = new_value <= value + DECREASE * fraction * slope + noise;
+            let lower = new_value <= value + mesh.tuning.newton.decrease * fraction * slope + noise;
             if new_value.is_finite() && (supports_move || lower) {
                 std::mem::swap(unknowns, &mut self.trial);
                 return Some((new_value, fraction));

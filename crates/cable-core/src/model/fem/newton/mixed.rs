@@ -15,25 +15,12 @@
 use crate::contact::friction::Branch;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::newton::minimize::{StepContext, Workspace};
+use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::step_context::StepContext;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::friction_state::ContactSet;
 use crate::model::fem::system::step_input::{Converged, Failure, StepInput, Unknowns};
-
-/// Iterations before the minimiser is asked. Fewer: one of its iterations costs as much as five of
-/// these, and with 24 eleven steps of a cable of 1000 bars dropped on a floor came to it, of 336;
-/// more: where it is needed after all they are lost.
-const MAX_STEPS: usize = 40;
-
-/// Parts of the push of bars that are counted where all of it makes the matrix indefinite, one
-/// after the other. Iterations of a cable of 1000 bars that drops, over 24 drops, with none of it
-/// at once: 15 % more; with 0.5 and none: 2 % more.
-const PUSH_PARTS: [f64; 3] = [0.7, 0.4, 0.0];
-
-/// Part of the first residual with which what was reached is handed on; with more the minimiser
-/// begins anew.
-const HANDED_ON_RESIDUAL_FRACTION: f64 = 1e-2;
 
 /// Strain that counts as none.
 const ROUNDING: f64 = 1e-12;
@@ -152,10 +139,11 @@ impl Workspace {
         let StepContext { mesh, contacts, input, .. } = *step;
         self.move_on(step, unknowns);
         self.branches.clear();
-        self.branches.extend(contacts.rubs.iter().map(|r| Branch::at(r.sliding(&unknowns.x), contacts.slip)));
+        self.branches
+            .extend(contacts.friction_contacts.iter().map(|r| Branch::at(r.sliding(&unknowns.x), contacts.slip)));
         let mut first = f64::NAN;
         self.near_enough = false;
-        for iterations in 0..=MAX_STEPS {
+        for iterations in 0..=mesh.tuning.newton.mixed_iterations {
             self.undamped_iterations = iterations;
             let value = self.assemble(step, unknowns, Curvature::Exact);
             if self_touch == SelfTouch::Avoid && !self.coupling.is_empty() {
@@ -171,8 +159,8 @@ impl Workspace {
             if sound && residual <= input.tolerance && !left && self.flags_hold(mesh, contacts, &unknowns.x) {
                 return Some(Converged { iterations, residual });
             }
-            self.near_enough = sound && residual < HANDED_ON_RESIDUAL_FRACTION * first;
-            if iterations == MAX_STEPS || !sound {
+            self.near_enough = sound && residual < mesh.tuning.newton.handed_on_residual_fraction * first;
+            if iterations == mesh.tuning.newton.mixed_iterations || !sound {
                 return None;
             }
             if !self.solve(mesh, input, &unknowns.x, input.shift) && !self.ease(mesh, input, &unknowns.x) {
@@ -184,9 +172,9 @@ impl Workspace {
             let free = self.look_ahead(step, unknowns);
             let whole = self.whole(input);
             self.slid.clear();
-            self.slid.extend(contacts.rubs.iter().map(|r| r.sliding(&unknowns.x)));
+            self.slid.extend(contacts.friction_contacts.iter().map(|r| r.sliding(&unknowns.x)));
             self.walk(mesh, input, unknowns, if free < whole { free } else { whole });
-            for (b, (from, r)) in self.branches.iter_mut().zip(self.slid.iter().zip(&contacts.rubs)) {
+            for (b, (from, r)) in self.branches.iter_mut().zip(self.slid.iter().zip(&contacts.friction_contacts)) {
                 *b = b.next([*from, r.sliding(&unknowns.x)], contacts.slip);
             }
         }
@@ -202,7 +190,7 @@ impl Workspace {
             return false;
         }
         let mut counted = 1.0;
-        for part in PUSH_PARTS {
+        for part in mesh.tuning.newton.push_fractions {
             for (e, carried) in self.carried.iter().enumerate().filter(|(_, c)| c.pull < 0.0) {
                 let d = x[e + 1] - x[e];
                 let p = d.norm();
@@ -237,7 +225,7 @@ impl Workspace {
     /// True if the bars that count as stretched are those that are, and friction holds and slips
     /// where it is taken to.
     fn flags_hold(&self, mesh: &Mesh, contacts: &ContactSet, x: &[Vec2]) -> bool {
-        let rubs = contacts.rubs.iter().zip(&self.branches);
+        let rubs = contacts.friction_contacts.iter().zip(&self.branches);
         let slip = contacts.slip;
         let holds = |y: f64, b: Branch| b == Branch::at(y, slip) || (y.abs() - slip).abs() <= BRANCH_ROUNDING;
         rubs.map(|(r, b)| (r.sliding(x), *b)).all(|(y, b)| holds(y, b))
@@ -299,7 +287,7 @@ mod tests {
         let hook = |name: &str, at| Support { release_s: Some(0.5 * STEP), ..Support::fixed(name, at) };
         c.supports = vec![hook("a", [0.0, 0.9]), hook("b", [5.9, 0.9 + tilt])];
         let settings = Settings { segments: Some(40), ..Settings::default() };
-        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap();
+        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
         d.settle(&[]).unwrap();
         let n = d.cable.mesh.nodes() - 1;
         for (k, v) in d.cable.motion.v.iter_mut().enumerate() {
@@ -320,7 +308,7 @@ mod tests {
         let hook = |name: &str, x| Support { release_s: Some(0.5 * STEP), ..Support::fixed(name, [x, height]) };
         c.supports = vec![hook("a", 0.0), hook("b", 9.95)];
         let settings = Settings { segments: Some(bars), ..Settings::default() };
-        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap();
+        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
         d.settle(&[]).unwrap();
         d
     }
@@ -351,7 +339,10 @@ mod tests {
             let mut d = dropped(0.7 + 0.04 * f64::from(k), 600);
             for _ in 0..120 {
                 let cost = d.advance(STEP, Inertia::Dynamic, &[]).unwrap().cost;
-                (whole, long) = (whole + cost.iterations, long + usize::from(cost.iterations > MAX_STEPS));
+                (whole, long) = (
+                    whole + cost.iterations,
+                    long + usize::from(cost.iterations > d.cable.mesh.tuning.newton.mixed_iterations),
+                );
             }
         }
         println!("{whole} iterations, {long} steps left to the minimiser");

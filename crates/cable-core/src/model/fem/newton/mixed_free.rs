@@ -24,10 +24,6 @@ use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::step_input::{Converged, StepInput, Unknowns};
 
-/// Iterations before the minimiser is asked. Measured: 2 to 5 in a swing, up to 12 where a slack
-/// chain snaps taut.
-const MAX_STEPS: usize = 16;
-
 /// Roundings of a coordinate that a bar's length may be off by.
 const ROUNDING: f64 = 16.0;
 
@@ -101,7 +97,7 @@ impl FreeStep {
     }
 
     fn newton(&mut self, mesh: &Mesh, input: &StepInput, x: &mut [Vec2]) -> Option<Converged> {
-        for iterations in 0..=MAX_STEPS {
+        for iterations in 0..=mesh.tuning.newton.free_iterations {
             if iterations == 0 {
                 self.begin(mesh, input);
             }
@@ -113,7 +109,7 @@ impl FreeStep {
             if balance.force <= input.tolerance && balance.pull <= input.tolerance && !left {
                 return Some(Converged { iterations, residual: balance.force });
             }
-            if iterations == MAX_STEPS {
+            if iterations == mesh.tuning.newton.free_iterations {
                 return None;
             }
             if !self.factor_and_solve(mesh, input, x) {
@@ -268,7 +264,8 @@ fn product(a: &Symmetric, b: &Symmetric) -> [f64; 4] {
 mod tests {
     use super::*;
     use crate::model::fem::dynamics::Dynamics;
-    use crate::model::fem::newton::minimize::{StepContext, Workspace};
+    use crate::model::fem::newton::minimize::Workspace;
+    use crate::model::fem::newton::step_context::StepContext;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Support, SupportKind, catalog};
@@ -282,7 +279,7 @@ mod tests {
             scene.cables[0].supports[1] = Support::new("loose", SupportKind::Free);
         }
         let settings = Settings { segments: Some(30), ..Settings::default() };
-        Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap()
+        Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap()
     }
 
     proptest! {

@@ -2,22 +2,11 @@
 //! cable stays beside sliding nodes.
 
 use crate::contact::sweep::Sweep;
-use crate::math::{Vec2, larger};
+use crate::math::Vec2;
 use crate::model::fem::mesh::tangent_path::{End, Path};
-use crate::model::fem::newton::minimize::{StepContext, Workspace};
+use crate::model::fem::newton::minimize::Workspace;
+use crate::model::fem::newton::step_context::{StepContext, longest};
 use crate::model::fem::system::step_input::{StepInput, Unknowns};
-
-/// Part of each gap that a Newton step leaves. Smaller: gaps shrink faster than Newton opens them
-/// again (with 0.2 twice as many steps of ends thrown about are halved, five times as many where
-/// the cable meets itself); larger: more steps.
-const KEPT_GAP_FRACTION: f64 = 0.5;
-
-/// The same for gaps wider than the barrier's reach, in reaches: a little less than where foreseen
-/// contacts land.
-const KEPT_REACH_FRACTION: f64 = 0.45;
-
-/// Least part of the cable between a sliding node and its neighbour that one iteration leaves.
-const KEPT_CABLE_FRACTION: f64 = 0.3;
 
 impl Workspace {
     /// The part of the direction in which no node moves too far.
@@ -37,7 +26,7 @@ impl Workspace {
         let StepContext { problem, mesh, contacts, .. } = *step;
         let (direction, geometry) = (&self.direction, problem.world.geometry());
         let move_of = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
-        let most = KEPT_REACH_FRACTION * contacts.barrier.reach;
+        let most = mesh.tuning.newton.kept_reach_fraction * contacts.barrier.reach;
         let mut free = fraction;
         for e in 0..mesh.rest_length.len() {
             let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());
@@ -47,8 +36,8 @@ impl Workspace {
                 let whole = mesh.rest_length[e] / mesh.thermal_stretch + unknowns.slide[e + 1] - unknowns.slide[e];
                 let straight = mesh.path(e, &unknowns.x).straight;
                 let length = if straight > 0.0 && straight < whole { straight } else { whole };
-                if change < 0.0 && -change * free > (1.0 - KEPT_CABLE_FRACTION) * length {
-                    free = (1.0 - KEPT_CABLE_FRACTION) * length / -change;
+                if change < 0.0 && -change * free > (1.0 - mesh.tuning.newton.kept_cable_fraction) * length {
+                    free = (1.0 - mesh.tuning.newton.kept_cable_fraction) * length / -change;
                 }
             }
             if problem.world.is_empty() || slides == [true, true] {
@@ -62,14 +51,14 @@ impl Workspace {
                 let end = |k: usize| mesh.sliding[k].as_ref().map_or(End::point(x[k] + move_of(k) * free), |s| s.end);
                 Path::between(&end(e), &end(e + 1)).ends
             };
-            let sweep = Sweep::new(from, to, KEPT_GAP_FRACTION).at_most(most);
+            let sweep = Sweep::new(from, to, mesh.tuning.newton.kept_gap_fraction).at_most(most);
             free *= match contacts.near.of(e, [from, to], sweep.margin) {
                 Some([]) => 1.0,
                 Some(parts) => geometry.free_fraction_among(parts.iter().copied(), &sweep, mesh.rounds(e)),
                 None => geometry.free_fraction_round(&sweep, mesh.rounds(e)),
             };
         }
-        let limits = [KEPT_GAP_FRACTION, most, free];
+        let limits = [mesh.tuning.newton.kept_gap_fraction, most, free];
         contacts.own.shape.free_fraction(&unknowns.x, &mesh.arc_length, &move_of, limits, &mut self.order)
     }
 
@@ -89,17 +78,12 @@ impl Workspace {
         if plain {
             let gaps = self.touches.iter().map(|t| t.pair.gap.gap_m);
             let least = gaps.fold(contacts.barrier.reach, |a, b| if b < a { b } else { a });
-            if fraction * longest(&self.direction) <= (1.0 - KEPT_GAP_FRACTION) * least {
+            if fraction * longest(&self.direction) <= (1.0 - mesh.tuning.newton.kept_gap_fraction) * least {
                 return fraction;
             }
         }
         self.free_way(step, unknowns, fraction)
     }
-}
-
-/// Longest move of a node in a step, m.
-pub(in crate::model::fem) fn longest(step: &[f64]) -> f64 {
-    step.chunks_exact(2).map(|d| d[0] * d[0] + d[1] * d[1]).fold(0.0, larger).sqrt()
 }
 
 #[cfg(test)]
@@ -124,7 +108,7 @@ mod tests {
         let hook = |name: &str, x| Support { release_s: Some(1e-3), ..Support::fixed(name, [x, 0.4]) };
         c.supports = vec![hook("a", 0.0), hook("b", 5.9)];
         let settings = Settings { segments: Some(60), ..Settings::default() };
-        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings).unwrap();
+        let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
         d.settle(&[]).unwrap();
         for _ in 0..240 {
             d.advance(1.0 / 240.0, crate::model::Inertia::Dynamic, &[]).unwrap();

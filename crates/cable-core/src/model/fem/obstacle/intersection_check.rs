@@ -9,13 +9,9 @@
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
 use crate::model::Model;
-use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode};
+use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
 use crate::model::fem::mesh::tangent_path::Path;
 use crate::model::fem::state::cable::CableState;
-
-/// Gap (parts of the barrier's reach) that a bar must have when a node is taken out: less, and the
-/// barrier throws it.
-const LEAST_GAP: f64 = 0.05;
 
 impl CableState {
     /// True if a bar meets nothing.
@@ -57,8 +53,9 @@ impl CableState {
     pub(in crate::model::fem) fn way_is_clear(&self, way: &Path, nodes: [Option<&SlidingNode>; 2]) -> bool {
         let geometry = self.problem.world.geometry();
         let rounds = nodes.map(|s| s.and_then(SlidingNode::feature));
-        (0..2).all(|j| nodes[j].is_none_or(|s| !self.is_over_an_edge(s, way.ends[j], LEAST_GAP)))
-            && geometry.is_clear(way.ends, LEAST_GAP * self.contacts.barrier.reach, rounds)
+        (0..2).all(|j| {
+            nodes[j].is_none_or(|s| !self.is_over_an_edge(s, way.ends[j], self.mesh.tuning.remesh.min_gap_reaches))
+        }) && geometry.is_clear(way.ends, self.mesh.tuning.remesh.min_gap_reaches * self.contacts.barrier.reach, rounds)
     }
 
     /// True if the straight way past node `k` meets nothing.
@@ -77,7 +74,8 @@ impl CableState {
         let (mesh, geometry) = (&self.mesh, self.problem.world.geometry());
         (0..mesh.rest_length.len()).find(|&e| {
             let nodes = [e, e + 1].map(|k| mesh.sliding[k].as_ref());
-            let slides = |s: Option<&SlidingNode>| s.is_some_and(|s| matches!(s.seat, Seat::Obstacle { .. }));
+            let slides =
+                |s: Option<&SlidingNode>| s.is_some_and(|s| matches!(s.slide_over, SlideOver::Obstacle { .. }));
             if !nodes.into_iter().any(slides) {
                 return false;
             }

@@ -33,26 +33,6 @@ use crate::model::fem::time::step_setup::clear_way;
 use crate::problem::SupportPoint;
 use crate::scene::SupportKind;
 
-/// Bars nearer than this (m), and four ways of the outline, go with it. Nearer: bars just beyond
-/// are folded against those that go; farther: what lies on the ground some way off is moved for
-/// nothing.
-const GOES_ALONG_M: f64 = 0.02;
-
-/// Parts of its way that are tried. Fewer: it stops before it must; more: a cable squeezed against
-/// a wall is asked again.
-const PARTS: [f64; 4] = [1.0, 0.5, 0.25, 0.0625];
-
-/// Part of a gap that is left when what stands in the way pushes back (κ); the sweep asks for less,
-/// for rounding.
-const KEPT_GAP_FRACTIONS: [f64; 2] = [0.1, 0.05];
-
-/// Rounds of giving gaps back. A node in a corner between outline and ground needs a few; a
-/// squeezed one never ends.
-const ROUNDS: usize = 40;
-
-/// A hitch that a wall stopped is left behind by so much, m; then the outline waits for it.
-const LEFT_BEHIND_M: f64 = 0.06;
-
 /// A way of the outline that counts as none, m.
 const STANDS_M: f64 = 1e-12;
 
@@ -135,13 +115,13 @@ impl CableState {
         }
         let ends: Vec<[Vec2; 2]> =
             (0..self.mesh.rest_length.len()).map(|e| self.mesh.straight(e, &self.motion.x)).collect();
-        for part in PARTS {
+        for part in self.mesh.tuning.outline.way_fractions {
             let outline_motion = OutlineMotion { obstacle, from, to: from.towards(&goal, part) };
             self.move_outline(&outline_motion);
             self.prepare_step(times, dragged);
             let comes = self.hitch_on(&outline_motion);
-            if let Some(laid) = self.laid(&outline_motion, &ends).filter(|_| comes) {
-                self.input.laid = laid;
+            if let Some(cleared) = self.positions_clear_of(&outline_motion, &ends).filter(|_| comes) {
+                self.input.cleared = cleared;
                 self.contacts.outline_motion = Some(outline_motion);
                 return;
             }
@@ -163,7 +143,7 @@ impl CableState {
         let (Some(k), Some(outline)) = (self.hitch(), &self.outline) else { return true };
         let on_it = outline_motion.to.place(outline.shape.hitch);
         if (self.input.target[k] - on_it).norm() > STANDS_M {
-            self.input.target[k] = clear_way(&self.problem, self.input.start[k], on_it);
+            self.input.target[k] = clear_way(&self.problem, &self.mesh, self.input.start[k], on_it);
         }
         let far = |p: Vec2| (p - on_it).norm();
         let now = self.input.start[k];
@@ -171,10 +151,11 @@ impl CableState {
         // left behind.
         let gap =
             |p: Vec2| self.problem.world.signed_gap(p, self.problem.radius).map_or(self.problem.radius, |g| g.gap_m);
-        if far(now) <= LEFT_BEHIND_M && gap(self.input.target[k]) < gap(now) {
+        if far(now) <= self.mesh.tuning.outline.max_hitch_lag_m && gap(self.input.target[k]) < gap(now) {
             self.input.target[k] = now;
         }
-        far(now) <= LEFT_BEHIND_M || far(now) <= (now - outline_motion.from.place(outline.shape.hitch)).norm()
+        far(now) <= self.mesh.tuning.outline.max_hitch_lag_m
+            || far(now) <= (now - outline_motion.from.place(outline.shape.hitch)).norm()
     }
 
     /// Moves the outline and nothing else.
@@ -185,11 +166,18 @@ impl CableState {
 
     /// Positions of the nodes out of the way of the outline; `ends` are those of the bars before it
     /// moved. None where they cannot.
-    fn laid(&self, outline_motion: &OutlineMotion, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
+    fn positions_clear_of(&self, outline_motion: &OutlineMotion, ends: &[[Vec2; 2]]) -> Option<Vec<Vec2>> {
         let Some(outline) = &self.outline else { return Some(Vec::new()) };
         let way = outline.shape.max_displacement(&outline_motion.from, &outline_motion.to);
-        let near: Vec<bool> =
-            ends.iter().map(|e| self.is_near(e.map(|p| outline_motion.carried(p)), GOES_ALONG_M + 4.0 * way)).collect();
+        let near: Vec<bool> = ends
+            .iter()
+            .map(|e| {
+                self.is_near(
+                    e.map(|p| outline_motion.carried(p)),
+                    self.mesh.tuning.outline.carried_distance_m + 4.0 * way,
+                )
+            })
+            .collect();
         if !near.contains(&true) {
             return Some(Vec::new());
         }
@@ -231,11 +219,12 @@ impl CableState {
             };
             kept.extend(found.iter().filter(wanted).map(|t| (*t, t.interpolate(from))));
         }
-        for _ in 0..ROUNDS {
+        for _ in 0..self.mesh.tuning.outline.max_rounds {
             let mut worst = 0.0;
             for (touch, from) in &kept {
                 let gap = &touch.pair.gap;
-                let least = if gap.gap_m > 0.0 { -(1.0 - KEPT_GAP_FRACTIONS[0]) * gap.gap_m } else { 0.0 };
+                let least =
+                    if gap.gap_m > 0.0 { -(1.0 - self.mesh.tuning.outline.kept_gap_fraction) * gap.gap_m } else { 0.0 };
                 let lack = least - gap.normal.dot(&(touch.interpolate(x) - from));
                 let shares = touch.shares();
                 let free = [0, 1].map(|j| match shares[j] > 0.0 && mesh.is_free(touch.node + j) {
@@ -264,7 +253,7 @@ impl CableState {
         let own = geometry.bodies().len().saturating_sub(1);
         let swept = |e: usize, from: [Vec2; 2], of_outline: bool| {
             let to = mesh.straight(e, x);
-            let sweep = Sweep::new(from, to, KEPT_GAP_FRACTIONS[1]);
+            let sweep = Sweep::new(from, to, self.mesh.tuning.outline.swept_gap_fraction);
             let parts = geometry.parts(sweep.low, sweep.high, sweep.margin);
             let parts = parts.filter(|p: &Part| (p.body == own) == of_outline && !is_passed_by(geometry, *p, from, to));
             geometry.free_fraction_among(parts, &sweep, mesh.rounds(e)) >= 1.0
@@ -281,7 +270,7 @@ impl CableState {
                 &self.input.start,
                 arc,
                 &step,
-                [KEPT_GAP_FRACTIONS[1], f64::INFINITY, 1.0],
+                [self.mesh.tuning.outline.swept_gap_fraction, f64::INFINITY, 1.0],
                 order,
             )
         };
@@ -305,7 +294,7 @@ impl CableState {
         for touch in touches.iter().filter(|t| t.pair.gap.obstacle == obstacle) {
             sum -= touch.pair.gap.normal * touch.load(&self.contacts.barrier);
         }
-        for rub in self.contacts.rubs.iter().filter(|r| r.touch.pair.gap.obstacle == obstacle) {
+        for rub in self.contacts.friction_contacts.iter().filter(|r| r.touch.pair.gap.obstacle == obstacle) {
             sum -= rub_force(&self.contacts, rub, x);
         }
         sum

@@ -13,78 +13,15 @@
 use crate::contact::friction;
 use crate::math::{Vec2, bounded, perp, smaller};
 use crate::model::Inertia;
-use crate::model::fem::mesh::sliding_node::{Load, Seat, SlidingNode, round_of};
+use crate::model::fem::mesh::sliding_node::{Load, SlideOver, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::floor_friction;
 use crate::model::fem::system::step_input::load_scale;
 
-/// Corners that turn by less (rad) are left to the barrier: there a chain jerks by less than 1e-3
-/// of its tension.
-pub(in crate::model::fem) const LEAST_TURN: f64 = 0.05;
-
-/// Bars beside sliding nodes are kept between these parts of an even bar. Tighter: nodes come and
-/// go all the time; wider: the bars beside a corner are coarse.
-const SHORTEST_BAR_FRACTION: f64 = 0.35;
-/// See `SHORTEST_BAR_FRACTION`.
-const LONGEST_BAR_FRACTION: f64 = 1.6;
-
-/// A node this near (in even bars) to a new sliding node is in its way.
-pub(in crate::model::fem) const NODE_REMOVAL_FRACTION: f64 = 0.1;
-
-/// Tension in weights of an even bar from which a corner gets a sliding node, and below which it
-/// loses it: a slack cable lies on corners with its nodes, and the barrier carries it as well.
-const SLIDING_NODE_TENSION: f64 = 4.0;
-/// See `SLIDING_NODE_TENSION`.
-const MATERIAL_NODE_TENSION: f64 = 2.0;
-
-/// Turn (rad) the wrong way round a corner that a step may end with. The node leaves after the
-/// step; with more, its tangents would lie inside the obstacle.
-const REVERSE_TURN_LIMIT: f64 = 0.02;
-
-/// √(EI/T), in even bars, beyond which a cable's bend is seen by the mesh. Less: chains jerk at
-/// corners, node by node; more: what a corner's bend costs is left out where it need not be.
-const RESOLVED_BEND_BARS: f64 = 0.5;
-
-/// Half of the turn (rad) up to which a slack cable may leave a round with one node.
-const MOST_BEND: f64 = 1.0;
-
-/// Half of the turn (rad) up to which the node that takes the place of a sliding one goes where the
-/// tangents meet.
-const TANGENT_NODE_HALF_TURN: f64 = 1.4;
-
-/// Turn (rad) below which a node that leaves its corner is taken out; else it becomes a node of the
-/// cable.
-const REMOVED_CORNER_TURN: f64 = 0.3;
-
-/// Plain nodes whose two bars are together shorter than this (in even bars) are taken out.
-const SPARE_NODE_BARS: f64 = 1.3;
-
-/// Length of the sum of the directions before and after a node below which the cable counts as
-/// folded there.
-const FOLD_DIRECTION_SUM: f64 = 0.2;
-
-/// Tension of a taut cable in motion, in units of EA (v/c)^(4/3): something that it hits across at
-/// a speed v makes 0.63 of it. Less: sliding nodes come and go where a falling cable strikes; more:
-/// a cable drawn fast over corners jerks at them.
-const IMPACT: f64 = 3.0;
-
-/// Distance from a corner (m of arc length) within which speeds count.
-const NEIGHBOURHOOD: f64 = 0.3;
-
-/// Part by which a change of the mesh may change tension in motion.
-const TENSION_CHANGE_LIMIT: f64 = 0.05;
-
-/// Part of the cable's weight that counts as tension there: what is nearly slack may change by as
-/// much.
-const WEIGHT_PART: f64 = 0.1;
-
 /// Least part of the material between two nodes on each side of a node put between them.
 const LEAST_PART: f64 = 1e-3;
-
-/// Most changes of one kind after one step.
-pub(in crate::model::fem) const MAX_CHANGES: usize = 400;
 
 /// The shares of two bars in their material where their paths change.
 #[derive(Clone, Copy, Debug)]
@@ -129,13 +66,13 @@ impl CableState {
         if self.contacts.own.shape.is_on() {
             return Remeshed::default();
         }
-        let mut changed = self.let_go(&[], rests);
-        let taken = self.take_hold(rests);
+        let mut changed = self.remove_sliding_nodes(&[], rests);
+        let taken = self.add_sliding_nodes(rests);
         if !taken.is_empty() {
             // A node that took hold may lift its neighbour off. Itself it waits for a step where
             // inertia does not count: it took over weight of the nodes beside it, which under a
             // corner pulls it away until they have moved.
-            self.let_go(if rests { &taken } else { &[] }, rests);
+            self.remove_sliding_nodes(if rests { &taken } else { &[] }, rests);
             changed = true;
         }
         let moved = self.move_marks(rests);
@@ -217,16 +154,16 @@ impl CableState {
 
     /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether
     /// there were any.
-    fn let_go(&mut self, kept: &[Seat], rests: bool) -> bool {
+    fn remove_sliding_nodes(&mut self, kept: &[SlideOver], rests: bool) -> bool {
         let mut changed = false;
         let mut k = 1;
         while k + 1 < self.mesh.nodes() {
-            let leaves = match self.mesh.sliding[k].map(|s| s.seat) {
+            let leaves = match self.mesh.sliding[k].map(|s| s.slide_over) {
                 None => false,
-                Some(Seat::Pulley(support)) => {
+                Some(SlideOver::Pulley(support)) => {
                     self.problem.supports.get(support).is_none_or(|s| !s.holds_from(self.motion.time))
                 }
-                Some(seat @ Seat::Obstacle { .. }) => !kept.contains(&seat) && self.lifts_off(k),
+                Some(slide_over @ SlideOver::Obstacle { .. }) => !kept.contains(&slide_over) && self.lifts_off(k),
             };
             if leaves && self.runs_straight(k) && self.clear_without(k) {
                 self.remove(k);
@@ -246,10 +183,10 @@ impl CableState {
 
     /// A node that moves with its material becomes a sliding one.
     fn pin_down(&mut self, k: usize, arc_length: f64, sliding: SlidingNode) {
-        self.as_of(sliding.seat, |d| d.put_on_seat(k, arc_length, sliding));
+        self.as_of(sliding.slide_over, |d| d.make_sliding(k, arc_length, sliding));
     }
 
-    fn put_on_seat(&mut self, k: usize, arc_length: f64, sliding: SlidingNode) {
+    fn make_sliding(&mut self, k: usize, arc_length: f64, sliding: SlidingNode) {
         self.keep_answer();
         let along = self.mesh.path(k - 1, &self.motion.x).direction;
         let (mesh, m) = (&mut self.mesh, &mut self.motion);
@@ -277,21 +214,27 @@ impl CableState {
     /// broke it.)
     pub(in crate::model::fem) fn settle_down(&mut self, k: usize) -> bool {
         match self.mesh.sliding.get(k).copied().flatten() {
-            Some(node) => self.as_of(node.seat, |d| d.take_off_seat(k)),
-            None => self.take_off_seat(k),
+            Some(node) => self.as_of(node.slide_over, |d| d.make_material(k)),
+            None => self.make_material(k),
         }
     }
 
-    fn take_off_seat(&mut self, k: usize) -> bool {
+    fn make_material(&mut self, k: usize) -> bool {
         self.keep_answer();
         let before = [k - 1, k].map(|e| self.mesh.path(e, &self.motion.x).length / self.mesh.rest_length[e]);
         let half = (0.5 * self.turn(k)).abs();
-        let out = 1.0 / if half < TANGENT_NODE_HALF_TURN { half.cos() } else { TANGENT_NODE_HALF_TURN.cos() };
+        let out = 1.0
+            / if half < self.mesh.tuning.remesh.max_tangent_half_turn_rad {
+                half.cos()
+            } else {
+                self.mesh.tuning.remesh.max_tangent_half_turn_rad.cos()
+            };
         let Some(end) = self.mesh.sliding[k].map(|s| s.end) else { return false };
         let x = &self.motion.x;
         let along = self.mesh.path(k - 1, x).direction + self.mesh.path(k, x).direction;
         let outward = perp(along) * -end.sense;
-        let outward = if outward.norm() > FOLD_DIRECTION_SUM { outward.normalize() } else { end.mark };
+        let outward =
+            if outward.norm() > self.mesh.tuning.remesh.fold_direction_sum { outward.normalize() } else { end.mark };
         let (sliding, place) = (self.mesh.sliding[k].take(), self.motion.x[k]);
         self.motion.x[k] = end.center + outward * (end.radius * out);
         if ![k - 1, k].into_iter().all(|e| self.is_clear(e)) {
@@ -326,7 +269,7 @@ impl CableState {
         let fixed = |j: usize| self.mesh.sliding[j].is_none() && !self.removable(j);
         let blocked = [k - 1, k + 1]
             .into_iter()
-            .any(|j| fixed(j) && self.bar_between(j, k) < NODE_REMOVAL_FRACTION * self.even());
+            .any(|j| fixed(j) && self.bar_between(j, k) < self.mesh.tuning.remesh.removed_distance * self.even());
         if blocked {
             return true;
         }
@@ -338,7 +281,8 @@ impl CableState {
         load.normal < 0.0
             || turn < 0.0
             || self.beyond_its_corner(k, &self.motion.x)
-            || (tension < MATERIAL_NODE_TENSION * self.meshing.bar_weight && turn < 2.0 * MOST_BEND)
+            || (tension < self.mesh.tuning.remesh.material_tension_weights * self.meshing.bar_weight
+                && turn < 2.0 * self.mesh.tuning.remesh.max_left_half_turn_rad)
     }
 
     /// Angle through which the bars beside node `k` turn, in the sense of a sliding node, rad.
@@ -349,7 +293,7 @@ impl CableState {
     /// The sliding nodes of obstacles that the cable, at positions `x` (m), turns round the wrong
     /// way: there a corner would have to pull.
     pub(in crate::model::fem) fn pulled(&self, x: &[Vec2]) -> Option<usize> {
-        self.pulled_by(x, REVERSE_TURN_LIMIT)
+        self.pulled_by(x, self.mesh.tuning.remesh.max_reverse_turn_rad)
     }
 
     /// See `pulled`; `wrong`: the turn (rad) the wrong way from which it counts.
@@ -373,7 +317,7 @@ impl CableState {
 
     /// True if a bar in the place of node `k` is nearly the way it lies now.
     fn runs_straight(&self, k: usize) -> bool {
-        self.turn(k).abs() < REMOVED_CORNER_TURN
+        self.turn(k).abs() < self.mesh.tuning.remesh.removed_turn_rad
     }
 
     /// Arc length between two nodes, m.
@@ -382,20 +326,20 @@ impl CableState {
     }
 
     /// Puts sliding nodes where corners and circles press; returns their seats.
-    fn take_hold(&mut self, rests: bool) -> Vec<Seat> {
+    fn add_sliding_nodes(&mut self, rests: bool) -> Vec<SlideOver> {
         let mut taken = Vec::new();
         if self.problem.world.is_empty() || !self.meshing.slides {
             return taken;
         }
         let mut touches = std::mem::take(&mut self.meshing.found);
-        for _ in 0..MAX_CHANGES {
+        for _ in 0..self.mesh.tuning.remesh.max_changes {
             self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
             let found = touches.iter().find_map(|t| {
                 let pressed =
                     t.pair.weight > 0.0 && t.load(&self.contacts.barrier) > 0.0 && t.pair.gap.feature % 2 == 1;
                 let (bar, arc_length, sliding) =
-                    if pressed { self.seat_for(t.node, t.on_segment, &t.pair.gap)? } else { return None };
-                let near = NODE_REMOVAL_FRACTION * self.even();
+                    if pressed { self.sliding_node_for(t.node, t.on_segment, &t.pair.gap)? } else { return None };
+                let near = self.mesh.tuning.remesh.removed_distance * self.even();
                 let node = [bar, bar + 1]
                     .into_iter()
                     .find(|&k| self.removable(k) && (self.mesh.arc_length[k] - arc_length).abs() < near);
@@ -416,7 +360,7 @@ impl CableState {
                 None => self.insert(bar + 1, arc_length, Some(sliding)),
             }
             self.clear_around(node.unwrap_or(bar + 1));
-            taken.push(sliding.seat);
+            taken.push(sliding.slide_over);
         }
         self.meshing.found = touches;
         taken
@@ -432,14 +376,15 @@ impl CableState {
         let stretch = [before, after - 1].map(|e| mesh.path(e, x).length / mesh.rest_length[e]);
         let whole = (before..after).map(|e| mesh.rest_length[e]).sum();
         let share = Share::of(ways.map(|w| w.length), stretch, whole);
-        let near = mesh.arc_length[before] - NEIGHBOURHOOD..mesh.arc_length[after] + NEIGHBOURHOOD;
+        let near = mesh.arc_length[before] - self.mesh.tuning.remesh.neighbourhood_m
+            ..mesh.arc_length[after] + self.mesh.tuning.remesh.neighbourhood_m;
         let speed = |k: usize| if mesh.sliding[k].is_some() { self.motion.w[k].abs() } else { self.motion.v[k].norm() };
         let fastest = (0..mesh.nodes())
             .filter(|&k| near.contains(&mesh.arc_length[k]))
             .map(speed)
             .fold(0.0, |a: f64, b| if b <= a { a } else { b });
         let wave = (mesh.axial_stiffness / self.problem.linear_density).sqrt();
-        let impact = IMPACT * mesh.axial_stiffness * (fastest / wave).powf(4.0 / 3.0);
+        let impact = self.mesh.tuning.remesh.impact_tension * mesh.axial_stiffness * (fastest / wave).powf(4.0 / 3.0);
         let tension = self.least_tension(stretch);
         (tension > impact && self.may_change(tension, &share)).then_some(share)
     }
@@ -453,7 +398,7 @@ impl CableState {
         let lengths = [k - 1, k].map(|e| mesh.path(e, x).length);
         let stretch = [0, 1].map(|j| lengths[j] / mesh.rest_length[k - 1 + j]);
         let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
-        half < TANGENT_NODE_HALF_TURN
+        half < self.mesh.tuning.remesh.max_tangent_half_turn_rad
             && self.may_change(self.least_tension(stretch), &Share::of(lengths.map(|l| l + longer), stretch, whole))
     }
 
@@ -466,7 +411,8 @@ impl CableState {
     /// True if a change of the mesh adds so little to a tension (N) that it does not show.
     fn may_change(&self, tension: f64, share: &Share) -> bool {
         let weight = load_scale(&self.problem).0 * self.problem.length;
-        self.mesh.axial_stiffness * share.added_strain < TENSION_CHANGE_LIMIT * (tension + WEIGHT_PART * weight)
+        self.mesh.axial_stiffness * share.added_strain
+            < self.mesh.tuning.remesh.max_tension_change * (tension + self.mesh.tuning.remesh.weight_fraction * weight)
     }
 
     /// True if a sliding node between two nodes would bend the cable the right way and its bars
@@ -477,8 +423,8 @@ impl CableState {
             Path::between(&self.mesh.end(before, x), &sliding.end),
             Path::between(&sliding.end, &self.mesh.end(after, x)),
         ];
-        let seat = |k: usize| self.mesh.sliding[k].as_ref();
-        let nodes = [[seat(before), Some(sliding)], [Some(sliding), seat(after)]];
+        let slide_over = |k: usize| self.mesh.sliding[k].as_ref();
+        let nodes = [[slide_over(before), Some(sliding)], [Some(sliding), slide_over(after)]];
         let turn = if sliding.end.radius > 0.0 {
             paths[0].arcs[1] + paths[1].arcs[0]
         } else {
@@ -489,20 +435,31 @@ impl CableState {
             self.mesh.sliding[k].is_none_or(|s| {
                 s.feature().is_none()
                     || s.shares_round(sliding)
-                    || arc + self.mesh.path(e, x).arcs[j] > -REVERSE_TURN_LIMIT
+                    || arc + self.mesh.path(e, x).arcs[j] > -self.mesh.tuning.remesh.max_reverse_turn_rad
             })
         };
         let sides = (before == 0 || beside(before, paths[0].arcs[0], before - 1, 1))
             && (after + 1 == self.mesh.nodes() || beside(after, paths[1].arcs[1], after, 0));
-        turn > -REVERSE_TURN_LIMIT && sides && (0..2).all(|j| self.way_is_clear(&paths[j], nodes[j]))
+        turn > -self.mesh.tuning.remesh.max_reverse_turn_rad
+            && sides
+            && (0..2).all(|j| self.way_is_clear(&paths[j], nodes[j]))
     }
 
     /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc
     /// length and itself.
-    fn seat_for(&self, node: usize, on_segment: bool, gap: &crate::contact::Gap) -> Option<(usize, f64, SlidingNode)> {
+    fn sliding_node_for(
+        &self,
+        node: usize,
+        on_segment: bool,
+        gap: &crate::contact::Gap,
+    ) -> Option<(usize, f64, SlidingNode)> {
         let (mesh, x, last) = (&self.mesh, &self.motion.x, self.mesh.nodes() - 1);
-        let (center, radius) =
-            round_of(self.problem.world.geometry(), gap.feature, self.clearance(gap.feature), LEAST_TURN)?;
+        let (center, radius) = round_of(
+            self.problem.world.geometry(),
+            gap.feature,
+            self.clearance(gap.feature),
+            self.mesh.tuning.remesh.min_turn_rad,
+        )?;
         let (bar, fraction) = match (on_segment, node) {
             (true, e) => (e, gap.fraction),
             (false, k) if k > 0 && k < last => (k - 1, 1.0),
@@ -513,7 +470,7 @@ impl CableState {
         let sense = if gap.normal.dot(&perp(along)) > 0.0 { -1.0 } else { 1.0 };
         // A cable folded back on itself at an obstacle runs neither way round it, one that is bent
         // away from it hits it with a node.
-        if !on_segment && (along.norm() < FOLD_DIRECTION_SUM || self.turn(node) * sense < 0.0) {
+        if !on_segment && (along.norm() < self.mesh.tuning.remesh.fold_direction_sum || self.turn(node) * sense < 0.0) {
             return None;
         }
         // Seen from beyond the bar the cable must bend round the corner, and be taut.
@@ -521,11 +478,11 @@ impl CableState {
         let beyond = (bar + 1).min(last - 1);
         let wrap = sense * angle_between(mesh.path(first, x).direction, mesh.path(beyond, x).direction);
         let tension = mesh.bar(bar).tension(path.length);
-        if !(wrap > 0.0 && tension > SLIDING_NODE_TENSION * self.meshing.bar_weight) {
+        if !(wrap > 0.0 && tension > self.mesh.tuning.remesh.sliding_tension_weights * self.meshing.bar_weight) {
             return None;
         }
         let s = [mesh.arc_length[bar], mesh.arc_length[bar + 1]];
-        let near = NODE_REMOVAL_FRACTION * self.even();
+        let near = self.mesh.tuning.remesh.removed_distance * self.even();
         // The ends of a cable and what hangs on it stay clear of corners.
         let from_start = fraction * (s[1] - s[0]);
         let from_end = (1.0 - fraction) * (s[1] - s[0]);
@@ -539,8 +496,8 @@ impl CableState {
         let part = if path.length > 0.0 { (before + fraction * path.straight) / path.length } else { fraction };
         let arc_length = s[0] + bounded(part, LEAST_PART, 1.0 - LEAST_PART) * (s[1] - s[0]);
         let end = End { center, radius, mark: gap.normal, sense };
-        let seat = Seat::Obstacle { obstacle: gap.obstacle, feature: gap.feature };
-        let sliding = SlidingNode::new(end, gap.friction, seat);
+        let slide_over = SlideOver::Obstacle { obstacle: gap.obstacle, feature: gap.feature };
+        let sliding = SlidingNode::new(end, gap.friction, slide_over);
         Some((bar, arc_length, sliding))
     }
 
@@ -551,12 +508,13 @@ impl CableState {
         let stiffness = self.mesh.bending_stiffness;
         let least = self.meshing.bar_weight + stiffness / (self.problem.length * self.problem.length);
         stiffness > 0.0
-            && (stiffness / if tension > least { tension } else { least }).sqrt() > RESOLVED_BEND_BARS * self.even()
+            && (stiffness / if tension > least { tension } else { least }).sqrt()
+                > self.mesh.tuning.remesh.resolved_bend * self.even()
     }
 
     /// Takes out plain nodes in the way of a new sliding node.
     fn clear_around(&mut self, k: usize) {
-        let near = SHORTEST_BAR_FRACTION * self.even();
+        let near = self.mesh.tuning.remesh.min_bar * self.even();
         let straight = |d: &Self, e: usize| d.mesh.path(e, &d.motion.x).straight;
         if k + 2 < self.mesh.nodes() && self.removable(k + 1) && straight(self, k) < near && self.clear_without(k + 1) {
             self.remove(k + 1);
@@ -580,11 +538,11 @@ impl CableState {
             }
             let (before, after) = (self.mesh.sliding[k - 1], self.mesh.sliding[k + 1]);
             let straight = |e: usize| self.mesh.path(e, &self.motion.x).straight;
-            let crowded = (before.is_some() && straight(k - 1) < SHORTEST_BAR_FRACTION * even)
-                || (after.is_some() && straight(k) < SHORTEST_BAR_FRACTION * even);
+            let crowded = (before.is_some() && straight(k - 1) < self.mesh.tuning.remesh.min_bar * even)
+                || (after.is_some() && straight(k) < self.mesh.tuning.remesh.min_bar * even);
             let spare = before.is_none()
                 && after.is_none()
-                && self.bar_between(k - 1, k + 1) < SPARE_NODE_BARS * even
+                && self.bar_between(k - 1, k + 1) < self.mesh.tuning.remesh.spare_bars * even
                 && self.runs_straight(k);
             let enclosed = matches!((before, after), (Some(a), Some(b)) if a.shares_round(&b));
             if (crowded || enclosed || spare) && self.clear_without(k) {
@@ -600,7 +558,10 @@ impl CableState {
             let x = &self.motion.x;
             let path = self.mesh.path(e, x);
             let unwound = path.arcs.iter().any(|&a| a < -0.1);
-            if length > LONGEST_BAR_FRACTION * even && path.straight > 0.8 * LONGEST_BAR_FRACTION * even && !unwound {
+            if length > self.mesh.tuning.remesh.max_bar * even
+                && path.straight > 0.8 * self.mesh.tuning.remesh.max_bar * even
+                && !unwound
+            {
                 // Even pieces, the straight part permitting; beside a sliding node the odd piece is
                 // its.
                 let slides = [e, e + 1].map(|k| self.mesh.sliding[k].is_some());

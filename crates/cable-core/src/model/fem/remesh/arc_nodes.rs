@@ -1,9 +1,9 @@
 //! Marks are the places on a round at which its material is counted.
 
 use crate::math::smaller;
-use crate::model::fem::mesh::sliding_node::{MARKED_ARC_LIMIT, ONE_MARK_BAR_FRACTION, SlidingNode};
+use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::mesh::tangent_path::{End, rotate};
-use crate::model::fem::remesh::adapt::{MAX_CHANGES, NODE_REMOVAL_FRACTION};
+
 use crate::model::fem::state::cable::CableState;
 
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
@@ -42,14 +42,15 @@ impl CableState {
             let sum = |of: &dyn Fn(usize) -> f64| bars.clone().map(of).sum::<f64>();
             let stretch = sum(&|e| paths[e + 1 - k].length) / sum(&|e| self.mesh.rest_length[e]);
             let material = shift * node.end.radius / (stretch * self.mesh.thermal_stretch);
-            let room = NODE_REMOVAL_FRACTION * NODE_REMOVAL_FRACTION * self.even();
+            let room =
+                self.mesh.tuning.remesh.removed_distance * self.mesh.tuning.remesh.removed_distance * self.even();
             let s = &self.mesh.arc_length;
             if s[k] + material < s[k - 1] + room || s[k] + material > s[k + 1] - room {
                 continue;
             }
             self.keep_answer();
             moved = true;
-            self.as_of(node.seat, |d| d.turn_mark(k, shift, material));
+            self.as_of(node.slide_over, |d| d.turn_mark(k, shift, material));
         }
         moved
     }
@@ -74,7 +75,7 @@ impl CableState {
         let mut changed = false;
         let mut k = 1;
         let mut changes = 0;
-        while k + 1 < self.mesh.nodes() && changes < MAX_CHANGES {
+        while k + 1 < self.mesh.nodes() && changes < self.mesh.tuning.remesh.max_changes {
             let Some(node) = self.mesh.sliding[k].filter(|s| s.end.radius > 0.0) else {
                 k += 1;
                 continue;
@@ -84,9 +85,13 @@ impl CableState {
             let arcs = [self.mesh.path(k - 1, x).arcs[1], self.mesh.path(k, x).arcs[0]];
             // On a large round the marks of a cable at rest are as far apart as nodes elsewhere:
             // what friction holds is known between marks only.
-            let spacing =
-                if rests { smaller(0.5 * MARKED_ARC_LIMIT, even / node.end.radius) } else { 0.5 * MARKED_ARC_LIMIT };
-            let big = |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > ONE_MARK_BAR_FRACTION * even;
+            let spacing = if rests {
+                smaller(0.5 * self.mesh.tuning.remesh.max_marked_arc_rad, even / node.end.radius)
+            } else {
+                0.5 * self.mesh.tuning.remesh.max_marked_arc_rad
+            };
+            let big =
+                |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > self.mesh.tuning.remesh.one_mark_bars * even;
             changes += 1;
             if (!shared[0] && shared[1] && arcs[0] < 0.0) || (!shared[1] && shared[0] && arcs[1] < 0.0) {
                 self.remove(k);

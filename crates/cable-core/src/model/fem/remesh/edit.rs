@@ -11,7 +11,7 @@ impl CableState {
     pub(in crate::model::fem) fn insert(&mut self, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {
         let beside = [k - 1, k].into_iter().find_map(|j| self.mesh.sliding.get(j).copied().flatten());
         match sliding.or(beside) {
-            Some(node) => self.as_of(node.seat, |d| d.put_in(k, arc_length, sliding)),
+            Some(node) => self.as_of(node.slide_over, |d| d.put_in(k, arc_length, sliding)),
             None => self.put_in(k, arc_length, None),
         }
     }
@@ -64,7 +64,7 @@ impl CableState {
     /// Takes node `k` out.
     pub(in crate::model::fem) fn remove(&mut self, k: usize) {
         match self.mesh.sliding.get(k).copied().flatten() {
-            Some(node) => self.as_of(node.seat, |d| d.take_out(k)),
+            Some(node) => self.as_of(node.slide_over, |d| d.take_out(k)),
             None => self.remove_plain(k),
         }
     }
@@ -79,9 +79,9 @@ impl CableState {
             let had = self.sliding_momentum_at(&self.motion.w) - self.sliding_momentum_at(&self.motion.w_before);
             self.merge(k);
             let has = self.sliding_momentum_at(&self.motion.w) - self.sliding_momentum_at(&self.motion.w_before);
-            self.account_for_history(round.seat, had - has);
+            self.account_for_history(round.slide_over, had - has);
         } else {
-            self.as_of(round.seat, |d| d.take_out(k));
+            self.as_of(round.slide_over, |d| d.take_out(k));
         }
     }
 

@@ -6,12 +6,13 @@ use std::sync::Arc;
 use crate::contact::barrier::Barrier;
 use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
-use crate::model::fem::mesh::sliding_node::Seat;
+use crate::model::fem::mesh::sliding_node::SlideOver;
 use crate::model::fem::newton::initial_guess::{depenetrate, place_nodes, route};
+use crate::model::fem::settings::{ContactTuning, StartTuning, Tuning};
 use crate::model::fem::state::history::Motion;
 use crate::model::fem::state::moving_outline::MovingOutline;
 use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::friction_state::{ContactPair, ContactSet, SLIDE, slip_at_rest};
+use crate::model::fem::system::friction_state::{ContactPair, ContactSet, slip_at_rest};
 use crate::model::fem::system::loss::Loss;
 use crate::model::fem::system::step_input::{StepInput, Unknowns, load_scale, tolerance};
 use crate::model::fem::touches_nothing;
@@ -20,19 +21,6 @@ use crate::problem::{Problem, Series};
 use crate::scene::SupportKind;
 use crate::solution::CableSolution;
 use crate::state::State;
-
-/// Gap at which contact begins (d̂), m. Where the cable is taut a corner lifts it by this: 1e-3
-/// adds 2 % to the tension of a soft cable of 12 m over two beams, 1e-4 nothing that shows.
-pub(in crate::model::fem) const REACH: f64 = 1e-4;
-
-/// Barrier stiffness in units of the weight of one element: 20 times smaller rebounds and costs 30
-/// % more.
-const STIFFNESS: f64 = 20.0;
-
-/// Barrier stiffness in units of the greatest tension, where that is more. With a hundredth of it
-/// the gap of a node that a taut cable turns at is still a millionth of a metre; with the weight
-/// alone a cable of 1e6 N came as near as 1e-9 m, and no Newton step moved it.
-const TAUT_STIFFNESS: f64 = 0.05;
 
 /// Tension at the nodes of a mesh.
 #[derive(Clone, Debug, Default)]
@@ -103,10 +91,11 @@ pub(in crate::model::fem) struct CableState {
 
 impl CableState {
     /// The cable along its route.
-    pub(in crate::model::fem) fn new(problem: Arc<Problem>, settings: Settings) -> Self {
+    pub(in crate::model::fem) fn new(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Self {
+        let Tuning { contact, start, .. } = *tuning;
         let (outline, problem) = MovingOutline::of(problem);
         let route = route(&problem);
-        let segments = segments(&problem, settings);
+        let segments = segments(&problem, settings, &start);
         let even = problem.length / segments as f64;
         let mut breaks = vec![0.0, problem.length];
         breaks.extend(problem.supports.iter().filter_map(|s| s.arc_length));
@@ -115,22 +104,22 @@ impl CableState {
         breaks.dedup_by(|a, b| *a - *b < 1e-9 * problem.length);
         if !problem.world.is_empty() || problem.cable.self_contact {
             for (s, _) in &route {
-                if breaks.iter().all(|b| (b - s).abs() > 0.3 * even) {
+                if breaks.iter().all(|b| (b - s).abs() > start.route_node_bars * even) {
                     breaks.push(*s);
                 }
             }
             breaks.sort_by(f64::total_cmp);
         }
-        let mesh = Mesh::new(&problem, &breaks, segments, spreads_mass(&problem));
+        let mesh = Mesh::new(&problem, tuning, &breaks, segments, spreads_mass(&problem));
         let n = mesh.nodes();
         let support_node: Vec<Option<usize>> =
             problem.supports.iter().map(|s| s.arc_length.and_then(|a| mesh.node_at(a))).collect();
         let loads = problem.loads.iter().filter_map(|l| Some((mesh.node_at(l.arc_length)?, l.force.clone()))).collect();
         let (normal_per_m, whole) = load_scale(&problem);
-        let barrier = Barrier { reach: REACH, stiffness: STIFFNESS * normal_per_m * even };
+        let barrier = Barrier { reach: contact.reach_m, stiffness: contact.stiffness_weights * normal_per_m * even };
         let input = StepInput { tolerance: tolerance(&problem, whole), ..StepInput::default() };
         let mut cable = Self {
-            contacts: ContactSet::new(barrier, SLIDE, n),
+            contacts: ContactSet::new(barrier, contact, n),
             motion: Motion {
                 x: place_nodes(&mesh, &route),
                 v: vec![Vec2::zeros(); n],
@@ -186,7 +175,7 @@ impl CableState {
         }
         cable.thread_pulleys(None);
         let mut x = std::mem::take(&mut cable.motion.x);
-        depenetrate(&cable.problem, &cable.mesh, &mut x, 0.9 * REACH);
+        depenetrate(&cable.problem, &cable.mesh, &mut x, 0.9 * contact.reach_m);
         cable.motion.x = x;
         cable.forget_history();
         cable
@@ -222,7 +211,7 @@ impl CableState {
 
     /// Centre of a pulley, m; None for other supports and pulleys that have let go.
     fn pulley_center(&self, support: usize) -> Option<Vec2> {
-        self.mesh.sliding.iter().flatten().find(|s| s.seat == Seat::Pulley(support)).map(|s| s.end.center)
+        self.mesh.sliding.iter().flatten().find(|s| s.slide_over == SlideOver::Pulley(support)).map(|s| s.end.center)
     }
 
     /// Position of a support, m.
@@ -243,7 +232,7 @@ impl CableState {
     }
 
     pub(in crate::model::fem) fn refuse(&self) -> Result<(), SolveError> {
-        let pulleys = self.mesh.sliding.iter().flatten().any(|s| matches!(s.seat, Seat::Pulley(_)));
+        let pulleys = self.mesh.sliding.iter().flatten().any(|s| matches!(s.slide_over, SlideOver::Pulley(_)));
         if self.problem.cable.self_contact && pulleys {
             let feature = Unsupported::SelfContactWithPulleys;
             return Err(SolveError::Unsupported { model: Model::Fem, feature });
@@ -258,8 +247,9 @@ impl CableState {
             return;
         }
         let most = self.greatest_tension();
-        let least = STIFFNESS * self.meshing.bar_weight;
-        let wanted = if TAUT_STIFFNESS * most > least { TAUT_STIFFNESS * most } else { least };
+        let ContactTuning { stiffness_weights, stiffness_tensions, .. } = self.contacts.tuning;
+        let least = stiffness_weights * self.meshing.bar_weight;
+        let wanted = if stiffness_tensions * most > least { stiffness_tensions * most } else { least };
         let now = self.contacts.barrier.stiffness;
         self.contacts.barrier.stiffness = bounded(wanted * ahead, now * down, now * up);
     }
@@ -267,7 +257,11 @@ impl CableState {
     /// The same for the sliding at which friction is fully mobilised, where inertia does not count.
     pub(in crate::model::fem) fn adapt_slip(&mut self) {
         let (weight, tension) = (load_scale(&self.problem).0 * self.problem.length, self.greatest_tension());
-        self.contacts.set_slip(slip_at_rest(&self.problem, if tension > weight { tension } else { weight }));
+        self.contacts.set_slip(slip_at_rest(
+            &self.contacts.tuning,
+            &self.problem,
+            if tension > weight { tension } else { weight },
+        ));
     }
 
     /// Greatest tension of a bar, N.
@@ -344,8 +338,8 @@ fn spreads_mass(problem: &Problem) -> bool {
 
 /// Elements of a cable where neither the scene nor the settings give a number: finer where it can
 /// touch an obstacle.
-fn segments(problem: &Problem, settings: Settings) -> usize {
-    let element = if problem.world.is_empty() { 0.2 } else { 0.12 };
-    let automatic = (problem.length / element).ceil().clamp(60.0, 200.0) as usize;
+fn segments(problem: &Problem, settings: Settings, tuning: &StartTuning) -> usize {
+    let element = if problem.world.is_empty() { tuning.free_bar_m } else { tuning.bar_m };
+    let automatic = (problem.length / element).ceil().max(tuning.min_bars).min(tuning.max_bars) as usize;
     settings.segments.or(problem.cable.segments).unwrap_or(automatic).max(2)
 }

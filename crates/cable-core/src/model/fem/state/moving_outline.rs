@@ -9,9 +9,6 @@ use crate::problem::Problem;
 /// Part of the time of a way that counts as nothing.
 const ARRIVAL_TOLERANCE: f64 = 1e-9;
 
-/// Longest way of the outline in a step without inertia, m.
-const LONGEST_WAY_M: f64 = 5e-3;
-
 /// The outline of a robot as a cable meets it.
 #[derive(Clone, Debug)]
 pub(in crate::model::fem) struct MovingOutline {
@@ -50,8 +47,8 @@ impl MovingOutline {
         if left > ARRIVAL_TOLERANCE * whole { self.from.1.towards(&self.to.1, 1.0 - left / whole) } else { self.to.1 }
     }
 
-    /// The least number of steps without inertia for its way.
-    pub(in crate::model::fem) fn pieces(&self) -> f64 {
-        self.shape.max_displacement(&self.from.1, &self.to.1) / LONGEST_WAY_M
+    /// The least number of steps without inertia for its way, each no longer than `max_way_m`.
+    pub(in crate::model::fem) fn pieces(&self, max_way_m: f64) -> f64 {
+        self.shape.max_displacement(&self.from.1, &self.to.1) / max_way_m
     }
 }

@@ -5,6 +5,8 @@
 //! of the identity, so the band and the numbering never change. Before pinning, minus the gradient
 //! at a held node is the force of the cable on its support.
 
+use std::sync::Arc;
+
 use crate::energy::axial::Bar;
 use crate::energy::bending::{BendingEnergy, ClampBend, turn};
 use crate::energy::{Curvature, Energy};
@@ -12,6 +14,7 @@ use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, BandMatrix};
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::mesh::tangent_path::{End, Path};
+use crate::model::fem::settings::Tuning;
 use crate::model::fem::system::mass::Spread;
 use crate::problem::Problem;
 
@@ -27,6 +30,8 @@ pub struct Clamp {
 /// A cable cut into bars.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
+    /// The tuned constants by which it is solved.
+    pub tuning: Arc<Tuning>,
     /// Unstretched arc length of each node at rest temperature, m, increasing.
     pub arc_length: Vec<f64>,
     /// Unstretched length of each bar at the present temperature (thermal stretch · ds), m.
@@ -52,7 +57,7 @@ impl Mesh {
     /// increasing, the ends among them) and even bars in between. All nodes are free. `spreads`:
     /// whether its mass is spread over the bars.
     #[must_use]
-    pub fn new(problem: &Problem, breaks: &[f64], segments: usize, spreads: bool) -> Self {
+    pub fn new(problem: &Problem, tuning: Arc<Tuning>, breaks: &[f64], segments: usize, spreads: bool) -> Self {
         let mut arc_length: Vec<f64> = Vec::with_capacity(segments + breaks.len());
         let mut stretches = Vec::with_capacity(breaks.len());
         for pair in breaks.windows(2) {
@@ -64,6 +69,7 @@ impl Mesh {
         arc_length.extend(breaks.last());
         let rest_length = arc_length.windows(2).map(|p| problem.thermal_stretch * (p[1] - p[0])).collect();
         Self {
+            tuning,
             held: vec![false; arc_length.len()],
             sliding: vec![None; arc_length.len()],
             thermal_stretch: problem.thermal_stretch,
@@ -76,10 +82,18 @@ impl Mesh {
         }
     }
 
+    /// Mass that moves with a node, kg; `support_node` is the node of each support.
+    #[must_use]
+    pub fn mass_with(&self, problem: &Problem, support_node: &[Option<usize>], node: usize) -> f64 {
+        let lumps = problem.supports.iter().zip(support_node).filter(|(_, k)| **k == Some(node));
+        problem.linear_density * self.share(node) + lumps.map(|(s, _)| s.mass).sum::<f64>()
+    }
+
     /// Becomes a copy without new memory where there is room; `slides`: whether there can be
     /// sliding nodes to copy.
     pub fn copy_from(&mut self, other: &Self, slides: bool) {
-        let Self { arc_length, rest_length, held, clamps, sliding, spread, .. } = other;
+        let Self { tuning, arc_length, rest_length, held, clamps, sliding, spread, .. } = other;
+        self.tuning.clone_from(tuning);
         self.arc_length.clone_from(arc_length);
         self.rest_length.clone_from(rest_length);
         self.held.clone_from(held);
@@ -320,6 +334,7 @@ mod tests {
 
     fn mesh(bending_stiffness: f64) -> Mesh {
         Mesh {
+            tuning: Arc::default(),
             arc_length: (0..9).map(|k| 0.5 * f64::from(k)).collect(),
             rest_length: vec![0.5; 8],
             held: (0..9).map(|k| k == 0 || k == 8).collect(),

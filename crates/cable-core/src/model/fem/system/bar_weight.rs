@@ -196,7 +196,7 @@ pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode};
+    use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
     use crate::model::fem::mesh::tangent_path::End;
     use proptest::prelude::*;
 
@@ -207,8 +207,8 @@ mod tests {
     }
 
     fn on(end: End) -> SlidingNode {
-        let seat = Seat::Obstacle { obstacle: 0, feature: 0 };
-        SlidingNode { lies: [0.7; 2], ..SlidingNode::new(end, 0.3, seat) }
+        let slide_over = SlideOver::Obstacle { obstacle: 0, feature: 0 };
+        SlidingNode { lies: [0.7; 2], ..SlidingNode::new(end, 0.3, slide_over) }
     }
 
     /// A bar with its mark on a round at the origin at one end (`j` the free one), and a mark at an

@@ -81,7 +81,7 @@ pub fn add_touch(
 
 /// Friction of the contacts with obstacles, on these branches or, where there are none, where it
 /// is; returns its energy, J.
-pub fn add_rubs(
+pub fn add_friction(
     s: &mut System,
     mesh: &Mesh,
     input: &StepInput,
@@ -90,7 +90,7 @@ pub fn add_rubs(
     x: &[Vec2],
 ) -> f64 {
     let mut value = 0.0;
-    for (k, rub) in contacts.rubs.iter().enumerate() {
+    for (k, rub) in contacts.friction_contacts.iter().enumerate() {
         let scale = input.scale.get(rub.touch.node).copied().unwrap_or(node_scale(input, rub.touch.node));
         let y = rub.sliding(x);
         let (d, mut slope, mut bend) = friction::at(y, rub.limit, contacts.slip);

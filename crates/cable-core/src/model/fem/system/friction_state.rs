@@ -5,42 +5,18 @@ use crate::contact::friction;
 use crate::contact::neighbour_lists::NeighbourLists;
 use crate::contact::pairs::Pair;
 use crate::math::{RigidPose, Vec2, bounded, larger};
+use crate::model::fem::settings::ContactTuning;
 use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::self_contact::Own;
 use crate::problem::Problem;
 
-/// Sliding at which friction is fully mobilised (ε) in motion, and the most of it at rest, m. 1e-6
-/// costs half as many iterations again, 1e-4 creeps.
-pub const SLIDE: f64 = 1e-5;
-
-/// ε at rest in parts of what the cable stretches under its weight or its greatest tension: where
-/// holding ground gives way by as much as the cable stretches, nothing shows that it holds. Of the
-/// tension where a pull has turned round 1e-3 loses up to 3 %, 1e-4 up to 0.9 %; smaller costs
-/// iterations.
-const SLIDE_PART: f64 = 1e-4;
-
-/// Least ε, m: friction of newtons is then a spring of 1e9 N/m, and the rounding of a coordinate of
-/// 10 m still a millionth of ε.
-const LEAST_SLIDE: f64 = 1e-9;
-
 /// ε of a cable at rest under a greatest force of `force` (N), m.
 #[must_use]
-pub fn slip_at_rest(problem: &Problem, force: f64) -> f64 {
+pub fn slip_at_rest(tuning: &ContactTuning, problem: &Problem, force: f64) -> f64 {
     let stretch = force * problem.length / problem.axial_stiffness;
     // A force that is no number is none of a state to be kept.
-    bounded(SLIDE_PART * stretch, LEAST_SLIDE, SLIDE)
+    bounded(tuning.slip_stretch_fraction * stretch, tuning.min_slip_m, tuning.slip_m)
 }
-
-/// Steps for which a contact without load is remembered: fewer and trembling contacts creep; many
-/// more and a cable that was lifted and put back is held as if it had stayed.
-const MEMORY_STEPS: usize = 8;
-
-/// Steps for which lists of what is near are made. Fewer: they are made more often; more: they are
-/// longer.
-const STEPS_AHEAD: f64 = 4.0;
-
-/// Move of a node (m) that lists of what is near allow beside the one expected.
-const SPARE_MOVE: f64 = 2e-3;
 
 /// One contact pair of the mesh: a node, or the inside of a segment (from `node` to `node + 1`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,7 +92,7 @@ impl ContactSet {
     /// Renumbers what friction remembers: `change` gives the new number of a node, None if it is
     /// gone.
     pub fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
-        self.rubs.clear();
+        self.friction_contacts.clear();
         let old = std::mem::take(&mut self.memory);
         self.memory.extend(old.into_iter().filter_map(|m| Some(Memory { node: change(m.node)?, ..m })));
     }
@@ -173,12 +149,14 @@ fn of_node(rubs: &[FrictionContact], node: usize) -> impl Iterator<Item = &Frict
 /// All contacts of a mesh with their history.
 #[derive(Clone, Debug)]
 pub struct ContactSet {
+    /// The tuned constants of contact.
+    pub tuning: ContactTuning,
     /// The barrier.
     pub barrier: Barrier,
     /// Sliding at which friction is fully mobilised (ε), m.
     pub slip: f64,
     /// Friction of the present step.
-    pub rubs: Vec<FrictionContact>,
+    pub friction_contacts: Vec<FrictionContact>,
     /// The friction before its normal forces were taken anew.
     before: Vec<FrictionContact>,
     /// By node; of one node the newest first.
@@ -199,11 +177,12 @@ pub struct ContactSet {
 impl ContactSet {
     /// No contact yet.
     #[must_use]
-    pub fn new(barrier: Barrier, slip: f64, nodes: usize) -> Self {
+    pub fn new(barrier: Barrier, tuning: ContactTuning, nodes: usize) -> Self {
         Self {
+            tuning,
             barrier,
-            slip,
-            rubs: Vec::with_capacity(nodes),
+            slip: tuning.slip_m,
+            friction_contacts: Vec::with_capacity(nodes),
             before: Vec::with_capacity(nodes),
             memory: Vec::with_capacity(2 * nodes),
             spare: Vec::with_capacity(2 * nodes),
@@ -217,13 +196,13 @@ impl ContactSet {
 
     /// Becomes a copy without new memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, slip, rubs, memory, floor_slid, own, outline_motion, .. } = other;
+        let Self { barrier, slip, friction_contacts, memory, floor_slid, own, outline_motion, .. } = other;
         (self.barrier, self.slip) = (*barrier, *slip);
         // With room for as many, so that a front of contact that runs on asks for none; and no
         // more, or each copy would double it.
-        self.rubs.clear();
-        self.rubs.reserve_exact(rubs.capacity());
-        self.rubs.extend_from_slice(rubs);
+        self.friction_contacts.clear();
+        self.friction_contacts.reserve_exact(friction_contacts.capacity());
+        self.friction_contacts.extend_from_slice(friction_contacts);
         self.memory.clear();
         self.memory.reserve_exact(memory.capacity());
         self.memory.extend_from_slice(memory);
@@ -240,7 +219,7 @@ impl ContactSet {
             return;
         }
         self.memory.iter_mut().for_each(|m| m.slid *= part);
-        self.rubs.iter_mut().for_each(|r| r.slid *= part);
+        self.friction_contacts.iter_mut().for_each(|r| r.slid *= part);
         self.floor_slid.iter_mut().for_each(|s| *s *= part);
         self.slip = slip;
     }
@@ -248,7 +227,7 @@ impl ContactSet {
     /// Forgets all friction.
     pub fn forget(&mut self) {
         self.memory.clear();
-        self.rubs.clear();
+        self.friction_contacts.clear();
         self.floor_slid.fill(Vec2::zeros());
         self.own.forget();
     }
@@ -324,7 +303,7 @@ impl ContactSet {
         let move_of = |e: usize| if most(e) > most(e + 1) { most(e) } else { most(e + 1) };
         let bars = mesh.rest_length.len();
         let good = |e: usize| {
-            let need = self.barrier.reach + move_of(e) + SPARE_MOVE;
+            let need = self.barrier.reach + move_of(e) + self.tuning.listed_move_m;
             self.near.of(e, [mesh.straight(e, x)], need).is_some()
         };
         if self.near.len() == bars && (0..bars).all(good) {
@@ -333,7 +312,7 @@ impl ContactSet {
         self.near.clear();
         self.near.reserve(bars);
         for e in 0..bars {
-            let within = self.barrier.reach + STEPS_AHEAD * move_of(e) + 2.0 * SPARE_MOVE;
+            let within = self.barrier.reach + self.tuning.listed_steps * move_of(e) + 2.0 * self.tuning.listed_move_m;
             self.near.push(problem.world.geometry(), mesh.straight(e, x), within);
         }
     }
@@ -349,11 +328,16 @@ impl ContactSet {
     fn rub(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
         let mut touches = std::mem::take(&mut self.scratch);
         self.find(problem, mesh, now, &mut touches);
-        self.rubs.clear();
+        self.friction_contacts.clear();
         for touch in &touches {
             let limit = touch.pair.gap.friction * touch.load(&self.barrier);
             // The part of a normal force that counts twice is taken away of its friction, too.
-            let same = self.rubs.iter_mut().rev().take_while(|r| r.touch.node == touch.node).find(|r| r.is_of(touch));
+            let same = self
+                .friction_contacts
+                .iter_mut()
+                .rev()
+                .take_while(|r| r.touch.node == touch.node)
+                .find(|r| r.is_of(touch));
             if let Some(rub) = same {
                 rub.limit += limit;
             } else if limit != 0.0 {
@@ -361,10 +345,16 @@ impl ContactSet {
                 let was = touch.interpolate(start);
                 let carried = self.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
                 let origin = carried.map_or(was, |c| c.carried(was));
-                self.rubs.push(FrictionContact { touch: *touch, tangent: touch.tangent(), limit, slid, origin });
+                self.friction_contacts.push(FrictionContact {
+                    touch: *touch,
+                    tangent: touch.tangent(),
+                    limit,
+                    slid,
+                    origin,
+                });
             }
         }
-        self.rubs.retain(|r| r.limit != 0.0);
+        self.friction_contacts.retain(|r| r.limit != 0.0);
         self.scratch = touches;
     }
 
@@ -378,14 +368,14 @@ impl ContactSet {
         [now, start]: [&[Vec2]; 2],
         same: impl Fn(f64, f64) -> bool,
     ) -> bool {
-        std::mem::swap(&mut self.rubs, &mut self.before);
+        std::mem::swap(&mut self.friction_contacts, &mut self.before);
         self.rub(problem, mesh, now, start);
         let limit = |all: &[FrictionContact], touch: &ContactPair| {
             of_node(all, touch.node).find(|r| r.is_of(touch)).map_or(0.0, |r| r.limit)
         };
         let (mut change, mut most) = (0.0, 0.0);
-        for rub in self.rubs.iter().chain(&self.before) {
-            let (was, is) = (limit(&self.before, &rub.touch), limit(&self.rubs, &rub.touch));
+        for rub in self.friction_contacts.iter().chain(&self.before) {
+            let (was, is) = (limit(&self.before, &rub.touch), limit(&self.friction_contacts, &rub.touch));
             (change, most) = (larger(change, (is - was).abs()), larger(most, larger(is, was)));
         }
         let renewed = !same(change, most);
@@ -393,7 +383,7 @@ impl ContactSet {
             self.own.prepare(&self.barrier, mesh, now, start);
         } else {
             // The step balances these.
-            std::mem::swap(&mut self.rubs, &mut self.before);
+            std::mem::swap(&mut self.friction_contacts, &mut self.before);
         }
         renewed
     }
@@ -415,7 +405,7 @@ impl ContactSet {
 
     /// Friction force of a contact along its tangent at `x` (m), N.
     pub fn rubs(&self, touch: &ContactPair, x: &[Vec2]) -> f64 {
-        let rub = of_node(&self.rubs, touch.node).find(|r| r.is_of(touch));
+        let rub = of_node(&self.friction_contacts, touch.node).find(|r| r.is_of(touch));
         rub.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
     }
 
@@ -425,16 +415,16 @@ impl ContactSet {
     pub fn ease(&mut self, before: &[FrictionContact], part: f64) -> f64 {
         let gone =
             |now: &[FrictionContact], b: &FrictionContact| !of_node(now, b.touch.node).any(|n| n.is_of(&b.touch));
-        let gone: Vec<FrictionContact> = before.iter().filter(|b| gone(&self.rubs, b)).copied().collect();
-        self.rubs.extend(gone.iter().map(|b| FrictionContact { limit: 0.0, ..*b }));
-        self.rubs.sort_by_key(|r| r.touch.node);
+        let gone: Vec<FrictionContact> = before.iter().filter(|b| gone(&self.friction_contacts, b)).copied().collect();
+        self.friction_contacts.extend(gone.iter().map(|b| FrictionContact { limit: 0.0, ..*b }));
+        self.friction_contacts.sort_by_key(|r| r.touch.node);
         let mut off = 0.0;
-        for rub in &mut self.rubs {
+        for rub in &mut self.friction_contacts {
             let was = of_node(before, rub.touch.node).find(|b| b.is_of(&rub.touch)).map_or(0.0, |b| b.limit);
             off = larger(off, (rub.limit - was).abs());
             rub.limit = if part < 1.0 { was + part * (rub.limit - was) } else { rub.limit };
         }
-        self.rubs.retain(|r| r.limit != 0.0);
+        self.friction_contacts.retain(|r| r.limit != 0.0);
         off
     }
 
@@ -465,13 +455,13 @@ impl ContactSet {
     /// sliding nodes (m).
     pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {
         self.prepare(problem, mesh, end, start);
-        self.own.commit(end);
+        self.own.commit(end, self.tuning.slip_m);
         // A contact that trembles loses its load now and then: forgetting it each time would let it
         // creep by ε a step.
         let mut old = std::mem::take(&mut self.memory);
         let mut all = std::mem::take(&mut self.spare);
         all.clear();
-        for rub in &self.rubs {
+        for rub in &self.friction_contacts {
             let gap = &rub.touch.pair.gap;
             all.push(Memory {
                 node: rub.touch.node,
@@ -483,7 +473,7 @@ impl ContactSet {
             });
         }
         let now = all.len();
-        for m in old.iter().filter(|m| m.age < MEMORY_STEPS) {
+        for m in old.iter().filter(|m| m.age < self.tuning.remembered_steps) {
             let same = |n: &Memory| (n.node, n.on_segment, n.feature) == (m.node, m.on_segment, m.feature);
             let low = all[..now].partition_point(|n| n.node < m.node);
             if !all[low..now].iter().take_while(|n| n.node == m.node).any(same) {
@@ -500,9 +490,9 @@ impl ContactSet {
                 *slid = friction::return_map_plane(*slid + by, self.slip);
             }
         }
-        // The friction that is left in `rubs` is of the state reached: nothing slides further from
+        // The friction that is left in them is of the state reached: nothing slides further from
         // here.
-        for (rub, memory) in self.rubs.iter_mut().zip(&self.spare) {
+        for (rub, memory) in self.friction_contacts.iter_mut().zip(&self.spare) {
             rub.slid = memory.slid;
             rub.origin = rub.touch.interpolate(end);
         }

@@ -9,7 +9,6 @@ use crate::contact::self_contact::{SelfContact, SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::friction_state::{ContactSet, SLIDE};
 
 /// Friction of one contact of the cable with itself during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +39,7 @@ pub struct Own {
     /// Coulomb friction of the cable on itself.
     pub friction: f64,
     /// Friction of the present step.
-    pub rubs: Vec<SelfFriction>,
+    pub friction_contacts: Vec<SelfFriction>,
     memory: Vec<(usize, usize, f64)>,
     scratch: Vec<SelfPair>,
     order: SortedNodes,
@@ -50,20 +49,20 @@ impl Own {
     /// Becomes a copy, in the memory it has.
     pub fn copy_from(&mut self, other: &Self) {
         (self.shape, self.friction) = (other.shape, other.friction);
-        self.rubs.clone_from(&other.rubs);
+        self.friction_contacts.clone_from(&other.friction_contacts);
         self.memory.clone_from(&other.memory);
     }
 
     /// Forgets all friction.
     pub fn forget(&mut self) {
         self.memory.clear();
-        self.rubs.clear();
+        self.friction_contacts.clear();
     }
 
     /// Sets up friction for a step that began at `start`: contacts and normal forces as at `now`
     /// (m).
     pub fn prepare(&mut self, barrier: &Barrier, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
-        self.rubs.clear();
+        self.friction_contacts.clear();
         if !self.shape.is_on() {
             return;
         }
@@ -74,16 +73,16 @@ impl Own {
                 let known = |m: &&(usize, usize, f64)| (m.0, m.1) == (pair.node, pair.segment);
                 let slid = self.memory.iter().find(known).map_or(0.0, |m| m.2);
                 let origin = pair.difference(start);
-                self.rubs.push(SelfFriction { pair: *pair, limit: self.friction * load, slid, origin });
+                self.friction_contacts.push(SelfFriction { pair: *pair, limit: self.friction * load, slid, origin });
             }
         }
     }
 
-    /// Accepts a step that ended at `end` (m): anchors follow what slid.
-    pub fn commit(&mut self, end: &[Vec2]) {
+    /// Accepts a step that ended at `end` (m): anchors follow what slid by more than `slip` (m).
+    pub fn commit(&mut self, end: &[Vec2], slip: f64) {
         self.memory.clear();
-        for rub in &mut self.rubs {
-            rub.slid = friction::return_map(rub.sliding(end), SLIDE);
+        for rub in &mut self.friction_contacts {
+            rub.slid = friction::return_map(rub.sliding(end), slip);
             rub.origin = rub.pair.difference(end);
             self.memory.push((rub.pair.node, rub.pair.segment, rub.slid));
         }
@@ -99,6 +98,17 @@ impl Own {
 /// Entries (row, column, value) of the Hessian outside its band, one of each symmetric pair.
 pub type Coupling = Vec<(usize, usize, f64)>;
 
+/// The laws of contact of the cable with itself.
+#[derive(Clone, Copy, Debug)]
+pub struct SelfContactLaws<'a> {
+    /// The contacts and their friction.
+    pub own: &'a Own,
+    /// The barrier.
+    pub barrier: &'a Barrier,
+    /// Sliding at which friction acts whole, m.
+    pub slip: f64,
+}
+
 /// Adds barrier and friction of the cable on itself at `x` (m); returns the energy and the size of
 /// what was summed, J.
 ///
@@ -111,15 +121,16 @@ pub type Coupling = Vec<(usize, usize, f64)>;
 pub fn add(
     s: &mut System,
     coupling: &mut Coupling,
-    contacts: &ContactSet,
+    laws: SelfContactLaws<'_>,
     pairs: &[SelfPair],
     x: &[Vec2],
     curvature: Curvature,
 ) -> (f64, f64) {
-    let (own, exact) = (&contacts.own, curvature == Curvature::Exact);
+    let SelfContactLaws { own, barrier, slip } = laws;
+    let exact = curvature == Curvature::Exact;
     let (mut value, mut size) = (0.0, 0.0);
     for pair in pairs {
-        let b = contacts.barrier.at(pair.gap_m);
+        let b = barrier.at(pair.gap_m);
         let (slope, bend) = (b.slope * pair.weight, b.curvature * pair.weight);
         let bend = if !exact && bend < 0.0 { 0.0 } else { bend };
         let (n, d) = (pair.normal, pair.gap_m + own.shape.diameter);
@@ -144,8 +155,8 @@ pub fn add(
         value += b.value * pair.weight;
         size += b.value;
     }
-    for rub in &own.rubs {
-        let (d, slope, bend) = friction::at(rub.sliding(x), rub.limit, SLIDE);
+    for rub in &own.friction_contacts {
+        let (d, slope, bend) = friction::at(rub.sliding(x), rub.limit, slip);
         let (t, shares) = (rub.pair.tangent(), rub.pair.shares());
         for (j, &(node, part)) in shares.iter().enumerate() {
             s.add_gradient(node, t * (slope * part));

@@ -58,7 +58,7 @@ pub struct StepInput {
     /// Positions at the start of the step, m.
     pub start: Vec<Vec2>,
     /// Positions from which the iteration begins, m, if an outline moved; else empty.
-    pub laid: Vec<Vec2>,
+    pub cleared: Vec<Vec2>,
     /// Plan view: largest friction force of each node, N (empty otherwise).
     pub floor_limit: Vec<f64>,
     /// Unbalanced force to reach, N.
@@ -112,7 +112,7 @@ impl StepInput {
     /// Positions from which the iteration begins, m.
     #[must_use]
     pub fn begins(&self) -> &[Vec2] {
-        if self.laid.is_empty() { &self.start } else { &self.laid }
+        if self.cleared.is_empty() { &self.start } else { &self.cleared }
     }
 }
 

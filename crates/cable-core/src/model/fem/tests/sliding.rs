@@ -23,7 +23,7 @@ fn scene(cable: impl FnOnce(&mut Cable), obstacles: Vec<Obstacle>) -> Scene {
 }
 
 fn build(scene: &Scene) -> Dynamics {
-    Dynamics::new(Arc::clone(&problems(scene).unwrap()[0]), Settings::default()).unwrap()
+    Dynamics::new(Arc::clone(&problems(scene).unwrap()[0]), Settings::default(), Arc::default()).unwrap()
 }
 
 fn beam(friction: f64) -> Obstacle {
@@ -69,7 +69,7 @@ fn ratios(scene: &Scene, inertia: Inertia, from: f64) -> Vec<f64> {
 fn a_load_drawn_over_a_corner_follows_the_capstan_without_ripple() {
     for friction in [0.0, 0.1, 0.3, 0.8] {
         let ratios = ratios(&over_a_beam(friction, 42, 0.6), Inertia::QuasiStatic, 0.5);
-        let round = RADIUS + crate::model::fem::state::cable::REACH;
+        let round = RADIUS + crate::model::fem::settings::ContactTuning::default().reach_m;
         let motion = Motion { times_s: vec![0.0, 2.0], points_m: vec![[0.0, 0.0], [0.6, 0.0]] };
         for (k, ratio) in ratios.iter().enumerate() {
             let by = motion.at(0.5 + (k as f64 + 1.0) / 60.0).0.x;

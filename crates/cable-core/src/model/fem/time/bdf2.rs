@@ -13,34 +13,16 @@
 //! After each step contacts are made plastic: the barrier is a spring and would throw a landing
 //! cable back at 0.4 to 0.8 of its speed.
 
-use crate::math::{Vec2, bounded, perp};
+use crate::math::Vec2;
 use crate::model::Inertia;
-use crate::model::fem::dynamics::{Dynamics, STIFFNESS_CHANGE};
+use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::history::Motion;
-use crate::model::fem::system::friction_state::SLIDE;
 use crate::model::fem::system::loss::damping_time;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
-use crate::model::fem::time::momentum::mass_with;
+use crate::model::fem::time::self_contact::{carried_on, plastic};
 use crate::model::fem::time::{branches, hands, self_contact};
-
-/// Normal speed (m/s) below which a contact is left alone by the plastic impulse.
-const PLASTIC_SPEED_LIMIT: f64 = 0.05;
-
-/// Part of the speed along its normal (m/s, positive away from it) that a plastic contact takes, of
-/// which its force made `made` in the step.
-pub(in crate::model::fem) fn plastic(speed: f64, made: f64) -> f64 {
-    if speed > made { made } else { speed }
-}
-
-/// Impulse that a contact of this normal and friction goes on giving against the other forces, the
-/// opposite of `against`, N s.
-pub(in crate::model::fem) fn carried_on(against: Vec2, normal: Vec2, friction: f64) -> Vec2 {
-    let (pressed, along) = (against.dot(&normal), perp(normal));
-    let pressed = if pressed > 0.0 { pressed } else { 0.0 };
-    normal * pressed + along * bounded(against.dot(&along), -friction * pressed, friction * pressed)
-}
 
 /// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they
 /// are coarse.
@@ -115,7 +97,7 @@ impl CableState {
     /// BDF2 would give two thirds of their next impulse only.
     fn land(&mut self, h: f64, a: f64) {
         let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-        let mass = |k: usize| mass_with(&self.problem, &self.mesh, &self.meshing.support_node, k);
+        let mass = |k: usize| self.mesh.mass_with(&self.problem, &self.meshing.support_node, k);
         let m = &mut self.motion;
         for (touch, load) in self.contacts.pressing() {
             let n = touch.pair.gap.normal;
@@ -134,7 +116,7 @@ impl CableState {
             // Impulses: what the contact gave in the step, and what is taken of it.
             let made = load / a;
             let taken = plastic(speed, made * sum) / sum;
-            if speed.abs() < PLASTIC_SPEED_LIMIT {
+            if speed.abs() < self.mesh.tuning.step.plastic_speed_m_per_s {
                 continue;
             }
             let change = touch.interpolate(&m.v) - touch.interpolate(&m.v_before);
@@ -303,8 +285,9 @@ impl Dynamics {
     pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Weights {
         self.hand_drive.follow(&mut self.cable, self.pacing.due, h, dragged);
         self.cable.prepare_way([self.cable.motion.time, self.cable.motion.time + h], Some(dragged));
-        self.cable.contacts.set_slip(SLIDE);
-        self.cable.adapt_stiffness(STIFFNESS_CHANGE, 1.0);
+        self.cable.contacts.set_slip(self.cable.contacts.tuning.slip_m);
+        let contact = self.cable.contacts.tuning;
+        self.cable.adapt_stiffness([contact.stiffness_rise, contact.stiffness_fall], 1.0);
         let weights = self.cable.weights(h);
         self.cable.set_inertia(weights, h, &mut self.solver.decay);
         let (m, input, mesh) = (&self.cable.motion, &self.cable.input, &self.cable.mesh);
@@ -361,7 +344,7 @@ impl Dynamics {
         self.cable.note_step(h);
         self.pacing.pace.observe(&self.cable, h);
         self.cable.land(h, a);
-        self_contact::land(&mut self.cable, PLASTIC_SPEED_LIMIT, h, a);
+        self_contact::land(&mut self.cable, h, a);
         self.cable.close_account();
         self.cable.contacts.outline_motion = None;
         if !self.cable.meshing.never_slides {

@@ -56,9 +56,10 @@ impl HandDrive {
                 hand.follow(target, h, fastest);
                 (cable.motion.hands[k], cable.motion.followers[k]) = (Some(hand), None);
             } else {
-                let let_go = cable.motion.hands[k].take().and(node);
+                let released = cable.motion.hands[k].take().and(node);
                 let begins = || {
-                    let_go.map_or(SmoothedTarget::at_rest(at), |node| SmoothedTarget::moving(at, cable.motion.v[node]))
+                    released
+                        .map_or(SmoothedTarget::at_rest(at), |node| SmoothedTarget::moving(at, cable.motion.v[node]))
                 };
                 let mut f = cable.motion.followers[k].unwrap_or_else(begins);
                 f.follow(target, h, fastest);

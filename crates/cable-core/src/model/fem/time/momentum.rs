@@ -10,16 +10,14 @@
 
 use crate::contact::friction;
 use crate::math::Vec2;
-use crate::model::fem::mesh::sliding_node::Seat;
+use crate::model::fem::mesh::sliding_node::SlideOver;
 use crate::model::fem::state::account::{Account, Kinds};
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::step_input::Unknowns;
 use crate::model::fem::time::bdf2::Weights;
-use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::MomentumAccount;
 
@@ -28,22 +26,11 @@ const LOADS: usize = 1;
 const SUPPORTS: usize = 2;
 const CONTACTS: usize = 3;
 
-fn kind_of(seat: Seat) -> usize {
-    match seat {
-        Seat::Pulley(_) => SUPPORTS,
-        Seat::Obstacle { .. } => CONTACTS,
+fn kind_of(slide_over: SlideOver) -> usize {
+    match slide_over {
+        SlideOver::Pulley(_) => SUPPORTS,
+        SlideOver::Obstacle { .. } => CONTACTS,
     }
-}
-
-/// Mass that moves with a node, kg.
-pub(in crate::model::fem) fn mass_with(
-    problem: &Problem,
-    mesh: &Mesh,
-    support_node: &[Option<usize>],
-    node: usize,
-) -> f64 {
-    let lumps = problem.supports.iter().zip(support_node).filter(|(_, k)| **k == Some(node));
-    problem.linear_density * mesh.share(node) + lumps.map(|(s, _)| s.mass).sum::<f64>()
 }
 
 impl CableState {
@@ -83,7 +70,7 @@ impl CableState {
 
     /// Mass that moves with a node, kg.
     pub(in crate::model::fem) fn node_mass(&self, node: usize) -> f64 {
-        mass_with(&self.problem, &self.mesh, &self.meshing.support_node, node)
+        self.mesh.mass_with(&self.problem, &self.meshing.support_node, node)
     }
 
     /// Momentum of cable and lumps, kg m/s.
@@ -112,7 +99,7 @@ impl CableState {
 
     /// The same of the material at sliding nodes: that on pulleys, and that on rounds of obstacles.
     pub(in crate::model::fem) fn sliding_momentum(&self) -> [Vec2; 2] {
-        [SUPPORTS, CONTACTS].map(|kind| self.slid_by(&self.motion.w, |seat| kind_of(seat) == kind))
+        [SUPPORTS, CONTACTS].map(|kind| self.slid_by(&self.motion.w, |slide_over| kind_of(slide_over) == kind))
     }
 
     /// The same of all of it, at rates `w` (m/s) of the arc length.
@@ -121,14 +108,14 @@ impl CableState {
     }
 
     /// Half of it runs each way.
-    fn slid_by(&self, w: &[f64], counts: impl Fn(Seat) -> bool) -> Vec2 {
+    fn slid_by(&self, w: &[f64], counts: impl Fn(SlideOver) -> bool) -> Vec2 {
         let mut sum = Vec2::zeros();
         if self.meshing.never_slides {
             return sum;
         }
         let (mesh, x) = (&self.mesh, &self.motion.x);
         for k in 1..mesh.nodes().saturating_sub(1) {
-            if !mesh.sliding[k].is_some_and(|node| counts(node.seat)) {
+            if !mesh.sliding[k].is_some_and(|node| counts(node.slide_over)) {
                 continue;
             }
             let s = &mesh.arc_length;
@@ -161,7 +148,7 @@ impl CableState {
                     let at = |j: usize| if mesh.sliding[j].is_none() { v[j] } else { Vec2::zeros() };
                     (at(k - 1) - at(k + 1)) * (0.5 * self.problem.linear_density * slide[k])
                 };
-                let kind = kind_of(node.seat) - SUPPORTS;
+                let kind = kind_of(node.slide_over) - SUPPORTS;
                 over[kind] += of(&m.v);
                 history[kind] += of(&m.v) - of(&m.v_before);
             }
@@ -190,8 +177,8 @@ impl CableState {
     }
 
     /// Material that comes to lie on a round or leaves it takes a part of the history with it, N s.
-    pub(in crate::model::fem) fn account_for_history(&mut self, seat: Seat, impulse: Vec2) {
-        self.motion.account.last[kind_of(seat)] += impulse;
+    pub(in crate::model::fem) fn account_for_history(&mut self, slide_over: SlideOver, impulse: Vec2) {
+        self.motion.account.last[kind_of(slide_over)] += impulse;
     }
 
     /// The account goes up to the present instant, on the mesh that was balanced.
@@ -201,14 +188,14 @@ impl CableState {
         (account.reached, account.to) = (reached, self.motion.time);
     }
 
-    /// A change of the mesh in which a seat takes hold of material or lets it go: what that does to
+    /// A change of the mesh that makes a node sliding or takes that back: what that does to
     /// the momentum it does.
-    pub(in crate::model::fem) fn as_of<R>(&mut self, seat: Seat, change: impl FnOnce(&mut Self) -> R) -> R {
+    pub(in crate::model::fem) fn as_of<R>(&mut self, slide_over: SlideOver, change: impl FnOnce(&mut Self) -> R) -> R {
         let history = |d: &Self| d.moved_by(&d.motion.v) - d.moved_by(&d.motion.v_before);
         let (before, known) = (self.momentum(), history(self));
         let done = change(self);
         let (given, changed) = (self.momentum() - before, history(self) - known);
-        let (account, kind) = (&mut self.motion.account, kind_of(seat));
+        let (account, kind) = (&mut self.motion.account, kind_of(slide_over));
         account.add(kind, given);
         account.late[kind] += given;
         account.last[kind] += changed;
@@ -247,7 +234,7 @@ impl CableState {
         for touch in touches {
             sum[CONTACTS] += touch.pair.gap.normal * (touch.load(&self.contacts.barrier) * touch.felt(moves));
         }
-        for rub in &self.contacts.rubs {
+        for rub in &self.contacts.friction_contacts {
             let (_, slope, _) = friction::at(rub.sliding(x), rub.limit, self.contacts.slip);
             sum[CONTACTS] -= rub.tangent * (slope * rub.touch.felt(moves));
         }
@@ -257,7 +244,7 @@ impl CableState {
         }
         for k in 1..mesh.nodes().saturating_sub(1) {
             let Some(node) = &mesh.sliding[k] else { continue };
-            let round = &mut sum[kind_of(node.seat)];
+            let round = &mut sum[kind_of(node.slide_over)];
             if moves(k - 1) {
                 *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, input, k - 1, x, &unknowns.slide);
             }

@@ -1,32 +1,43 @@
 //! A cable lands on itself without bouncing, and its contacts with itself are reported.
 
 use crate::contact::friction;
-use crate::math::Vec2;
+use crate::math::{Vec2, bounded, perp};
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::system::friction_state::SLIDE;
-use crate::model::fem::time::bdf2::{carried_on, plastic};
-use crate::model::fem::time::momentum::mass_with;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
-/// Takes the normal speed out of contacts of the cable with itself that are faster than `quiet`
-/// (m/s), after a step of `h` (s) whose forces acted for 1/`a` (s); momentum is kept.
-pub(in crate::model::fem) fn land(cable: &mut CableState, quiet: f64, h: f64, a: f64) {
+/// Part of the speed along its normal (m/s, positive away from it) that a plastic contact takes, of
+/// which its force made `made` in the step.
+pub(in crate::model::fem) fn plastic(speed: f64, made: f64) -> f64 {
+    if speed > made { made } else { speed }
+}
+
+/// Impulse that a contact of this normal and friction goes on giving against the other forces, the
+/// opposite of `against`, N s.
+pub(in crate::model::fem) fn carried_on(against: Vec2, normal: Vec2, friction: f64) -> Vec2 {
+    let (pressed, along) = (against.dot(&normal), perp(normal));
+    let pressed = if pressed > 0.0 { pressed } else { 0.0 };
+    normal * pressed + along * bounded(against.dot(&along), -friction * pressed, friction * pressed)
+}
+
+/// Takes the normal speed out of contacts of the cable with itself that are faster than
+/// those left alone, after a step of `h` (s) whose forces acted for 1/`a` (s); momentum is kept.
+pub(in crate::model::fem) fn land(cable: &mut CableState, h: f64, a: f64) {
     let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-    let mass = |k: usize| mass_with(&cable.problem, &cable.mesh, &cable.meshing.support_node, k);
+    let mass = |k: usize| cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, k);
     let m = &mut cable.motion;
-    for rub in &cable.contacts.own.rubs {
+    for rub in &cable.contacts.own.friction_contacts {
         let n = rub.pair.normal;
         let speed = n.dot(&rub.pair.difference(&m.v));
         let shares = rub.pair.shares();
         let give = |k: usize| if cable.mesh.is_free(k) { 1.0 / mass(k) } else { 0.0 };
         let sum: f64 = shares.iter().map(|&(k, part)| part * part * give(k)).sum();
         let made = -cable.contacts.barrier.at(rub.pair.gap_m).slope * rub.pair.weight / a;
-        if !(sum > 0.0) || speed.abs() < quiet {
+        if !(sum > 0.0) || speed.abs() < cable.mesh.tuning.step.plastic_speed_m_per_s {
             continue;
         }
         let taken = plastic(speed, made * sum) / sum;
         let change = rub.pair.difference(&m.v) - rub.pair.difference(&m.v_before);
-        let (_, rubbing, _) = friction::at(rub.sliding(&m.x), rub.limit, SLIDE);
+        let (_, rubbing, _) = friction::at(rub.sliding(&m.x), rub.limit, cable.contacts.tuning.slip_m);
         let acted = n * made - rub.pair.tangent() * (rubbing / a);
         let over = acted - carried_on(acted - change / sum, n, cable.contacts.own.friction);
         for (k, part) in shares.into_iter().filter(|&(k, _)| cable.mesh.is_free(k)) {
@@ -46,11 +57,11 @@ pub(in crate::model::fem) fn land(cable: &mut CableState, quiet: f64, h: f64, a:
 pub(in crate::model::fem) fn reports(cable: &CableState, x: &[Vec2], tension: &[f64], out: &mut Vec<ContactReport>) {
     let own = &cable.contacts.own;
     let mut last = None;
-    for rub in &own.rubs {
+    for rub in &own.friction_contacts {
         let (k, pair) = (rub.pair.node, &rub.pair);
         let load = -cable.contacts.barrier.at(pair.gap_m).slope * pair.weight;
         let along = cable.mesh.path(k.min(tension.len().saturating_sub(1)), x).direction;
-        let (_, rubbing, _) = friction::at(rub.sliding(x), rub.limit, SLIDE);
+        let (_, rubbing, _) = friction::at(rub.sliding(x), rub.limit, cable.contacts.tuning.slip_m);
         let new = last.is_none_or(|l| k > l + 1);
         last = Some(k);
         if new {

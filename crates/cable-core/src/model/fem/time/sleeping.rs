@@ -6,33 +6,30 @@
 //! comparison.
 
 use crate::math::Vec2;
-use crate::model::fem::state::cable::{CableState, REACH};
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::stepping::Sleep;
 
-/// Time for which a cable must have been still, s. Shorter: a slow swing that turns round may be
-/// caught.
-const SLEEP_DELAY_S: f64 = 0.5;
-
-/// Distance (m) by which a node may have moved in that time, five times the reach of the barrier: a
-/// trembling contact moves its neighbours by a few. Smaller: trembling keeps a cable awake; larger:
-/// a slow motion is caught.
-const SLEEP_DISTANCE: f64 = 5.0 * REACH;
+/// Distance (m) by which a node of a sleeping cable may have moved.
+fn sleep_distance(cable: &CableState) -> f64 {
+    cable.mesh.tuning.step.sleep_distance_reaches * cable.mesh.tuning.contact.reach_m
+}
 
 impl Sleep {
     /// Looks after a step whether the cable has been still since the last look; returns true if it
     /// falls asleep now.
     pub(in crate::model::fem) fn falls_asleep(&mut self, cable: &CableState) -> bool {
         let (motion, mesh, input) = (&cable.motion, &cable.mesh, &cable.input);
+        let distance = sleep_distance(cable);
         let same = self.place.len() == motion.x.len();
-        if same && motion.time - self.since < SLEEP_DELAY_S && motion.time >= self.since {
+        if same && motion.time - self.since < mesh.tuning.step.sleep_delay_s && motion.time >= self.since {
             return false;
         }
-        let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= SLEEP_DISTANCE;
+        let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= distance;
         let still = same
             && self.place.iter().zip(&motion.x).all(near)
-            && self.arc_length.iter().zip(&mesh.arc_length).all(|(a, b)| (a - b).abs() <= SLEEP_DISTANCE);
+            && self.arc_length.iter().zip(&mesh.arc_length).all(|(a, b)| (a - b).abs() <= distance);
         // A cable that touches nothing may be at the turn of a slow swing.
-        let touches = !cable.contacts.rubs.is_empty() || !cable.contacts.own.rubs.is_empty();
+        let touches = !cable.contacts.friction_contacts.is_empty() || !cable.contacts.own.friction_contacts.is_empty();
         let falls_asleep = still && touches && self.same_input(cable);
         self.asleep |= falls_asleep;
         self.since = motion.time;
@@ -69,15 +66,16 @@ impl Sleep {
             return false;
         }
         let hand = |k: usize| dragged.get(k).copied().flatten();
+        let distance = sleep_distance(cable);
         let motion = &cable.motion;
         let follows = (0..motion.followers.len()).any(|k| match (motion.followers[k], hand(k)) {
             // A hand that takes hold, lets go, or goes on.
             (_, Some(_)) if pulled[k] != motion.hands[k].is_some() => true,
             (_, Some(to)) if pulled[k] => {
-                motion.hands[k].is_none_or(|h| (h.end().position() - to).norm() > SLEEP_DISTANCE * 1e-3)
+                motion.hands[k].is_none_or(|h| (h.end().position() - to).norm() > distance * 1e-3)
             }
-            (Some(f), Some(to)) => (f.position() - to).norm() > SLEEP_DISTANCE * 1e-3,
-            (None, Some(to)) => cable.support_position(k).is_none_or(|at| (at - to).norm() > SLEEP_DISTANCE * 1e-3),
+            (Some(f), Some(to)) => (f.position() - to).norm() > distance * 1e-3,
+            (None, Some(to)) => cable.support_position(k).is_none_or(|at| (at - to).norm() > distance * 1e-3),
             _ => false,
         });
         cable.prepare_input(to, Some(dragged));

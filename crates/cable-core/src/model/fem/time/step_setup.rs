@@ -2,23 +2,16 @@
 //! instant.
 
 use crate::math::Vec2;
-use crate::model::fem::mesh::sliding_node::Seat;
-use crate::model::fem::newton::minimize::StepContext;
+use crate::model::fem::mesh::sliding_node::SlideOver;
+use crate::model::fem::newton::step_context::StepContext;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::cable::REACH;
+use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::floor_friction;
 use crate::model::fem::system::step_input::Unknowns;
 use crate::model::input_filter::MAX_SPEED;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-
-/// Greatest move of a node in a Newton iteration, m: two longest inner steps at 100 m/s. Smaller:
-/// fast motion takes more iterations; larger: a wild step goes farther before it is cut.
-const MAX_NEWTON_MOVE_M: f64 = 2.0 / 240.0 * 100.0;
-
-/// Newton iterations of a dynamic step.
-const STEP_ITERATIONS: usize = 120;
 
 /// Factors of sliding nodes count as found when they change by less than this.
 const SCALE_TOLERANCE: f64 = 1e-9;
@@ -31,11 +24,6 @@ const FLOOR_FRICTION_TOLERANCE: f64 = 1e-6;
 /// Forces at a sliding node within this part of each other are equal: the law is read off bars,
 /// whose tension is known to the residual only.
 const EVEN_FORCE: f64 = 1e-7;
-
-/// Part of the greatest friction of a sliding node by which its friction may differ from that of
-/// its turn and grip after a step. Less: rounds for nothing that shows; more: friction beyond its
-/// cone (the checker asks for 1e-3 of the normal force).
-const LAWFUL: f64 = 2e-4;
 
 /// Comparison of unknowns with the friction of sliding nodes with which it was found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +75,7 @@ impl CableState {
         }
         input.start.clone_from(&self.motion.x);
         input.target.clone_from(&self.motion.x);
-        input.laid.clear();
+        input.cleared.clear();
         input.hands.clear();
         mesh.held.fill(false);
         mesh.clamps.clear();
@@ -113,7 +101,7 @@ impl CableState {
                 // A support that a hand holds by a spring is a node that moves.
                 if self.motion.hands[k].is_none() {
                     mesh.held[node] = true;
-                    input.target[node] = clear_way(problem, self.motion.x[node], at);
+                    input.target[node] = clear_way(problem, mesh, self.motion.x[node], at);
                     if input.target[node] != at && !self.answers.held_back.contains(&k) {
                         self.answers.held_back.push(k);
                     }
@@ -129,7 +117,7 @@ impl CableState {
         }
         for (k, node) in mesh.sliding.iter_mut().enumerate() {
             let Some(node) = node else { continue };
-            if let Seat::Pulley(support) = node.seat
+            if let SlideOver::Pulley(support) = node.slide_over
                 && let Some((at, _)) =
                     problem.supports.get(support).filter(|s| s.holds_from(from)).and_then(|s| s.place_at(to))
             {
@@ -142,8 +130,8 @@ impl CableState {
         }
         input.may_lag = to > from;
         input.outlined = self.outline.is_some();
-        input.max_iterations = STEP_ITERATIONS;
-        input.max_move = MAX_NEWTON_MOVE_M;
+        input.max_iterations = mesh.tuning.step.max_iterations;
+        input.max_move = mesh.tuning.newton.max_move_m;
         input.moves = false;
         input.shift = 0.0;
         input.loss.clear();
@@ -250,7 +238,7 @@ impl CableState {
             let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SCALE_TOLERANCE;
             grips.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);
             let off = ((load.factor(node.grip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
-            grips.lawful &= off <= LAWFUL * pulls * exponent + slack;
+            grips.lawful &= off <= self.mesh.tuning.step.grip_tolerance * pulls * exponent + slack;
             self.mesh.sliding[k] = Some(next);
         }
         self.set_scale();
@@ -291,31 +279,22 @@ fn within(from: Vec2, to: Vec2, most: f64) -> Vec2 {
     if distance > most { from + way * (most / distance) } else { to }
 }
 
-/// Gap (m) that a support keeps from what it is driven against. The bar beside it presses there
-/// with hardly a lever: nearer, and its normal force, 1e14 N at 1e-8 m, is all that Newton sees.
-const SUPPORT_GAP: f64 = 0.2 * REACH;
-
 /// Rounding of a gap, m.
 const GAP_ROUNDING: f64 = 1e-9;
 
-/// Part of its gap that a support keeps in one step.
-const KEPT_SUPPORT_GAP_FRACTION: f64 = 0.2;
-
-/// Halvings of the way of a support that comes too near, before it stays where it is.
-const STAND_OFF_TRIES: usize = 4;
-
 /// The target of a held node, stopped where an obstacle is in its way (m).
-pub(in crate::model::fem) fn clear_way(problem: &Problem, from: Vec2, to: Vec2) -> Vec2 {
+pub(in crate::model::fem) fn clear_way(problem: &Problem, mesh: &Mesh, from: Vec2, to: Vec2) -> Vec2 {
     if problem.world.is_empty() || from == to {
         return to;
     }
-    let gap = |p: Vec2| problem.world.signed_gap(p, SUPPORT_GAP).map_or(SUPPORT_GAP, |g| g.gap_m);
+    let least_gap = mesh.tuning.step.support_gap_reaches * mesh.tuning.contact.reach_m;
+    let gap = |p: Vec2| problem.world.signed_gap(p, least_gap).map_or(least_gap, |g| g.gap_m);
     // A support that the scene puts on a surface may stay on it; none may come nearer than it
     // stands.
     let least = gap(from) - GAP_ROUNDING;
-    let free = problem.world.free_fraction([from, from], [to, to], KEPT_SUPPORT_GAP_FRACTION);
+    let free = problem.world.free_fraction([from, from], [to, to], mesh.tuning.step.kept_support_gap_fraction);
     let mut part = if free >= 1.0 { 1.0 } else { free };
-    for _ in 0..STAND_OFF_TRIES {
+    for _ in 0..mesh.tuning.step.stand_off_tries {
         let at = if part >= 1.0 { to } else { from + (to - from) * part };
         if gap(at) >= least {
             return at;

@@ -14,30 +14,9 @@
 //! structural mechanics, Springer 1981, has the same law for load steps).
 
 use crate::math::{Vec2, bounded, larger, smaller};
+use crate::model::fem::settings::StepTuning;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::stepping::StepSizeController;
-
-/// The shortest step is this part of the longest, 1/240 s: frequencies up to 17 Hz are exact to
-/// 1e-3, those of 40 Hz to 6e-3. Smaller: a vibrating cable costs more than its vibration is worth;
-/// larger: only lower frequencies are exact.
-const SHORTEST_STEP_FRACTION: f64 = 0.125;
-
-/// Vibrations of less than this part of the cable's length are left as they are: what is left over
-/// from coming to rest rings at any frequency, and 0.1 mm in 10 m is no motion that a user sees.
-const VIBRATION_FRACTION: f64 = 1e-5;
-
-/// Change of the step from one frame to the next. BDF2 is stable up to 2.4.
-const STEP_CHANGE_LIMIT: f64 = 2.0;
-
-/// Time constant of the memory of a motion, s. Half a period of a motion that needs shorter steps
-/// passes in it: with less the step would be short where a vibration turns and long where it is
-/// fastest.
-const MEMORY: f64 = 0.25;
-
-/// Newton iterations of the hardest step of a frame up to which the next frame may take longer
-/// steps again. Of a cable of 1000 bars that drops on rubble, fewer: 7 cost 1.7 times as many
-/// iterations in all, in shorter steps; more: 40 have three times as many steps refused.
-const EASY_STEP_ITERATIONS: usize = 10;
 
 impl StepSizeController {
     /// Longest step of the next frame, s.
@@ -52,15 +31,15 @@ impl StepSizeController {
 
     /// A step was refused, and is tried again as one of `size` (s). What needs steps shorter than
     /// the shortest of a frame passes with its frame.
-    pub(in crate::model::fem) fn note_refused(&mut self, size: f64) {
-        self.solvable = smaller(self.solvable, larger(size, SHORTEST_STEP_FRACTION * self.longest));
+    pub(in crate::model::fem) fn note_refused(&mut self, tuning: &StepTuning, size: f64) {
+        self.solvable = smaller(self.solvable, larger(size, tuning.shortest_fraction * self.longest));
         self.refused = true;
     }
 
     /// Lets steps grow again after a frame that was easy to solve.
-    fn end_frame(&mut self) {
-        if !self.refused && self.most_iterations <= EASY_STEP_ITERATIONS {
-            self.solvable = smaller(STEP_CHANGE_LIMIT * self.solvable, self.longest);
+    fn end_frame(&mut self, tuning: &StepTuning) {
+        if !self.refused && self.most_iterations <= tuning.easy_iterations {
+            self.solvable = smaller(tuning.max_change * self.solvable, self.longest);
         }
         (self.refused, self.most_iterations) = (false, 0);
     }
@@ -90,17 +69,17 @@ impl StepSizeController {
 
     /// Chooses the longest step of the next frame, after one of `dt` (s), of a cable of a length
     /// (m) whose frequency may be off by a part `tolerance`.
-    pub(in crate::model::fem) fn choose(&mut self, tolerance: f64, length: f64, dt: f64) {
+    pub(in crate::model::fem) fn choose(&mut self, tuning: &StepTuning, tolerance: f64, length: f64, dt: f64) {
         let [changes, speeds, time] = self.seen;
         let frequency = (changes / speeds).sqrt();
         let amplitude = (speeds / (time * length)).sqrt() / frequency;
-        let matters = frequency.is_finite() && amplitude > VIBRATION_FRACTION * length;
+        let matters = frequency.is_finite() && amplitude > tuning.vibration_fraction * length;
         let wanted = if matters { (3.0 * tolerance).sqrt() / frequency } else { self.longest };
-        let near = bounded(wanted, self.step / STEP_CHANGE_LIMIT, self.step * STEP_CHANGE_LIMIT);
-        self.step = near.clamp(SHORTEST_STEP_FRACTION * self.longest, self.longest);
-        let left = (-dt / MEMORY).exp();
+        let near = bounded(wanted, self.step / tuning.max_change, self.step * tuning.max_change);
+        self.step = near.clamp(tuning.shortest_fraction * self.longest, self.longest);
+        let left = (-dt / tuning.memory_s).exp();
         self.seen = self.seen.map(|s| s * left);
-        self.end_frame();
+        self.end_frame(tuning);
     }
 }
 
@@ -109,33 +88,34 @@ fn is_string(cable: &CableState) -> bool {
     let (problem, mesh, motion) = (&cable.problem, &cable.mesh, &cable.motion);
     let weight = problem.body_force(motion.time).norm() * problem.length;
     let taut = |e: usize| mesh.bar(e).tension(mesh.path(e, &motion.x).length) > weight;
-    let alone = cable.contacts.rubs.is_empty() && cable.contacts.own.rubs.is_empty();
+    let alone = cable.contacts.friction_contacts.is_empty() && cable.contacts.own.friction_contacts.is_empty();
     alone && (0..mesh.rest_length.len()).all(taut)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::fem::settings::Tuning;
 
     const LONGEST: f64 = 1.0 / 240.0;
 
     fn frame(pace: &mut StepSizeController, iterations: usize) -> f64 {
         pace.note_solved(iterations);
-        pace.choose(1e-3, 1.0, LONGEST);
+        pace.choose(&Tuning::default().step, 1e-3, 1.0, LONGEST);
         pace.longest_step()
     }
 
     #[test]
     fn after_a_refused_step_the_next_ones_are_as_short_as_the_one_that_was_solved() {
         let mut pace = StepSizeController::new(LONGEST);
-        pace.note_refused(0.5 * LONGEST);
-        pace.note_refused(0.25 * LONGEST);
+        pace.note_refused(&Tuning::default().step, 0.5 * LONGEST);
+        pace.note_refused(&Tuning::default().step, 0.25 * LONGEST);
         // The frame of the refusal says nothing about a longer step, however easy its end was.
         assert_eq!(frame(&mut pace, 1), 0.25 * LONGEST);
         // A hard frame keeps the step.
-        assert_eq!(frame(&mut pace, EASY_STEP_ITERATIONS + 1), 0.25 * LONGEST);
+        assert_eq!(frame(&mut pace, Tuning::default().step.easy_iterations + 1), 0.25 * LONGEST);
         // Easy ones lengthen it again, up to the longest.
-        assert_eq!(frame(&mut pace, EASY_STEP_ITERATIONS), 0.5 * LONGEST);
+        assert_eq!(frame(&mut pace, Tuning::default().step.easy_iterations), 0.5 * LONGEST);
         assert_eq!(frame(&mut pace, 2), LONGEST);
         assert_eq!(frame(&mut pace, 2), LONGEST);
     }
@@ -143,8 +123,8 @@ mod tests {
     #[test]
     fn no_frame_begins_with_steps_shorter_than_the_shortest() {
         let mut pace = StepSizeController::new(LONGEST);
-        pace.note_refused(1e-3 * LONGEST);
-        assert_eq!(pace.longest_step(), SHORTEST_STEP_FRACTION * LONGEST);
+        pace.note_refused(&Tuning::default().step, 1e-3 * LONGEST);
+        assert_eq!(pace.longest_step(), Tuning::default().step.shortest_fraction * LONGEST);
     }
 
     #[test]

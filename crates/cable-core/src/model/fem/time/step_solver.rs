@@ -8,26 +8,6 @@ use crate::model::fem::state::control::SolverMemory;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 
-/// Rounds of finding that out in which no fewer grips are wrong than before, until they are changed
-/// one at a time; and rounds beside those for each sliding node. Fewer: steps of a few nodes that
-/// free each other in turn take longer, or are halved.
-const GRIP_ROUNDS: usize = 6;
-
-/// Rounds for each sliding node. Fewer: steps in which many begin to slip one after the other are
-/// halved; more: what does not end costs more.
-pub(in crate::model::fem) const ROUNDS_EACH: usize = 3;
-
-/// Rounds in which friction follows its normal forces. With none the greatest tension of a stiff
-/// cable (1 N m²) that drops on rubble is 537, 352 and 789 N with 84, 168 and 336 bars at 1/960 s,
-/// with one 427, 399 and 463 N; a second changes that by 2 %, and costs as much as the step (a
-/// pile: 1.5 s, 0.9 with one).
-const RUB_ROUNDS: usize = 1;
-
-/// Change of a friction force that is none, in parts of the greatest; and one of the weight of a
-/// bar is none. Less: sliding costs twice as much and changes by nothing that shows; more: impacts
-/// rub late.
-const RUB_CHANGE: f64 = 0.05;
-
 impl SolverMemory {
     /// The contacts of the last step that was solved with contact.
     pub(in crate::model::fem) fn touches(&self) -> &[ContactPair] {
@@ -65,8 +45,10 @@ impl SolverMemory {
         unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
         let mut done = self.grip_and_minimise(cable, unknowns)?;
-        for _ in 0..RUB_ROUNDS {
-            let same = |change: f64, most: f64| change <= larger(RUB_CHANGE * most, cable.meshing.bar_weight);
+        for _ in 0..cable.mesh.tuning.step.friction_rounds {
+            let same = |change: f64, most: f64| {
+                change <= larger(cable.mesh.tuning.step.friction_change * most, cable.meshing.bar_weight)
+            };
             if !cable.contacts.renew(&cable.problem, &cable.mesh, [&unknowns.x, &cable.motion.x], same) {
                 break;
             }
@@ -85,14 +67,14 @@ impl SolverMemory {
     fn grip_and_minimise(&mut self, cable: &mut CableState, unknowns: &mut Unknowns) -> Result<Converged, Failure> {
         let mut done = self.minimise(cable, unknowns)?;
         let sliding = cable.mesh.sliding.iter().flatten().count();
-        let (mut fewest, mut spare) = (usize::MAX, GRIP_ROUNDS);
-        for _ in 0..GRIP_ROUNDS + ROUNDS_EACH * sliding {
+        let (mut fewest, mut spare) = (usize::MAX, cable.mesh.tuning.step.grip_rounds);
+        for _ in 0..cable.mesh.tuning.step.grip_rounds + cable.mesh.tuning.step.grip_rounds_each * sliding {
             let grips = cable.update_grips(unknowns, spare == 0);
             if grips.hold() {
                 return Ok(done);
             }
             if grips.wrong < fewest {
-                (fewest, spare) = (grips.wrong, GRIP_ROUNDS);
+                (fewest, spare) = (grips.wrong, cable.mesh.tuning.step.grip_rounds);
             } else {
                 spare = spare.saturating_sub(1);
             }

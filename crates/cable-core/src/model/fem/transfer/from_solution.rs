@@ -11,13 +11,12 @@
 use crate::error::SolveError;
 use crate::math::{Vec2, perp};
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::mesh::sliding_node::{MARKED_ARC_LIMIT, ONE_MARK_BAR_FRACTION};
-use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode, round_of};
+
+use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::rotate;
 use crate::model::fem::mesh::tangent_path::{End, angle_between};
 use crate::model::fem::newton::initial_guess::depenetrate;
-use crate::model::fem::remesh::adapt::LEAST_TURN;
-use crate::model::fem::state::cable::{CableState, REACH};
+use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::solution::{CableSolution, Node};
 use crate::state::State;
@@ -27,16 +26,6 @@ const NEAR: f64 = 1e-3;
 
 /// Part of its radius by which a node of an answer may be off a round and lie on it.
 const ON_ROUND: f64 = 1e-3;
-
-/// Turn (rad) that one mark can carry: the way to it must not go round the other side.
-const MOST: f64 = 2.8;
-
-/// Marks on a round that is taken over, for each bar that would lie on it. Fewer: tension jumps by
-/// more (1.2e-3 of the greatest with 1 round a post of 450°, 7e-4 with 1.5); more: more nodes.
-const MARKS: f64 = 1.5;
-
-/// Bars beside a new sliding node are at least this part of an even one.
-const LEAST_BAR: f64 = 0.35;
 
 /// An answer's nodes read as a curve.
 struct SolutionCurve<'a>(&'a [Node]);
@@ -134,23 +123,31 @@ impl CableState {
                 continue;
             }
             let round = arc.node.end.radius * arc.turn;
-            let many = 0.5 * arc.turn > MARKED_ARC_LIMIT && 0.5 * round > ONE_MARK_BAR_FRACTION * self.even();
-            let bars = if many { (MARKS * round / self.even()).round() } else { 1.0 };
-            let marks = (arc.turn / if many { MARKED_ARC_LIMIT } else { MOST }).ceil().max(bars);
+            let many = 0.5 * arc.turn > self.mesh.tuning.remesh.max_marked_arc_rad
+                && 0.5 * round > self.mesh.tuning.remesh.one_mark_bars * self.even();
+            let bars = if many { (self.mesh.tuning.start.marks_per_bar * round / self.even()).round() } else { 1.0 };
+            let marks = (arc.turn
+                / if many {
+                    self.mesh.tuning.remesh.max_marked_arc_rad
+                } else {
+                    self.mesh.tuning.start.max_mark_turn_rad
+                })
+            .ceil()
+            .max(bars);
             for i in 0..marks as usize {
                 let part = (i as f64 + 0.5) / marks;
                 let end = arc.node.end;
                 let mark = rotate(end.mark, end.sense * part * arc.turn);
                 let at = curve.at_turn(&arc, part * arc.turn);
-                self.seat(at, SlidingNode { end: End { mark, ..end }, ..arc.node });
+                self.add_sliding_node(at, SlidingNode { end: End { mark, ..end }, ..arc.node });
             }
             self.clear_of_nodes(arc.material);
         }
     }
 
     /// A sliding node at a material point (m).
-    fn seat(&mut self, s: f64, node: SlidingNode) {
-        let near = LEAST_BAR * self.even();
+    fn add_sliding_node(&mut self, s: f64, node: SlidingNode) {
+        let near = self.mesh.tuning.start.min_bar * self.even();
         let k = self.mesh.arc_length.partition_point(|&a| a <= s);
         for j in [k, k.wrapping_sub(1)] {
             let spare = self.mesh.arc_length.get(j).is_some_and(|a| (a - s).abs() < near);
@@ -186,18 +183,18 @@ impl CableState {
             let Some(gap) = self.problem.world.signed_gap(n.at(), within).filter(|g| g.gap_m.abs() <= within) else {
                 continue;
             };
-            let seat = Seat::Obstacle { obstacle: gap.obstacle, feature: gap.feature };
+            let slide_over = SlideOver::Obstacle { obstacle: gap.obstacle, feature: gap.feature };
             let clearance = self.clearance(gap.feature);
-            let round = round_of(geometry, gap.feature, clearance, LEAST_TURN);
+            let round = round_of(geometry, gap.feature, clearance, self.mesh.tuning.remesh.min_turn_rad);
             let (Some((center, radius)), true) = (round, gap.feature % 2 == 1) else { continue };
-            if out.last().is_some_and(|a| a.node.seat == seat && a.nodes[1] + 1 >= i) {
+            if out.last().is_some_and(|a| a.node.slide_over == slide_over && a.nodes[1] + 1 >= i) {
                 continue;
             }
             let end = End { center, radius, mark: gap.normal, sense: 1.0 };
-            let node = SlidingNode::new(end, gap.friction, seat);
+            let node = SlidingNode::new(end, gap.friction, slide_over);
             let mut arc = Arc { nodes: [i, i], turn: 0.0, material: [n.arc_length_m; 2], node };
             arc.grow(curve, radius - clearance);
-            if arc.turn > LEAST_TURN {
+            if arc.turn > self.mesh.tuning.remesh.min_turn_rad {
                 out.push(arc);
             }
         }
@@ -211,7 +208,8 @@ impl CableState {
     fn adopt_stretch(&mut self, curve: &SolutionCurve<'_>) {
         let on = |d: &Self, k: usize| {
             d.mesh.sliding[k].is_some()
-                || (d.removable(k) && d.problem.world.signed_gap(d.motion.x[k], 2.0 * REACH).is_some())
+                || (d.removable(k)
+                    && d.problem.world.signed_gap(d.motion.x[k], 2.0 * d.contacts.barrier.reach).is_some())
         };
         let nodes = self.mesh.nodes();
         let mut first = 1;
@@ -339,7 +337,7 @@ impl Dynamics {
         self.cable.restore_positions(&state);
         self.cable.adopt_sliding_nodes(&curve);
         let mut x = std::mem::take(&mut self.cable.motion.x);
-        depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
+        depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
         self.cable.motion.x = x;
         self.cable.adopt_stretch(&curve);
         self.cable.renew_input();

@@ -7,16 +7,12 @@ use crate::error::SolveError;
 use crate::math::{Vec2, perp};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::free::stations::{Hold, Layout};
-use crate::model::fem::mesh::sliding_node::{Seat, SlidingNode};
+use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
 use crate::model::fem::mesh::tangent_path::End;
 use crate::model::fem::newton::initial_guess::depenetrate;
-use crate::model::fem::state::cable::{CableState, REACH};
+use crate::model::fem::state::cable::CableState;
 use crate::scene::PulleySide;
 use crate::state::State;
-
-/// Part of a bar that a new node keeps away from its ends. Less: bars without mass; more: corners
-/// beside a node are still cut off.
-const LEAST_PART: f64 = 0.05;
 
 impl CableState {
     /// Puts a sliding node at every pulley: where `state` has the cable nearest to it, else where
@@ -35,7 +31,7 @@ impl CableState {
             let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
             let right = if passing.x < 0.0 { -1.0 } else { 1.0 };
             let end = End { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense: -up * right };
-            self.insert(k, at, Some(SlidingNode::new(end, wheel.friction, Seat::Pulley(support))));
+            self.insert(k, at, Some(SlidingNode::new(end, wheel.friction, SlideOver::Pulley(support))));
         }
         self.even_out();
         self.renew_input();
@@ -64,7 +60,7 @@ impl CableState {
     fn farthest(&self, e: usize, state: &State) -> Option<(f64, Vec2)> {
         let (s, x) = (&self.mesh.arc_length, &self.motion.x);
         let (from, along) = (x[e], (x[e + 1] - x[e]).try_normalize(0.0)?);
-        let near = LEAST_PART * (s[e + 1] - s[e]);
+        let near = self.mesh.tuning.start.min_part * (s[e + 1] - s[e]);
         let nodes = state.arc_length_m.iter().copied().zip(state.position_m.iter().copied());
         let inside = nodes.filter(|(a, _)| *a > s[e] + near && *a < s[e + 1] - near);
         let off = |p: &Vec2| perp(along).dot(&(p - from)).abs();
@@ -137,7 +133,7 @@ impl Dynamics {
         }
         if !same || self.cable.refuse_buried().is_err() {
             let mut x = std::mem::take(&mut self.cable.motion.x);
-            depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * REACH);
+            depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
             self.cable.motion.x = x;
         }
         self.cable.refuse_buried()?;
