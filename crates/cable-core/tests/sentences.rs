@@ -220,6 +220,7 @@ fn others() -> Vec<Box<dyn Sentence>> {
         Box::new(bending(LikelyBending::NoAnswer(refusal()))),
         Box::new(next(Some(0.69))),
         Box::new(next(Some(2e-5))),
+        Box::new(next(Some(0.0))),
         Box::new(next(None)),
         Box::new(NotChecked::MovingBalance { cable: name("main") }),
         Box::new(NotChecked::SelfContact { cable: name("main") }),

@@ -79,6 +79,13 @@ impl BreakableCable {
         (0..self.problem.supports.len()).map(|k| self.reaction(k).arc_length_m).collect()
     }
 
+    /// Returns for each support of the scene whether it is a wheel that the cable hangs clear of.
+    pub(super) fn cleared_wheels(&self) -> Vec<bool> {
+        let nothing = |r: &SupportReaction| r.reaction_x_n == 0.0 && r.reaction_y_n == 0.0;
+        let wheels = self.problem.supports.iter().map(|s| s.wheel_radius > 0.0).enumerate();
+        wheels.map(|(k, wheel)| wheel && nothing(&self.reaction(k))).collect()
+    }
+
     /// Returns what the cable does to a support of the scene: nothing, if it is off it.
     pub(super) fn reaction(&self, k: usize) -> SupportReaction {
         let held = self.pieces.iter().find_map(|p| {

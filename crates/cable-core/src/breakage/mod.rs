@@ -289,7 +289,7 @@ impl BreakableCable {
     /// Replaces a piece by those it breaks into.
     fn split(&mut self, k: usize, point: &BreakPoint, inertia: Inertia) -> Result<(), SolveError> {
         let BreakPoint { time_s, state, at } = point;
-        let support_arc_lengths = self.support_arc_lengths();
+        let (support_arc_lengths, cleared_wheels) = (self.support_arc_lengths(), self.cleared_wheels());
         let Some(piece) = self.pieces.get(k) else { return Ok(()) };
         let nodes = &piece.answer.nodes;
         let Some(node) = nodes.get(at.node) else { return Ok(()) };
@@ -299,6 +299,7 @@ impl BreakableCable {
             near: 0.5 * piece.element(),
             after: tension(Some(at.node + 1)) > tension(at.node.checked_sub(1)),
             support_arc_lengths: &support_arc_lengths,
+            cleared_wheels: &cleared_wheels,
         };
         let parts = piece.part.cut(&self.problem, &cut);
         let end =

@@ -30,6 +30,8 @@ pub(super) struct Cut<'a> {
     pub after: bool,
     /// Present place of each support of the scene, m on the whole cable.
     pub support_arc_lengths: &'a [f64],
+    /// For each support of the scene whether it is a wheel that the cable hangs clear of.
+    pub cleared_wheels: &'a [bool],
 }
 
 impl CablePart {
@@ -64,8 +66,9 @@ impl CablePart {
             let Some(k) = k else { continue };
             let s = cut.support_arc_lengths.get(k).copied().unwrap_or(self.from);
             let pulley = problem.supports.get(k).is_some_and(|p| p.kind == SupportKind::Pulley);
-            if pulley && (s - cut.at).abs() <= cut.near {
-                continue; // it would slip off at once
+            let cleared = cut.cleared_wheels.get(k).copied().unwrap_or(false);
+            if pulley && (cleared || (s - cut.at).abs() <= cut.near) {
+                continue; // it would slip off at once, or leads no piece
             }
             if i == 0 || (i < last && before(s)) { left.push(Some(k)) } else { right.push(Some(k)) }
         }
@@ -193,7 +196,8 @@ mod tests {
     }
 
     fn cut(problem: &Problem, at: f64, after: bool) -> Vec<CablePart> {
-        CablePart::whole(problem).cut(problem, &Cut { at, near: 0.1, after, support_arc_lengths: &[0.0, 6.0, 10.0] })
+        CablePart::whole(problem)
+            .cut(problem, &Cut { at, near: 0.1, after, support_arc_lengths: &[0.0, 6.0, 10.0], cleared_wheels: &[] })
     }
 
     #[test]

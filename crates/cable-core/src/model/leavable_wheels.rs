@@ -11,8 +11,8 @@ use super::mechanics::Constructor;
 use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{RigidPose, Vec2};
-use crate::problem::Problem;
-use crate::problem::wheels_as_posts::{WheelPost, WheelsAsPosts};
+use crate::problem::wheels_as_posts::WheelPost;
+use crate::problem::{Problem, WheelsAsPosts};
 use crate::solution::{CableSolution, ModelReason, Node, SupportReaction, Warning, WarningCause};
 use crate::state::State;
 

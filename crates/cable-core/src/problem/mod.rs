@@ -23,6 +23,7 @@ pub(crate) mod wheels_as_posts;
 
 use std::sync::Arc;
 
+use self::wheels_as_posts::{WheelPost, WithPosts};
 use crate::contact::World;
 use crate::contact::outline::Outline;
 use crate::error::SceneError;
@@ -78,7 +79,7 @@ pub struct Problem {
     /// farther away.
     pub similar: Option<(Similarity, Arc<Problem>)>,
     /// The same cable with posts in place of its wheels, where it has wheels that stand still.
-    pub(crate) wheels_as_posts: Option<Arc<wheels_as_posts::WheelsAsPosts>>,
+    pub(crate) wheels_as_posts: Option<Arc<WheelsAsPosts>>,
 }
 
 /// Times nearer than this are the same, s: sums of steps come as near to a time as rounding lets
@@ -249,7 +250,7 @@ fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneEr
     let mut this = problem(scene, index, cable)?;
     support_clearance::clear_supports(&mut this)?;
     ground_route::lift_route(&mut this);
-    this.wheels_as_posts = wheels_as_posts::copy(scene, index, cable);
+    this.wheels_as_posts = with_posts(scene, index, cable);
     let origin = this.supports.iter().find_map(|s| s.at).or(this.route.first().copied()).unwrap_or_else(Vec2::zeros);
     if scene.robot.is_none()
         && let Some(by) = Similarity::to_natural(cable.length_m, origin)
@@ -260,11 +261,37 @@ fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneEr
             copy.time_scale = by.time;
             support_clearance::clear_supports(&mut copy)?;
             ground_route::lift_route(&mut copy);
-            copy.wheels_as_posts = wheels_as_posts::copy(&scaled, index, cable);
+            copy.wheels_as_posts = with_posts(&scaled, index, cable);
             this.similar = Some((by, Arc::new(copy)));
         }
     }
     Ok(this)
+}
+
+/// A cable with posts in place of its wheels.
+#[derive(Clone, Debug)]
+pub(crate) struct WheelsAsPosts {
+    /// The cable without those supports.
+    pub problem: Arc<Problem>,
+    /// The wheels.
+    pub wheels: Vec<WheelPost>,
+    /// Whether each support of the scene is one of them.
+    pub replaced: Vec<bool>,
+}
+
+/// A cable with posts in place of its wheels; None where it has none that stand still, or cannot be
+/// laid round the posts.
+fn with_posts(scene: &Scene, index: usize, cable: &Cable) -> Option<Arc<WheelsAsPosts>> {
+    let WithPosts { scene, cables, wheels, replaced } = wheels_as_posts::with_posts(scene, cable)?;
+    let lay = |cable: &Cable| -> Result<Problem, SceneError> {
+        let mut this = problem(&scene, index, cable)?;
+        support_clearance::clear_supports(&mut this)?;
+        ground_route::lift_route(&mut this);
+        route_check::check_route(&this)?;
+        Ok(this)
+    };
+    let problem = Arc::new(cables.iter().find_map(|cable| lay(cable).ok())?);
+    Some(Arc::new(WheelsAsPosts { problem, wheels, replaced }))
 }
 
 fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, SceneError> {

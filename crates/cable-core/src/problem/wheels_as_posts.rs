@@ -4,10 +4,6 @@
 //! A pulley of the models keeps the cable on its wheel. Where the cable does not press on it, it
 //! hangs clear, and the wheel is what a post of the same radius and friction is.
 
-use std::sync::Arc;
-
-use super::{Problem, ground_route, problem, route_check, support_clearance};
-use crate::error::SceneError;
 use crate::math::{Vec2, larger, perp, vec2};
 use crate::scene::{Cable, Obstacle, PulleySide, Scene, Shape, SupportKind};
 
@@ -16,14 +12,15 @@ use crate::scene::{Cable, Obstacle, PulleySide, Scene, Shape, SupportKind};
 /// there.
 const ROUTE_RADII: f64 = 1.2;
 
-/// A cable with posts in place of wheels.
+/// A scene with posts in place of the wheels of a cable.
 #[derive(Clone, Debug)]
-pub struct WheelsAsPosts {
-    /// The cable without those supports.
-    pub problem: Arc<Problem>,
-    /// The wheels.
+pub(super) struct WithPosts {
+    pub scene: Scene,
+    /// The cable without those supports, by its own route if it has one, and past the posts from
+    /// support to support.
+    pub cables: Vec<Cable>,
     pub wheels: Vec<WheelPost>,
-    /// Whether each support of the scene is one of them.
+    /// Whether each support of the cable is one of the wheels.
     pub replaced: Vec<bool>,
 }
 
@@ -46,9 +43,9 @@ fn stands(cable: &Cable, k: usize) -> bool {
     inner && wheel && s.motion.is_none() && s.release_s.is_none() && s.at_m.is_some()
 }
 
-/// Returns the copy; None without such a wheel, or where the cable cannot be laid round the posts:
-/// by its own route, or from support to support where that leads through a wheel.
-pub(super) fn copy(scene: &Scene, index: usize, cable: &Cable) -> Option<Arc<WheelsAsPosts>> {
+/// Returns the scene with posts in place of the wheels of a cable that stand still; None where it
+/// has none.
+pub(super) fn with_posts(scene: &Scene, cable: &Cable) -> Option<WithPosts> {
     let replaced: Vec<bool> = (0..cable.supports.len()).map(|k| stands(cable, k)).collect();
     if !replaced.contains(&true) {
         return None;
@@ -67,23 +64,15 @@ pub(super) fn copy(scene: &Scene, index: usize, cable: &Cable) -> Option<Arc<Whe
         wheels.push(WheelPost { support: k, post, center: vec2(center) });
     }
     let own = (!cable.route_m.is_empty()).then(|| cable.route_m.clone());
-    let past_wheels = || Some(route(&scene, cable, &replaced)?.into_iter().map(Into::into).collect());
-    let lay = |route_m| {
+    let past_posts = route(&scene, cable, &replaced).map(|r| r.into_iter().map(Into::into).collect());
+    let by = |route_m| {
         let mut keep = replaced.iter().map(|r| !r);
         let mut cable = Cable { route_m, ..cable.clone() };
         cable.supports.retain(|_| keep.next().unwrap_or(true));
-        laid(&scene, index, &cable).ok()
+        cable
     };
-    let problem = Arc::new(own.and_then(lay).or_else(|| past_wheels().and_then(lay))?);
-    Some(Arc::new(WheelsAsPosts { problem, wheels, replaced }))
-}
-
-fn laid(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneError> {
-    let mut this = problem(scene, index, cable)?;
-    support_clearance::clear_supports(&mut this)?;
-    ground_route::lift_route(&mut this);
-    route_check::check_route(&this)?;
-    Ok(this)
+    let cables = own.into_iter().chain(past_posts).map(by).collect();
+    Some(WithPosts { scene, cables, wheels, replaced })
 }
 
 /// The way from support to support, past each wheel on its side; None where an inner support has no
@@ -121,7 +110,7 @@ fn route(scene: &Scene, cable: &Cable, replaced: &[bool]) -> Option<Vec<Vec2>> {
 
 /// Returns on which side of its wheel a cable runs, seen along it: 1 on the left (it turns
 /// clockwise), −1 on the right. Over means above where it travels to the right.
-pub(crate) fn facing(side: PulleySide, travel: Vec2) -> f64 {
+fn facing(side: PulleySide, travel: Vec2) -> f64 {
     let right = if travel.x < 0.0 { -1.0 } else { 1.0 };
     match side {
         PulleySide::Over => right,

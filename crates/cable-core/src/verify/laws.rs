@@ -9,9 +9,9 @@
 use super::supports::{self, Role, SupportHold};
 use super::surroundings::{NearestFeature, Neighbours, Surroundings};
 use super::tolerance::{
-    BALANCE_FRACTION, COMPRESSION, CONE_EXCESS, CONTACT_SHIFT_DIAMETERS, DEPTH_DIAMETERS, DEPTH_M, FOLD_TURN, LENGTH,
-    LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE, MIN_STRAIN, MOMENT, MOMENTUM, NORMAL_TOLERANCE, REACH_DIAMETERS, REACH_M,
-    REPORTED_BALANCE, TURN,
+    BALANCE_FRACTION, COMPRESSION, CONE_EXCESS, CONTACT_SHIFT_DIAMETERS, DEPTH_DIAMETERS, DEPTH_LENGTHS, DEPTH_M,
+    FOLD_TURN, LENGTH, LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE, MIN_STRAIN, MOMENT, MOMENTUM, NORMAL_TOLERANCE,
+    REACH_DIAMETERS, REACH_M, REPORTED_BALANCE, TURN,
 };
 use super::{Balance, Depth, Finding, Law, NotChecked, Verification};
 use crate::math::{Vec2, cross, larger, smaller, vec2};
@@ -256,7 +256,8 @@ impl CheckedCable<'_> {
     fn penetration(&self, found: &mut Verification, near: &Neighbours) {
         found.ask(Law::Penetration);
         let radius = 0.5 * self.cable.diameter_m;
-        let allowed = (DEPTH_DIAMETERS * self.cable.diameter_m).min(DEPTH_M);
+        let to_scale = larger(DEPTH_M, DEPTH_LENGTHS * self.cable.length_m);
+        let allowed = (DEPTH_DIAMETERS * self.cable.diameter_m).min(to_scale);
         let nodes = &self.answer.nodes;
         // Where the scene itself holds the axis on a surface, the cable is as deep there as it is
         // thick.

@@ -106,7 +106,8 @@ impl CheckedCable<'_> {
                 Role::Wheel { radius } => (to_cable(radius + limit) - radius, larger(limit, self.reach())),
                 Role::Clear { radius } => {
                     let inside = larger(radius - to_cable(0.0), 0.0);
-                    (if self.passes_on_its_side(k) { inside } else { radius + inside }, larger(limit, self.reach()))
+                    let passes = !self.answer.breaks.is_empty() || self.passes_on_its_side(k);
+                    (if passes { inside } else { radius + inside }, larger(limit, self.reach()))
                 }
                 Role::Held => {
                     let from = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - limit);

@@ -42,6 +42,9 @@ pub(crate) const DEPTH_DIAMETERS: f64 = 0.02;
 /// … and at most this, m (RELIABILITY: what a picture to scale does not show, and less than the
 /// cable's own roundness).
 pub const DEPTH_M: f64 = 1e-3;
+/// … or this part of the cable's length, whichever is more: arcs of cables of kilometres are drawn
+/// to their own scale.
+pub(crate) const DEPTH_LENGTHS: f64 = 1e-5;
 
 /// Gap up to which an obstacle may push, of the diameter: barriers push from 1e-4 m off, jackets
 /// give way by more.

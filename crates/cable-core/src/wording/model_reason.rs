@@ -56,6 +56,10 @@ impl Sentence for LikelyBending {
     }
 }
 
+/// Difference of forces, in parts of the greatest tension, below which two answers are the same:
+/// that of rounding.
+const SAME_ANSWER: f64 = 1e-9;
+
 impl Sentence for NextCheaper {
     fn sentence(&self, units: UnitSystem) -> String {
         let f = Figures(units);
@@ -69,6 +73,9 @@ impl Sentence for NextCheaper {
         let Some((force, place)) = self.force_error.zip(self.position_error_m) else {
             return format!("{}, without {what}: no answer", self.model);
         };
+        if force <= SAME_ANSWER {
+            return format!("{}, without {what}: the same answer", self.model);
+        }
         let percent = 100.0 * force;
         let force = if percent < 0.1 { format!("{percent:.1e} %") } else { format!("{} %", round(percent)) };
         let place = f.length(place, 3);
