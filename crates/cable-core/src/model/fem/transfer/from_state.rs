@@ -128,8 +128,8 @@ impl Dynamics {
         }
         // A state in motion goes on as it is; one at rest is brought to rest on this mesh.
         let still = !state.in_motion && self.cable.motion.v.iter().all(|v| v.norm() == 0.0);
-        // So does a first equilibrium: bars that cut a corner would come to rest there. Within a run
-        // without inertia what friction holds is not disturbed.
+        // So does a first equilibrium: bars that cut a corner would come to rest there. Within a
+        // run without inertia what friction holds is not disturbed.
         if !same && (!still || state.time_s == 0.0) {
             self.cable.follow_corners(state);
         }
