@@ -156,7 +156,7 @@ fn reaction(problem: &Problem, wheel: &WheelPost, answer: &CableSolution) -> Sup
     let name = problem.supports.get(wheel.support).map(|s| s.name.clone()).unwrap_or_default();
     let mut out = SupportReaction { name, x_m: wheel.center.x, y_m: wheel.center.y, ..SupportReaction::default() };
     let on = || answer.contacts.iter().filter(|c| c.obstacle == wheel.post);
-    if let (Some(first), Some(last)) = (on().next(), on().last()) {
+    if let (Some(first), Some(last)) = (on().next(), on().next_back()) {
         for c in on() {
             out.reaction_x_n -= c.force_n[0];
             out.reaction_y_n -= c.force_n[1];
