@@ -280,10 +280,16 @@ impl CheckedCable<'_> {
         // Between the pieces of a broken cable there is none.
         let is_cable = |k: usize| !near.of(k).is_empty() && !self.answer.breaks.contains(&(k + 1));
         for k in (0..nodes.len() - 1).filter(|k| is_cable(*k)) {
+            // Between two nodes the cable is drawn straight where it is round.
+            let pair = &nodes[k..=k + 1];
+            let way = (pair[1].at() - pair[0].at()).norm();
+            let bend = pair.iter().map(|n| n.curvature_per_m.abs()).fold(0.0, larger);
+            let sagitta = smaller(bend * way * way / 8.0, DEPTH_LENGTHS * self.cable.length_m);
             for n in near.of(k) {
                 let value = radius - n.distance;
+                let end = n.at == pair[0].at() || n.at == pair[1].at();
                 let given = if held.contains(&n.at) { radius } else { 0.0 };
-                let limit = allowed + given;
+                let limit = allowed + given + if end { 0.0 } else { sagitta };
                 if !(value <= limit) {
                     let mut finding = self.finding(Law::Penetration, k, value, limit);
                     self.surroundings.name(n.body).clone_into(&mut finding.with);

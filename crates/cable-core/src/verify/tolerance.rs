@@ -43,7 +43,8 @@ pub(crate) const DEPTH_DIAMETERS: f64 = 0.02;
 /// cable's own roundness).
 pub const DEPTH_M: f64 = 1e-3;
 /// … or this part of the cable's length, whichever is more: arcs of cables of kilometres are drawn
-/// to their own scale.
+/// to their own scale. By as much at most a straight line between nodes may cut more, where the
+/// cable is round: a thread on a large drum.
 pub(crate) const DEPTH_LENGTHS: f64 = 1e-5;
 
 /// Gap up to which an obstacle may push, of the diameter: barriers push from 1e-4 m off, jackets
