@@ -18,7 +18,7 @@ pub struct Answer<'a> {
     pub time_s: Option<f64>,
     pub model: &'static str,
     pub reason: &'a ModelReason,
-    /// What the next cheaper choice would have cost in error, of a choice by `auto` at rest.
+    /// The error of the next cheaper choice, of a choice by `auto` at rest.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next_cheaper: Option<NextCheaper>,
     pub converged: bool,

@@ -151,7 +151,7 @@ impl LeavableWheels {
     }
 }
 
-/// What the cable does to a wheel that is a post, from an answer of the copy.
+/// The reaction of a pulley whose wheel is a post, from an answer of the copy.
 fn reaction(problem: &Problem, wheel: &WheelPost, answer: &CableSolution) -> SupportReaction {
     let name = problem.supports.get(wheel.support).map(|s| s.name.clone()).unwrap_or_default();
     let mut out = SupportReaction { name, x_m: wheel.center.x, y_m: wheel.center.y, ..SupportReaction::default() };

@@ -241,12 +241,12 @@ fn at_natural_scale(
 fn construct(model: Model, problem: Arc<Problem>, settings: Settings) -> Built {
     let info = model.info();
     refuse_mobilised(model, &problem)?;
-    let problem = if info.capabilities.robot_contact { problem } else { Problem::without_outline(problem) };
-    let inner = (info.construct)(problem.clone(), settings)?;
-    let Some(copy) = problem.wheels_as_posts.clone().filter(|_| info.capabilities.contact) else { return Ok(inner) };
-    let again: Arc<Constructor> = Arc::new(move |problem, settings| {
+    let bare = move |problem, settings| {
         let problem = if info.capabilities.robot_contact { problem } else { Problem::without_outline(problem) };
         (info.construct)(problem, settings)
-    });
-    Ok(Box::new(leavable_wheels::LeavableWheels::new(problem, copy, settings, again, inner)))
+    };
+    let inner = bare(problem, settings)?;
+    let problem = inner.problem().clone();
+    let Some(copy) = problem.wheels_as_posts.clone().filter(|_| info.capabilities.contact) else { return Ok(inner) };
+    Ok(Box::new(leavable_wheels::LeavableWheels::new(problem, copy, settings, Arc::new(bare), inner)))
 }

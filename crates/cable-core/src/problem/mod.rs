@@ -275,7 +275,7 @@ pub(crate) struct WheelsAsPosts {
     pub problem: Arc<Problem>,
     /// The wheels.
     pub wheels: Vec<WheelPost>,
-    /// Whether each support of the scene is one of them.
+    /// For each support of the scene, true if it is one of them.
     pub replaced: Vec<bool>,
 }
 

@@ -20,7 +20,7 @@ pub(super) struct WithPosts {
     /// support to support.
     pub cables: Vec<Cable>,
     pub wheels: Vec<WheelPost>,
-    /// Whether each support of the cable is one of the wheels.
+    /// For each support of the cable, true if it is one of the wheels.
     pub replaced: Vec<bool>,
 }
 

@@ -60,7 +60,7 @@ fn as_written(problem: &Problem, answer: &CableSolution) -> bool {
     places.into_iter().all(|(at, r)| (at.x - r.x_m).hypot(at.y - r.y_m) <= SAME_PLACE * problem.length)
 }
 
-/// What a cheaper model leaves out of that for which one was chosen.
+/// Returns the effect for which a model was chosen, where a cheaper one neglects it.
 fn neglected_by(reason: &ModelReason) -> Option<NeglectedEffect> {
     Some(match reason {
         ModelReason::BendingStiffness => NeglectedEffect::BendingStiffness,

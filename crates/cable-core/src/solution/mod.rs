@@ -37,7 +37,7 @@ pub struct Solution {
     pub model: Model,
     /// Why that model.
     pub reason: ModelReason,
-    /// What the next cheaper choice would have cost, of a choice by `auto` at rest.
+    /// The error of the next cheaper choice, of a choice by `auto` at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next_cheaper: Option<NextCheaper>,
     /// One a cable, in the scene's order.

@@ -21,12 +21,12 @@ pub enum NeglectedEffect {
     WheelFriction,
 }
 
-/// What the next cheaper choice of a model would have cost in error.
+/// The next cheaper choice of a model, with its error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NextCheaper {
     /// The model.
     pub model: Model,
-    /// What it leaves out.
+    /// The effect that it neglects.
     pub neglects: NeglectedEffect,
     /// Greatest difference of a support's force and of the greatest tension, in parts of the
     /// greatest tension; None where it has no answer.

@@ -414,7 +414,7 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     for _ in 0..SAG_ROUNDS {
         let ends = force_at(sagged);
         let sags = [sag(0, ends[0], paths[0].direction), sag(1, paths[1].direction, ends[1])];
-        // What bulges away may leave where the round is marked, but not before.
+        // A bar that bulges away may leave at the mark of the round, but not before.
         sagged = [0, 1].map(|j| larger(straight[j] + smaller(sags[j], room[j]), smaller(straight[j], 0.0)));
     }
     // As far round as it would run into an edge beside a corner it does not sag.
