@@ -12,6 +12,7 @@ use crate::error::SolveError;
 use crate::kinematics::{self, AlongCable};
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
+use crate::model::catenary::other_balances;
 use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::{Inertia, MIN_TOLERANCE, Mechanics, Model, ModelSource, Settings, StepReport};
 use crate::problem::{Problem, problems};
@@ -378,14 +379,22 @@ impl Simulation {
 
     /// With friction a resting place is one of many: said of every cable that rubs where it rests,
     /// whichever model answered, with what other histories would have left in it where `spans`
-    /// knows.
+    /// knows. Without, it may be one of several where the cable slides over pulleys.
     fn warn_not_unique(&mut self) {
         for (k, (cable, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
             let problem = cable.problem();
+            let name = &problem.cable.name;
             if !problem.rubs(answer) {
+                if !cable.breaks().is_empty() {
+                    continue;
+                }
+                let others = other_balances(problem, answer, cable.time_s());
+                self.warnings.extend(others.map(|histories| {
+                    let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
+                    Warning::new(cause, name, 0.0, [0.0; 2])
+                }));
                 continue;
             }
-            let name = &problem.cable.name;
             let of_cable = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == *name;
             let seek = || {
                 let laid = initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), &[], None).ok()??;

@@ -75,6 +75,18 @@ fn warnings() -> Vec<Warning> {
             ),
             [0.0; 2],
         ),
+        (
+            many(
+                ShownEquilibrium::FromRoute,
+                Histories::SlackElsewhere {
+                    greatest_n: 80.0,
+                    others_n: vec![90.5, 78.0],
+                    start_n: range,
+                    end_n: range,
+                },
+            ),
+            [0.0; 2],
+        ),
         (many(ShownEquilibrium::FromRouteAsFlexible, Histories::NotFound { greatest_n: 80.0 }), [0.0; 2]),
         (Cause::Blocked { support: name("grip") }, [0.2, 0.0]),
         (Cause::ClearOfWheel { pulley: name("grip") }, [0.0; 2]),

@@ -235,7 +235,10 @@ fn unsound(answer: &Solution) -> bool {
 fn states(answer: &Solution, own: [Point; 2], other: [Point; 2]) -> bool {
     let ranges = answer.warnings.iter().find_map(|w| match &w.cause {
         WarningCause::ManyEquilibria {
-            histories: Histories::Mobilised { start_n, end_n, .. } | Histories::EndsMoved { start_n, end_n, .. },
+            histories:
+                Histories::Mobilised { start_n, end_n, .. }
+                | Histories::EndsMoved { start_n, end_n, .. }
+                | Histories::SlackElsewhere { start_n, end_n, .. },
             ..
         } => Some([*start_n, *end_n]),
         WarningCause::Loose { held_n, .. } => {

@@ -3,7 +3,9 @@
 
 use cable_core::Model;
 use cable_core::scene::{Cable, Scene, Shape, SupportKind, View};
-use cable_core::solution::{CableSolution, Solution, WarningKind};
+use cable_core::solution::{CableSolution, Solution, WarningCause, WarningKind};
+
+use crate::stability::runs_away;
 
 type V = [f64; 2];
 
@@ -180,6 +182,8 @@ pub fn faults(scene: &Scene, answer: &Solution) -> Vec<String> {
     }
     for (cable, found) in scene.cables.iter().zip(&answer.cables) {
         of_cable(scene, cable, (found, answer), &mut out);
+        let told = answer.warnings.iter().any(|w| matches!(w.cause, WarningCause::Unstable));
+        out.extend(runs_away(scene, cable, found).filter(|_| !told).map(|why| format!("stability: {why}")));
     }
     out
 }

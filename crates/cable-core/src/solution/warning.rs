@@ -474,6 +474,17 @@ pub enum Histories {
         /// Range of the greatest tension, N.
         range_n: [f64; 2],
     },
+    /// The slack of a cable that slides over pulleys without friction began in another span.
+    SlackElsewhere {
+        /// Greatest tension as laid, N.
+        greatest_n: f64,
+        /// The same of each of the others, N.
+        others_n: Vec<f64>,
+        /// Range of the tension at the start, N.
+        start_n: [f64; 2],
+        /// Range of the tension at the end, N.
+        end_n: [f64; 2],
+    },
 }
 
 impl Histories {
@@ -488,7 +499,8 @@ impl Histories {
         match &mut self {
             Self::NotSought => {}
             Self::NotFound { greatest_n } => *greatest_n = most,
-            Self::Mobilised { greatest_n, start_n, end_n, .. } => {
+            Self::Mobilised { greatest_n, start_n, end_n, .. }
+            | Self::SlackElsewhere { greatest_n, start_n, end_n, .. } => {
                 *greatest_n = most;
                 widen(start_n, ends[0]);
                 widen(end_n, ends[1]);

@@ -122,7 +122,8 @@ impl Sentence for Warning {
                     ShownEquilibrium::FromRoute => ": this is the one found from its way",
                     ShownEquilibrium::FromRouteAsFlexible => ": this is the one found from its way; the histories are those of a flexible cable in its place",
                 };
-                format!("With friction the resting place depends on how the cable was laid{shown}{}", histories(f, known))
+                let friction = if matches!(known, Histories::SlackElsewhere { .. }) { "The" } else { "With friction the" };
+                format!("{friction} resting place depends on how the cable was laid{shown}{}", histories(f, known))
             }
             Cause::Blocked { support } => {
                 format!("support `{support}` cannot reach where it is sent: an obstacle blocks it")
@@ -245,6 +246,16 @@ fn histories(f: Figures, known: &Histories) -> String {
                 figure(*towards_start_n),
                 figure(*towards_end_n),
                 loose_n.map_or_else(String::new, |n| format!("; laid down loose: {}", f.force(n, 2))),
+                f.forces(*start_n),
+                f.forces(*end_n)
+            )
+        }
+        Histories::SlackElsewhere { greatest_n, others_n, start_n, end_n } => {
+            let others: Vec<String> = others_n.iter().map(|n| f.force(*n, 2)).collect();
+            format!(
+                ". The greatest tension is {}; with the slack in another span: {}. Among these the tension is {} at the start and {} at the end",
+                f.force(*greatest_n, 2),
+                others.join(", "),
                 f.forces(*start_n),
                 f.forces(*end_n)
             )

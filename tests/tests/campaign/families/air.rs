@@ -1,6 +1,6 @@
 //! Cables that touch nothing.
 
-use crate::case::{Case, Expect, Point, apart, cable, clamp, fixed, load, load_end as loaded};
+use crate::case::{Case, Expect, Point, apart, cable, clamp, fixed, flat, load, load_end as loaded, put};
 use crate::chance::Chance;
 use crate::closed::free_span;
 use cable_core::scene::preset::cable_presets;
@@ -131,6 +131,40 @@ pub fn held_between(r: &mut Chance) -> Case {
     m.arc_length_m = Some(first);
     supports.insert(1, m);
     Case::rests(cable([length, r.scale(0.05, 20.0), r.scale(1e4, 1e8), 0.02], supports))
+}
+
+/// A cable over smooth pulleys at these places, with this much slack; ground far below makes it a
+/// question for other models.
+fn over_pulleys(r: &mut Chance, places: &[Point]) -> Case {
+    let way: f64 = places.windows(2).map(|w| apart(w[0], w[1])).sum();
+    let length = way * (1.0 + r.scale(1e-4, 3.0));
+    let last = places.len() - 1;
+    let mut supports = fixed([places[0], places[last]]);
+    for (k, at) in places.iter().enumerate().take(last).skip(1) {
+        supports.insert(k, Support { friction: Some(0.0), ..Support::pulley(format!("p{k}"), *at) });
+    }
+    let mut s = cable([length, r.scale(0.05, 20.0), r.scale(1e4, 1e8), 0.02], supports);
+    if r.says(0.3) {
+        put(&mut s, flat(-2.0 * length, [-3.0 * length, 4.0 * length]), 0.0);
+    }
+    Case::rests(s)
+}
+
+/// Level and evenly spaced: the balance with as much slack in each span is there at any slack, and
+/// stable only with little.
+pub fn even_pulleys(r: &mut Chance) -> Case {
+    let (count, far) = (2 + r.one_of(4), r.scale(0.5, 20.0));
+    let places: Vec<Point> = (0..=count).map(|k| [far * k as f64, 0.0]).collect();
+    over_pulleys(r, &places)
+}
+
+pub fn uneven_pulleys(r: &mut Chance) -> Case {
+    let (count, far) = (2 + r.one_of(3), r.scale(0.5, 20.0));
+    let mut places = vec![[0.0, 0.0]];
+    for k in 0..count {
+        places.push([places[k][0] + far * r.scale(0.3, 1.0), far * r.within(-0.3, 0.3)]);
+    }
+    over_pulleys(r, &places)
 }
 
 pub fn weightless(r: &mut Chance) -> Case {

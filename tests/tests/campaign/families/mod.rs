@@ -23,6 +23,8 @@ pub const FAMILIES: &[Family] = &[
     ("end with a dead load", air::load_end),
     ("held in between", air::held_between),
     ("weightless span", air::weightless),
+    ("even pulleys", air::even_pulleys),
+    ("uneven pulleys", air::uneven_pulleys),
     ("gravity 0", air::no_gravity),
     ("span at any scale", air::any_scale),
     ("clamps in the air", air::clamps),

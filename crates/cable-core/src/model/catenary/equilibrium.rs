@@ -41,6 +41,9 @@ const ANGLE: f64 = 1e-12;
 const RUN_OFF_LENGTH_FRACTION: f64 = 1e-6;
 /// Below this part of the energy a predicted decrease is round-off.
 const ENERGY_NOISE: f64 = 1e-9;
+/// Way by which a balance that runs away is left at first, of the length. Smaller: the energy is
+/// less by no more than rounding; larger: a rest that is near is passed.
+const LEAVING_FRACTION: f64 = 1e-2;
 /// A pulley slips when friction is exceeded by this much (in ln T). Smaller: chatter of round-off.
 const CONE_TOLERANCE: f64 = 1e-10;
 
@@ -259,16 +262,47 @@ fn step(r: &[f64], j: &[Row], descend: bool) -> Option<Vec<f64>> {
     None
 }
 
-/// Returns whether the balance is stable: σ pushed one way is drawn back (all pivots of J
-/// positive). With more slack than any tension asks for a fold pulls the harder the longer it is: a
-/// balance too, but one that runs away.
-fn stable(j: &[Row]) -> bool {
-    let mut pivot = 1.0;
-    (0..j.len()).all(|k| {
-        let taken = if k > 0 { j[k][0] * j[k - 1][2] / pivot } else { 0.0 };
-        pivot = j[k][1] - taken;
-        pivot > 0.0
-    })
+/// A direction of σ in which the balance runs away; None where it is stable: σ pushed one way is
+/// drawn back (all pivots of J positive). With more slack than any tension asks for a fold pulls
+/// the harder the longer it is: a balance too, but one that runs away.
+///
+/// The direction v solves J v = 0 in the rows before the first pivot p that is not positive, where
+/// v is 1 and beyond which it is 0: vᵀJv = p for a symmetric J.
+fn runs_away(j: &[Row]) -> Option<Vec<f64>> {
+    let mut pivots: Vec<f64> = Vec::with_capacity(j.len());
+    for k in 0..j.len() {
+        let taken = pivots.last().map_or(0.0, |before| j[k][0] * j[k - 1][2] / before);
+        let pivot = j[k][1] - taken;
+        if pivot > 0.0 {
+            pivots.push(pivot);
+            continue;
+        }
+        let mut way = vec![0.0; j.len()];
+        way[k] = 1.0;
+        for i in (0..k).rev() {
+            way[i] = -j[i][2] * way[i + 1] / pivots[i];
+        }
+        return Some(way);
+    }
+    None
+}
+
+/// Leaves a balance that runs away to where its energy is less; None where it is nowhere.
+fn leave(slide: &Slide<'_>, sigma: &[f64], s: &Stretches, way: &[f64]) -> Option<(Vec<f64>, Stretches)> {
+    let largest = way.iter().fold(0.0f64, |m, w| larger(m, w.abs()));
+    let mut far = LEAVING_FRACTION * slide.problem.length / largest;
+    for _ in 0..slide.layout.settings.max_halvings {
+        for sign in [1.0, -1.0] {
+            let step: Vec<f64> = way.iter().map(|w| sign * far * w).collect();
+            let part = room(slide, s, &step);
+            let there: Vec<f64> = sigma.iter().zip(&step).map(|(a, b)| a + part * b).collect();
+            if let Some(t) = slide.stretches(&there, Some(s)).filter(|t| t.energy < s.energy) {
+                return Some((there, t));
+            }
+        }
+        far *= 0.5;
+    }
+    None
 }
 
 /// Largest part of a step that keeps some of every stretch.
@@ -309,10 +343,17 @@ fn newton(
             iterations,
             residual,
         };
-        if worst <= PULLEY_BALANCE_TOLERANCE {
-            return if smooth || stable(&j) { Ok(end(sigma, s, newtons)) } else { Err(lost(iterations)) };
+        let away = if worst <= BALANCE_ACCEPTED { runs_away(&j) } else { None };
+        if worst <= PULLEY_BALANCE_TOLERANCE && away.is_none() {
+            return Ok(end(sigma, s, newtons));
         }
         run_off(slide, &s)?;
+        if let Some(way) = away {
+            let next = if smooth { leave(slide, &sigma, &s, &way) } else { None };
+            (sigma, s) = next.ok_or_else(|| lost(iterations))?;
+            iterations += s.iterations;
+            continue;
+        }
         let p = step(&r, &j, smooth).ok_or_else(|| lost(iterations))?;
         let slope: f64 = r.iter().zip(&p).map(|(a, b)| a * b).sum();
         let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
@@ -336,7 +377,7 @@ fn newton(
         }
         match next {
             Some((trial, t)) => (sigma, s) = (trial, t),
-            None if worst <= BALANCE_ACCEPTED && (smooth || stable(&j)) => return Ok(end(sigma, s, newtons)),
+            None if worst <= BALANCE_ACCEPTED => return Ok(end(sigma, s, newtons)),
             None => return Err(not_converged(slide.problem, layout, 0, iterations, newtons)),
         }
     }

@@ -208,9 +208,9 @@ impl Layout {
 
     /// Returns how far along the way each anchor lies, and the length of the whole way, m.
     fn way(&self, p: &Problem) -> (Vec<f64>, f64) {
-        let mut out = Vec::with_capacity(self.anchors.len());
         if p.route.len() > 1 {
             let (mut from, mut total) = (0.0, 0.0);
+            let mut out = Vec::with_capacity(self.anchors.len());
             for w in p.route.windows(2) {
                 total += (w[1] - w[0]).norm();
             }
@@ -220,8 +220,16 @@ impl Layout {
             }
             return (out, total);
         }
-        // From tangent point to tangent point, and round the wheels to their marks.
+        let out = self.taut_way();
+        let total = out.last().copied().unwrap_or(0.0);
+        (out, total)
+    }
+
+    /// Returns how far along a taut cable each anchor lies: from tangent point to tangent point,
+    /// and round the wheels to their marks, m.
+    pub fn taut_way(&self) -> Vec<f64> {
         let arcs = first_arcs(self);
+        let mut out = Vec::with_capacity(self.anchors.len());
         let touches = |k: usize| {
             let (a, arc) = (&self.anchors[k], &arcs[k]);
             (a.touch(arc.arrive), a.touch(arc.arrive - a.facing * arc.turn), 0.5 * a.radius * arc.turn)
@@ -234,7 +242,7 @@ impl Layout {
             }
             out.push(sum);
         }
-        (out, sum)
+        out
     }
 }
 

@@ -8,6 +8,7 @@
 
 mod equilibrium;
 pub(super) mod layout;
+mod other_balances;
 pub(super) mod report;
 pub mod settings;
 mod slide;
@@ -17,6 +18,7 @@ use std::sync::Arc;
 
 use self::equilibrium::{Equilibrium, Start, first_arcs, solve};
 use self::layout::{Layout, nearest_along, unsupported};
+pub(crate) use self::other_balances::other_balances;
 use self::report::{report, straight};
 use self::settings::CatenarySettings;
 use self::slide::Mode;

@@ -2,7 +2,7 @@
 //! steps that fail.
 
 use crate::contact::swept_corners;
-use crate::math::{Vec2, larger};
+use crate::math::{Vec2, bounded, larger};
 use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::boundary::loose::Loose;
 use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout, place_ends};
@@ -541,6 +541,48 @@ impl CableEquilibrium {
         Err(pushed.unwrap_or(Failure::Restless { s: 0.0 }))
     }
 
+    /// Leaves a balance that runs away for a stable one, to which the cable slides under a drag: on
+    /// an error nothing has changed.
+    ///
+    /// The material at the contacts is passed on by a small part of the length. The drag is lowered
+    /// as the forces that are left fall, so that it stays while they grow (switched evolution
+    /// relaxation: W. A. Mulder and B. van Leer, J. Comput. Phys. 59, 1985).
+    pub fn leave(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) -> Result<StepStats, Failure> {
+        let tuned = &layout.settings.continuation;
+        let before = self.clone();
+        let size = to.load.norm();
+        let (mut drag, mut taken, mut left) = (tuned.leaving_drag_factor * size, StepStats::default(), None);
+        for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
+            c.history.pass_on(tuned.leaving_fraction * layout.problem.length);
+        }
+        for _ in 0..tuned.max_drag_steps {
+            let materials = self.materials();
+            self.course.drag = drag;
+            let result = self.step(layout, to, work);
+            self.course.drag = 0.0;
+            let Ok(one) = result else { break };
+            taken = taken.and(one);
+            let slips = self.materials().into_iter().zip(materials).map(|(a, b)| (a - b).abs());
+            let force = drag * slips.fold(0.0, larger);
+            drag *= left.map_or(1.0, |left| bounded(force / left, 0.25, 1.0));
+            left = Some(force);
+            if drag < tuned.drag_factor * tuned.rest_drag_fraction * size
+                && let Ok(one) = self.step(layout, to, work)
+                && self.stable(work)
+            {
+                return Ok(taken.and(one));
+            }
+        }
+        *self = before;
+        layout.give(&mut self.course, to);
+        Err(Failure::Restless { s: 0.0 })
+    }
+
+    /// Material at the start of each contact, m.
+    fn materials(&self) -> Vec<f64> {
+        self.strands.iter().flat_map(|s| &s.contacts).map(|c| c.ends.s[0]).collect()
+    }
+
     /// True if every strand is a stable rest and not a balance that runs away.
     pub fn stable(&self, work: &mut Work) -> bool {
         self.strands.iter().all(|s| newton::stable(s, &self.course, work))
@@ -677,7 +719,7 @@ impl From<Stopped> for Failure {
 }
 
 impl StepStats {
-    fn and(self, more: Self) -> Self {
+    pub fn and(self, more: Self) -> Self {
         Self {
             solved: self.solved.and(more.solved),
             halved: self.halved + more.halved,

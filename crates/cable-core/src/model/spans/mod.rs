@@ -351,7 +351,13 @@ impl Mechanics for SpansModel {
             }
             None => self.lay(&mut instant, &mut work),
         };
-        let stable = self.network.as_ref().is_none_or(|n| n.stable(&mut work));
+        let (found, stable) = match &mut self.network {
+            Some(n) if found.is_ok() && !n.stable(&mut work) => match n.leave(&self.layout, &instant, &mut work) {
+                Ok(left) => (found.map(|taken| taken.and(left)), true),
+                Err(_) => (found, false),
+            },
+            _ => (found, true),
+        };
         let slides = found.is_err() && self.network.is_none() && self.hangs_by_friction();
         let needed = if slides { CableEquilibrium::friction_needed(&self.layout, &instant, &mut work) } else { None };
         let loose = self.network.as_ref().and_then(CableEquilibrium::loose);

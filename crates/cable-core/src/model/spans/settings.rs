@@ -120,6 +120,12 @@ pub struct ContinuationSettings {
     /// Part of that drag below which it has come to rest. Smaller: more steps. Larger: it is
     /// taken for resting while it runs.
     pub rest_drag_fraction: f64,
+    /// Drag with which a balance that runs away is left, of the load per metre. Smaller: steps lead
+    /// back to it. Larger: more of them.
+    pub leaving_drag_factor: f64,
+    /// Part of the length by which material is passed on to leave it. Smaller: more steps. Larger:
+    /// a rest that is near is passed.
+    pub leaving_fraction: f64,
     /// Most steps over which it is followed. Smaller: it is given up on its way. Larger: a failure
     /// costs more.
     pub max_drag_steps: usize,
@@ -303,6 +309,8 @@ impl Default for ContinuationSettings {
             runaway_step_fraction: 1e-3,
             drag_factor: 10.0,
             rest_drag_fraction: 1e-3,
+            leaving_drag_factor: 2.0,
+            leaving_fraction: 1e-2,
             max_drag_steps: 200,
             max_drag_raises: 5,
             missing_friction_fraction: 3e-4,

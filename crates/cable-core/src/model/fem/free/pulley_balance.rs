@@ -259,10 +259,13 @@ impl Network {
             return Ok(());
         }
         for _ in 0..MAX_ROUNDS {
-            let moved = self.bisect_each()?;
-            if moved < 1e-2 * self.layout.length && self.newton(&self.pulleys()) {
+            self.bisect_each()?;
+            // Of several stable places bisection may find another each time: Newton stays at one.
+            let bisected = self.clone();
+            if self.newton(&self.pulleys()) {
                 return Ok(());
             }
+            *self = bisected;
         }
         let pulleys = self.pulleys();
         let worst = pulleys.iter().copied().find(|&k| self.wheel(k).and_then(|w| self.fault(k, &w)).is_some());
@@ -429,17 +432,9 @@ impl Network {
         ratio - sign * wheel.friction * turn.signum() * turning
     }
 
-    /// One round of bisection over the pulleys; returns the largest move, m.
-    fn bisect_each(&mut self) -> Result<f64, Failure> {
-        let mut largest = 0.0;
-        for p in 0..self.pulleys().len() {
-            let k = self.pulleys()[p];
-            let before = self.layout.stops[k].arc_length;
-            self.bisect(k)?;
-            let moved = (self.layout.stops.get(k).map_or(before, |s| s.arc_length) - before).abs();
-            largest = larger(largest, moved);
-        }
-        Ok(largest)
+    /// One round of bisection over the pulleys.
+    fn bisect_each(&mut self) -> Result<(), Failure> {
+        (0..self.pulleys().len()).try_for_each(|p| self.bisect(self.pulleys()[p]))
     }
 
     /// Brings one pulley to rest with the others held: the change of its fault from − to +.

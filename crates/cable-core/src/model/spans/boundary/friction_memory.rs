@@ -200,6 +200,11 @@ impl TensionProfile {
         out
     }
 
+    /// All of its material passed on along the boundary by a length, m.
+    pub fn pass_on(&mut self, by_m: f64) {
+        self.knots.iter_mut().for_each(|knot| knot.s += by_m);
+    }
+
     /// The same from the middle of its length with a tension there, N, what is missing or too much
     /// of its material at both ends alike; no end has less than that tension: weight that hangs
     /// down on both sides of a crest is held there.

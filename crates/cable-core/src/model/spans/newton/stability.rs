@@ -8,33 +8,38 @@ use crate::model::spans::run::{CableRun, Course, Next, Tie};
 ///
 /// A contact that sticks keeps its material, one that slides has T₂ − T₁ = 0 instead, which must
 /// rise with the material s that comes to it. By s₁ = s₂ = s the two rows are [−1, 1] and [−∂T₁,
-/// ∂T₂], of determinant −∂(T₂ − T₁)/∂s, in place of 1: each sliding contact that is stable turns
-/// the sign of the Jacobian's determinant once (one that lies to its start does not: there T₁ takes
-/// the place of s₁). An even number of unstable ways is not seen, and nothing is said of what
-/// friction holds: that came there by its own motion.
+/// ∂T₂], of determinant −∂(T₂ − T₁)/∂s, in place of 1. So the determinant of the Jacobian with the
+/// first k contacts sliding and the others held is that with all held times (−1)ᵏ times the kth
+/// leading minor of ∂(T₂ − T₁)/∂s, and all of these are positive where the matrix is (J. J.
+/// Sylvester): each contact that is let go turns the sign once (one that lies to its start does
+/// not: there T₁ takes the place of s₁). Nothing is said of what friction holds: that came there by
+/// its own motion.
 pub(in crate::model::spans) fn stable(strand: &CableRun, course: &Course, work: &mut Work) -> bool {
     let rubs = strand.contacts.iter().any(|c| course.friction(c) > 0.0);
     let pockets = strand.contacts.iter().any(|c| c.next == Next::Pocket || c.is_load());
     if rubs || pockets || strand.contacts.is_empty() || strand.ties.iter().any(|t| matches!(t, Tie::Loose(_))) {
         return true;
     }
-    let count = (0..strand.contacts.len()).filter(|&j| !lies(strand, j, 0)).count();
-    let mut sign = |strand: &mut CableRun| {
+    let mut stuck = strand.clone();
+    for c in &mut stuck.contacts {
+        let track = course.track(c);
+        c.history.commit(&track, &c.ends, c.mode, c.held, &mut work.past);
+        c.mode = Mode::Hold;
+    }
+    let mut is_negative = |strand: &mut CableRun| {
         assemble(strand, course, &mut work.system);
         work.rhs.clear();
         work.rhs.resize(work.system.residual.len(), 1.0);
         work.system.band.scale(&mut work.rhs);
         work.system.band.solve(&mut work.rhs).then(|| work.system.band.is_negative())
     };
-    let mut stuck = strand.clone();
-    let found = sign(&mut stuck);
-    for c in &mut stuck.contacts {
-        let track = course.track(c);
-        c.history.commit(&track, &c.ends, c.mode, c.held, &mut work.past);
-        c.mode = Mode::Hold;
-    }
-    match (found, sign(&mut stuck)) {
-        (Some(a), Some(b)) => (a != b) == (count % 2 == 1),
-        _ => false,
-    }
+    let Some(mut before) = is_negative(&mut stuck) else { return false };
+    (0..strand.contacts.len()).all(|j| {
+        stuck.contacts[j].clone_from(&strand.contacts[j]);
+        let turns = !lies(strand, j, 0);
+        let Some(after) = is_negative(&mut stuck) else { return false };
+        let right = (after != before) == turns;
+        before = after;
+        right
+    })
 }

@@ -1,0 +1,104 @@
+//! This file finds the other balances of a slack cable that slides over pulleys without friction.
+//!
+//! What hangs down between two pulleys pulls the harder the longer it is, so that the slack may
+//! rest in one span as well as in another: the energy has more than one minimum in the material at
+//! the pulleys. It is minimised from the slack of each part of the cable in each of its spans.
+
+use std::sync::Arc;
+
+use super::equilibrium::{Equilibrium, Start, first_arcs, solve};
+use super::report::report;
+use super::slide::Mode;
+use super::{CatenaryModel, Layout};
+use crate::math::{larger, smaller};
+use crate::model::Settings;
+use crate::problem::Problem;
+use crate::solution::{CableSolution, Histories, Node};
+
+/// Material that a taut span has to spare at the start, of its length. Smaller: it pulls so hard
+/// that it draws the slack over at once; larger: the slack begins in more than one span.
+const SPARE_FRACTION: f64 = 1e-3;
+/// Most of the slack that is spared so.
+const SPARE_OF_SLACK: f64 = 0.1;
+/// Slack below this part of the length is none.
+const LEAST_SLACK_FRACTION: f64 = 1e-6;
+/// Part of the length by which the material at a pulley differs in another balance. Smaller: two
+/// answers of one search are two balances; larger: balances near each other are one.
+const OTHER_FRACTION: f64 = 1e-5;
+/// Most starts. Smaller: balances of cables over many pulleys are missed; larger: they take long.
+const MAX_STARTS: usize = 24;
+
+/// Tensions of a balance at the start, at the end and at most, N.
+fn tensions(nodes: &[Node]) -> [f64; 3] {
+    let at = |n: Option<&Node>| n.map_or(f64::NAN, |n| n.tension_n);
+    [at(nodes.first()), at(nodes.last()), nodes.iter().map(|n| n.tension_n).fold(0.0, larger)]
+}
+
+/// The material at the anchors with the slack of one part of the cable in one of its spans, for
+/// each span, m.
+fn starts(problem: &Problem, layout: &Layout, sigma: &[f64]) -> Vec<Vec<f64>> {
+    let way = layout.taut_way();
+    let last = sigma.len() - 1;
+    let bounds: Vec<usize> = (0..=last).filter(|&k| k == 0 || k == last || layout.anchors[k].held.is_some()).collect();
+    let mut out = Vec::new();
+    for part in bounds.windows(2) {
+        let [from, to] = [part[0], part[1]];
+        let taut = way[to] - way[from];
+        let slack = sigma[to] - sigma[from] - taut * problem.thermal_stretch;
+        if to - from < 2 || !(slack > LEAST_SLACK_FRACTION * problem.length) {
+            continue;
+        }
+        let spare = 1.0 + smaller(SPARE_FRACTION, SPARE_OF_SLACK * slack / taut);
+        for receives in from..to {
+            let mut start = sigma.to_vec();
+            for k in from + 1..to {
+                start[k] = if k <= receives {
+                    sigma[from] + (way[k] - way[from]) * spare
+                } else {
+                    sigma[to] - (way[to] - way[k]) * spare
+                };
+            }
+            out.push(start);
+        }
+    }
+    out.truncate(MAX_STARTS);
+    out
+}
+
+/// The tensions of the other balances of a cable that slides over pulleys without friction beside
+/// those of an answer at a time (s); None where none was found, or where obstacles, bending
+/// stiffness or friction leave it to other models.
+pub(crate) fn other_balances(problem: &Problem, answer: &CableSolution, time_s: f64) -> Option<Histories> {
+    if problem.supports.iter().any(|s| s.friction > 0.0) || problem.supports.len() < 3 {
+        return None;
+    }
+    let model = CatenaryModel::new(Arc::new(problem.clone()), Settings::default()).ok()?;
+    let layout = model.layout(time_s).ok()?;
+    let slides = |held: Option<f64>| if held.is_none() { Mode::Slip(0.0) } else { Mode::Stick };
+    let modes: Vec<Mode> = layout.anchors.iter().map(|a| slides(a.held)).collect();
+    let from = |sigma: Vec<f64>| -> Option<Equilibrium> {
+        let held = sigma.clone();
+        solve(problem, &layout, Start { held: &held, sigma, modes: modes.clone(), arcs: first_arcs(&layout) }).ok()
+    };
+    let material = |a: &super::layout::Anchor| a.held.or(Some(answer.supports.get(a.support)?.arc_length_m));
+    let shown = from(layout.anchors.iter().map(material).collect::<Option<_>>()?)?;
+    let mut found = vec![shown];
+    for start in starts(problem, &layout, &found[0].sigma) {
+        let Some(other) = from(start) else { continue };
+        let apart = |e: &Equilibrium| {
+            e.sigma.iter().zip(&other.sigma).any(|(a, b)| (a - b).abs() > OTHER_FRACTION * problem.length)
+        };
+        if found.iter().all(apart) && model.refuse_contact(&layout, &report(problem, &layout, &other).0).is_ok() {
+            found.push(other);
+        }
+    }
+    let others: Vec<[f64; 3]> = found.iter().skip(1).map(|e| tensions(&report(problem, &layout, e).0)).collect();
+    let shown = tensions(&answer.nodes);
+    let range = |k: usize| others.iter().fold([shown[k]; 2], |[a, b], t| [smaller(a, t[k]), larger(b, t[k])]);
+    (!others.is_empty()).then(|| Histories::SlackElsewhere {
+        greatest_n: shown[2],
+        others_n: others.iter().map(|t| t[2]).collect(),
+        start_n: range(0),
+        end_n: range(1),
+    })
+}
