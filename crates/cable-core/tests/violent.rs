@@ -1,8 +1,7 @@
 //! Violent motion: cables thrown about over random ground, beams and posts, dropped, let go at an
 //! end, and torn. Which laws are broken is counted in every output step. Asked: no figure that is
-//! no number, nothing inside anything, no energy said to come from nowhere, less than one step in a
-//! thousand that stops, and less than one in two hundred with friction beyond its cone (338 of 287
-//! 760: slack cables that hang on the far side of a round). Torn cables are counted by themselves.
+//! no number, nothing inside anything, no friction beyond its cone, no energy said to come from
+//! nowhere, and less than one step in a thousand that stops. Torn cables are counted by themselves.
 //!
 //! All 600 scenes: `cargo test --locked -p cable-core --test violent -- --ignored --nocapture`
 //! (five minutes); `FROM=100 TO=200` takes some of them, `TELL=friction NODES=1` tells what was
@@ -199,15 +198,15 @@ fn campaign(scenes: std::ops::Range<u64>, seconds: f64) -> Found {
     found
 }
 
-fn inside(found: &Found) -> usize {
-    let name = Law::Penetration.name();
-    found.broken.iter().filter(|(law, _)| law.starts_with(name)).map(|(_, b)| b.0).sum()
+/// Output steps in which a law was broken, torn cables counted in.
+fn count(found: &Found, law: Law) -> usize {
+    found.broken.iter().filter(|(name, _)| name.starts_with(law.name())).map(|(_, b)| b.0).sum()
 }
 
 #[test]
 fn ten_violent_scenes_obey_the_laws() {
     let found = campaign(0..10, 1.0);
-    assert!(found.no_number == 0 && inside(&found) == 0 && found.stopped.is_empty(), "{found:?}");
+    assert!(found.no_number == 0 && count(&found, Law::Penetration) == 0 && found.stopped.is_empty(), "{found:?}");
     assert!(found.no_rest.len() <= 1 && found.grown.is_empty(), "{found:?}");
 }
 
@@ -222,14 +221,24 @@ fn no_step_is_balanced_by_a_gap_lost_in_rounding() {
     assert!(found.stopped.is_empty() && worst < 1e-3, "{found:?}");
 }
 
+/// A cable that is whirled round a post is slack there now and then. The loss of its slack bars
+/// pushed, and friction was reckoned from that, up to 132 N beyond its cone in 111 of 71 714 steps.
+#[test]
+fn issue_016_slack_wraps_rub_within_the_cone() {
+    for scene in [3033, 3070, 3127, 3147] {
+        let mut found = Found::default();
+        run(scene, 2.0, &mut found);
+        assert_eq!(count(&found, Law::Friction), 0, "{scene}: {found:?}");
+    }
+}
+
 #[test]
 #[ignore = "five minutes: 600 violent scenes"]
 fn six_hundred_violent_scenes_obey_the_laws() {
     let number = |name: &str, or: u64| std::env::var(name).ok().and_then(|v| v.parse().ok()).unwrap_or(or);
     let found = campaign(number("FROM", 0)..number("TO", 600), 2.0);
-    assert!(found.no_number == 0 && inside(&found) == 0, "{found:?}");
+    assert!(found.no_number == 0 && count(&found, Law::Penetration) == 0, "{found:?}");
     assert!(found.grown.is_empty(), "{:?}", found.grown);
     assert!((found.stopped.len() as f64) < 1e-3 * found.steps as f64, "{found:?}");
-    let beyond = found.broken.get(Law::Friction.name()).map_or(0, |b| b.0);
-    assert!((beyond as f64) < 5e-3 * found.steps as f64, "{found:?}");
+    assert_eq!(count(&found, Law::Friction), 0, "{found:?}");
 }

@@ -19,6 +19,8 @@ pub(super) struct Equilibrium {
     pub iterations: usize,
     /// Largest unbalanced tension at a pulley, N.
     pub residual: f64,
+    /// True if the least push ends it, and nothing was found to which it leads.
+    pub runs_away: bool,
 }
 
 /// Initial unknowns of a solve and the slip that friction remembers.
@@ -320,15 +322,33 @@ fn room(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
     alpha
 }
 
-/// Newton for σ with the modes given, from a σ and the stretches near it where they are known.
+/// True if nothing that slides rubs.
+fn is_smooth(modes: &[Mode]) -> bool {
+    modes.iter().all(|m| matches!(m, Mode::Stick | Mode::Slip(0.0)))
+}
+
+/// Newton for σ with the modes given, from a σ and the stretches near it where they are known. A
+/// balance that runs away is the answer where leaving it leads to none.
 fn newton(
     slide: &Slide<'_>,
     sigma: Vec<f64>,
     near: Option<&Stretches>,
     modes: &[Mode],
 ) -> Result<Equilibrium, SolveError> {
+    let mut left = None;
+    descend(slide, sigma, near, modes, &mut left).or_else(|why| left.ok_or(why))
+}
+
+/// The same; `left` is the balance that was left last as it runs away.
+fn descend(
+    slide: &Slide<'_>,
+    sigma: Vec<f64>,
+    near: Option<&Stretches>,
+    modes: &[Mode],
+    left: &mut Option<Equilibrium>,
+) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
-    let smooth = modes.iter().all(|m| matches!(m, Mode::Stick | Mode::Slip(0.0)));
+    let smooth = is_smooth(modes);
     let mut sigma = sigma;
     let lost = |iterations| not_converged(slide.problem, layout, 0, iterations, f64::NAN);
     let mut s = slide.stretches(&sigma, near).ok_or_else(|| lost(0))?;
@@ -342,46 +362,64 @@ fn newton(
             stretches: s,
             iterations,
             residual,
+            runs_away: false,
         };
-        let away = if worst <= BALANCE_ACCEPTED { runs_away(&j) } else { None };
-        if worst <= PULLEY_BALANCE_TOLERANCE && away.is_none() {
-            return Ok(end(sigma, s, newtons));
-        }
-        run_off(slide, &s)?;
-        if let Some(way) = away {
-            let next = if smooth { leave(slide, &sigma, &s, &way) } else { None };
-            (sigma, s) = next.ok_or_else(|| lost(iterations))?;
-            iterations += s.iterations;
+        let next = if worst <= PULLEY_BALANCE_TOLERANCE {
+            None
+        } else {
+            run_off(slide, &s)?;
+            let p = step(&r, &j, smooth).ok_or_else(|| lost(iterations))?;
+            search(slide, &sigma, &s, &r, &p, modes)
+        };
+        if let Some((there, found)) = next {
+            iterations += found.iterations;
+            (sigma, s) = (there, found);
             continue;
         }
-        let p = step(&r, &j, smooth).ok_or_else(|| lost(iterations))?;
-        let slope: f64 = r.iter().zip(&p).map(|(a, b)| a * b).sum();
-        let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
-        let (energy, norm) = (s.energy, size(&r));
-        let mut alpha = room(slide, &s, &p);
-        let mut next = None;
-        for _ in 0..layout.settings.max_halvings {
-            let trial: Vec<f64> = sigma.iter().zip(&p).map(|(a, b)| a + alpha * b).collect();
-            if let Some(t) = slide.stretches(&trial, Some(&s)) {
-                iterations += t.iterations;
-                let down = smooth && t.energy - energy <= 1e-4 * alpha * slope;
-                let noise = !smooth || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
-                let closer = noise
-                    && rows(slide, &t, modes, smooth).is_some_and(|(rt, ..)| size(&rt) < (1.0 - 1e-4 * alpha) * norm);
-                if down || closer {
-                    next = Some((trial, t));
-                    break;
-                }
-            }
-            alpha *= 0.5;
+        if !(worst <= BALANCE_ACCEPTED) {
+            return Err(not_converged(slide.problem, layout, 0, iterations, newtons));
         }
-        match next {
-            Some((trial, t)) => (sigma, s) = (trial, t),
-            None if worst <= BALANCE_ACCEPTED => return Ok(end(sigma, s, newtons)),
-            None => return Err(not_converged(slide.problem, layout, 0, iterations, newtons)),
+        let Some(way) = runs_away(&j) else { return Ok(end(sigma, s, newtons)) };
+        if !smooth {
+            return Err(lost(iterations));
         }
+        let next = leave(slide, &sigma, &s, &way);
+        *left = Some(Equilibrium { runs_away: true, ..end(sigma, s, newtons) });
+        (sigma, s) = next.ok_or_else(|| lost(iterations))?;
+        iterations += s.iterations;
     }
     Err(lost(iterations))
+}
+
+/// The material at the pulleys and the stretches after the longest part of a step `p` that gains:
+/// energy where nothing rubs, else or where rounding hides that, a smaller residual.
+fn search(
+    slide: &Slide<'_>,
+    sigma: &[f64],
+    s: &Stretches,
+    r: &[f64],
+    p: &[f64],
+    modes: &[Mode],
+) -> Option<(Vec<f64>, Stretches)> {
+    let smooth = is_smooth(modes);
+    let slope: f64 = r.iter().zip(p).map(|(a, b)| a * b).sum();
+    let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
+    let (energy, norm) = (s.energy, size(r));
+    let mut alpha = room(slide, s, p);
+    for _ in 0..slide.layout.settings.max_halvings {
+        let trial: Vec<f64> = sigma.iter().zip(p).map(|(a, b)| a + alpha * b).collect();
+        if let Some(t) = slide.stretches(&trial, Some(s)) {
+            let down = smooth && t.energy - energy <= 1e-4 * alpha * slope;
+            let noise = !smooth || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
+            let closer =
+                noise && rows(slide, &t, modes, smooth).is_some_and(|(rt, ..)| size(&rt) < (1.0 - 1e-4 * alpha) * norm);
+            if down || closer {
+                return Some((trial, t));
+            }
+        }
+        alpha *= 0.5;
+    }
+    None
 }
 
 /// A dangling end that has run through its pulley.

@@ -288,7 +288,11 @@ impl Mechanics for CatenaryModel {
             Ok(e) => e,
             Err(_) => self.balance(&layout, Begin::EvenSpread)?,
         };
+        let runs_away = e.runs_away;
         let mut report = self.accept(&layout, e, self.time_s, Instant::Shown)?;
+        if runs_away {
+            report.warnings.push(Warning::new(WarningCause::Unstable, &self.problem.cable.name, 0.0, [0.0; 2]));
+        }
         if self.has_friction() {
             let (shown, histories) = (ShownEquilibrium::EvenlyLaid, Histories::NotSought);
             let cause = WarningCause::ManyEquilibria { shown, histories };

@@ -706,8 +706,10 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
             let floor = load.floor[1];
             let over = OverRound::between([a, b], floor);
             let mean = over.map_or(0.5 * (a + b), |over| over.normal(1.0));
-            r.normal_n += mean * acts.turn;
-            push += node.end.mark * (mean * acts.turn);
+            // What would push lies slack there.
+            let pressed = larger(mean * acts.turn, 0.0);
+            r.normal_n += pressed;
+            push += node.end.mark * pressed;
             turn += load.turn;
             // Without friction what they differ by is weight alone.
             r.friction_n += if node.friction > 0.0 { a - b - floor } else { 0.0 };

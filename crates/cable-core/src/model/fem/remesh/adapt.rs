@@ -16,6 +16,7 @@ use crate::model::Inertia;
 use crate::model::fem::mesh::sliding_node::{Load, SlideOver, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
 use crate::model::fem::state::cable::CableState;
+use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::floor_friction;
 use crate::model::fem::system::step_input::load_scale;
@@ -115,22 +116,14 @@ impl CableState {
             return None;
         }
         let path = [mesh.path(k - 1, x), mesh.path(k, x)];
-        let rest = [k - 1, k].map(|e| {
-            slide.map_or(mesh.rest_length[e], |s| crate::model::fem::system::bar_energy::rest_length(mesh, e, s))
-        });
+        let rest = [k - 1, k].map(|e| slide.map_or(mesh.rest_length[e], |s| bar_energy::rest_length(mesh, e, s)));
         // A step balances the pull with its loss.
-        let loss = |e: usize, p: f64, l: f64| {
-            let ratio = self.input.predicted_length[e] / mesh.rest_length[e];
-            self.input.damping(e) / mesh.rest_length[e] * (p - ratio * l)
-        };
         let tension = [0, 1].map(|j| {
-            let t = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);
-            let elastic = if t < 0.0 { 0.0 } else { t };
             if slide.is_some() && self.input.moves {
-                elastic + loss(k - 1 + j, path[j].length, rest[j])
-            } else {
-                elastic
+                return bar_energy::pull_on(mesh, &self.input, k - 1 + j, x, rest[j]);
             }
+            let elastic = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);
+            if elastic < 0.0 { 0.0 } else { elastic }
         });
         let body = self.input.body;
         let weight = [0, 1].map(|j| Weight::of(mesh, k - 1 + j, &path[j], body));
@@ -145,8 +138,7 @@ impl CableState {
         let load = Load::new(node, straight, [&path[0], &path[1]], body, share);
         // Between steps the input may be of another mesh, and nothing is balanced.
         let at_material = slide.map_or(load.pull, |slide| {
-            [k - 1, k]
-                .map(|e| crate::model::fem::system::bar_energy::pull_at_slide(mesh, &self.input, e, k - e, x, slide))
+            [k - 1, k].map(|e| bar_energy::pull_at_slide(mesh, &self.input, e, k - e, x, slide))
         });
         let lifted = [0, 1].map(|j| tension[j] + body.dot(&(weight[j].center - x[k])));
         Some(Load { floor, lifted, at_material, ..load })

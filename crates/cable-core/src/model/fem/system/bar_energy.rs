@@ -42,26 +42,71 @@ pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
     mesh.rest_length[e] + mesh.thermal_stretch * (slide[e + 1] - slide[e])
 }
 
+/// The energy of a bar with a sliding node in a step, J, and its slopes by the length P of its way
+/// and by its unstretched length L.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::model::fem) struct Stretch {
+    energy: f64,
+    /// ∂E/∂P, the pull, and ∂E/∂L, N.
+    slope: [f64; 2],
+    /// ∂²E/∂P², ∂²E/∂P∂L, ∂²E/∂L², N/m.
+    curvature: [f64; 3],
+}
+
+impl Stretch {
+    /// A spring of stiffness `k` (N) whose strain P/L − q is measured from `q` − 1: E = ½ k L (P/L −
+    /// q)².
+    fn spring(k: f64, q: f64, [p, l]: [f64; 2]) -> Self {
+        let strain = p / l - q;
+        let pull = k * strain;
+        Self {
+            energy: 0.5 * l * pull * strain,
+            slope: [pull, -pull * (q + 0.5 * strain)],
+            curvature: [k / l, -k * p / (l * l), k * p * p / (l * l * l)],
+        }
+    }
+
+    fn and(self, other: Self) -> Self {
+        let sum = |k: usize| self.curvature[k] + other.curvature[k];
+        Self {
+            energy: self.energy + other.energy,
+            slope: [self.slope[0] + other.slope[0], self.slope[1] + other.slope[1]],
+            curvature: [sum(0), sum(1), sum(2)],
+        }
+    }
+
+    /// Stretching and loss of bar `e` at `[P, L]`, m. A flexible bar only pulls, its loss included:
+    /// a slack bar on a round whose loss pushed would rub by a force that nothing presses on.
+    fn of(mesh: &Mesh, input: &StepInput, e: usize, at: [f64; 2]) -> Self {
+        let (ea, loss) = (mesh.axial_stiffness, input.damping(e));
+        let ratio = input.predicted_length[e] / mesh.rest_length[e];
+        let (elastic, viscous) = (Self::spring(ea, 1.0, at), Self::spring(loss, ratio, at));
+        if !mesh.is_flexible() || elastic.slope[0] > 0.0 && elastic.slope[0] + viscous.slope[0] > 0.0 {
+            return elastic.and(viscous);
+        }
+        if ratio > 1.0 {
+            // What the loss has at the length at which the pull ends stays, per length.
+            let kept = 0.5 * ea * loss / (ea + loss) * (ratio - 1.0) * (ratio - 1.0);
+            return Self { energy: kept * at[1], slope: [0.0, kept], ..Self::default() };
+        }
+        if viscous.slope[0] > 0.0 { viscous } else { Self::default() }
+    }
+}
+
 /// Force of a bar on the material of the sliding node at its start (`j` 0) or end (1), as the slope
 /// of its energy by the slide of that node sees it (without the factor of its energy), N: Θ, the
 /// loss, and the weight that comes over with the material.
 #[must_use]
 pub fn pull_at_slide(mesh: &Mesh, input: &StepInput, e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
-    let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
-    let strain = p / l - 1.0;
-    let ratio = input.predicted_length[e] / mesh.rest_length[e];
-    let loss = input.damping(e) / mesh.rest_length[e] * (p - ratio * l) * ratio;
-    let tension = stiffness(mesh, !(strain < 0.0)) * strain;
-    mesh.thermal_stretch * (tension * (1.0 + 0.5 * strain) + loss) + lifted(mesh, input.body, e, j, x)
+    let at = [mesh.path(e, x).length, rest_length(mesh, e, slide)];
+    -mesh.thermal_stretch * Stretch::of(mesh, input, e, at).slope[1] + lifted(mesh, input.body, e, j, x)
 }
 
-/// Tension along its path of a bar with a sliding node at an end, N.
+/// Tension along its path of a bar with a sliding node at an end, N, at the present length of its
+/// way and with an unstretched length `l`, m.
 #[must_use]
-pub fn pull_on(mesh: &Mesh, input: &StepInput, e: usize, x: &[Vec2], slide: &[f64]) -> f64 {
-    let (p, l) = (mesh.path(e, x).length, rest_length(mesh, e, slide));
-    let strain = p / l - 1.0;
-    let ratio = input.predicted_length[e] / mesh.rest_length[e];
-    stiffness(mesh, !(strain < 0.0)) * strain + input.damping(e) / mesh.rest_length[e] * (p - ratio * l)
+pub fn pull_on(mesh: &Mesh, input: &StepInput, e: usize, x: &[Vec2], l: f64) -> f64 {
+    Stretch::of(mesh, input, e, [mesh.path(e, x).length, l]).slope[0]
 }
 
 /// Force that lifts the weight from the centroid of a bar to its start (`j` 0) or end (1), N.
@@ -128,28 +173,14 @@ fn add_sliding(
 ) -> (f64, f64) {
     let path = mesh.path(e, &unknowns.x);
     let (p, l, scale) = (path.length, rest_length(mesh, e, &unknowns.slide), input.scale[e]);
-    let strain = p / l - 1.0;
     let slides = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
-    let stiffness = stiffness(mesh, !(strain < 0.0));
-    let tension = stiffness * strain;
-    // Damping: ½ c (P − p̂ L)², c = EA τ a/L₀, p̂ the predicted ratio P/L.
-    let c = input.damping(e) / mesh.rest_length[e];
-    let ratio = input.predicted_length[e] / mesh.rest_length[e];
-    let late = p - ratio * l;
-    let pull = tension + c * late;
-    let push = -tension * (1.0 + 0.5 * strain) - c * late * ratio;
-    let h = [
-        scale * (stiffness / l + c),
-        scale * (-stiffness * p / (l * l) - c * ratio),
-        scale * (stiffness * p * p / (l * l * l) + c * ratio * ratio),
-    ];
+    let Stretch { energy, slope: [pull, push], curvature: h } = Stretch::of(mesh, input, e, [p, l]);
+    let h = h.map(|h| scale * h);
     let t = path.direction;
     let mut geometric = if path.straight > 0.0 { scale * pull / path.straight } else { 0.0 };
     if curvature == Curvature::Clipped && geometric < 0.0 {
         geometric = 0.0;
     }
-    let elastic = 0.5 * stiffness * l * strain * strain;
-    let viscous = 0.5 * c * late * late;
     let rounding = WORK_MAGNITUDE_FRACTION * pull.abs() * unknowns.x[e].norm();
     let carried = mesh.thermal_stretch;
     let hung = Weight::of(mesh, e, &path, input.body);
@@ -189,5 +220,5 @@ fn add_sliding(
         }
     }
     let fallen = weight[1] * unknowns.slide[e + 1] - weight[0] * unknowns.slide[e] + shifted;
-    (scale * (elastic + viscous - fallen), scale * (elastic + viscous + fallen.abs() + rounding))
+    (scale * (energy - fallen), scale * (energy + fallen.abs() + rounding))
 }

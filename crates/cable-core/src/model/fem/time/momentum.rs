@@ -245,11 +245,12 @@ impl CableState {
         for k in 1..mesh.nodes().saturating_sub(1) {
             let Some(node) = &mesh.sliding[k] else { continue };
             let round = &mut sum[kind_of(node.slide_over)];
+            let l = |e: usize| bar_energy::rest_length(mesh, e, &unknowns.slide);
             if moves(k - 1) {
-                *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, input, k - 1, x, &unknowns.slide);
+                *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, input, k - 1, x, l(k - 1));
             }
             if moves(k + 1) {
-                *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, input, k, x, &unknowns.slide);
+                *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, input, k, x, l(k));
             }
             for (e, side) in [(k - 1, 1), (k, 0)] {
                 *round -= bar_weight::on_ends(mesh, e, x, Some(&unknowns.slide), input.body)[side];

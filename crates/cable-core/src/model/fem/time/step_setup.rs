@@ -214,8 +214,9 @@ impl CableState {
                 continue;
             }
             let mut next = node;
-            // Bars that do not pull press on nothing.
-            let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0;
+            // Bars that do not pull press on nothing, and what would push where it leaves has no
+            // tension that friction could raise.
+            let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0 && load.pull[1] > 0.0;
             let exponent = if presses { node.friction * load.turn } else { 0.0 };
             next.exponent = if one { 0.5 * (node.exponent + exponent) } else { exponent };
             let inertia = self.input.inertia[k] * (unknowns.slide[k] - self.input.predicted_slide[k]);
