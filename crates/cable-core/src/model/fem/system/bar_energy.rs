@@ -54,8 +54,8 @@ pub(in crate::model::fem) struct Stretch {
 }
 
 impl Stretch {
-    /// A spring of stiffness `k` (N) whose strain P/L − q is measured from `q` − 1: E = ½ k L (P/L −
-    /// q)².
+    /// A spring of stiffness `k` (N) whose strain P/L − q is measured from `q` − 1: E = ½ k L (P/L
+    /// − q)².
     fn spring(k: f64, q: f64, [p, l]: [f64; 2]) -> Self {
         let strain = p / l - q;
         let pull = k * strain;
