@@ -385,7 +385,8 @@ impl Simulation {
             let problem = cable.problem();
             let name = &problem.cable.name;
             if !problem.rubs(answer) {
-                if !cable.breaks().is_empty() {
+                let told = self.warnings.iter().any(|w| w.kind == WarningKind::NotUnique && w.cable == *name);
+                if told || !cable.breaks().is_empty() {
                     continue;
                 }
                 let others = other_balances(problem, answer, cable.time_s());

@@ -182,7 +182,9 @@ pub fn faults(scene: &Scene, answer: &Solution) -> Vec<String> {
     }
     for (cable, found) in scene.cables.iter().zip(&answer.cables) {
         of_cable(scene, cable, (found, answer), &mut out);
-        let told = answer.warnings.iter().any(|w| matches!(w.cause, WarningCause::Unstable));
+        // Told, too, is what is not known to a tenth.
+        let told = answer.warnings.iter().any(|w| matches!(w.cause, WarningCause::Unstable))
+            || found.error_estimate.is_some_and(|e| e > 0.1);
         out.extend(runs_away(scene, cable, found).filter(|_| !told).map(|why| format!("stability: {why}")));
     }
     out

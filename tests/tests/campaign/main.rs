@@ -93,6 +93,9 @@ fn scenes_that_were_wrong_are_right() {
         // Balances that run away at the least push were shown as rest.
         ("even pulleys", 1),
         ("even pulleys", 41),
+        ("even posts", 8),
+        // Of two balances one was shown without a word.
+        ("even posts", 36),
         // A cable laid along a straight line stood on itself as a row of beads does.
         ("self-contact", 480_267),
     ];

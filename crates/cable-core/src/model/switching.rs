@@ -17,7 +17,7 @@ use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::Vec2;
 use crate::problem::Problem;
-use crate::solution::{CableSolution, ModelReason, Node};
+use crate::solution::{CableSolution, ModelReason, Node, Warning};
 use crate::state::State;
 
 /// Greatest move of the cable when it is handed back, m, or part of its length, whichever is more:
@@ -150,17 +150,17 @@ impl SwitchingModel {
         self.dragged.get(support).is_some_and(Option::is_some)
     }
 
-    /// Offers an answer of `fem` to `spans`.
-    fn try_switch_back(&mut self) {
-        let Some(fem) = &self.fem else { return };
+    /// Offers an answer of `fem` to `spans`; returns what there is to say of it there.
+    fn try_switch_back(&mut self) -> Option<Warning> {
+        let fem = self.fem.as_ref()?;
         self.interval[0] = self.interval[0].saturating_sub(1);
         if self.interval[0] > 0 {
-            return;
+            return None;
         }
         let answer = fem.solution();
         if self.meets_robot(&answer) {
             self.interval[0] = self.interval[1];
-            return;
+            return None;
         }
         let before = self.spans.clone();
         let taken = self.spans.warm_start(&answer, fem.time_s()).is_ok();
@@ -168,9 +168,11 @@ impl SwitchingModel {
             self.fem = None;
             self.reason = None;
             self.interval[1] = (2 * self.interval[1]).min(MAX_INTERVAL);
+            self.spans.leave_unstable()
         } else {
             self.spans = before;
             self.interval = [self.interval[1], (2 * self.interval[1]).min(MAX_INTERVAL)];
+            None
         }
     }
 }
@@ -248,10 +250,13 @@ impl Mechanics for SwitchingModel {
                 })
                 .ok_or(slides);
         }
-        match &found {
-            Ok(_) => {
+        match &mut found {
+            Ok(report) => {
                 self.adopted = None;
-                self.try_switch_back();
+                report.warnings.extend(self.try_switch_back());
+                if self.fem.is_none() {
+                    report.warnings.extend(self.spans.other_balances());
+                }
             }
             Err(_) if first => {
                 self.fem = None;
@@ -293,9 +298,9 @@ impl Mechanics for SwitchingModel {
         }
         let fem = self.fem(why)?;
         let rest_s = end_s - fem.time_s();
-        let report = if rest_s > 0.0 { fem.advance(rest_s, inertia)? } else { StepReport::default() };
+        let mut report = if rest_s > 0.0 { fem.advance(rest_s, inertia)? } else { StepReport::default() };
         self.adopted = None;
-        self.try_switch_back();
+        report.warnings.extend(self.try_switch_back());
         Ok(report)
     }
 

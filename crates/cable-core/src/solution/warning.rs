@@ -488,6 +488,19 @@ pub enum Histories {
 }
 
 impl Histories {
+    /// Other balances of a slack cable beside the one that is shown: the tensions of each at its
+    /// start, at its end and at most, N. None where there is no other.
+    #[must_use]
+    pub(crate) fn slack_elsewhere(shown: [f64; 3], others: &[[f64; 3]]) -> Option<Self> {
+        let range = |k: usize| others.iter().fold([shown[k]; 2], |[a, b], t| [smaller(a, t[k]), larger(b, t[k])]);
+        (!others.is_empty()).then(|| Self::SlackElsewhere {
+            greatest_n: shown[2],
+            others_n: others.iter().map(|t| t[2]).collect(),
+            start_n: range(0),
+            end_n: range(1),
+        })
+    }
+
     /// The same of an answer that may be another equilibrium than the one they were sought from:
     /// it is the one as laid, and the ranges hold it.
     #[must_use]

@@ -1,6 +1,6 @@
 //! Cables that touch nothing.
 
-use crate::case::{Case, Expect, Point, apart, cable, clamp, fixed, flat, load, load_end as loaded, put};
+use crate::case::{Case, Expect, Point, apart, cable, clamp, fixed, flat, load, load_end as loaded, post, put};
 use crate::chance::Chance;
 use crate::closed::free_span;
 use cable_core::scene::preset::cable_presets;
@@ -156,6 +156,29 @@ pub fn even_pulleys(r: &mut Chance) -> Case {
     let (count, far) = (2 + r.one_of(4), r.scale(0.5, 20.0));
     let places: Vec<Point> = (0..=count).map(|k| [far * k as f64, 0.0]).collect();
     over_pulleys(r, &places)
+}
+
+/// The same over thin posts, laid in even loops.
+pub fn even_posts(r: &mut Chance) -> Case {
+    let (count, far) = (2 + r.one_of(3), r.scale(0.5, 20.0));
+    let length = far * count as f64 * (1.0 + r.scale(1e-4, 3.0));
+    let radius = far * r.scale(1e-3, 0.01);
+    // Loops as deep as takes the length, as two straight lines each.
+    let loop_length = length / count as f64;
+    let deep = 0.5 * (loop_length * loop_length - far * far).sqrt();
+    let mut route = vec![[0.0, 0.0]];
+    for k in 0..count {
+        route.push([far * (k as f64 + 0.5), -deep]);
+        route.push([far * (k as f64 + 1.0), if k + 1 < count { 0.5 * radius } else { 0.0 }]);
+    }
+    let diameter = 0.1 * radius;
+    let mut s = cable([length, r.scale(0.05, 20.0), r.scale(1e4, 1e8), diameter], fixed([route[0], route[2 * count]]));
+    s.cables[0].route_m = route;
+    let friction = r.or_nothing(0.7, 0.05, 0.6);
+    for k in 1..count {
+        put(&mut s, post([far * k as f64, -radius - 0.5 * diameter], radius), friction);
+    }
+    Case::rests(s)
 }
 
 pub fn uneven_pulleys(r: &mut Chance) -> Case {

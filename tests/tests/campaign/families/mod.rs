@@ -25,6 +25,7 @@ pub const FAMILIES: &[Family] = &[
     ("weightless span", air::weightless),
     ("even pulleys", air::even_pulleys),
     ("uneven pulleys", air::uneven_pulleys),
+    ("even posts", air::even_posts),
     ("gravity 0", air::no_gravity),
     ("span at any scale", air::any_scale),
     ("clamps in the air", air::clamps),

@@ -93,12 +93,5 @@ pub(crate) fn other_balances(problem: &Problem, answer: &CableSolution, time_s: 
         }
     }
     let others: Vec<[f64; 3]> = found.iter().skip(1).map(|e| tensions(&report(problem, &layout, e).0)).collect();
-    let shown = tensions(&answer.nodes);
-    let range = |k: usize| others.iter().fold([shown[k]; 2], |[a, b], t| [smaller(a, t[k]), larger(b, t[k])]);
-    (!others.is_empty()).then(|| Histories::SlackElsewhere {
-        greatest_n: shown[2],
-        others_n: others.iter().map(|t| t[2]).collect(),
-        start_n: range(0),
-        end_n: range(1),
-    })
+    Histories::slack_elsewhere(tensions(&answer.nodes), &others)
 }

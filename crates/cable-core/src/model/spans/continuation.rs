@@ -2,7 +2,7 @@
 //! steps that fail.
 
 use crate::contact::swept_corners;
-use crate::math::{Vec2, bounded, larger};
+use crate::math::{Vec2, bounded, larger, smaller};
 use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::boundary::loose::Loose;
 use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout, place_ends};
@@ -541,27 +541,98 @@ impl CableEquilibrium {
         Err(pushed.unwrap_or(Failure::Restless { s: 0.0 }))
     }
 
-    /// Leaves a balance that runs away for a stable one, to which the cable slides under a drag: on
-    /// an error nothing has changed.
-    ///
-    /// The material at the contacts is passed on by a small part of the length. The drag is lowered
-    /// as the forces that are left fall, so that it stays while they grow (switched evolution
-    /// relaxation: W. A. Mulder and B. van Leer, J. Comput. Phys. 59, 1985).
-    pub fn leave(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) -> Result<StepStats, Failure> {
-        let tuned = &layout.settings.continuation;
+    /// Leaves a balance that runs away for a stable one; a stable one is kept, and on an error
+    /// nothing has changed.
+    pub fn leave_unstable(
+        &mut self,
+        layout: &Layout,
+        to: &BoundaryConditions,
+        work: &mut Work,
+    ) -> Result<StepStats, Failure> {
+        if self.stable(work) {
+            return Ok(StepStats::default());
+        }
+        let by = layout.settings.continuation.leaving_fraction * layout.problem.length;
         let before = self.clone();
+        self.slide_from(layout, to, |_| by, work).inspect_err(|_| {
+            *self = before;
+            layout.give(&mut self.course, to);
+        })
+    }
+
+    /// Other balances of a slack cable that slides without friction: what hangs down in a loop
+    /// pulls the harder the longer it is, so that the slack may rest on either side of a contact.
+    /// It is moved from each side of each contact to the other.
+    pub fn other_balances(&self, layout: &Layout, work: &mut Work) -> Vec<Self> {
+        let tuned = &layout.settings.continuation;
+        let mut moves = Vec::new();
+        let mut index = 0;
+        for strand in &self.strands {
+            for j in 0..strand.contacts.len() {
+                let slack = [j, j + 1].map(|k| strand.has_span(k).then(|| strand.slack(&self.course, k)).flatten());
+                if let [Some([before, near]), Some([after, far])] = slack
+                    && before + after > tuned.least_slack_fraction * smaller(near, far)
+                {
+                    let part = 1.0 - tuned.least_slack_fraction;
+                    moves.extend([(index, part * after), (index, -part * before)]);
+                }
+                index += 1;
+            }
+        }
+        moves.truncate(tuned.max_other_balances);
+        let here = self.materials();
+        let mut found: Vec<Self> = Vec::new();
+        for (contact, by) in moves {
+            let mut other = self.clone();
+            let to = self.instant.clone();
+            let moved = |k: usize| if k == contact { by } else { 0.0 };
+            if other.slide_from(layout, &to, moved, work).is_err() {
+                continue;
+            }
+            let there = other.materials();
+            let is_apart = |materials: &[f64]| {
+                let far = |(a, b): (&f64, &f64)| (a - b).abs() > tuned.other_balance_fraction * layout.problem.length;
+                materials.len() != there.len() || materials.iter().zip(&there).any(far)
+            };
+            if is_apart(&here) && found.iter().all(|f| is_apart(&f.materials())) {
+                found.push(other);
+            }
+        }
+        found
+    }
+
+    /// Lets the cable slide to a stable balance, under a drag, from where the material at each
+    /// contact is passed on by a length, m; on an error it is anywhere.
+    ///
+    /// The drag is lowered as the forces that are left fall, so that it stays while they grow
+    /// (switched evolution relaxation: W. A. Mulder and B. van Leer, J. Comput. Phys. 59, 1985).
+    fn slide_from(
+        &mut self,
+        layout: &Layout,
+        to: &BoundaryConditions,
+        passed_on_m: impl Fn(usize) -> f64,
+        work: &mut Work,
+    ) -> Result<StepStats, Failure> {
+        let tuned = &layout.settings.continuation;
         let size = to.load.norm();
         let (mut drag, mut taken, mut left) = (tuned.leaving_drag_factor * size, StepStats::default(), None);
-        for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
-            c.history.pass_on(tuned.leaving_fraction * layout.problem.length);
+        let mut raised = 0;
+        for (k, c) in self.strands.iter_mut().flat_map(|s| &mut s.contacts).enumerate() {
+            c.history.pass_on(passed_on_m(k));
         }
         for _ in 0..tuned.max_drag_steps {
             let materials = self.materials();
             self.course.drag = drag;
             let result = self.step(layout, to, work);
             self.course.drag = 0.0;
-            let Ok(one) = result else { break };
-            taken = taken.and(one);
+            let Ok(one) = result else {
+                if raised == tuned.max_drag_raises {
+                    break;
+                }
+                (drag, raised) = (8.0 * drag, raised + 1);
+                continue;
+            };
+            (taken, raised) = (taken.and(one), 0);
             let slips = self.materials().into_iter().zip(materials).map(|(a, b)| (a - b).abs());
             let force = drag * slips.fold(0.0, larger);
             drag *= left.map_or(1.0, |left| bounded(force / left, 0.25, 1.0));
@@ -573,8 +644,6 @@ impl CableEquilibrium {
                 return Ok(taken.and(one));
             }
         }
-        *self = before;
-        layout.give(&mut self.course, to);
         Err(Failure::Restless { s: 0.0 })
     }
 

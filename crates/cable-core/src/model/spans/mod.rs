@@ -132,6 +132,15 @@ impl SpansModel {
         self.network.as_ref().is_some_and(|n| n.loose().is_some())
     }
 
+    /// Leaves an equilibrium that runs away at the least push for a stable one; a warning where it
+    /// leads to none.
+    pub(super) fn leave_unstable(&mut self) -> Option<Warning> {
+        let network = self.network.as_mut()?;
+        let instant = network.instant.clone();
+        let left = network.leave_unstable(&self.layout, &instant, &mut self.work);
+        left.is_err().then(|| self.warning(WarningCause::Unstable))
+    }
+
     /// True if a resting place has been found.
     pub(super) fn stands(&self) -> bool {
         self.network.is_some()
@@ -225,10 +234,7 @@ impl SpansModel {
     fn histories(&self, start: SearchStart, work: &mut Work) -> Histories {
         let Some(network) = &self.network else { return Histories::NotSought };
         let turned = self.layout.is_reversed();
-        let tensions = |network: &CableEquilibrium| {
-            let [start, end, greatest] = results::tensions(network);
-            if turned { [end, start, greatest] } else { [start, end, greatest] }
-        };
+        let tensions = |network: &CableEquilibrium| self.tensions(network);
         let laid = tensions(network);
         let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
             let drawn = if turned { reversed::mobilised(drawn) } else { drawn };
@@ -254,6 +260,24 @@ impl SpansModel {
             start_n: range(0),
             end_n: range(1),
         }
+    }
+
+    /// Tensions of a network at the cable's start, at its end and at most, N.
+    fn tensions(&self, network: &CableEquilibrium) -> [f64; 3] {
+        let [start, end, greatest] = results::tensions(network);
+        if self.layout.is_reversed() { [end, start, greatest] } else { [start, end, greatest] }
+    }
+
+    /// A warning of other balances of a cable that nothing rubs, where there are any.
+    pub(super) fn other_balances(&mut self) -> Option<Warning> {
+        if self.rubs() || self.lies_loose() {
+            return None;
+        }
+        let network = self.network.as_ref()?;
+        let others = network.other_balances(&self.layout, &mut self.work);
+        let others: Vec<[f64; 3]> = others.iter().map(|n| self.tensions(n)).collect();
+        let histories = Histories::slack_elsewhere(self.tensions(network), &others)?;
+        Some(self.warning(WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories }))
     }
 
     fn warning(&self, cause: WarningCause) -> Warning {
@@ -352,7 +376,7 @@ impl Mechanics for SpansModel {
             None => self.lay(&mut instant, &mut work),
         };
         let (found, stable) = match &mut self.network {
-            Some(n) if found.is_ok() && !n.stable(&mut work) => match n.leave(&self.layout, &instant, &mut work) {
+            Some(n) if found.is_ok() => match n.leave_unstable(&self.layout, &instant, &mut work) {
                 Ok(left) => (found.map(|taken| taken.and(left)), true),
                 Err(_) => (found, false),
             },
@@ -368,6 +392,7 @@ impl Mechanics for SpansModel {
         };
         let histories = if seeks { self.histories(start, &mut work) } else { Histories::NotSought };
         self.work = work;
+        let others = if found.is_ok() && stable { self.other_balances() } else { None };
         if let Some(part) = needed {
             let why = NoEquilibrium::TooLittleFriction { friction_ratio: part };
             return Err(SolveError::NoRestingPlace { why });
@@ -390,6 +415,7 @@ impl Mechanics for SpansModel {
             let shown = if taken.eased { ShownEquilibrium::Frictionless } else { ShownEquilibrium::LeastSliding };
             report.warnings.push(self.warning(WarningCause::ManyEquilibria { shown, histories }));
         }
+        report.warnings.extend(others);
         if instant.hint > 0.0 {
             report.warnings.extend(slack_without_weight(&self.problem, &self.present_report().nodes));
         }

@@ -320,6 +320,14 @@ impl CableRun {
         (from, to)
     }
 
+    /// What span k has to spare over its chord, and the chord, m; None where an end hangs.
+    pub fn slack(&self, course: &Course, k: usize) -> Option<[f64; 2]> {
+        let [Some(a), Some(b)] = self.ends_of(course, k) else { return None };
+        let (from, to) = self.material(k);
+        let chord = (b - a).norm();
+        Some([(to - from) * course.law.thermal - chord, chord])
+    }
+
     /// Force in span k at a material point, N.
     pub fn force(&self, course: &Course, k: usize, s: f64) -> Vec2 {
         self.forces.get(k).copied().unwrap_or_default() - course.load_between(self.from, s)

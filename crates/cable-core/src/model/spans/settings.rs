@@ -126,6 +126,16 @@ pub struct ContinuationSettings {
     /// Part of the length by which material is passed on to leave it. Smaller: more steps. Larger:
     /// a rest that is near is passed.
     pub leaving_fraction: f64,
+    /// Slack on both sides of a contact, of the shorter chord, from which another balance is
+    /// sought, and the part of it that is left where it is taken from. Smaller: searches that find
+    /// nothing; larger: balances of steep spans are missed.
+    pub least_slack_fraction: f64,
+    /// Most searches for other balances. Smaller: some are missed; larger: cables over many things
+    /// take long.
+    pub max_other_balances: usize,
+    /// Part of the length by which the material at a contact differs in another balance. Smaller:
+    /// two answers of one search are two balances; larger: balances near each other are one.
+    pub other_balance_fraction: f64,
     /// Most steps over which it is followed. Smaller: it is given up on its way. Larger: a failure
     /// costs more.
     pub max_drag_steps: usize,
@@ -311,6 +321,9 @@ impl Default for ContinuationSettings {
             rest_drag_fraction: 1e-3,
             leaving_drag_factor: 2.0,
             leaving_fraction: 1e-2,
+            least_slack_fraction: 0.02,
+            max_other_balances: 16,
+            other_balance_fraction: 1e-5,
             max_drag_steps: 200,
             max_drag_raises: 5,
             missing_friction_fraction: 3e-4,
