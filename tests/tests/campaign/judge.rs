@@ -507,7 +507,12 @@ fn of_cable(scene: &Scene, cable: &Cable, (found, answer): (&CableSolution, &Sol
                 let on = add([w[0].x_m, w[0].y_m], mul(sub([w[1].x_m, w[1].y_m], [w[0].x_m, w[0].y_m]), u));
                 world.near(add(on, mul(below, 4.0 * u * (1.0 - u))), reach, &mut met);
             }
-            let touches = !near[k].is_empty() || !met.is_empty();
+            // Or on the cable itself.
+            let itself = found
+                .contacts
+                .iter()
+                .any(|c| c.obstacle == cable.name && c.begins_m <= w[1].arc_length_m && c.ends_m >= w[0].arc_length_m);
+            let touches = itself || !near[k].is_empty() || !met.is_empty();
             let lies = plan || touches || size(load) == 0.0;
             let tension = if plan { tension } else { size(w[0].force_n) };
             let slack = tension <= 1e-3 * scale + 2.0 * size(load) * ds;
