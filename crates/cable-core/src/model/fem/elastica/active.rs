@@ -1,10 +1,10 @@
 //! The active set says which contacts there are, and which of them are a point and which a stretch.
 
 use crate::math::{Vec2, perp};
-use crate::model::fem::elastica::start::contact_at;
-use crate::model::fem::elastica::{
+use crate::model::fem::elastica::boundary_value::{
     ANGLE, ARC, Contact, Elastica, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, place, tangent,
 };
+use crate::model::fem::elastica::start::contact_at;
 use crate::problem::Problem;
 
 /// Changes of the set of contacts before it is given up. 1 to 4 are usual.

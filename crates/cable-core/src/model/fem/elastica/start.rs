@@ -3,10 +3,10 @@
 
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};
-use crate::model::fem::elastica::relax::{Chain, ContactPair};
-use crate::model::fem::elastica::{
+use crate::model::fem::elastica::boundary_value::{
     ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, tangent,
 };
+use crate::model::fem::elastica::relax::{Chain, ContactPair};
 use crate::model::fem::free::beam::mesh::places;
 use crate::model::fem::free::stations::place as support_place;
 use crate::model::fem::mesh::sliding_node::round_of;

@@ -23,11 +23,11 @@ use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::Vec2;
 use crate::model::fem::newton::gap_constraint::Stop;
-use crate::model::fem::newton::step_context::{StepContext, longest};
 use crate::model::fem::settings::NewtonTuning;
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::Coupling;
+use crate::model::fem::system::step_context::{StepContext, longest};
 
 /// The contacts that a step is about to make.
 #[derive(Clone, Debug)]

@@ -16,16 +16,16 @@ use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
 use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
-use crate::model::fem::newton::step_context::StepContext;
-use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::bar_energy;
+use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::contact_energy::{add_floor, add_friction, add_touch};
 use crate::model::fem::system::friction_state::ContactPair;
-use crate::model::fem::system::self_contact;
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::self_contact::{Coupling, SelfContactLaws};
+use crate::model::fem::system::step_context::StepContext;
 use crate::model::fem::system::step_input::{
     Converged, Failure, FailureCause, StepInput, Unknowns, WORK_MAGNITUDE_FRACTION, WorkBudget, node_scale,
 };
+use crate::model::fem::system::{bar_energy, self_contact};
 
 /// Energies are trusted to this part of the sum of their magnitudes.
 const ENERGY_NOISE: f64 = 1e-13;

@@ -20,8 +20,8 @@
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
-use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{Converged, StepInput, Unknowns};
 
 /// Roundings of a coordinate that a bar's length may be off by.
@@ -265,7 +265,7 @@ mod tests {
     use super::*;
     use crate::model::fem::dynamics::Dynamics;
     use crate::model::fem::newton::minimize::Workspace;
-    use crate::model::fem::newton::step_context::StepContext;
+    use crate::model::fem::system::step_context::StepContext;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Support, SupportKind, catalog};

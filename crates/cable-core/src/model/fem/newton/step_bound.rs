@@ -5,7 +5,7 @@ use crate::contact::sweep::Sweep;
 use crate::math::Vec2;
 use crate::model::fem::mesh::tangent_path::{End, Path};
 use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::step_context::{StepContext, longest};
+use crate::model::fem::system::step_context::{StepContext, longest};
 use crate::model::fem::system::step_input::{StepInput, Unknowns};
 
 impl Workspace {

@@ -1,12 +1,26 @@
 //! The history holds where the cable is and how it moves; a checkpoint is a state to which a failed
 //! step returns.
 
-use crate::math::RigidPose;
-use crate::math::Vec2;
+use crate::math::{RigidPose, Vec2, cross, perp};
 use crate::model::fem::state::account::Account;
-use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::friction_state::ContactSet;
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::input_filter::{Hand, SmoothedTarget};
+
+/// Distance (parts of a bar) by which the middle of a fold is moved aside. Less: the fold opens
+/// later than it would; more: its bars are stretched by half of the square of it.
+const ASIDE: f64 = 1e-4;
+
+/// Sine of the turn off a line below which a fold lies in it.
+const FOLD_LINE_SINE: f64 = 1e-6;
+
+/// Part by which steps may differ and count as even.
+const EVEN_STEP_TOLERANCE: f64 = 1e-9;
+
+/// Even steps whose bars all pulled before BDF3 has its part: as many as its differences of
+/// velocities reach back. With less of a bar's snap in them chains whose bars rattle gain energy,
+/// half of mgL in a fold of 41 bars.
+const STEPS_BEFORE_BDF3: usize = 3;
 
 /// The parts of the state that a step may change, kept to go back to.
 #[derive(Clone, Debug, Default)]
@@ -62,6 +76,92 @@ impl Motion {
         (self.time, self.placement) = (other.time, other.placement);
         self.account = other.account;
     }
+
+    /// Forgets the steps before the present instant; the arc length of each node is `arc_length`
+    /// (m).
+    pub(in crate::model::fem) fn forget(&mut self, arc_length: &[f64]) {
+        self.x_before.clone_from(&self.x);
+        self.v_before.clone_from(&self.v);
+        self.w_before.clone_from(&self.w);
+        self.s_before.clear();
+        self.s_before.extend_from_slice(arc_length);
+        self.step_before = 0.0;
+        self.branch.clear();
+        self.account = Account::unknown();
+    }
+
+    /// True if masses accelerate: it moves, or came here in a step with inertia.
+    pub(in crate::model::fem) fn inertia_counts(&self) -> bool {
+        self.step_before > 0.0 || self.v.iter().any(|v| v.norm_squared() > 0.0)
+    }
+
+    /// True if a step of `h` (s) is as long as the one before.
+    pub(in crate::model::fem) fn is_even(&self, h: f64) -> bool {
+        (h - self.step_before).abs() <= EVEN_STEP_TOLERANCE * h
+    }
+
+    /// Counts a step of `h` (s). Where contact may change what was, or a bar did not pull, it is
+    /// not `smooth`, and history is not looked for so far back.
+    pub(in crate::model::fem) fn note_step(&mut self, h: f64, smooth: bool) {
+        let count = if self.is_even(h) { self.even_steps } else { 0 };
+        self.even_steps = if smooth { (count + 1).min(STEPS_BEFORE_BDF3) } else { 0 };
+        self.step_before = h;
+    }
+
+    /// True if a step of `h` (s) may look back three steps.
+    pub(in crate::model::fem) fn looks_back_three(&self, h: f64) -> bool {
+        self.even_steps >= STEPS_BEFORE_BDF3 && self.is_even(h)
+    }
+
+    /// Moves the middle of each fold that lies in one line a little aside, as a motion begins. In
+    /// the line itself a bar would have to pass through no length to turn over: a weight that fell
+    /// beside its slack cable hung in the fold.
+    pub(in crate::model::fem) fn open_folds(&mut self, mesh: &Mesh) {
+        let x = &mut self.x;
+        for k in 1..x.len().saturating_sub(1) {
+            let (a, b) = (x[k] - x[k - 1], x[k + 1] - x[k]);
+            let size = a.norm() * b.norm();
+            if mesh.is_free(k) && a.dot(&b) < 0.0 && cross(a, b).abs() <= FOLD_LINE_SINE * size {
+                x[k] += perp(a) * ASIDE;
+            }
+        }
+    }
+
+    /// Puts a node in before node `k`, at an arc length (m).
+    pub(in crate::model::fem) fn insert_node(&mut self, k: usize, arc_length: f64, node: NodeMotion) {
+        let (h, NodeMotion { x, v, v_before, w, w_before }) = (self.step_before, node);
+        self.x.insert(k, x);
+        self.v.insert(k, v);
+        self.x_before.insert(k, x - (v + v_before) * (0.5 * h));
+        self.v_before.insert(k, v_before);
+        self.w.insert(k, w);
+        self.w_before.insert(k, w_before);
+        self.s_before.insert(k, arc_length - (w + w_before) * (0.5 * h));
+    }
+
+    /// Takes node `k` out.
+    pub(in crate::model::fem) fn remove_node(&mut self, k: usize) {
+        self.x.remove(k);
+        self.v.remove(k);
+        self.x_before.remove(k);
+        self.v_before.remove(k);
+        self.w.remove(k);
+        self.w_before.remove(k);
+        self.s_before.remove(k);
+    }
+}
+
+/// The motion of one node, now and one step ago.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::fem) struct NodeMotion {
+    /// Position, m.
+    pub(in crate::model::fem) x: Vec2,
+    /// Velocities, m/s.
+    pub(in crate::model::fem) v: Vec2,
+    pub(in crate::model::fem) v_before: Vec2,
+    /// Rates of the arc length at a sliding node, m/s.
+    pub(in crate::model::fem) w: f64,
+    pub(in crate::model::fem) w_before: f64,
 }
 
 /// A state to go back to.

@@ -19,7 +19,7 @@
 
 use crate::math::{Mat2, Vec2, larger, perp, smaller};
 use crate::model::fem::mesh::tangent_path::Path;
-use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::mesh::Mesh;
 
 /// The weight of one bar with a sliding node at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -191,6 +191,16 @@ pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
     let before = if k > 0 { on_ends(mesh, k - 1, x, None, body)[1] } else { Vec2::zeros() };
     let after = if k < last { on_ends(mesh, k, x, None, body)[0] } else { Vec2::zeros() };
     before + after
+}
+
+/// Parts of the weight of the bars beside sliding node `k` on rounds that may act there, at
+/// positions `x` (m) under a distributed force `body` (N/m).
+pub(in crate::model::fem) fn parts_that_lie(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> [f64; 2] {
+    [k - 1, k].map(|e| {
+        let path = mesh.path(e, x);
+        let tension = mesh.axial_stiffness * (path.length / mesh.rest_length[e] - 1.0);
+        may_lie(mesh, e, &path, body, tension)
+    })
 }
 
 #[cfg(test)]

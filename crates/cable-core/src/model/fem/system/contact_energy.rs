@@ -3,8 +3,9 @@
 use crate::contact::friction::{self, Branch};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{StepInput, Unknowns, node_scale};
 
 /// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.

@@ -63,7 +63,7 @@ fn dragging_along_a_floor_takes_the_friction_of_its_weight() {
             d.advance(1.0 / 60.0, inertia, &[]).unwrap();
             assert!(d.cable.smallest_gap() > 0.0);
             if d.cable.state().time_s > from {
-                sum -= d.cable.solution().supports[1].reaction_x_n;
+                sum -= d.solution().supports[1].reaction_x_n;
                 count += 1.0;
             }
         }
@@ -83,11 +83,11 @@ fn a_held_end_does_not_creep() {
     let here = d.cable.state().position_m.last().copied();
     let hand = [None, here];
     d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
-    let (before, start) = (-d.cable.solution().supports[1].reaction_x_n, d.cable.state());
+    let (before, start) = (-d.solution().supports[1].reaction_x_n, d.cable.state());
     for _ in 0..120 {
         d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
     }
-    let after = -d.cable.solution().supports[1].reaction_x_n;
+    let after = -d.solution().supports[1].reaction_x_n;
     assert!((after / before - 1.0).abs() < 1e-2, "{before} N became {after} N");
     for (a, b) in start.position_m.iter().zip(&d.cable.state().position_m) {
         assert!((a - b).norm() < 1e-3);
@@ -151,7 +151,7 @@ fn a_barrier_as_stiff_as_the_cable_is_taut_keeps_a_gap_that_numbers_can_tell() {
     for _ in 0..12 {
         halved += d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap().cost.halved_steps;
         let gap = d.cable.smallest_gap();
-        let pull = d.cable.solution().supports[1].reaction_x_n.abs();
+        let pull = d.solution().supports[1].reaction_x_n.abs();
         println!("{gap:e} m under {pull:.0} N, {halved} halved");
         assert!(pull > 5e4, "{pull}");
         // A hundredth of the tension turns at a node here: φ'(u) = −0.2 of the barrier's stiffness,
@@ -234,7 +234,7 @@ fn the_same_run_gives_the_same_bits() {
 fn the_answer_lists_the_floor() {
     let mut d = build(&drag(60));
     d.settle(&[]).unwrap();
-    let s = d.cable.solution();
+    let s = d.solution();
     assert_eq!(s.contacts.len(), 1);
     let expected = weight_per_m() * 12.0;
     assert!((s.contacts[0].normal_n / expected - 1.0).abs() < 1e-3, "{:?}", s.contacts[0]);
@@ -261,7 +261,7 @@ fn a_floor_carries_what_lies_on_it_up_to_the_held_ends() {
             d.settle(&[]).unwrap();
             d
         };
-        let answer = d.cable.solution();
+        let answer = d.solution();
         let weight = weight_per_m() * 11.99;
         assert_eq!(answer.contacts.len(), 1, "{:?}", answer.contacts);
         let contact = &answer.contacts[0];

@@ -49,7 +49,7 @@ pub(in crate::model::fem) fn land(cable: &mut CableState, h: f64, a: f64) {
         }
     }
     // Nothing, but where a support holds a side of the contact.
-    cable.account_for_landing(given, forgotten);
+    cable.motion.account.land(given, forgotten);
 }
 
 /// Contacts of the cable with itself at positions `x` (m): one report for each stretch of

@@ -7,6 +7,8 @@
 
 use crate::math::Vec2;
 use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::moving_outline::MovingOutline;
+use crate::model::fem::state::step_setup::prepare_input;
 use crate::model::fem::state::stepping::Sleep;
 
 /// Distance (m) by which a node of a sleeping cable may have moved.
@@ -59,7 +61,7 @@ impl Sleep {
         to: f64,
         dragged: &[Option<Vec2>],
     ) -> bool {
-        if cable.outline_moves() {
+        if cable.outline.as_ref().is_some_and(MovingOutline::moves) {
             self.asleep = false;
         }
         if !self.asleep {
@@ -78,7 +80,7 @@ impl Sleep {
             (None, Some(to)) => cable.support_position(k).is_none_or(|at| (at - to).norm() > distance * 1e-3),
             _ => false,
         });
-        cable.prepare_input(to, Some(dragged));
+        prepare_input(cable, to, Some(dragged));
         self.asleep = !follows && self.same_input(cable);
         self.asleep
     }

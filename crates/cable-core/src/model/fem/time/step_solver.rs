@@ -5,6 +5,7 @@ use crate::math::larger;
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::SolverMemory;
+use crate::model::fem::state::step_setup::update_grips;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 
@@ -28,7 +29,7 @@ impl SolverMemory {
                 *x = cable.input.target[k];
             }
         }
-        if cable.is_out_of_reach(&unknowns.x) {
+        if cable.step_context().is_out_of_reach(&unknowns.x) {
             unknowns
         } else {
             self.unknowns = unknowns;
@@ -69,7 +70,7 @@ impl SolverMemory {
         let sliding = cable.mesh.sliding.iter().flatten().count();
         let (mut fewest, mut spare) = (usize::MAX, cable.mesh.tuning.step.grip_rounds);
         for _ in 0..cable.mesh.tuning.step.grip_rounds + cable.mesh.tuning.step.grip_rounds_each * sliding {
-            let grips = cable.update_grips(unknowns, spare == 0);
+            let grips = update_grips(cable, unknowns, spare == 0);
             if grips.hold() {
                 return Ok(done);
             }
@@ -101,10 +102,10 @@ impl SolverMemory {
         cable: &mut CableState,
         unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
-        if cable.moves_freely(&unknowns.x)
+        if cable.step_context().moves_freely(&unknowns.x)
             && let Some(done) = self.free.solve(&cable.mesh, &cable.input, unknowns)
         {
-            if cable.is_out_of_reach(&unknowns.x) {
+            if cable.step_context().is_out_of_reach(&unknowns.x) {
                 for (k, reaction) in cable.answers.reaction.iter_mut().enumerate() {
                     *reaction = -self.free.gradient_at(k);
                 }
