@@ -89,7 +89,7 @@ impl Dynamics {
         }
         if inertia == Inertia::Dynamic && gauge.asks(self.cable.motion.time) {
             results::gauge_tension(&mut self.cable);
-            let at_rest = self.cable.motion.v.iter().all(|v| *v == Vec2::zeros());
+            let at_rest = self.cable.motion.velocities.iter().all(|v| *v == Vec2::zeros());
             gauge.begin(self.cable.motion.time, at_rest, &self.cable.answers.gauged.arc_length, |k| {
                 self.cable.answers.gauged.tension[k]
             });
@@ -124,8 +124,8 @@ impl Dynamics {
                 dt_s,
             );
             if self.pacing.sleep.falls_asleep(&self.cable) {
-                self.cable.motion.v.fill(Vec2::zeros());
-                self.cable.motion.w.fill(0.0);
+                self.cable.motion.velocities.fill(Vec2::zeros());
+                self.cable.motion.slide_rates.fill(0.0);
                 self.forget_history();
             }
         } else {
@@ -183,8 +183,13 @@ impl Dynamics {
                     tried
                 }
             };
-            let finite =
-                self.cable.motion.x.iter().chain(&self.cable.motion.v).all(|p| p.iter().all(|c| c.is_finite()));
+            let finite = self
+                .cable
+                .motion
+                .positions
+                .iter()
+                .chain(&self.cable.motion.velocities)
+                .all(|p| p.iter().all(|c| c.is_finite()));
             match tried {
                 Ok(done) if finite => {
                     total = Converged { iterations: total.iterations + done.iterations, ..done };
@@ -259,7 +264,7 @@ impl Dynamics {
         };
         let held = self.cable.answers.held_back.iter().filter_map(|&k| {
             let (node, s) = (node_of(k)?, self.cable.problem.supports.get(k)?);
-            let behind = (self.cable.input.target.get(node)? - self.cable.motion.x[node]).norm();
+            let behind = (self.cable.input.target.get(node)? - self.cable.motion.positions[node]).norm();
             let cause = WarningCause::Blocked { support: s.name.clone() };
             Some(Warning::new(cause, &self.cable.problem.cable.name, self.cable.mesh.arc_length[node], [behind, 0.0]))
         });
@@ -288,8 +293,8 @@ impl Dynamics {
         let weights = Weights::of_step(&self.cable.motion, h);
         set_inertia(&mut self.cable, weights, h, &mut self.solver.decay);
         let (m, input, mesh) = (&self.cable.motion, &self.cable.input, &self.cable.mesh);
-        self.cable.contacts.look_around(&self.cable.problem, mesh, &m.x, |k| {
-            if mesh.held[k] { (input.target[k] - m.x[k]).norm() } else { m.v[k].norm() * h }
+        self.cable.contacts.look_around(&self.cable.problem, mesh, &m.positions, |k| {
+            if mesh.held[k] { (input.target[k] - m.positions[k]).norm() } else { m.velocities[k].norm() * h }
         });
         weights
     }
@@ -302,13 +307,18 @@ impl Dynamics {
         let weights = self.begin_step(h, dragged);
         let Weights { now, past, a, .. } = weights;
         let (mut unknowns, exact) = (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.tolerance);
-        self.cable.contacts.prepare(&self.cable.problem, &self.cable.mesh, &unknowns.x, &self.cable.motion.x);
-        self.cable.input.tolerance = self.cable.input.rounded_tolerance(&self.cable.motion.x);
+        self.cable.contacts.prepare(
+            &self.cable.problem,
+            &self.cable.mesh,
+            &unknowns.positions,
+            &self.cable.motion.positions,
+        );
+        self.cable.input.tolerance = self.cable.input.rounded_tolerance(&self.cable.motion.positions);
         let done = self.solver.rub_and_minimise(&mut self.cable, &mut unknowns);
         self.cable.input.tolerance = exact;
         let done = done?;
         let most = self.cable.mesh.tuning.remesh.max_reverse_turn_rad;
-        if let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.x).pulled_corner(most) {
+        if let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.positions).pulled_corner(most) {
             return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
         }
         note_lag(&mut self.cable, &unknowns);
@@ -316,26 +326,26 @@ impl Dynamics {
         note_balanced(&mut self.cable, &unknowns);
         let given = forces_in_step(&self.cable, &unknowns, self.solver.touches());
         let slid = MovingMass::of(&self.cable).sliding_momentum();
-        branches::relax(&mut self.cable, h, &unknowns.x);
+        branches::relax(&mut self.cable, h, &unknowns.positions);
         self.cable.commit_contacts(&unknowns);
         let (m, mesh) = (&mut self.cable.motion, &self.cable.mesh);
-        for k in 0..unknowns.x.len() {
-            let v = (unknowns.x[k] - weights.place(m, k)) * a;
+        for k in 0..unknowns.positions.len() {
+            let v = (unknowns.positions[k] - weights.place(m, k)) * a;
             let s = mesh.arc_length[k];
-            let w = (s + unknowns.slide[k] - s * now + m.s_before[k] * past) * a;
-            if let (Some(x), Some(v)) = (m.x_older.get_mut(k), m.v_older.get_mut(k)) {
-                (*x, *v) = (m.x_before[k], m.v_before[k]);
+            let w = (s + unknowns.slides[k] - s * now + m.previous_arc_length[k] * past) * a;
+            if let (Some(x), Some(v)) = (m.older_positions.get_mut(k), m.older_velocities.get_mut(k)) {
+                (*x, *v) = (m.previous_positions[k], m.previous_velocities[k]);
             }
-            m.x_before[k] = m.x[k];
-            m.v_before[k] = m.v[k];
-            m.s_before[k] = s;
-            m.w_before[k] = m.w[k];
-            m.x[k] = unknowns.x[k];
-            m.v[k] = v;
-            m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
+            m.previous_positions[k] = m.positions[k];
+            m.previous_velocities[k] = m.velocities[k];
+            m.previous_arc_length[k] = s;
+            m.previous_slide_rates[k] = m.slide_rates[k];
+            m.positions[k] = unknowns.positions[k];
+            m.velocities[k] = v;
+            m.slide_rates[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
         }
-        self.cable.mesh.slide(&unknowns.slide);
-        account_for_step(&mut self.cable, weights, given, slid, &unknowns.slide);
+        self.cable.mesh.slide(&unknowns.slides);
+        account_for_step(&mut self.cable, weights, given, slid, &unknowns.slides);
         self.solver.unknowns = unknowns;
         self.cable.motion.time += h;
         results::gauge_tension(&mut self.cable);

@@ -39,7 +39,7 @@ pub fn solution(cable: &CableState) -> CableSolution {
 
 /// The answer with the mesh as it is.
 fn solution_now(d: &CableState) -> CableSolution {
-    let (problem, x, v) = (&d.problem, &d.motion.x, &d.motion.v);
+    let (problem, x, v) = (&d.problem, &d.motion.positions, &d.motion.velocities);
     let tension = bar_tensions(d, x);
     let (ends, lain) = end_forces(d, x, &tension);
     CableSolution {
@@ -67,7 +67,7 @@ pub(in crate::model::fem) fn keep_answer(cable: &mut CableState) {
 /// Reads the tension at each node, as [`nodes`] has it.
 pub(in crate::model::fem) fn gauge_tension(cable: &mut CableState) {
     let mut gauged = std::mem::take(&mut cable.answers.gauged);
-    let x = &cable.motion.x;
+    let x = &cable.motion.positions;
     gauged.arc_length.clone_from(&cable.mesh.arc_length);
     gauged.bars.clear();
     if cable.meshing.never_slides {
@@ -99,7 +99,7 @@ pub(in crate::model::fem) fn gauge_tension(cable: &mut CableState) {
 /// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the
 /// normal force of a contact has any direction in between: along the cable that is ½ψ of it.
 pub(in crate::model::fem) fn bending_error(cable: &CableState) -> (f64, f64) {
-    let (mesh, x) = (&cable.mesh, &cable.motion.x);
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
     let tension = bar_tensions(cable, x);
     let most = tension.iter().map(|t| t.abs()).fold(0.0, larger);
     let (mut off, mut at) = (0.0, 0.0);
@@ -309,7 +309,7 @@ fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
             for p in on_round(d, k, sliding, &load, x, tension) {
-                let velocity = p.force.try_normalize(0.0).unwrap_or_default() * (-d.motion.w[k] * p.stretch);
+                let velocity = p.force.try_normalize(0.0).unwrap_or_default() * (-d.motion.slide_rates[k] * p.stretch);
                 let curvature =
                     if sliding.end.radius > 0.0 { p.stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
                 if out.last().is_none_or(|l: &Node| p.arc_length > l.arc_length_m + 1e-9) {
@@ -586,20 +586,20 @@ fn supports(d: &CableState, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Ve
         .filter_map(|(k, (s, node))| {
             let Some(node) = *node else { return pulley(d, k, x, tension) };
             let last = x.len() - 1;
-            let lies = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
+            let on_ground = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
             let hand = d.motion.hands[k];
             let reaction = match node {
                 _ if hand.is_some() => d.answers.reaction[node],
                 // A dead load is what hangs there: the cable pulls it the other way; a lump it may
                 // pull faster. Of one that lies the ground takes a part, which is the contact's.
-                _ if !d.mesh.held[node] && lies => -problem.hung_on(k, d.time()),
+                _ if !d.mesh.held[node] && on_ground => -problem.hung_on(k, d.time()),
                 0 if !d.mesh.held[node] => ends[0],
                 k if k == last && !d.mesh.held[node] => -ends[1],
                 _ if !d.mesh.held[node] => -problem.hung_on(k, d.time()),
                 // On the ground the end's own share of weight and friction is the ground's, not the
                 // support's.
-                0 if lies => ends[0],
-                k if k == last && lies => -ends[1],
+                0 if on_ground => ends[0],
+                k if k == last && on_ground => -ends[1],
                 _ => d.answers.reaction[node],
             };
             Some(SupportReaction {

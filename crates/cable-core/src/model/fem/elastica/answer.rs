@@ -276,7 +276,7 @@ fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STA
         places.sort_by(f64::total_cmp);
         out.extend(places.into_iter().map(|x| elastica.read(piece, x)));
         // A node just before the end tells the spread force from the point force at the end.
-        if piece.lies.is_some() && g[1] >= 1.0 {
+        if piece.contact.is_some() && g[1] >= 1.0 {
             out.push(elastica.read(piece, 1.0 - END_NODE_OFFSET));
         }
         out.push(*b);
@@ -289,7 +289,7 @@ fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STA
 fn peak(elastica: &Elastica, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
     let rises = |x: f64| {
         let u = elastica.read(piece, x);
-        let (t, by) = (tangent(&u), elastica.slope(piece.lies, &u));
+        let (t, by) = (tangent(&u), elastica.slope(piece.contact, &u));
         Vec2::new(by[4], by[5]).dot(&t) + force(&u).dot(&perp(t)) * by[ANGLE] > 0.0
     };
     if !rises(from) || rises(to) {

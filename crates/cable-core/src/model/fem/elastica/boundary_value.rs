@@ -97,7 +97,7 @@ impl Contact {
 #[derive(Clone, Debug)]
 pub(super) struct Piece {
     /// The contact it lies on; None: it is free.
-    pub(super) lies: Option<usize>,
+    pub(super) contact: Option<usize>,
     /// Places of its nodes, 0 to 1.
     pub(super) grid: Vec<f64>,
     pub(super) nodes: Vec<[f64; STATES]>,
@@ -183,13 +183,13 @@ impl Elastica {
     }
 
     /// The slope of all unknowns along a piece.
-    pub(super) fn slope(&self, lies: Option<usize>, u: &[f64; STATES]) -> [f64; STATES] {
+    pub(super) fn slope(&self, contact: Option<usize>, u: &[f64; STATES]) -> [f64; STATES] {
         let (t, f) = (tangent(u), force(u));
         let n = perp(t);
         let pull = f.dot(&t);
         let stretch = self.thermal_stretch * (1.0 + pull / self.axial_stiffness);
         let l = u[LENGTH];
-        let [turn, moment, df] = match lies.and_then(|k| self.contacts.get(k)) {
+        let [turn, moment, df] = match contact.and_then(|k| self.contacts.get(k)) {
             None => [
                 Vec2::new(self.thermal_stretch * u[MOMENT] / self.bending, 0.0),
                 Vec2::new(-stretch * f.dot(&n), 0.0),
@@ -206,18 +206,24 @@ impl Elastica {
     }
 
     /// Residual of Simpson's rule in an element, with the middle of Hermite's cubic.
-    pub(super) fn element(&self, lies: Option<usize>, h: f64, a: &[f64; STATES], b: &[f64; STATES]) -> [f64; STATES] {
-        let (fa, fb) = (self.slope(lies, a), self.slope(lies, b));
+    pub(super) fn element(
+        &self,
+        contact: Option<usize>,
+        h: f64,
+        a: &[f64; STATES],
+        b: &[f64; STATES],
+    ) -> [f64; STATES] {
+        let (fa, fb) = (self.slope(contact, a), self.slope(contact, b));
         let middle = std::array::from_fn(|i| 0.5 * (a[i] + b[i]) + 0.125 * h * (fa[i] - fb[i]));
-        let fm = self.slope(lies, &middle);
+        let fm = self.slope(contact, &middle);
         std::array::from_fn(|i| b[i] - a[i] - h / 6.0 * (fa[i] + 4.0 * fm[i] + fb[i]))
     }
 
     /// The equations at an end of the cable; `lies`: the contact that its piece lies on.
-    pub(super) fn end(&self, which: usize, lies: Option<usize>, u: &[f64; STATES], out: &mut Vec<f64>) {
+    pub(super) fn end(&self, which: usize, contact: Option<usize>, u: &[f64; STATES], out: &mut Vec<f64>) {
         out.push(u[ARC] - if which == 0 { 0.0 } else { self.length });
         let sign = if which == 0 { -1.0 } else { 1.0 };
-        let contact = lies.and_then(|k| self.contacts.get(k));
+        let contact = contact.and_then(|k| self.contacts.get(k));
         if let (0, Some(c)) = (which, contact) {
             self.lie(c, u, out);
         }
@@ -333,7 +339,7 @@ impl Elastica {
             let mut at = 0;
             for (k, p) in self.pieces.iter().enumerate() {
                 let gone =
-                    p.lies.is_some() && k > 0 && k + 1 < wanting.len() && -step[at + LENGTH] > p.nodes[0][LENGTH];
+                    p.contact.is_some() && k > 0 && k + 1 < wanting.len() && -step[at + LENGTH] > p.nodes[0][LENGTH];
                 wanting[k] = if gone { wanting[k] + 1 } else { 0 };
                 at += STATES * p.nodes.len();
             }
@@ -389,17 +395,17 @@ impl Elastica {
         };
         for (k, piece) in self.pieces.iter().enumerate() {
             if k == 0 {
-                add(column, &piece.nodes[..1], &|u, out| self.end(0, piece.lies, &u[0], out));
+                add(column, &piece.nodes[..1], &|u, out| self.end(0, piece.contact, &u[0], out));
             }
             for (e, pair) in piece.nodes.windows(2).enumerate() {
                 let h = piece.grid[e + 1] - piece.grid[e];
-                add(column, pair, &|u, out| out.extend(self.element(piece.lies, h, &u[0], &u[1])));
+                add(column, pair, &|u, out| out.extend(self.element(piece.contact, h, &u[0], &u[1])));
                 column += STATES;
             }
             first.clear();
             first.extend(piece.nodes.last());
             if k == last {
-                add(column, &first, &|u, out| self.end(1, piece.lies, &u[0], out));
+                add(column, &first, &|u, out| self.end(1, piece.contact, &u[0], out));
             } else {
                 first.extend(self.pieces[k + 1].nodes.first());
                 let joint = self.joints[k];

@@ -48,9 +48,9 @@ impl SolverMemory {
         let (mut off, mut part) = (0.0, 1.0);
         let mut before = Vec::with_capacity(cable.contacts.friction_contacts.capacity());
         for round in 0..rounds {
-            cable.contacts.look_around(&cable.problem, &cable.mesh, &unknowns.x, |_| 0.0);
+            cable.contacts.look_around(&cable.problem, &cable.mesh, &unknowns.positions, |_| 0.0);
             std::mem::swap(&mut before, &mut cable.contacts.friction_contacts);
-            cable.contacts.prepare(&cable.problem, &cable.mesh, &unknowns.x, &cable.motion.x);
+            cable.contacts.prepare(&cable.problem, &cable.mesh, &unknowns.positions, &cable.motion.positions);
             if round > 0 {
                 let now = cable.contacts.ease(&before, part);
                 // Forces that go to and fro get no nearer by steps as long as before.

@@ -37,7 +37,7 @@ pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoE
     if cable.problem.supports.iter().any(|s| s.at.is_some()) || cable.contacts.own.shape.is_on() {
         return None;
     }
-    let left = results::unbalanced(cable, &cable.motion.x, cable.motion.time).norm();
+    let left = results::unbalanced(cable, &cable.motion.positions, cable.motion.time).norm();
     let scale = load_scale(&cable.problem).1;
     (left > cable.mesh.tuning.equilibrium.unheld_load_fraction * scale)
         .then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
@@ -114,7 +114,7 @@ impl Dynamics {
             }
             if round == 0
                 && pull.is_finite()
-                && let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.x).pulled_corner(pull)
+                && let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.positions).pulled_corner(pull)
             {
                 let residual = done.map_or_else(|f| f.residual, |d| d.residual);
                 return Err(Failure { node, residual, cause: FailureCause::CornerPulls });
@@ -168,7 +168,7 @@ impl Dynamics {
     /// number of bars.
     fn rounding_of_bars(&self) -> f64 {
         let (cable, problem) = (&self.cable, &self.cable.problem);
-        let farthest = cable.motion.x.iter().map(|x| x.norm()).fold(0.0, larger);
+        let farthest = cable.motion.positions.iter().map(|x| x.norm()).fold(0.0, larger);
         LENGTH_ROUNDINGS * f64::EPSILON * farthest * problem.axial_stiffness / cable.even()
     }
 
@@ -181,10 +181,13 @@ impl Dynamics {
         }
         self.rollback.save(&self.cable);
         let reach = self.cable.problem.length / self.cable.meshing.even_bars as f64;
-        let laid = self.cable.motion.x.clone();
+        let laid = self.cable.motion.positions.clone();
         let found = self.rest_step(self.cable.motion.time, dragged).is_ok();
         let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= reach;
-        if !(found && laid.len() == self.cable.motion.x.len() && laid.iter().zip(&self.cable.motion.x).all(near)) {
+        if !(found
+            && laid.len() == self.cable.motion.positions.len()
+            && laid.iter().zip(&self.cable.motion.positions).all(near))
+        {
             self.rollback.restore(&mut self.cable);
         }
     }
@@ -193,18 +196,18 @@ impl Dynamics {
     /// over changed.
     fn accept_rest(&mut self, unknowns: &Unknowns, to: f64) -> bool {
         self.accept_unknowns(unknowns, to);
-        remesh(&mut self.cable, Inertia::QuasiStatic).seats
+        remesh(&mut self.cable, Inertia::QuasiStatic).sliding_nodes
     }
 
     /// The same, corners as they are.
     fn accept_unknowns(&mut self, unknowns: &Unknowns, to: f64) {
         self.cable.commit_contacts(unknowns);
         self.cable.contacts.outline_motion = None;
-        self.cable.motion.x.clone_from(&unknowns.x);
-        self.cable.motion.v.fill(Vec2::zeros());
-        self.cable.motion.w.fill(0.0);
+        self.cable.motion.positions.clone_from(&unknowns.positions);
+        self.cable.motion.velocities.fill(Vec2::zeros());
+        self.cable.motion.slide_rates.fill(0.0);
         self.cable.motion.time = to;
-        self.cable.mesh.slide(&unknowns.slide);
+        self.cable.mesh.slide(&unknowns.slides);
         self.cable.mesh.sliding.iter_mut().flatten().for_each(|s| s.balanced = None);
         self.forget_history();
     }
@@ -231,9 +234,9 @@ impl Dynamics {
     fn relax_within(&mut self, noise: f64, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         // Stretches into which the outline moves go out of its way before anything slides.
         prepare_way(&mut self.cable, [to, to], Some(dragged));
-        self.cable.motion.x.clone_from_slice(self.cable.input.begins());
+        self.cable.motion.positions.clone_from_slice(self.cable.input.begins());
         self.cable.contacts.outline_motion = None;
-        let laid = self.cable.motion.x.clone();
+        let laid = self.cable.motion.positions.clone();
         let mut resistance = first_resistance(&self.cable);
         let (full, floor) = (resistance, 1e-5 * resistance);
         // Set where Newton without resistance has failed: then steps are solved exactly, until what
@@ -265,8 +268,8 @@ impl Dynamics {
                     let (mut moved, mut resists, mut slowest): (f64, f64, usize) = (0.0, 0.0, 0);
                     // Resistance adds up along a creeping stretch.
                     let mut drift = Vec2::zeros();
-                    for (k, (a, b)) in unknowns.x.iter().zip(&self.cable.motion.x).enumerate() {
-                        let way = (a - b).norm().max(unknowns.slide[k].abs());
+                    for (k, (a, b)) in unknowns.positions.iter().zip(&self.cable.motion.positions).enumerate() {
+                        let way = (a - b).norm().max(unknowns.slides[k].abs());
                         moved = moved.max(way);
                         let free = if self.cable.mesh.held[k] { 0.0 } else { self.cable.input.inertia[k] };
                         drift = if free > 0.0 { drift + (a - b) * free } else { Vec2::zeros() };
@@ -278,7 +281,7 @@ impl Dynamics {
                     last =
                         Failure { node: slowest, residual: done.residual + resists, cause: FailureCause::StillMoves };
                     let remeshed = self.accept_rest(&unknowns, self.cable.motion.time);
-                    if ran_away(self.cable.problem.length, &self.cable.motion.x, &laid).is_some() {
+                    if ran_away(self.cable.problem.length, &self.cable.motion.positions, &laid).is_some() {
                         return Err(Failure { node: 0, residual: f64::NAN, cause: FailureCause::SlidesAway });
                     }
                     if remeshed {
@@ -330,9 +333,9 @@ impl Dynamics {
         self.cable.motion.followers.fill(None);
         self.cable.motion.hands.fill(None);
         if !self.rested && put_outline(&mut self.cable) {
-            let mut x = std::mem::take(&mut self.cable.motion.x);
+            let mut x = std::mem::take(&mut self.cable.motion.positions);
             depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
-            self.cable.motion.x = x;
+            self.cable.motion.positions = x;
             self.forget_history();
         }
         match self.find_rest(dragged)? {
@@ -342,10 +345,10 @@ impl Dynamics {
                 Ok(self.report(done, 0, 0.0))
             }
             Err(f) => {
-                let at_m = self.cable.motion.x.get(f.node).copied().unwrap_or_default();
-                let sought = self.cable.motion.x.clone();
+                let at_m = self.cable.motion.positions.get(f.node).copied().unwrap_or_default();
+                let sought = self.cable.motion.positions.clone();
                 self.rollback.restore(&mut self.cable);
-                if ran_away(self.cable.problem.length, &self.cable.motion.x, &sought).is_some() {
+                if ran_away(self.cable.problem.length, &self.cable.motion.positions, &sought).is_some() {
                     return Err(SolveError::NoRestingPlace { why: NoEquilibrium::SlidesOff });
                 }
                 if f.cause == FailureCause::WorkSpent {
@@ -382,7 +385,7 @@ impl Dynamics {
         else {
             return;
         };
-        let (x, geometry) = (&self.cable.motion.x, self.cable.problem.world.geometry());
+        let (x, geometry) = (&self.cable.motion.positions, self.cable.problem.world.geometry());
         let clear = (0..self.cable.mesh.rest_length.len()).all(|e| {
             let [[a, b], [c, d]] = [self.cable.mesh.straight(e, x), self.cable.mesh.straight(e, &to)];
             geometry
@@ -393,7 +396,7 @@ impl Dynamics {
         if !clear {
             return;
         }
-        self.cable.motion.x = to;
+        self.cable.motion.positions = to;
         self.forget_history();
         // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so
         // that little force is left over.
@@ -404,7 +407,7 @@ impl Dynamics {
         self.cable.input.tolerance = tolerance(&self.cable.problem, 0.0);
         let mut unknowns = self.solver.present_unknowns(&self.cable);
         if self.solver.free.solve(&self.cable.mesh, &self.cable.input, &mut unknowns).is_some() {
-            self.cable.motion.x.clone_from(&unknowns.x);
+            self.cable.motion.positions.clone_from(&unknowns.positions);
             self.forget_history();
         }
         self.solver.unknowns = unknowns;
@@ -423,15 +426,15 @@ impl Dynamics {
             self.cable.contacts.own.shape.diameter = 0.0;
             let found = self.relax(time, dragged);
             self.cable.contacts.own.shape = shape;
-            if found.is_ok() && !self.cable.touches_itself() && !crosses_itself(&self.cable.motion.x) {
+            if found.is_ok() && !self.cable.touches_itself() && !crosses_itself(&self.cable.motion.positions) {
                 return Ok(found);
             }
             self.rollback.restore(&mut self.cable);
             self.rollback.save(&self.cable);
             self.begin_on_a_bow();
         }
-        let overlap = self.cable.contacts.own.smallest_gap(&self.cable.mesh, &self.cable.motion.x, 0.0);
-        if overlap.is_some() || crosses_itself(&self.cable.motion.x) {
+        let overlap = self.cable.contacts.own.smallest_gap(&self.cable.mesh, &self.cable.motion.positions, 0.0);
+        if overlap.is_some() || crosses_itself(&self.cable.motion.positions) {
             let arc_length_m = self.cable.mesh.arc_length[overlap.map_or(0, |o| o.1)];
             let feature = Unsupported::SelfContactAtStart { arc_length_m };
             return Err(SolveError::Unsupported { model: Model::Fem, feature });
@@ -443,21 +446,21 @@ impl Dynamics {
     /// touch itself: along a straight line it would, or stand on itself as a row of beads does.
     fn begin_on_a_bow(&mut self) {
         let cable = &mut self.cable;
-        let way: f64 = cable.motion.x.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+        let way: f64 = cable.motion.positions.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
         if !cable.problem.cable.route_m.is_empty()
             || cable.problem.length < cable.mesh.tuning.start.arc_length_ratio * way
         {
             return;
         }
-        let Some(arc) = bow(&cable.problem, &cable.mesh, &cable.motion.x) else { return };
-        let straight = std::mem::replace(&mut cable.motion.x, arc);
+        let Some(arc) = bow(&cable.problem, &cable.mesh, &cable.motion.positions) else { return };
+        let straight = std::mem::replace(&mut cable.motion.positions, arc);
         for k in (0..straight.len()).filter(|&k| cable.mesh.held[k]) {
-            cable.motion.x[k] = straight[k];
+            cable.motion.positions[k] = straight[k];
         }
         if IntersectionCheck::of(cable).cuts_nothing() {
             cable.forget_history();
         } else {
-            cable.motion.x = straight;
+            cable.motion.positions = straight;
         }
     }
 }

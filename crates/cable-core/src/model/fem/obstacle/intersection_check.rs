@@ -23,23 +23,23 @@ pub(in crate::model::fem) struct IntersectionCheck<'a> {
     /// Reach of the barrier, m.
     reach: f64,
     /// Position of each node, m.
-    x: &'a [Vec2],
+    positions: &'a [Vec2],
 }
 
 impl<'a> IntersectionCheck<'a> {
     /// Of a cable as it lies.
     pub(in crate::model::fem) fn of(cable: &'a CableState) -> Self {
-        Self::at(cable, &cable.motion.x)
+        Self::at(cable, &cable.motion.positions)
     }
 
     /// Of a cable at positions `x` (m).
     pub(in crate::model::fem) fn at(cable: &'a CableState, x: &'a [Vec2]) -> Self {
-        Self { problem: &cable.problem, mesh: &cable.mesh, reach: cable.contacts.barrier.reach, x }
+        Self { problem: &cable.problem, mesh: &cable.mesh, reach: cable.contacts.barrier.reach, positions: x }
     }
 
     /// True if a bar meets nothing.
     pub(in crate::model::fem) fn is_clear(&self, e: usize) -> bool {
-        self.way_is_clear(&self.mesh.path(e, self.x), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))
+        self.way_is_clear(&self.mesh.path(e, self.positions), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))
     }
 
     /// Returns whether every bar between two nodes that move is clear of obstacles. The place of
@@ -53,7 +53,7 @@ impl<'a> IntersectionCheck<'a> {
     /// corner's edges: it has folded back and would run through the edge.
     pub(in crate::model::fem) fn beyond_its_corner(&self, k: usize) -> bool {
         let Some(node) = self.mesh.sliding[k] else { return false };
-        let meets = [self.mesh.path(k - 1, self.x).ends[1], self.mesh.path(k, self.x).ends[0]];
+        let meets = [self.mesh.path(k - 1, self.positions).ends[1], self.mesh.path(k, self.positions).ends[0]];
         meets.into_iter().any(|p| self.is_over_an_edge(&node, p, 0.0))
     }
 
@@ -86,7 +86,7 @@ impl<'a> IntersectionCheck<'a> {
         if self.problem.world.is_empty() {
             return true;
         }
-        let x = self.x;
+        let x = self.positions;
         let way = Path::between(&self.mesh.end(k - 1, x), &self.mesh.end(k + 1, x));
         self.way_is_clear(&way, [k - 1, k + 1].map(|j| self.mesh.sliding[j].as_ref()))
     }
@@ -102,7 +102,7 @@ impl<'a> IntersectionCheck<'a> {
             if !nodes.into_iter().any(slides) {
                 return false;
             }
-            let way = mesh.path(e, self.x);
+            let way = mesh.path(e, self.positions);
             let over = (0..2).any(|j| nodes[j].is_some_and(|s| self.is_over_an_edge(s, way.ends[j], 0.0)));
             // The scene answers for the places of supports and pulleys.
             let own = (0..2).all(|j| slides(nodes[j]) || mesh.is_free(e + j));
@@ -113,7 +113,7 @@ impl<'a> IntersectionCheck<'a> {
     /// Refuses to go on from where a node is inside an obstacle. A bar that only cuts a corner is
     /// left to the rest to come.
     pub(in crate::model::fem) fn refuse_buried(&self) -> Result<(), SolveError> {
-        let (mesh, x, world) = (self.mesh, self.x, &self.problem.world);
+        let (mesh, x, world) = (self.mesh, self.positions, &self.problem.world);
         if world.is_empty() {
             return Ok(());
         }
@@ -139,7 +139,7 @@ impl<'a> IntersectionCheck<'a> {
         (1..self.mesh.nodes().saturating_sub(1)).find(|&k| {
             self.mesh.sliding[k].is_some_and(|node| {
                 let shared = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
-                let is_wrong = || self.mesh.turn(k, self.x) < -wrong || self.beyond_its_corner(k);
+                let is_wrong = || self.mesh.turn(k, self.positions) < -wrong || self.beyond_its_corner(k);
                 node.feature().is_some() && !shared(k - 1) && !shared(k + 1) && is_wrong()
             })
         })
@@ -151,7 +151,7 @@ impl<'a> IntersectionCheck<'a> {
         let reach = self.reach;
         let Some((center, radius)) = round_of(self.problem.world.geometry(), feature, 0.0, 0.0) else { return reach };
         let fixed = [0, self.mesh.nodes() - 1].into_iter().filter(|&k| self.mesh.held[k]);
-        let gaps = fixed.map(|k| bounded((self.x[k] - center).norm() - radius, 0.0, reach));
+        let gaps = fixed.map(|k| bounded((self.positions[k] - center).norm() - radius, 0.0, reach));
         gaps.fold(reach, smaller)
     }
 }

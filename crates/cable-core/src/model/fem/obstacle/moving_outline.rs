@@ -87,7 +87,7 @@ pub(in crate::model::fem) fn prepare_way(cable: &mut CableState, times: [f64; 2]
         return;
     }
     let ends: Vec<[Vec2; 2]> =
-        (0..cable.mesh.rest_length.len()).map(|e| cable.mesh.straight(e, &cable.motion.x)).collect();
+        (0..cable.mesh.rest_length.len()).map(|e| cable.mesh.straight(e, &cable.motion.positions)).collect();
     for part in cable.mesh.tuning.outline.way_fractions {
         let outline_motion = OutlineMotion { obstacle, from, to: from.towards(&goal, part) };
         move_outline(cable, &outline_motion);
@@ -140,7 +140,7 @@ pub(in crate::model::fem) fn outline_report(cable: &CableState) -> Option<RobotC
     let left = outline.shape.max_displacement(&at, &outline.to.1);
     let left_m = if left > STANDS_M { left } else { 0.0 };
     Some(RobotContact {
-        force_n: cable.contacts.force_on(outline.obstacle, &cable.problem, &cable.mesh, &cable.motion.x),
+        force_n: cable.contacts.force_on(outline.obstacle, &cable.problem, &cable.mesh, &cable.motion.positions),
         placement: at,
         left_m,
     })

@@ -56,7 +56,7 @@ impl Share {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::model::fem) struct Remeshed {
     /// The cable runs over other corners and rounds.
-    pub(in crate::model::fem) seats: bool,
+    pub(in crate::model::fem) sliding_nodes: bool,
     /// Its bars are not those that were balanced.
     pub(in crate::model::fem) bars: bool,
     /// Material went from bar to bar as marks on rounds were moved.
@@ -83,12 +83,12 @@ pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) ->
     let evened = even_out(cable);
     let bars = changed || wound || evened;
     if bars || moved {
-        let x = std::mem::take(&mut cable.motion.x);
+        let x = std::mem::take(&mut cable.motion.positions);
         cable.contacts.prepare(&cable.problem, &cable.mesh, &x, &x);
-        cable.motion.x = x;
+        cable.motion.positions = x;
         renew_input(cable);
     }
-    Remeshed { seats: changed, bars, marks: moved }
+    Remeshed { sliding_nodes: changed, bars, marks: moved }
 }
 
 /// Lets go of the sliding nodes that press on nothing, but for those on `kept`; returns whether
@@ -104,7 +104,10 @@ fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool)
             }
             Some(slide_over @ SlideOver::Obstacle { .. }) => !kept.contains(&slide_over) && lifts_off(cable, k),
         };
-        if leaves && cable.mesh.runs_straight(k, &cable.motion.x) && IntersectionCheck::of(cable).clear_without(k) {
+        if leaves
+            && cable.mesh.runs_straight(k, &cable.motion.positions)
+            && IntersectionCheck::of(cable).clear_without(k)
+        {
             remove(cable, k);
             changed = true;
         } else if leaves && (rests || settles_unstretched(cable, k)) && settle_down(cable, k) {
@@ -127,20 +130,20 @@ fn pin_down(cable: &mut CableState, k: usize, arc_length: f64, sliding: SlidingN
 
 fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: SlidingNode) {
     keep_answer(cable);
-    let along = cable.mesh.path(k - 1, &cable.motion.x).direction;
+    let along = cable.mesh.path(k - 1, &cable.motion.positions).direction;
     let (mesh, m) = (&mut cable.mesh, &mut cable.motion);
     mesh.sliding[k] = Some(sliding);
     mesh.arc_length[k] = arc_length;
     for e in [k - 1, k] {
         mesh.rest_length[e] = mesh.thermal_stretch * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
     }
-    m.w[k] = -m.v[k].dot(&along);
-    m.w_before[k] = m.w[k];
-    m.s_before[k] = arc_length - m.w[k] * m.step_before;
-    m.x[k] = sliding.position();
-    m.x_before[k] = m.x[k];
-    m.v[k] = Vec2::zeros();
-    m.v_before[k] = Vec2::zeros();
+    m.slide_rates[k] = -m.velocities[k].dot(&along);
+    m.previous_slide_rates[k] = m.slide_rates[k];
+    m.previous_arc_length[k] = arc_length - m.slide_rates[k] * m.step_before;
+    m.positions[k] = sliding.position();
+    m.previous_positions[k] = m.positions[k];
+    m.velocities[k] = Vec2::zeros();
+    m.previous_velocities[k] = Vec2::zeros();
     cable.contacts.floor_slid[k] = floor_friction::as_slide(cable.contacts.floor_slid[k], along);
 }
 
@@ -160,8 +163,8 @@ pub(in crate::model::fem) fn settle_down(cable: &mut CableState, k: usize) -> bo
 
 fn make_material(cable: &mut CableState, k: usize) -> bool {
     keep_answer(cable);
-    let before = [k - 1, k].map(|e| cable.mesh.path(e, &cable.motion.x).length / cable.mesh.rest_length[e]);
-    let half = (0.5 * cable.mesh.turn(k, &cable.motion.x)).abs();
+    let before = [k - 1, k].map(|e| cable.mesh.path(e, &cable.motion.positions).length / cable.mesh.rest_length[e]);
+    let half = (0.5 * cable.mesh.turn(k, &cable.motion.positions)).abs();
     let out = 1.0
         / if half < cable.mesh.tuning.remesh.max_tangent_half_turn_rad {
             half.cos()
@@ -169,20 +172,20 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
             cable.mesh.tuning.remesh.max_tangent_half_turn_rad.cos()
         };
     let Some(end) = cable.mesh.sliding[k].map(|s| s.end) else { return false };
-    let x = &cable.motion.x;
+    let x = &cable.motion.positions;
     let along = cable.mesh.path(k - 1, x).direction + cable.mesh.path(k, x).direction;
     let outward = perp(along) * -end.sense;
     let outward =
         if outward.norm() > cable.mesh.tuning.remesh.fold_direction_sum { outward.normalize() } else { end.mark };
-    let (sliding, place) = (cable.mesh.sliding[k].take(), cable.motion.x[k]);
-    cable.motion.x[k] = end.center + outward * (end.radius * out);
+    let (sliding, place) = (cable.mesh.sliding[k].take(), cable.motion.positions[k]);
+    cable.motion.positions[k] = end.center + outward * (end.radius * out);
     if ![k - 1, k].into_iter().all(|e| IntersectionCheck::of(cable).is_clear(e)) {
         cable.mesh.sliding[k] = sliding;
-        cable.motion.x[k] = place;
+        cable.motion.positions[k] = place;
         return false;
     }
     let mesh = &mut cable.mesh;
-    let ways = [0, 1].map(|j| mesh.path(k - 1 + j, &cable.motion.x).length);
+    let ways = [0, 1].map(|j| mesh.path(k - 1 + j, &cable.motion.positions).length);
     let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
     if ways[0] > 0.0 && ways[1] > 0.0 {
         let first = whole * Share::of(ways, before, whole).first;
@@ -193,10 +196,10 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     let m = &mut cable.motion;
     let slid = floor_friction::as_move(cable.contacts.floor_slid[k], along.try_normalize(0.0).unwrap_or_default());
     cable.contacts.floor_slid[k] = slid;
-    m.v[k] = along * (-0.5 * m.w[k]);
-    m.v_before[k] = m.v[k];
-    m.x_before[k] = m.x[k] - m.v[k] * m.step_before;
-    m.w[k] = 0.0;
+    m.velocities[k] = along * (-0.5 * m.slide_rates[k]);
+    m.previous_velocities[k] = m.velocities[k];
+    m.previous_positions[k] = m.positions[k] - m.velocities[k] * m.step_before;
+    m.slide_rates[k] = 0.0;
     true
 }
 
@@ -216,7 +219,7 @@ fn lifts_off(cable: &CableState, k: usize) -> bool {
         return false;
     }
     let Some(load) = cable.load(k) else { return false };
-    let (turn, tension) = (cable.mesh.turn(k, &cable.motion.x), 0.5 * (load.tension[0] + load.tension[1]));
+    let (turn, tension) = (cable.mesh.turn(k, &cable.motion.positions), 0.5 * (load.tension[0] + load.tension[1]));
     load.normal < 0.0
         || turn < 0.0
         || IntersectionCheck::of(cable).beyond_its_corner(k)
@@ -224,7 +227,7 @@ fn lifts_off(cable: &CableState, k: usize) -> bool {
             && turn < 2.0 * cable.mesh.tuning.remesh.max_left_half_turn_rad)
 }
 
-/// Puts sliding nodes where corners and circles press; returns their seats.
+/// Puts sliding nodes where corners and circles press; returns what they slide over.
 fn add_sliding_nodes(cable: &mut CableState, rests: bool) -> Vec<SlideOver> {
     let mut taken = Vec::new();
     if cable.problem.world.is_empty() || !cable.meshing.slides {
@@ -232,7 +235,7 @@ fn add_sliding_nodes(cable: &mut CableState, rests: bool) -> Vec<SlideOver> {
     }
     let mut touches = std::mem::take(&mut cable.meshing.found);
     for _ in 0..cable.mesh.tuning.remesh.max_changes {
-        cable.contacts.find(&cable.problem, &cable.mesh, &cable.motion.x, &mut touches);
+        cable.contacts.find(&cable.problem, &cable.mesh, &cable.motion.positions, &mut touches);
         let found = touches.iter().find_map(|t| {
             let pressed = t.pair.weight > 0.0 && t.load(&cable.contacts.barrier) > 0.0 && t.pair.gap.feature % 2 == 1;
             let (bar, arc_length, sliding) =
@@ -268,14 +271,16 @@ fn add_sliding_nodes(cable: &mut CableState, rests: bool) -> Vec<SlideOver> {
 /// between them; None where the cable is not taut, pulled by less than what its own speed
 /// across, hitting something, would make of it, or where the node would stretch it.
 fn share_of_sliding(cable: &CableState, [before, after]: [usize; 2], sliding: &SlidingNode) -> Option<Share> {
-    let (mesh, x) = (&cable.mesh, &cable.motion.x);
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
     let ways = [Path::between(&mesh.end(before, x), &sliding.end), Path::between(&sliding.end, &mesh.end(after, x))];
     let stretch = [before, after - 1].map(|e| mesh.path(e, x).length / mesh.rest_length[e]);
     let whole = (before..after).map(|e| mesh.rest_length[e]).sum();
     let share = Share::of(ways.map(|w| w.length), stretch, whole);
     let near = mesh.arc_length[before] - cable.mesh.tuning.remesh.neighbourhood_m
         ..mesh.arc_length[after] + cable.mesh.tuning.remesh.neighbourhood_m;
-    let speed = |k: usize| if mesh.sliding[k].is_some() { cable.motion.w[k].abs() } else { cable.motion.v[k].norm() };
+    let speed = |k: usize| {
+        if mesh.sliding[k].is_some() { cable.motion.slide_rates[k].abs() } else { cable.motion.velocities[k].norm() }
+    };
     let fastest = (0..mesh.nodes())
         .filter(|&k| near.contains(&mesh.arc_length[k]))
         .map(speed)
@@ -288,9 +293,9 @@ fn share_of_sliding(cable: &CableState, [before, after]: [usize; 2], sliding: &S
 
 /// True if a sliding node that becomes a plain one leaves a cable in motion as tense as it is.
 fn settles_unstretched(cable: &CableState, k: usize) -> bool {
-    let (mesh, x) = (&cable.mesh, &cable.motion.x);
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
     let Some(end) = mesh.sliding[k].map(|s| s.end) else { return false };
-    let half = (0.5 * cable.mesh.turn(k, &cable.motion.x)).abs();
+    let half = (0.5 * cable.mesh.turn(k, &cable.motion.positions)).abs();
     let longer = end.radius * (half.tan() - half);
     let lengths = [k - 1, k].map(|e| mesh.path(e, x).length);
     let stretch = [0, 1].map(|j| lengths[j] / mesh.rest_length[k - 1 + j]);
@@ -313,7 +318,7 @@ fn may_change(cable: &CableState, tension: f64, share: &Share) -> bool {
 /// True if a sliding node between two nodes would bend the cable the right way and its bars
 /// would meet nothing.
 fn fits(cable: &CableState, [before, after]: [usize; 2], sliding: &SlidingNode) -> bool {
-    let x = &cable.motion.x;
+    let x = &cable.motion.positions;
     let paths = [
         Path::between(&cable.mesh.end(before, x), &sliding.end),
         Path::between(&sliding.end, &cable.mesh.end(after, x)),
@@ -348,7 +353,7 @@ fn sliding_node_for(
     on_segment: bool,
     gap: &crate::contact::Gap,
 ) -> Option<(usize, f64, SlidingNode)> {
-    let (mesh, x, last) = (&cable.mesh, &cable.motion.x, cable.mesh.nodes() - 1);
+    let (mesh, x, last) = (&cable.mesh, &cable.motion.positions, cable.mesh.nodes() - 1);
     let (center, radius) = round_of(
         cable.problem.world.geometry(),
         gap.feature,
@@ -367,7 +372,7 @@ fn sliding_node_for(
     // away from it hits it with a node.
     if !on_segment
         && (along.norm() < cable.mesh.tuning.remesh.fold_direction_sum
-            || cable.mesh.turn(node, &cable.motion.x) * sense < 0.0)
+            || cable.mesh.turn(node, &cable.motion.positions) * sense < 0.0)
     {
         return None;
     }
@@ -415,7 +420,7 @@ pub(in crate::model::fem) fn bends_visibly(cable: &CableState, tension: f64) -> 
 /// Takes out plain nodes in the way of a new sliding node.
 fn clear_around(cable: &mut CableState, k: usize) {
     let near = cable.mesh.tuning.remesh.min_bar * cable.even();
-    let straight = |d: &CableState, e: usize| d.mesh.path(e, &d.motion.x).straight;
+    let straight = |d: &CableState, e: usize| d.mesh.path(e, &d.motion.positions).straight;
     if k + 2 < cable.mesh.nodes()
         && cable.meshing.removable(&cable.mesh, k + 1)
         && straight(cable, k) < near
@@ -445,13 +450,13 @@ pub(in crate::model::fem) fn even_out(cable: &mut CableState) -> bool {
             continue;
         }
         let (before, after) = (cable.mesh.sliding[k - 1], cable.mesh.sliding[k + 1]);
-        let straight = |e: usize| cable.mesh.path(e, &cable.motion.x).straight;
+        let straight = |e: usize| cable.mesh.path(e, &cable.motion.positions).straight;
         let crowded = (before.is_some() && straight(k - 1) < cable.mesh.tuning.remesh.min_bar * even)
             || (after.is_some() && straight(k) < cable.mesh.tuning.remesh.min_bar * even);
         let spare = before.is_none()
             && after.is_none()
             && cable.mesh.material_between(k - 1, k + 1) < cable.mesh.tuning.remesh.spare_bars * even
-            && cable.mesh.runs_straight(k, &cable.motion.x);
+            && cable.mesh.runs_straight(k, &cable.motion.positions);
         let enclosed = matches!((before, after), (Some(a), Some(b)) if a.shares_round(&b));
         if (crowded || enclosed || spare) && IntersectionCheck::of(cable).clear_without(k) {
             remove(cable, k);
@@ -463,7 +468,7 @@ pub(in crate::model::fem) fn even_out(cable: &mut CableState) -> bool {
     let mut e = 0;
     while e + 1 < cable.mesh.nodes() {
         let length = cable.mesh.material_between(e, e + 1);
-        let x = &cable.motion.x;
+        let x = &cable.motion.positions;
         let path = cable.mesh.path(e, x);
         let unwound = path.arcs.iter().any(|&a| a < -0.1);
         if length > cable.mesh.tuning.remesh.max_bar * even

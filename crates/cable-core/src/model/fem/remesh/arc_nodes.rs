@@ -25,7 +25,7 @@ pub(in crate::model::fem) fn move_marks(cable: &mut CableState, rests: bool) -> 
         if !(node.end.radius > 0.0) || shared(k - 1) || shared(k + 1) {
             continue;
         }
-        let x = &cable.motion.x;
+        let x = &cable.motion.positions;
         let paths = [cable.mesh.path(k - 1, x), cable.mesh.path(k, x)];
         let tensions = [0, 1].map(|j| cable.mesh.bar(k - 1 + j).tension(paths[j].length));
         let whole = paths[0].arcs[1] + paths[1].arcs[0];
@@ -61,11 +61,11 @@ fn turn_mark(cable: &mut CableState, k: usize, shift: f64, material: f64) {
     let turned = SlidingNode { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
     cable.mesh.sliding[k] = Some(turned);
     cable.mesh.arc_length[k] += material;
-    cable.motion.s_before[k] += material;
+    cable.motion.previous_arc_length[k] += material;
     cable.mesh.rest_length[k - 1] += cable.mesh.thermal_stretch * material;
     cable.mesh.rest_length[k] -= cable.mesh.thermal_stretch * material;
-    cable.motion.x[k] = turned.position();
-    cable.motion.x_before[k] = cable.motion.x[k];
+    cable.motion.positions[k] = turned.position();
+    cable.motion.previous_positions[k] = cable.motion.positions[k];
 }
 
 /// Gives long arcs more marks and takes away those that the tangent has passed.
@@ -80,7 +80,7 @@ pub(in crate::model::fem) fn wind(cable: &mut CableState, rests: bool) -> bool {
             continue;
         };
         let shared = [k - 1, k + 1].map(|j| cable.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
-        let x = &cable.motion.x;
+        let x = &cable.motion.positions;
         let arcs = [cable.mesh.path(k - 1, x).arcs[1], cable.mesh.path(k, x).arcs[0]];
         // On a large round the marks of a cable at rest are as far apart as nodes elsewhere:
         // what friction holds is known between marks only.
@@ -116,7 +116,7 @@ fn add_mark(cable: &mut CableState, k: usize, side: usize, angle: f64) {
     let bar = k - 1 + side;
     let sign = if side == 0 { -1.0 } else { 1.0 };
     let mark = rotate(node.end.mark, node.end.sense * sign * angle);
-    let length = cable.mesh.path(bar, &cable.motion.x).length;
+    let length = cable.mesh.path(bar, &cable.motion.positions).length;
     let s = [cable.mesh.arc_length[bar], cable.mesh.arc_length[bar + 1]];
     let part = angle * node.end.radius / length * (s[1] - s[0]);
     let arc_length = if side == 0 { s[1] - part } else { s[0] + part };

@@ -21,18 +21,19 @@ pub(in crate::model::fem) fn insert(cable: &mut CableState, k: usize, arc_length
 fn put_in(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {
     keep_answer(cable);
     let mesh = &mut cable.mesh;
-    let path = mesh.path(k - 1, &cable.motion.x);
+    let path = mesh.path(k - 1, &cable.motion.positions);
     let (a, b) = (mesh.arc_length[k - 1], mesh.arc_length[k]);
     let part = (arc_length - a) / (b - a);
-    let lead = path.arcs[0] * mesh.end(k - 1, &cable.motion.x).radius;
+    let lead = path.arcs[0] * mesh.end(k - 1, &cable.motion.positions).radius;
     let fraction =
         if path.straight > 0.0 { ((part * path.length - lead) / path.straight).clamp(0.0, 1.0) } else { 0.5 };
     let at = path.ends[0] + (path.ends[1] - path.ends[0]) * fraction;
     let m = &mut cable.motion;
     let t = path.direction;
-    let speed = |j: usize| if mesh.sliding[j].is_some() { t * -m.w[j] } else { m.v[j] };
+    let speed = |j: usize| if mesh.sliding[j].is_some() { t * -m.slide_rates[j] } else { m.velocities[j] };
     let v = speed(k - 1) * (1.0 - part) + speed(k) * part;
-    let earlier = |j: usize| if mesh.sliding[j].is_some() { t * -m.w_before[j] } else { m.v_before[j] };
+    let earlier =
+        |j: usize| if mesh.sliding[j].is_some() { t * -m.previous_slide_rates[j] } else { m.previous_velocities[j] };
     let v_before = earlier(k - 1) * (1.0 - part) + earlier(k) * part;
     // The floor does to it what it does to its neighbours.
     let slid = |j: usize| {
@@ -45,7 +46,17 @@ fn put_in(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<Sli
     let w_before = if sliding.is_some() { -v_before.dot(&t) } else { 0.0 };
     let (x, v, v_before) = sliding.map_or((at, v, v_before), |s| (s.position(), Vec2::zeros(), Vec2::zeros()));
     mesh.insert_node(k, arc_length, sliding);
-    m.insert_node(k, arc_length, NodeMotion { x, v, v_before, w, w_before });
+    m.insert_node(
+        k,
+        arc_length,
+        NodeMotion {
+            position: x,
+            velocity: v,
+            previous_velocity: v_before,
+            slide_rate: w,
+            previous_slide_rate: w_before,
+        },
+    );
     cable.answers.reaction.insert(k, Vec2::zeros());
     cable.contacts.floor_slid.insert(k, between);
     renumber(cable, |node| Some(if node >= k { node + 1 } else { node }));
@@ -68,7 +79,7 @@ fn remove_plain(cable: &mut CableState, k: usize) {
         // Material that comes to lie on the round has no history.
         let history = |d: &CableState| {
             let mass = MovingMass::of(d);
-            mass.sliding_momentum_at(&d.motion.w) - mass.sliding_momentum_at(&d.motion.w_before)
+            mass.sliding_momentum_at(&d.motion.slide_rates) - mass.sliding_momentum_at(&d.motion.previous_slide_rates)
         };
         let had = history(cable);
         merge(cable, k);
@@ -82,7 +93,8 @@ fn remove_plain(cable: &mut CableState, k: usize) {
 fn merge(cable: &mut CableState, k: usize) {
     let momentum = |d: &CableState| {
         let (m, mass) = (&d.motion, MovingMass::of(d));
-        [(&m.v, &m.w), (&m.v_before, &m.w_before)].map(|(v, w)| mass.moved_by(v) + mass.sliding_momentum_at(w))
+        [(&m.velocities, &m.slide_rates), (&m.previous_velocities, &m.previous_slide_rates)]
+            .map(|(v, w)| mass.moved_by(v) + mass.sliding_momentum_at(w))
     };
     let had = momentum(cable);
     take_out(cable, k);
@@ -97,9 +109,9 @@ fn merge(cable: &mut CableState, k: usize) {
     let [v, v_before] = [0, 1].map(|j| (had[j] - have[j]) / mass);
     let m = &mut cable.motion;
     for (j, _) in [k - 1, k].into_iter().zip(free).filter(|(_, free)| *free) {
-        m.v[j] += v;
-        m.v_before[j] += v_before;
-        m.x_before[j] -= (v + v_before) * (0.5 * m.step_before);
+        m.velocities[j] += v;
+        m.previous_velocities[j] += v_before;
+        m.previous_positions[j] -= (v + v_before) * (0.5 * m.step_before);
     }
 }
 

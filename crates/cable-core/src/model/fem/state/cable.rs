@@ -73,7 +73,7 @@ impl CableState {
 
     /// Takes the friction of a balanced step over into the memory of the contacts.
     pub(in crate::model::fem) fn commit_contacts(&mut self, unknowns: &Unknowns) {
-        self.contacts.commit(&self.problem, &self.mesh, &unknowns.x, &self.motion.x, &unknowns.slide);
+        self.contacts.commit(&self.problem, &self.mesh, &unknowns.positions, &self.motion.positions, &unknowns.slides);
     }
 
     /// Forgets the steps before the present instant.
@@ -85,7 +85,7 @@ impl CableState {
     /// Position of a support, m.
     pub(in crate::model::fem) fn support_position(&self, support: usize) -> Option<Vec2> {
         match self.meshing.support_node.get(support).copied().flatten() {
-            Some(node) => self.motion.x.get(node).copied(),
+            Some(node) => self.motion.positions.get(node).copied(),
             None => self.mesh.pulley_center(support),
         }
     }
@@ -118,7 +118,7 @@ impl CableState {
     /// The place of a node, in the words of the scene.
     pub(in crate::model::fem) fn place(&self, node: usize) -> Box<Place> {
         let arc_length = self.mesh.arc_length.get(node).copied().unwrap_or(f64::NAN);
-        let at = self.motion.x.get(node).copied().unwrap_or(Vec2::repeat(f64::NAN));
+        let at = self.motion.positions.get(node).copied().unwrap_or(Vec2::repeat(f64::NAN));
         self.problem.place(arc_length, at, self.motion.time)
     }
 
@@ -134,8 +134,8 @@ impl CableState {
         State {
             time_s: self.motion.time,
             arc_length_m: self.mesh.arc_length.clone(),
-            position_m: self.motion.x.clone(),
-            velocity_m_per_s: self.motion.v.clone(),
+            position_m: self.motion.positions.clone(),
+            velocity_m_per_s: self.motion.velocities.clone(),
             in_motion: false,
         }
     }
@@ -144,7 +144,7 @@ impl CableState {
     #[cfg(test)]
     pub(in crate::model::fem) fn smallest_gap(&self) -> f64 {
         let mut touches = Vec::new();
-        self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
+        self.contacts.find(&self.problem, &self.mesh, &self.motion.positions, &mut touches);
         touches.iter().map(|t| t.pair.gap.gap_m).fold(f64::INFINITY, |a, b| if b < a { b } else { a })
     }
 
@@ -155,7 +155,7 @@ impl CableState {
 
     /// The load of a sliding node as the cable lies now.
     pub(in crate::model::fem) fn load(&self, k: usize) -> Option<Load> {
-        self.step_context().load_at(k, &self.motion.x, None)
+        self.step_context().load_at(k, &self.motion.positions, None)
     }
 
     /// Length of an even bar, m of arc length.
@@ -166,7 +166,7 @@ impl CableState {
     /// The barrier's stiffness follows the greatest tension: see [`ContactSet::adapt_stiffness`].
     pub(in crate::model::fem) fn adapt_stiffness(&mut self, bounds: [f64; 2], ahead: f64) {
         if !self.meets_nothing() {
-            let tension = self.mesh.greatest_tension(&self.motion.x);
+            let tension = self.mesh.greatest_tension(&self.motion.positions);
             self.contacts.adapt_stiffness(tension, self.meshing.bar_weight, bounds, ahead);
         }
     }
@@ -174,14 +174,14 @@ impl CableState {
     /// The same for the sliding at which friction is fully mobilised, where inertia does not count.
     pub(in crate::model::fem) fn adapt_slip(&mut self) {
         let weight = load_scale(&self.problem).0 * self.problem.length;
-        let tension = self.mesh.greatest_tension(&self.motion.x);
+        let tension = self.mesh.greatest_tension(&self.motion.positions);
         let force = if tension > weight { tension } else { weight };
         self.contacts.set_slip(slip_at_rest(&self.contacts.tuning, &self.problem, force));
     }
 
     /// True if the cable is in touch with itself.
     pub(in crate::model::fem) fn touches_itself(&self) -> bool {
-        self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, self.mesh.tuning.contact.reach_m).is_some()
+        self.contacts.own.smallest_gap(&self.mesh, &self.motion.positions, self.mesh.tuning.contact.reach_m).is_some()
     }
 
     /// Steps without inertia that keep every support's move below half an element.

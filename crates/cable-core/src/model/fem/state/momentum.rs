@@ -28,7 +28,7 @@ impl<'a> MovingMass<'a> {
     /// Momentum of cable and lumps, kg m/s.
     pub(in crate::model::fem) fn momentum(&self) -> Vec2 {
         let [pulleys, rounds] = self.sliding_momentum();
-        self.moved_by(&self.motion.v) + pulleys + rounds
+        self.moved_by(&self.motion.velocities) + pulleys + rounds
     }
 
     /// The same of the nodes that move with their material, at velocities `v` (m/s).
@@ -51,7 +51,8 @@ impl<'a> MovingMass<'a> {
 
     /// The same of the material at sliding nodes: that on pulleys, and that on rounds of obstacles.
     pub(in crate::model::fem) fn sliding_momentum(&self) -> [Vec2; 2] {
-        [SUPPORTS, CONTACTS].map(|kind| self.slid_by(&self.motion.w, |slide_over| kind_of(slide_over) == kind))
+        [SUPPORTS, CONTACTS]
+            .map(|kind| self.slid_by(&self.motion.slide_rates, |slide_over| kind_of(slide_over) == kind))
     }
 
     /// The same of all of it, at rates `w` (m/s) of the arc length.
@@ -65,7 +66,7 @@ impl<'a> MovingMass<'a> {
         if self.meshing.never_slides {
             return sum;
         }
-        let (mesh, x) = (self.mesh, &self.motion.x);
+        let (mesh, x) = (self.mesh, &self.motion.positions);
         for k in 1..mesh.nodes().saturating_sub(1) {
             if !mesh.sliding[k].is_some_and(|node| counts(node.slide_over)) {
                 continue;
@@ -88,7 +89,7 @@ pub(in crate::model::fem) fn attribute_to<R>(
 ) -> R {
     let history = |d: &CableState| {
         let mass = MovingMass::of(d);
-        mass.moved_by(&d.motion.v) - mass.moved_by(&d.motion.v_before)
+        mass.moved_by(&d.motion.velocities) - mass.moved_by(&d.motion.previous_velocities)
     };
     let (before, known) = (MovingMass::of(cable).momentum(), history(cable));
     let done = change(cable);

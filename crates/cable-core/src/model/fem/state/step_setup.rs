@@ -68,8 +68,8 @@ pub(in crate::model::fem) fn prepare_step(
     for (node, force) in &cable.meshing.loads {
         input.force[*node] += force.at(to);
     }
-    input.start.clone_from(&cable.motion.x);
-    input.target.clone_from(&cable.motion.x);
+    input.start.clone_from(&cable.motion.positions);
+    input.target.clone_from(&cable.motion.positions);
     input.cleared.clear();
     input.hands.clear();
     mesh.held.fill(false);
@@ -92,11 +92,11 @@ pub(in crate::model::fem) fn prepare_step(
             // beyond its own motion, which is followed exactly.
             let own = s.place_at(from).map_or(0.0, |(before, _)| (at - before).norm());
             let most = if cable.motion.followers[k].is_some() { 0.0 } else { own } + MAX_SPEED * (to - from);
-            let at = if to > from { within(cable.motion.x[node], at, most) } else { at };
+            let at = if to > from { within(cable.motion.positions[node], at, most) } else { at };
             // A support that a hand holds by a spring is a node that moves.
             if cable.motion.hands[k].is_none() {
                 mesh.held[node] = true;
-                input.target[node] = clear_way(problem, mesh, cable.motion.x[node], at);
+                input.target[node] = clear_way(problem, mesh, cable.motion.positions[node], at);
                 if input.target[node] != at && !cable.answers.held_back.contains(&k) {
                     cable.answers.held_back.push(k);
                 }
@@ -119,8 +119,8 @@ pub(in crate::model::fem) fn prepare_step(
             let hand = dragged.and_then(|d| d.get(support).copied().flatten());
             let follower = cable.motion.followers.get(support).copied().flatten();
             node.end.center = follower.map_or(hand.unwrap_or(at), |f| f.position());
-            cable.motion.x[k] = node.position();
-            input.start[k] = cable.motion.x[k];
+            cable.motion.positions[k] = node.position();
+            input.start[k] = cable.motion.positions[k];
         }
     }
     input.may_lag = to > from;
@@ -135,24 +135,24 @@ pub(in crate::model::fem) fn prepare_step(
     input.most_noise = f64::INFINITY;
     input.inertia.clear();
     input.inertia.resize(n, 0.0);
-    input.predicted.clone_from(&cable.motion.x);
+    input.predicted.clone_from(&cable.motion.positions);
     input.coupling.clear();
     input.predicted_length.clear();
     input.predicted_length.extend_from_slice(&mesh.rest_length);
     input.predicted_slide.clear();
     input.predicted_slide.resize(n, 0.0);
     cable.input.set_scale(&cable.mesh);
-    let x = std::mem::take(&mut cable.motion.x);
+    let x = std::mem::take(&mut cable.motion.positions);
     floor_friction::renew_limits(&mut cable.input.floor_limit, &cable.problem, &cable.mesh, &x, None);
     for k in 1..n.saturating_sub(1) {
         if cable.mesh.sliding[k].is_some() {
-            let lies = bar_weight::parts_that_lie(&cable.mesh, k, &x, cable.input.body);
+            let lying = bar_weight::parts_that_lie(&cable.mesh, k, &x, cable.input.body);
             if let Some(node) = &mut cable.mesh.sliding[k] {
-                node.lies = lies;
+                node.lying_fractions = lying;
             }
         }
     }
-    cable.motion.x = x;
+    cable.motion.positions = x;
 }
 
 /// Reads turn and grip of every sliding node off unknowns and says how that differs from what
@@ -174,14 +174,14 @@ pub(in crate::model::fem) fn update_grips(
             &mut cable.input.floor_limit,
             &cable.problem,
             &cable.mesh,
-            &unknowns.x,
-            Some(&unknowns.slide),
+            &unknowns.positions,
+            Some(&unknowns.slides),
         ),
         ..StickSlipChanges::FOUND
     };
     for k in 0..cable.mesh.nodes() {
         let (Some(node), Some(load)) =
-            (cable.mesh.sliding[k], cable.step_context().load_at(k, &unknowns.x, Some(&unknowns.slide)))
+            (cable.mesh.sliding[k], cable.step_context().load_at(k, &unknowns.positions, Some(&unknowns.slides)))
         else {
             continue;
         };
@@ -193,11 +193,11 @@ pub(in crate::model::fem) fn update_grips(
         let presses = load.turn > 0.0 && load.pull[0] + load.pull[1] > 0.0;
         let exponent = if presses { node.friction * load.turn } else { 0.0 };
         next.exponent = if one { 0.5 * (node.exponent + exponent) } else { exponent };
-        let inertia = cable.input.inertia[k] * (unknowns.slide[k] - cable.input.predicted_slide[k]);
+        let inertia = cable.input.inertia[k] * (unknowns.slides[k] - cable.input.predicted_slide[k]);
         let pulls = load.pull[0].abs() + load.pull[1].abs();
         let slack = cable.input.tolerance + EVEN_FORCE * pulls;
         let stiffness = cable.mesh.axial_stiffness;
-        let grip = load.grip(&next, unknowns.slide[k], [inertia, slack], stiffness);
+        let grip = load.grip(&next, unknowns.slides[k], [inertia, slack], stiffness);
         if grip != node.grip {
             grips.wrong += 1;
             if !one || grips.wrong == 1 {
@@ -205,10 +205,10 @@ pub(in crate::model::fem) fn update_grips(
             }
         }
         next.factor = load.factor(next.grip, next.exponent, stiffness);
-        let floor = floor_friction::reaches(&cable.mesh, k, &unknowns.x, Some(&unknowns.slide));
+        let floor = floor_friction::reaches(&cable.mesh, k, &unknowns.positions, Some(&unknowns.slides));
         next.floor_factor = floor_friction::factor(floor, load.ratio(next.grip, next.exponent));
         if next.sticks() && !node.sticks() {
-            unknowns.slide[k] = 0.0;
+            unknowns.slides[k] = 0.0;
         }
         let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SCALE_TOLERANCE;
         grips.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);

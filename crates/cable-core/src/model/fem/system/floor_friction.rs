@@ -43,8 +43,8 @@ fn shares(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] 
 /// m: half of the straight part of each bar beside it, and all that lies on its round.
 pub(in crate::model::fem) fn reaches(mesh: &Mesh, k: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] {
     let [_, before, on] = if k > 0 { shares(mesh, k - 1, x, slide) } else { [0.0; 3] };
-    let [lies, after, _] = if k + 1 < mesh.nodes() { shares(mesh, k, x, slide) } else { [0.0; 3] };
-    [before, on + lies, after]
+    let [leaving, after, _] = if k + 1 < mesh.nodes() { shares(mesh, k, x, slide) } else { [0.0; 3] };
+    [before, on + leaving, after]
 }
 
 /// Floor friction as the slope of the scaled energy by the slide sees it, in parts of its own size.

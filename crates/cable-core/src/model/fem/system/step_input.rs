@@ -21,9 +21,9 @@ const INERTIA_ROUNDINGS: f64 = 16.0;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Unknowns {
     /// Position of each node, m; of a sliding one its mark.
-    pub x: Vec<Vec2>,
+    pub positions: Vec<Vec2>,
     /// Slide of the arc length at each sliding node in this step, m.
-    pub slide: Vec<f64>,
+    pub slides: Vec<f64>,
 }
 
 /// The input of a step: supports, loads, inertia and tolerances.

@@ -337,7 +337,7 @@ fn a_cable_that_lands_stays_on_the_ground() {
     d.settle(&[]).unwrap();
     // Thrown down flat with 2.4 m/s from 5 cm: a barrier without landing throws it back at half of
     // that, 7 cm up.
-    for (x, v) in d.cable.motion.x.iter_mut().zip(&mut d.cable.motion.v) {
+    for (x, v) in d.cable.motion.positions.iter_mut().zip(&mut d.cable.motion.velocities) {
         (x.y, v.y) = (x.y + 0.05, -2.4);
     }
     d.forget_history();
@@ -367,7 +367,7 @@ fn legs_that_touch() -> Dynamics {
     let mut d = build(&scene);
     d.settle(&[]).unwrap();
     for k in 1..d.cable.mesh.nodes() - 1 {
-        d.cable.motion.v[k].x = 3.0 * (std::f64::consts::FRAC_PI_2 * d.cable.mesh.arc_length[k]).sin();
+        d.cable.motion.velocities[k].x = 3.0 * (std::f64::consts::FRAC_PI_2 * d.cable.mesh.arc_length[k]).sin();
     }
     for _ in 0..60 {
         d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
@@ -385,12 +385,14 @@ fn legs_that_land_on_each_other_go_on_together() {
     assert!(rubs.len() > 2, "{}", rubs.len());
     for k in 0..d.cable.mesh.nodes() {
         let way = if d.cable.mesh.held[k] { 0.0 } else { 1.0 };
-        d.cable.motion.v[k] = Vec2::new(if d.cable.mesh.arc_length[k] < 2.0 { 2.0 } else { -1.0 } * way, 0.3 * way);
+        d.cable.motion.velocities[k] =
+            Vec2::new(if d.cable.mesh.arc_length[k] < 2.0 { 2.0 } else { -1.0 } * way, 0.3 * way);
     }
-    let momentum =
-        |d: &Dynamics| (0..d.cable.mesh.nodes()).map(|k| d.cable.motion.v[k] * d.cable.mesh.share(k)).sum::<Vec2>();
+    let momentum = |d: &Dynamics| {
+        (0..d.cable.mesh.nodes()).map(|k| d.cable.motion.velocities[k] * d.cable.mesh.share(k)).sum::<Vec2>()
+    };
     let fastest = |d: &Dynamics| {
-        rubs.iter().map(|r| r.pair.normal.dot(&r.pair.difference(&d.cable.motion.v)).abs()).fold(0.0, f64::max)
+        rubs.iter().map(|r| r.pair.normal.dot(&r.pair.difference(&d.cable.motion.velocities)).abs()).fold(0.0, f64::max)
     };
     let (before, approach) = (momentum(&d), fastest(&d));
     crate::model::fem::time::self_contact::land(&mut d.cable, 1.0 / 240.0, 240.0);
@@ -403,7 +405,7 @@ fn legs_that_land_on_each_other_go_on_together() {
 #[test]
 fn legs_rub_on_each_other_and_remember_it() {
     let mut d = legs_that_touch();
-    let (start, by) = (d.cable.motion.x.clone(), 3e-6);
+    let (start, by) = (d.cable.motion.positions.clone(), 3e-6);
     let mut slid = start.clone();
     for k in (0..d.cable.mesh.nodes()).filter(|&k| d.cable.mesh.arc_length[k] > 2.0) {
         slid[k].y += by;

@@ -206,7 +206,7 @@ fn thrown_off_a_beam(speed: f64) -> Dynamics {
     assert!(d.cable.mesh.sliding.iter().flatten().count() > 0);
     for k in 1..d.cable.mesh.nodes() - 1 {
         if d.cable.mesh.sliding[k].is_none() {
-            d.cable.motion.v[k].y = speed;
+            d.cable.motion.velocities[k].y = speed;
         }
     }
     d
@@ -234,7 +234,7 @@ fn pulled(d: &Dynamics, x: &[Vec2]) -> Option<usize> {
 #[test]
 fn a_pose_that_turns_a_corner_the_wrong_way_is_noticed() {
     let d = thrown_off_a_beam(0.0);
-    let mut x = d.cable.motion.x.clone();
+    let mut x = d.cable.motion.positions.clone();
     assert_eq!(pulled(&d, &x), None);
     let first = d.cable.mesh.sliding.iter().position(Option::is_some).unwrap();
     for (k, at) in x.iter_mut().enumerate().filter(|(k, _)| d.cable.mesh.sliding[*k].is_none()) {
@@ -248,7 +248,7 @@ fn a_cable_that_folds_back_at_a_corner_does_not_run_through_its_edge() {
     let mut d = build(&over_a_beam(0.3, 42, 0.3));
     d.settle(&[]).unwrap();
     let k = d.cable.mesh.sliding.iter().position(Option::is_some).unwrap();
-    let mut x = d.cable.motion.x.clone();
+    let mut x = d.cable.motion.positions.clone();
     assert_eq!(pulled(&d, &x), None);
     // It comes up the left side of the beam, and now goes back there: round the corner and through
     // the top.
@@ -273,7 +273,8 @@ fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
     d.settle(&[]).unwrap();
     let k = (0..d.cable.mesh.nodes()).find(|&k| d.cable.mesh.sliding[k].is_some()).unwrap();
     let turn = {
-        let path = [d.cable.mesh.path(k - 1, &d.cable.motion.x), d.cable.mesh.path(k, &d.cable.motion.x)];
+        let path =
+            [d.cable.mesh.path(k - 1, &d.cable.motion.positions), d.cable.mesh.path(k, &d.cable.motion.positions)];
         path[0].arcs[1] + path[1].arcs[0]
     };
     let node = d.cable.mesh.sliding[k].unwrap();
@@ -289,7 +290,9 @@ fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
     d.cable.mesh.rest_length[k - 1] += material;
     d.cable.mesh.rest_length[k] -= material;
     let tensions = |d: &Dynamics| {
-        [k - 1, k].map(|e| stiff * (d.cable.mesh.path(e, &d.cable.motion.x).length / d.cable.mesh.rest_length[e] - 1.0))
+        [k - 1, k].map(|e| {
+            stiff * (d.cable.mesh.path(e, &d.cable.motion.positions).length / d.cable.mesh.rest_length[e] - 1.0)
+        })
     };
     let before = tensions(&d);
     assert!(settle_down(&mut d.cable, k));

@@ -55,11 +55,11 @@ impl Weights {
     }
 
     pub(in crate::model::fem) fn place(self, m: &Motion, k: usize) -> Vec2 {
-        self.of([&m.x, &m.x_before, &m.x_older], k)
+        self.of([&m.positions, &m.previous_positions, &m.older_positions], k)
     }
 
     fn velocity(self, m: &Motion, k: usize) -> Vec2 {
-        self.of([&m.v, &m.v_before, &m.v_older], k)
+        self.of([&m.velocities, &m.previous_velocities, &m.older_velocities], k)
     }
 
     fn of(self, [now, before, older]: [&[Vec2]; 3], k: usize) -> Vec2 {
@@ -92,8 +92,8 @@ pub(in crate::model::fem) fn land(cable: &mut CableState, h: f64, a: f64) {
     for (touch, load) in cable.contacts.pressing() {
         let n = touch.pair.gap.normal;
         let carried = cable.contacts.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
-        let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.x)) / h);
-        let speed = (touch.interpolate(&m.v) - of_it).dot(&n);
+        let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.positions)) / h);
+        let speed = (touch.interpolate(&m.velocities) - of_it).dot(&n);
         let shares = touch.shares();
         let nodes = [touch.node, touch.node + usize::from(touch.on_segment)];
         let free = [0, 1].map(|j| if cable.mesh.is_free(nodes[j]) { shares[j] } else { 0.0 });
@@ -109,15 +109,15 @@ pub(in crate::model::fem) fn land(cable: &mut CableState, h: f64, a: f64) {
         if speed.abs() < cable.mesh.tuning.step.plastic_speed_m_per_s {
             continue;
         }
-        let change = touch.interpolate(&m.v) - touch.interpolate(&m.v_before);
-        let acted = n * made + touch.tangent() * (cable.contacts.rubs(touch, &m.x) / a);
+        let change = touch.interpolate(&m.velocities) - touch.interpolate(&m.previous_velocities);
+        let acted = n * made + touch.tangent() * (cable.contacts.rubs(touch, &m.positions) / a);
         let over = acted - carried_on(acted - change / sum, n, touch.pair.gap.friction);
         for j in 0..2 {
             if free[j] > 0.0 {
                 let k = nodes[j];
-                m.v[k] -= n * (taken * give[j]);
-                m.v_before[k] += (over - n * taken) * give[j];
-                m.x_before[k] = m.x[k] - (m.v[k] + m.v_before[k]) * (0.5 * h);
+                m.velocities[k] -= n * (taken * give[j]);
+                m.previous_velocities[k] += (over - n * taken) * give[j];
+                m.previous_positions[k] = m.positions[k] - (m.velocities[k] + m.previous_velocities[k]) * (0.5 * h);
                 given -= n * (taken * free[j]);
                 forgotten += over * free[j];
             }
@@ -129,8 +129,8 @@ pub(in crate::model::fem) fn land(cable: &mut CableState, h: f64, a: f64) {
 /// Keeps what friction acts between at each sliding node.
 pub(in crate::model::fem) fn note_balanced(cable: &mut CableState, unknowns: &Unknowns) {
     for k in 0..cable.mesh.nodes() {
-        let Some(load) = cable.step_context().load_at(k, &unknowns.x, Some(&unknowns.slide)) else { continue };
-        let inertia = cable.input.inertia[k] * (unknowns.slide[k] - cable.input.predicted_slide[k]);
+        let Some(load) = cable.step_context().load_at(k, &unknowns.positions, Some(&unknowns.slides)) else { continue };
+        let inertia = cable.input.inertia[k] * (unknowns.slides[k] - cable.input.predicted_slide[k]);
         if let Some(node) = &mut cable.mesh.sliding[k] {
             let [comes, leaves] = load.at_round();
             // The step balances slopes by the slide, where inertia counts by what is stretched.
@@ -151,13 +151,13 @@ pub(in crate::model::fem) fn note_balanced(cable: &mut CableState, unknowns: &Un
 pub(in crate::model::fem) fn note_lag(cable: &mut CableState, unknowns: &Unknowns) {
     for (support, node) in cable.meshing.support_node.iter().enumerate() {
         let Some(k) = node.filter(|&k| cable.mesh.held[k]) else { continue };
-        if unknowns.x[k] != cable.input.target[k] && !cable.answers.held_back.contains(&support) {
+        if unknowns.positions[k] != cable.input.target[k] && !cable.answers.held_back.contains(&support) {
             cable.answers.held_back.push(support);
         }
         if let Some(f) = &mut cable.motion.followers[support]
-            && f.position() != unknowns.x[k]
+            && f.position() != unknowns.positions[k]
         {
-            f.stop_at(unknowns.x[k]);
+            f.stop_at(unknowns.positions[k]);
         }
     }
 }
@@ -174,13 +174,13 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
     let rubs = !(cable.meets_nothing() && cable.meshing.never_slides && cable.problem.floor_friction.is_none());
     let jumps = !cable.meets_nothing();
     let (m, input, mesh) = (&cable.motion, &mut cable.input, &cable.mesh);
-    for k in 0..m.x.len() {
+    for k in 0..m.positions.len() {
         input.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
         input.inertia[k] = cable.problem.linear_density * mesh.share(k) * a * a;
         if mesh.sliding[k].is_some() {
-            let w_hat = m.w[k] * now - m.w_before[k] * past;
+            let w_hat = m.slide_rates[k] * now - m.previous_slide_rates[k] * past;
             let s = mesh.arc_length[k];
-            input.predicted_slide[k] = s * now - m.s_before[k] * past + w_hat / a - s;
+            input.predicted_slide[k] = s * now - m.previous_arc_length[k] * past + w_hat / a - s;
         }
     }
     // Of the masses alone: hands draw at their nodes, not at what these are coupled with.
@@ -196,7 +196,7 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
     }
     for (hand, node) in m.hands.iter().zip(&cable.meshing.support_node) {
         let (Some(hand), Some(k)) = (hand, *node) else { continue };
-        let (stiffness, at) = hand.pull(h, m.x[k]);
+        let (stiffness, at) = hand.pull(h, m.positions[k]);
         let (inertia, both) = (input.inertia[k], input.inertia[k] + stiffness);
         input.predicted[k] = (input.predicted[k] * inertia + at * stiffness) / both;
         input.inertia[k] = both;
@@ -208,11 +208,11 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
     input.bending_damping = mesh.bending_stiffness * time / h;
     for e in 0..mesh.rest_length.len() {
         input.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
-            mesh.path(e, &m.x).length
+            mesh.path(e, &m.positions).length
         } else {
             let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
-            let older = if weights.older > 0.0 { length(&m.x_older) * weights.older } else { 0.0 };
-            length(&m.x) * now - length(&m.x_before) * past + older
+            let older = if weights.older > 0.0 { length(&m.older_positions) * weights.older } else { 0.0 };
+            length(&m.positions) * now - length(&m.previous_positions) * past + older
         };
     }
     branches::add(cable, h, rate, decay);

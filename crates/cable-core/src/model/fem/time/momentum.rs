@@ -42,8 +42,8 @@ pub(in crate::model::fem) fn account_for_step(
                 (at(k - 1) - at(k + 1)) * (0.5 * cable.problem.linear_density * slide[k])
             };
             let kind = kind_of(node.slide_over) - SUPPORTS;
-            over[kind] += of(&m.v);
-            history[kind] += of(&m.v) - of(&m.v_before);
+            over[kind] += of(&m.velocities);
+            history[kind] += of(&m.velocities) - of(&m.previous_velocities);
         }
     }
     let account = &mut cable.motion.account;
@@ -64,7 +64,7 @@ pub(in crate::model::fem) fn account_for_step(
 /// The forces that a step balanced at unknowns, N: on what moves with its material, and the
 /// weight of what does not less what carries that. `touches` are the contacts of the solver.
 pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unknowns, touches: &[ContactPair]) -> Kinds {
-    let (problem, mesh, input, x) = (&cable.problem, &cable.mesh, &cable.input, &unknowns.x);
+    let (problem, mesh, input, x) = (&cable.problem, &cable.mesh, &cable.input, &unknowns.positions);
     let gravity = if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
     let mut sum = [Vec2::zeros(); 4];
     sum[WEIGHT] = problem.weight * problem.length;
@@ -104,13 +104,13 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
         let Some(node) = &mesh.sliding[k] else { continue };
         let round = &mut sum[kind_of(node.slide_over)];
         if moves(k - 1) {
-            *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, input, k - 1, x, &unknowns.slide);
+            *round += mesh.path(k - 1, x).direction * bar_energy::pull_on(mesh, input, k - 1, x, &unknowns.slides);
         }
         if moves(k + 1) {
-            *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, input, k, x, &unknowns.slide);
+            *round -= mesh.path(k, x).direction * bar_energy::pull_on(mesh, input, k, x, &unknowns.slides);
         }
         for (e, side) in [(k - 1, 1), (k, 0)] {
-            *round -= bar_weight::on_ends(mesh, e, x, Some(&unknowns.slide), input.body)[side];
+            *round -= bar_weight::on_ends(mesh, e, x, Some(&unknowns.slides), input.body)[side];
         }
     }
     sum

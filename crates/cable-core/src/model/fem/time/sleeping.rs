@@ -22,20 +22,20 @@ impl Sleep {
     pub(in crate::model::fem) fn falls_asleep(&mut self, cable: &CableState) -> bool {
         let (motion, mesh, input) = (&cable.motion, &cable.mesh, &cable.input);
         let distance = sleep_distance(cable);
-        let same = self.place.len() == motion.x.len();
+        let same = self.place.len() == motion.positions.len();
         if same && motion.time - self.since < mesh.tuning.step.sleep_delay_s && motion.time >= self.since {
             return false;
         }
         let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= distance;
         let still = same
-            && self.place.iter().zip(&motion.x).all(near)
+            && self.place.iter().zip(&motion.positions).all(near)
             && self.arc_length.iter().zip(&mesh.arc_length).all(|(a, b)| (a - b).abs() <= distance);
         // A cable that touches nothing may be at the turn of a slow swing.
         let touches = !cable.contacts.friction_contacts.is_empty() || !cable.contacts.own.friction_contacts.is_empty();
         let falls_asleep = still && touches && self.same_input(cable);
         self.asleep |= falls_asleep;
         self.since = motion.time;
-        self.place.clone_from(&motion.x);
+        self.place.clone_from(&motion.positions);
         self.arc_length.clone_from(&mesh.arc_length);
         self.force.clone_from(&input.force);
         self.target.clone_from(&input.target);

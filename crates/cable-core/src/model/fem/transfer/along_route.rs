@@ -56,15 +56,15 @@ pub(in crate::model::fem) fn cable_along_route(
     let mut cable = CableState {
         contacts: ContactSet::new(barrier, contact, n),
         motion: Motion {
-            x: place_nodes(&mesh, &route),
-            v: vec![Vec2::zeros(); n],
-            x_before: vec![Vec2::zeros(); n],
-            v_before: vec![Vec2::zeros(); n],
-            x_older: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
-            v_older: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
-            s_before: mesh.arc_length.clone(),
-            w: vec![0.0; n],
-            w_before: vec![0.0; n],
+            positions: place_nodes(&mesh, &route),
+            velocities: vec![Vec2::zeros(); n],
+            previous_positions: vec![Vec2::zeros(); n],
+            previous_velocities: vec![Vec2::zeros(); n],
+            older_positions: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
+            older_velocities: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
+            previous_arc_length: mesh.arc_length.clone(),
+            slide_rates: vec![0.0; n],
+            previous_slide_rates: vec![0.0; n],
             followers: vec![None; problem.supports.len()],
             hands: vec![None; problem.supports.len()],
             placement: problem.outline.as_ref().map(|o| o.placement),
@@ -104,13 +104,13 @@ pub(in crate::model::fem) fn cable_along_route(
     prepare_input(&mut cable, 0.0, None);
     for k in 0..n {
         if cable.mesh.held[k] {
-            cable.motion.x[k] = cable.input.target[k];
+            cable.motion.positions[k] = cable.input.target[k];
         }
     }
     thread_pulleys(&mut cable, None);
-    let mut x = std::mem::take(&mut cable.motion.x);
+    let mut x = std::mem::take(&mut cable.motion.positions);
     depenetrate(&cable.problem, &cable.mesh, &mut x, 0.9 * contact.reach_m);
-    cable.motion.x = x;
+    cable.motion.positions = x;
     cable.forget_history();
     cable
 }

@@ -105,7 +105,7 @@ pub(in crate::model::fem) fn state_of_solution(cable: &CableState, curve: &Solut
 pub(in crate::model::fem) fn restore_positions(cable: &mut CableState, state: &State) {
     for k in 0..cable.mesh.nodes() {
         if let (None, Some(at)) = (cable.mesh.sliding[k], state.position_at(cable.mesh.arc_length[k])) {
-            cable.motion.x[k] = at;
+            cable.motion.positions[k] = at;
         }
     }
 }
@@ -206,7 +206,7 @@ pub(in crate::model::fem) fn adopt_stretch(cable: &mut CableState, curve: &Solut
     let on = |d: &CableState, k: usize| {
         d.mesh.sliding[k].is_some()
             || (d.meshing.removable(&d.mesh, k)
-                && d.problem.world.signed_gap(d.motion.x[k], 2.0 * d.contacts.barrier.reach).is_some())
+                && d.problem.world.signed_gap(d.motion.positions[k], 2.0 * d.contacts.barrier.reach).is_some())
     };
     let nodes = cable.mesh.nodes();
     let mut first = 1;
@@ -224,7 +224,7 @@ pub(in crate::model::fem) fn adopt_stretch(cable: &mut CableState, curve: &Solut
         let length = cable.mesh.arc_length[e + 1] - cable.mesh.arc_length[e];
         cable.mesh.rest_length[e] = cable.mesh.thermal_stretch * length;
     }
-    cable.motion.s_before.clone_from(&cable.mesh.arc_length);
+    cable.motion.previous_arc_length.clone_from(&cable.mesh.arc_length);
 }
 
 /// The same for nodes in contact one after the other; `next` is the next that is held or in
@@ -234,7 +234,7 @@ fn stretch_run(cable: &mut CableState, curve: &SolutionCurve<'_>, [first, last]:
     let mut lengths = vec![0.0; last + 1 - first];
     for e in first..last {
         let strain = curve.tension(0.5 * (s[e] + s[e + 1])) / cable.mesh.axial_stiffness;
-        let length = cable.mesh.path(e, &cable.motion.x).length / (cable.mesh.thermal_stretch * (1.0 + strain));
+        let length = cable.mesh.path(e, &cable.motion.positions).length / (cable.mesh.thermal_stretch * (1.0 + strain));
         lengths[e + 1 - first] = lengths[e - first] + length;
     }
     let taken = lengths[last - first] - (s[last] - s[first]);
@@ -287,7 +287,7 @@ pub(in crate::model::fem) fn adopt_floor_friction(cable: &mut CableState, curve:
 /// Every contact remembers the sliding that gives the friction of the answer.
 pub(in crate::model::fem) fn adopt_friction(cable: &mut CableState, curve: &SolutionCurve<'_>) {
     let mut touches: Vec<ContactPair> = Vec::new();
-    cable.contacts.find(&cable.problem, &cable.mesh, &cable.motion.x, &mut touches);
+    cable.contacts.find(&cable.problem, &cable.mesh, &cable.motion.positions, &mut touches);
     let s = &cable.mesh.arc_length;
     let near = NEAR * cable.even();
     for touch in &touches {
@@ -325,9 +325,9 @@ impl Arc {
     /// Takes in all nodes before and after that lie on a round of this radius (m).
     fn grow(&mut self, curve: &SolutionCurve<'_>, radius: f64) {
         let center = self.node.end.center;
-        let lies = |n: &Node| ((n.at() - center).norm() - radius).abs() <= ON_ROUND * radius;
-        let before = curve.0[..self.nodes[0]].iter().rev().take_while(|n| lies(n)).count();
-        let after = curve.0[self.nodes[1]..].iter().skip(1).take_while(|n| lies(n)).count();
+        let is_on_round = |n: &Node| ((n.at() - center).norm() - radius).abs() <= ON_ROUND * radius;
+        let before = curve.0[..self.nodes[0]].iter().rev().take_while(|n| is_on_round(n)).count();
+        let after = curve.0[self.nodes[1]..].iter().skip(1).take_while(|n| is_on_round(n)).count();
         self.nodes = [self.nodes[0] - before, self.nodes[1] + after];
         let on = &curve.0[self.nodes[0]..=self.nodes[1]];
         let whole: f64 = on.windows(2).map(|n| angle_between(n[0].at() - center, n[1].at() - center)).sum();

@@ -27,7 +27,7 @@ pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Optio
         let room = 0.05 * problem.length / cable.meshing.even_bars as f64;
         let (low, high) = (cable.mesh.arc_length[k - 1] + room, cable.mesh.arc_length[k] - room);
         let at = if low < high { s.clamp(low, high) } else { 0.5 * (low + high) };
-        let passing = cable.motion.x[k] - cable.motion.x[k - 1];
+        let passing = cable.motion.positions[k] - cable.motion.positions[k - 1];
         let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
         let right = if passing.x < 0.0 { -1.0 } else { 1.0 };
         let end = End { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense: -up * right };
@@ -50,8 +50,8 @@ pub(in crate::model::fem) fn follow_corners(cable: &mut CableState, state: &Stat
             continue;
         };
         insert(cable, e + 1, s, None);
-        cable.motion.x[e + 1] = at;
-        cable.motion.v[e + 1] = state.velocity_at(s).unwrap_or_default();
+        cable.motion.positions[e + 1] = at;
+        cable.motion.velocities[e + 1] = state.velocity_at(s).unwrap_or_default();
         left -= 1;
     }
 }
@@ -59,7 +59,7 @@ pub(in crate::model::fem) fn follow_corners(cable: &mut CableState, state: &Stat
 /// Arc length and place (m) of the node of a state that is farthest from a bar, if that is more
 /// than the cable's radius.
 fn farthest(cable: &CableState, e: usize, state: &State) -> Option<(f64, Vec2)> {
-    let (s, x) = (&cable.mesh.arc_length, &cable.motion.x);
+    let (s, x) = (&cable.mesh.arc_length, &cable.motion.positions);
     let (from, along) = (x[e], (x[e + 1] - x[e]).try_normalize(0.0)?);
     let near = cable.mesh.tuning.start.min_part * (s[e + 1] - s[e]);
     let nodes = state.arc_length_m.iter().copied().zip(state.position_m.iter().copied());

@@ -105,9 +105,9 @@ impl Dynamics {
         self.rollback.save(&self.cable);
         restore_positions(&mut self.cable, &state);
         adopt_sliding_nodes(&mut self.cable, &curve);
-        let mut x = std::mem::take(&mut self.cable.motion.x);
+        let mut x = std::mem::take(&mut self.cable.motion.positions);
         depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
-        self.cable.motion.x = x;
+        self.cable.motion.positions = x;
         adopt_stretch(&mut self.cable, &curve);
         renew_input(&mut self.cable);
         adopt_friction(&mut self.cable, &curve);
@@ -140,9 +140,9 @@ impl Dynamics {
                 continue;
             }
             if let Some(p) = state.position_at(s) {
-                self.cable.motion.x[k] = p;
+                self.cable.motion.positions[k] = p;
             }
-            self.cable.motion.v[k] = state.velocity_at(s).unwrap_or_default();
+            self.cable.motion.velocities[k] = state.velocity_at(s).unwrap_or_default();
         }
         self.cable.motion.time = state.time_s;
         self.cable.motion.followers.fill(None);
@@ -152,16 +152,16 @@ impl Dynamics {
             thread_pulleys(&mut self.cable, Some(state));
         }
         // A state in motion goes on as it is; one at rest is brought to rest on this mesh.
-        let still = !state.in_motion && self.cable.motion.v.iter().all(|v| v.norm() == 0.0);
+        let still = !state.in_motion && self.cable.motion.velocities.iter().all(|v| v.norm() == 0.0);
         // So does a first equilibrium: bars that cut a corner would come to rest there. Within a
         // run without inertia what friction holds is not disturbed.
         if !same && (!still || state.time_s == 0.0) {
             follow_corners(&mut self.cable, state);
         }
         if !same || IntersectionCheck::of(&self.cable).refuse_buried().is_err() {
-            let mut x = std::mem::take(&mut self.cable.motion.x);
+            let mut x = std::mem::take(&mut self.cable.motion.positions);
             depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
-            self.cable.motion.x = x;
+            self.cable.motion.positions = x;
         }
         IntersectionCheck::of(&self.cable).refuse_buried()?;
         self.forget_history();

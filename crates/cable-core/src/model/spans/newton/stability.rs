@@ -1,7 +1,7 @@
 //! This check finds whether an equilibrium is stable.
 
 use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::newton::{Work, assemble, lies};
+use crate::model::spans::newton::{Work, assemble, has_tension_unknown};
 use crate::model::spans::run::{CableRun, Course, Next, Tie};
 
 /// True if a balance without friction is stable: it returns after a disturbance.
@@ -18,7 +18,7 @@ pub(in crate::model::spans) fn stable(strand: &CableRun, course: &Course, work: 
     if rubs || pockets || strand.contacts.is_empty() || strand.ties.iter().any(|t| matches!(t, Tie::Loose(_))) {
         return true;
     }
-    let count = (0..strand.contacts.len()).filter(|&j| !lies(strand, j, 0)).count();
+    let count = (0..strand.contacts.len()).filter(|&j| !has_tension_unknown(strand, j, 0)).count();
     let mut sign = |strand: &mut CableRun| {
         assemble(strand, course, &mut work.system);
         work.rhs.clear();
