@@ -6,6 +6,7 @@ use super::slide::{Arc, Mode, Slide, Stretches};
 use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
+use crate::numerics::backtrack;
 use crate::problem::Problem;
 
 /// A balance found.
@@ -317,23 +318,16 @@ fn newton(
         let slope: f64 = r.iter().zip(&p).map(|(a, b)| a * b).sum();
         let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
         let (energy, norm) = (s.energy, size(&r));
-        let mut alpha = room(slide, &s, &p);
-        let mut next = None;
-        for _ in 0..layout.settings.max_halvings {
+        let next = backtrack(room(slide, &s, &p), layout.settings.max_halvings, |alpha| {
             let trial: Vec<f64> = sigma.iter().zip(&p).map(|(a, b)| a + alpha * b).collect();
-            if let Some(t) = slide.stretches(&trial, Some(&s)) {
-                iterations += t.iterations;
-                let down = smooth && t.energy - energy <= 1e-4 * alpha * slope;
-                let noise = !smooth || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
-                let closer = noise
-                    && rows(slide, &t, modes, smooth).is_some_and(|(rt, ..)| size(&rt) < (1.0 - 1e-4 * alpha) * norm);
-                if down || closer {
-                    next = Some((trial, t));
-                    break;
-                }
-            }
-            alpha *= 0.5;
-        }
+            let t = slide.stretches(&trial, Some(&s))?;
+            iterations += t.iterations;
+            let down = smooth && t.energy - energy <= 1e-4 * alpha * slope;
+            let noise = !smooth || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
+            let closer =
+                noise && rows(slide, &t, modes, smooth).is_some_and(|(rt, ..)| size(&rt) < (1.0 - 1e-4 * alpha) * norm);
+            (down || closer).then_some((trial, t))
+        });
         match next {
             Some((trial, t)) => (sigma, s) = (trial, t),
             None if worst <= BALANCE_ACCEPTED && (smooth || stable(&j)) => return Ok(end(sigma, s, newtons)),

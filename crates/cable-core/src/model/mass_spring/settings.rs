@@ -293,16 +293,16 @@ pub struct QuasiStaticTuning {
     /// Greatest number of equilibria in a step. Smaller goes farther at once in long steps, larger
     /// takes longer.
     pub max_parts: f64,
-    /// Shortest part of the path between two equilibria that is tried after a failure. Smaller
-    /// tries longer, larger gives up early.
-    pub min_part: f64,
+    /// Most halvings of the path between two equilibria after failures. Fewer give up early, more
+    /// try longer.
+    pub max_halvings: u32,
     /// Points of a motion within a step that measure its path. Fewer miss a motion to and fro.
     pub path_samples: u32,
 }
 
 impl Default for QuasiStaticTuning {
     fn default() -> Self {
-        Self { max_path_lengths: 0.5, max_parts: 1e4, min_part: 1.0 / 1024.0, path_samples: 8 }
+        Self { max_path_lengths: 0.5, max_parts: 1e4, max_halvings: 10, path_samples: 8 }
     }
 }
 

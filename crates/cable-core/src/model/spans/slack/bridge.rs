@@ -16,6 +16,7 @@ use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::loose::{Line, Part};
 use crate::model::spans::slack::joint::Profile;
 use crate::model::spans::slack::{Drape, HALVINGS};
+use crate::numerics::bisect;
 
 /// Greatest distance from its support at which a span may end, of its length and the size of
 /// coordinates: next to plumb rounding of where it touches moves its end a thousand times as much.
@@ -59,14 +60,11 @@ impl Drape<'_> {
         let order: Vec<usize> =
             if side == 0 { (0..stretches.len()).collect() } else { (0..stretches.len()).rev().collect() };
         for k in order {
-            let (mut low, mut high) = (stretches[k].coordinates[side], stretches[k].coordinates[other]);
+            let [low, high] = [stretches[k].coordinates[side], stretches[k].coordinates[other]];
             if seen(k, high).is_some_and(|s| !(s.over > 0.0)) {
                 continue;
             }
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if seen(k, middle).is_none_or(|s| s.over > 0.0) { high = middle } else { low = middle }
-            }
+            let [low, _] = bisect([low, high], HALVINGS, |p| !seen(k, p).is_none_or(|s| s.over > 0.0));
             let found =
                 seen(k, low).filter(|s| s.over.abs() <= ENDS * (s.length + support.norm()) && s.tension > 0.0)?;
             let weight = course.law.load * found.length;

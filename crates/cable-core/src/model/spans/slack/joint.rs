@@ -20,6 +20,7 @@
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::loose::{Line, Part, Stretch};
 use crate::model::spans::slack::{Drape, HALVINGS, STRAIGHT_TURN, Sought};
+use crate::numerics::bisect;
 
 /// Doublings of the force across the load in the search for one that is too large.
 const MOST_DOUBLED: usize = 60;
@@ -174,10 +175,7 @@ impl Drape<'_> {
             }
             (low, high) = (high, 2.0 * high);
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if lacks(middle) { low = middle } else { high = middle }
-        }
+        let [low, high] = bisect([low, high], HALVINGS, lacks);
         let h = 0.5 * (low + high);
         let ([x1, x2], material) = aside(h);
         let p = [from.coordinates[end] - way * x1, to.coordinates[1 - end] + way * x2];
@@ -204,23 +202,19 @@ impl Drape<'_> {
             let t = sight.seen(place.tangent * way);
             let begins = sight.seen(place.at);
             let (h, m1) = (tension(p) * t.x, t.y / t.x);
-            let (mut low, mut high) = (m1.atan(), std::f64::consts::FRAC_PI_2);
             let at = |angle: f64| begins + sight.catenary(h, m1, angle.tan()).1 - center;
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                let (sin, cos) = middle.sin_cos();
-                if at(middle).dot(&Vec2::new(cos, sin)) < 0.0 { low = middle } else { high = middle }
-            }
+            let [low, _] = bisect([m1.atan(), std::f64::consts::FRAC_PI_2], HALVINGS, |angle| {
+                let (sin, cos) = angle.sin_cos();
+                at(angle).dot(&Vec2::new(cos, sin)) < 0.0
+            });
             // With the centre on its right: beyond it the span would be in the wall.
             let (sin, cos) = low.sin_cos();
             (h, [m1, low.tan()], cross(Vec2::new(cos, sin), at(low)) - radius)
         };
         // From the foot it leads into the wall, from where there is no tension plumb up beside it.
-        let (mut far, mut near) = (from.coordinates[1 - end], from.coordinates[end]);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (far + near);
-            if !(tension(middle) > 0.0) || seen(middle).2 > 0.0 { far = middle } else { near = middle }
-        }
+        let [_, near] = bisect([from.coordinates[1 - end], from.coordinates[end]], HALVINGS, |p| {
+            !(tension(p) > 0.0) || seen(p).2 > 0.0
+        });
         if tension(from.coordinates[1 - end]) > 0.0 && !(seen(from.coordinates[1 - end]).2 > 0.0) {
             return Some(None);
         }

@@ -37,6 +37,7 @@ use crate::model::spans::initial::drained_route::{Drained, Frame, Leg, NONE_M, R
 use crate::model::spans::initial::route::way;
 use crate::model::spans::run::{CableRun, Course, Tie};
 use crate::model::spans::slack::heap::heap;
+use crate::numerics::bisect;
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
 const CREST_CONE_ROUNDING: f64 = 1e-9;
@@ -414,15 +415,8 @@ impl Drape<'_> {
         let back_at = |p: f64| if p == p1 { back } else { s.slide(course, p1, p, back, friction).tension };
         // Each ends at once or rises and falls again; from where it has fallen to nothing there is
         // none.
-        let seek = |mut has: f64, mut not: f64, holds: &dyn Fn(f64) -> bool| {
-            if holds(not) {
-                return not;
-            }
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (has + not);
-                if holds(middle) { has = middle } else { not = middle }
-            }
-            has
+        let seek = |has: f64, not: f64, holds: &dyn Fn(f64) -> bool| {
+            if holds(not) { not } else { bisect([has, not], HALVINGS, holds)[0] }
         };
         let little = 1e-3 * (p1 - p0);
         let goes = |t: f64, from: f64, to: f64, holds: &dyn Fn(f64) -> bool| match (t > 0.0, holds(from)) {
