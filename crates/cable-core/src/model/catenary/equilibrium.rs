@@ -203,6 +203,10 @@ fn from_smooth(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equ
     Err(not_converged(slide.problem, slide.layout, 0, iterations, f64::NAN))
 }
 
+/// Lengths of an iteration's step that are tried. 2⁻⁴⁰ of a step changes energy and residual by
+/// less than their rounding: no shorter one could be told from none.
+const STEP_HALVINGS: usize = 40;
+
 /// One row of the three-diagonal system.
 type Row = [f64; 3];
 
@@ -318,7 +322,7 @@ fn newton(
         let slope: f64 = r.iter().zip(&p).map(|(a, b)| a * b).sum();
         let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
         let (energy, norm) = (s.energy, size(&r));
-        let next = backtrack(room(slide, &s, &p), layout.settings.max_halvings, |alpha| {
+        let next = backtrack(room(slide, &s, &p), STEP_HALVINGS, |alpha| {
             let trial: Vec<f64> = sigma.iter().zip(&p).map(|(a, b)| a + alpha * b).collect();
             let t = slide.stretches(&trial, Some(&s))?;
             iterations += t.iterations;

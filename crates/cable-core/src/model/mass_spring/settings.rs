@@ -244,9 +244,6 @@ pub struct NewtonTuning {
     /// Shift, of EA over the shortest element or of the stiffness of contacts, beyond which the
     /// solve fails. Smaller gives up early, larger late.
     pub max_shift: f64,
-    /// Least shift, of EA over the shortest element. Smaller is below round-off, larger slows the
-    /// last steps.
-    pub min_shift: f64,
     /// Steps in which friction follows the normal forces at once, which is fastest; later ones
     /// first solve with them frozen, as the first may run in circles. Smaller freezes soon, larger
     /// circles for longer.
@@ -273,7 +270,6 @@ impl Default for NewtonTuning {
             shift_decrease: 0.1,
             shift_increase: 8.0,
             max_shift: 1e3,
-            min_shift: 1e-14,
             eager_friction_steps: 150,
             max_frozen_steps: 25,
             max_move_radii: 0.5,

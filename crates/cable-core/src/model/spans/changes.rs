@@ -24,6 +24,13 @@ use crate::model::spans::verify::penetration;
 use crate::model::spans::verify::penetration::Penetration;
 use crate::model::spans::verify::tunnelling;
 
+/// Extent (m or rad) by which the interval of a contact has turned round when it is released:
+/// rounding of what touches in a point.
+const RELEASE_OVERLAP: f64 = 1e-10;
+
+/// Depth inside an obstacle from which it is met, of the strand: points nearer than that are one.
+const DEPTH_FRACTION: f64 = 1e-9;
+
 /// Part of p by which an end of a contact may be off the end of an arc and be taken to be there:
 /// Newton's steps go beyond it by less.
 const ARC_END_FRACTION: f64 = 1e-8;
@@ -91,7 +98,7 @@ fn release(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> 
     let worst = (0..strand.contacts.len())
         .filter(|&j| !is_round_wheel(&strand.contacts[j], course))
         .min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
-    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -course.settings.changes.release_overlap) else {
+    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -RELEASE_OVERLAP) else {
         return Ok(false);
     };
     let_go(strand, course, j)
@@ -106,10 +113,7 @@ fn is_round_wheel(c: &Contact, course: &Course) -> bool {
 fn lifted(strand: &CableRun, course: &Course) -> Option<usize> {
     let wheels = strand.contacts.iter().filter(|c| is_round_wheel(c, course));
     let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
-    wheels
-        .min_by(|a, b| turned(a).total_cmp(&turned(b)))
-        .filter(|c| turned(c) < -course.settings.changes.release_overlap)?
-        .wheel
+    wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -RELEASE_OVERLAP)?.wheel
 }
 
 /// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned
@@ -225,8 +229,7 @@ fn meet(strand: &mut CableRun, course: &Course, world: &World, sought: Sought) -
     if world.is_empty() {
         return Ok(false);
     }
-    let tuned = &course.settings.changes;
-    let deep = tuned.depth_fraction * (strand.to - strand.from);
+    let deep = DEPTH_FRACTION * (strand.to - strand.from);
     let mut any = false;
     // From the last span, so that those before keep their number.
     for k in (0..strand.spans()).rev() {
