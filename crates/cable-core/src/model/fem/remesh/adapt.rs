@@ -22,7 +22,9 @@ use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::momentum::attribute_to;
 use crate::model::fem::state::step_setup::renew_input;
 use crate::model::fem::system::floor_friction;
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::load_scale;
+use crate::problem::Problem;
 
 /// Least part of the material between two nodes on each side of a node put between them.
 const LEAST_PART: f64 = 1e-3;
@@ -288,7 +290,7 @@ fn share_of_sliding(cable: &CableState, [before, after]: [usize; 2], sliding: &S
     let wave = (mesh.axial_stiffness / cable.problem.linear_density).sqrt();
     let impact = cable.mesh.tuning.remesh.impact_tension * mesh.axial_stiffness * (fastest / wave).powf(4.0 / 3.0);
     let tension = cable.mesh.lesser_tension(stretch);
-    (tension > impact && may_change(cable, tension, &share)).then_some(share)
+    (tension > impact && may_change(&cable.problem, mesh, tension, &share)).then_some(share)
 }
 
 /// True if a sliding node that becomes a plain one leaves a cable in motion as tense as it is.
@@ -302,17 +304,18 @@ fn settles_unstretched(cable: &CableState, k: usize) -> bool {
     let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
     half < cable.mesh.tuning.remesh.max_tangent_half_turn_rad
         && may_change(
-            cable,
-            cable.mesh.lesser_tension(stretch),
+            &cable.problem,
+            mesh,
+            mesh.lesser_tension(stretch),
             &Share::of(lengths.map(|l| l + longer), stretch, whole),
         )
 }
 
 /// True if a change of the mesh adds so little to a tension (N) that it does not show.
-fn may_change(cable: &CableState, tension: f64, share: &Share) -> bool {
-    let weight = load_scale(&cable.problem).0 * cable.problem.length;
-    cable.mesh.axial_stiffness * share.added_strain
-        < cable.mesh.tuning.remesh.max_tension_change * (tension + cable.mesh.tuning.remesh.weight_fraction * weight)
+fn may_change(problem: &Problem, mesh: &Mesh, tension: f64, share: &Share) -> bool {
+    let weight = load_scale(problem).0 * problem.length;
+    let tuning = &mesh.tuning.remesh;
+    mesh.axial_stiffness * share.added_strain < tuning.max_tension_change * (tension + tuning.weight_fraction * weight)
 }
 
 /// True if a sliding node between two nodes would bend the cable the right way and its bars
@@ -394,7 +397,7 @@ fn sliding_node_for(
     {
         return None;
     }
-    if bends_visibly(cable, tension) {
+    if cable.meshing.bends_visibly(&cable.mesh, cable.problem.length, tension) {
         return None;
     }
     let before = path.arcs[0] * mesh.end(bar, x).radius;
@@ -404,17 +407,6 @@ fn sliding_node_for(
     let slide_over = SlideOver::Obstacle { obstacle: gap.obstacle, feature: gap.feature };
     let sliding = SlidingNode::new(end, gap.friction, slide_over);
     Some((bar, arc_length, sliding))
-}
-
-/// True if the bend of a cable under a tension (N) is longer than bars are: then nodes that
-/// move with their material show it, and a sliding node, which carries no moment, would leave
-/// it out.
-pub(in crate::model::fem) fn bends_visibly(cable: &CableState, tension: f64) -> bool {
-    let stiffness = cable.mesh.bending_stiffness;
-    let least = cable.meshing.bar_weight + stiffness / (cable.problem.length * cable.problem.length);
-    stiffness > 0.0
-        && (stiffness / if tension > least { tension } else { least }).sqrt()
-            > cable.mesh.tuning.remesh.resolved_bend * cable.even()
 }
 
 /// Takes out plain nodes in the way of a new sliding node.

@@ -49,4 +49,15 @@ impl Meshing {
             *node = change(*node).unwrap_or(*node);
         }
     }
+
+    /// True if the bend of a cable of a length (m) under a tension (N) is longer than bars are:
+    /// then nodes that move with their material show it, and a sliding node, which carries no
+    /// moment, would leave it out.
+    pub(in crate::model::fem) fn bends_visibly(&self, mesh: &Mesh, length: f64, tension: f64) -> bool {
+        let (stiffness, even) = (mesh.bending_stiffness, length / self.even_bars as f64);
+        let least = self.bar_weight + stiffness / (length * length);
+        stiffness > 0.0
+            && (stiffness / if tension > least { tension } else { least }).sqrt()
+                > mesh.tuning.remesh.resolved_bend * even
+    }
 }

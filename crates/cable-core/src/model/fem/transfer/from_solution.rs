@@ -12,7 +12,6 @@ use crate::math::{Vec2, perp};
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::{End, angle_between, rotate};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::remesh::adapt::bends_visibly;
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::friction_state::ContactPair;
@@ -116,7 +115,8 @@ pub(in crate::model::fem) fn adopt_sliding_nodes(cable: &mut CableState, curve: 
         return;
     }
     for arc in arcs_of_solution(cable, curve) {
-        if bends_visibly(cable, curve.tension(0.5 * (arc.material[0] + arc.material[1]))) {
+        let tension = curve.tension(0.5 * (arc.material[0] + arc.material[1]));
+        if cable.meshing.bends_visibly(&cable.mesh, cable.problem.length, tension) {
             continue;
         }
         let round = arc.node.end.radius * arc.turn;
