@@ -21,7 +21,7 @@
 //! | time | s |
 //!
 //! Dependencies between the modules point one way, without a loop:
-//! `math, model_id, units → verification → error → solution → scene → contact, catenary,
+//! `math, numerics, model_id, units → verification → error → solution → scene → contact, catenary,
 //! energy → problem → state → model → breakage, warnings, verify
 //! → simulation → timeline, analysis, summary, conformance`, and
 //! `record → files → wording → any_error` beside them, before `simulation`.
@@ -39,6 +39,7 @@ mod kinematics;
 pub mod math;
 pub mod model;
 mod model_id;
+mod numerics;
 pub mod problem;
 pub mod record;
 pub mod robot;

@@ -178,7 +178,7 @@ fn errors() -> Vec<Box<dyn Sentence>> {
         Box::new(why(NoEquilibrium::Span(SpanError::TooShort { length_m: 9.0, chord_m: 10.0 }))),
         Box::new(why(NoEquilibrium::Span(SpanError::NotConverged { iterations: 7, closure_m: 1e-3 }))),
         Box::new(lacks(Unsupported::Obstacle { arc_length_m: 3.2 })),
-        Box::new(lacks(Unsupported::ContactWithoutSeat { arc_length_m: 3.2, at_m })),
+        Box::new(lacks(Unsupported::ContactImpossible { arc_length_m: 3.2, at_m })),
         Box::new(lacks(Unsupported::MotionTooFast {
             support: name("a"),
             speed_m_per_s: 412.0,

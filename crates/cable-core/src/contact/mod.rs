@@ -19,7 +19,7 @@ pub(crate) mod barrier;
 pub mod distance;
 pub(crate) mod friction;
 pub(crate) mod geometry;
-mod nearest_corner;
+pub(crate) mod nearest_corner;
 pub(crate) mod neighbour_lists;
 pub mod outline;
 pub(crate) mod pairs;

@@ -39,7 +39,7 @@ pub enum Unsupported {
         arc_length_m: f64,
     },
     /// An obstacle is met where the model can begin no contact.
-    ContactWithoutSeat {
+    ContactImpossible {
         /// Place on the cable, m.
         arc_length_m: f64,
         /// Its place, m.
@@ -117,8 +117,8 @@ impl Unsupported {
         match self {
             Self::SelfContactAtStart { arc_length_m: s } => Self::SelfContactAtStart { arc_length_m: length(s) },
             Self::Obstacle { arc_length_m: s } => Self::Obstacle { arc_length_m: length(s) },
-            Self::ContactWithoutSeat { arc_length_m: s, at_m } => {
-                Self::ContactWithoutSeat { arc_length_m: length(s), at_m: place(at_m) }
+            Self::ContactImpossible { arc_length_m: s, at_m } => {
+                Self::ContactImpossible { arc_length_m: length(s), at_m: place(at_m) }
             }
             Self::EndlessContacts { arc_length_m: s } => Self::EndlessContacts { arc_length_m: length(s) },
             Self::CornerPassed { at_m } => Self::CornerPassed { at_m: place(at_m) },

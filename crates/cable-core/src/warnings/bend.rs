@@ -21,6 +21,7 @@
 //! sin(θ/4). Where ρ is less than that of the corner's own arc, the cable lies on that arc.
 
 use super::tangle::turns;
+use crate::contact::nearest_corner::nearest_wrap_body;
 use crate::math::{Vec2, larger};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -230,10 +231,7 @@ pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Gu
     // A flat edge leads nobody round: only corners and circles do.
     let chain = [node.checked_sub(1), Some(node), Some(node + 1)].map(|k| k.and_then(at));
     let chain = chain.map(|p| p.unwrap_or(here));
-    problem
-        .world
-        .geometry()
-        .nearest_wrap_body(&chain, CONTACT_GAP)
+    nearest_wrap_body(problem.world.geometry(), &chain, CONTACT_GAP)
         .map_or(Guide::Free, |b| if b.center.is_some() { Guide::Round(b.offset) } else { Guide::Corner(b.offset) })
 }
 

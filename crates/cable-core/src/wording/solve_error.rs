@@ -242,7 +242,7 @@ impl Sentence for Unsupported {
             Self::Obstacle { arc_length_m } => {
                 return format!("the cable reaches an obstacle {} along it", f.length(*arc_length_m, 3));
             }
-            Self::ContactWithoutSeat { arc_length_m, at_m } => {
+            Self::ContactImpossible { arc_length_m, at_m } => {
                 let (along, at) = (f.length(*arc_length_m, 3), f.point((*at_m).into(), 3));
                 return format!("an obstacle is met {along} along the cable at {at}");
             }

@@ -6,6 +6,7 @@ use super::slide::{Arc, Mode, Slide, Stretches};
 use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
+use crate::numerics::backtrack;
 use crate::problem::Problem;
 
 /// A balance found.
@@ -43,6 +44,9 @@ const ANGLE: f64 = 1e-12;
 const RUN_OFF_LENGTH_FRACTION: f64 = 1e-6;
 /// Below this part of the energy a predicted decrease is round-off.
 const ENERGY_NOISE: f64 = 1e-9;
+/// Lengths of an iteration's step that are tried. 2⁻⁴⁰ of a step changes energy and residual by
+/// less than their rounding: no shorter one could be told from none.
+const STEP_HALVINGS: usize = 40;
 /// Way by which a balance that runs away is left at first, of the length. Smaller: the energy is
 /// less by no more than rounding; larger: a rest that is near is passed.
 const LEAVING_FRACTION: f64 = 1e-2;
@@ -292,19 +296,15 @@ fn runs_away(j: &[Row]) -> Option<Vec<f64>> {
 /// Leaves a balance that runs away to where its energy is less; None where it is nowhere.
 fn leave(slide: &Slide<'_>, sigma: &[f64], s: &Stretches, way: &[f64]) -> Option<(Vec<f64>, Stretches)> {
     let largest = way.iter().fold(0.0f64, |m, w| larger(m, w.abs()));
-    let mut far = LEAVING_FRACTION * slide.problem.length / largest;
-    for _ in 0..slide.layout.settings.max_halvings {
-        for sign in [1.0, -1.0] {
-            let step: Vec<f64> = way.iter().map(|w| sign * far * w).collect();
+    backtrack(LEAVING_FRACTION * slide.problem.length / largest, STEP_HALVINGS, |far| {
+        [far, -far].into_iter().find_map(|far| {
+            let step: Vec<f64> = way.iter().map(|w| far * w).collect();
             let part = room(slide, s, &step);
             let there: Vec<f64> = sigma.iter().zip(&step).map(|(a, b)| a + part * b).collect();
-            if let Some(t) = slide.stretches(&there, Some(s)).filter(|t| t.energy < s.energy) {
-                return Some((there, t));
-            }
-        }
-        far *= 0.5;
-    }
-    None
+            let t = slide.stretches(&there, Some(s)).filter(|t| t.energy < s.energy)?;
+            Some((there, t))
+        })
+    })
 }
 
 /// Largest part of a step that keeps some of every stretch.
@@ -405,21 +405,15 @@ fn search(
     let slope: f64 = r.iter().zip(p).map(|(a, b)| a * b).sum();
     let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
     let (energy, norm) = (s.energy, size(r));
-    let mut alpha = room(slide, s, p);
-    for _ in 0..slide.layout.settings.max_halvings {
+    backtrack(room(slide, s, p), STEP_HALVINGS, |alpha| {
         let trial: Vec<f64> = sigma.iter().zip(p).map(|(a, b)| a + alpha * b).collect();
-        if let Some(t) = slide.stretches(&trial, Some(s)) {
-            let down = smooth && t.energy - energy <= 1e-4 * alpha * slope;
-            let noise = !smooth || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
-            let closer =
-                noise && rows(slide, &t, modes, smooth).is_some_and(|(rt, ..)| size(&rt) < (1.0 - 1e-4 * alpha) * norm);
-            if down || closer {
-                return Some((trial, t));
-            }
-        }
-        alpha *= 0.5;
-    }
-    None
+        let t = slide.stretches(&trial, Some(s))?;
+        let down = smooth && t.energy - energy <= 1e-4 * alpha * slope;
+        let noise = !smooth || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
+        let closer =
+            noise && rows(slide, &t, modes, smooth).is_some_and(|(rt, ..)| size(&rt) < (1.0 - 1e-4 * alpha) * norm);
+        (down || closer).then_some((trial, t))
+    })
 }
 
 /// A dangling end that has run through its pulley.

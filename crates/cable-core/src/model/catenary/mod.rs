@@ -14,6 +14,7 @@ pub mod settings;
 mod slide;
 mod wheel;
 
+use crate::numerics::HalvedSteps;
 use std::sync::Arc;
 
 use self::equilibrium::{Equilibrium, Start, first_arcs, solve};
@@ -32,6 +33,9 @@ use crate::state::State;
 
 /// Longest time step taken, s.
 const LONGEST_STEP_S: f64 = 1e6;
+
+/// Part of a slow step that is taken with the step before it: rounding of the time.
+const JOINED_FRACTION: f64 = 1e-6;
 
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
@@ -320,26 +324,24 @@ impl Mechanics for CatenaryModel {
         let pieces = (self.support_travel(start, end) / (self.tuned.max_move_fraction * self.problem.length))
             .ceil()
             .clamp(1.0, 1000.0);
-        let (mut step, mut total, mut halvings) = (dt_s / pieces, StepReport::default(), 0);
-        while self.time_s < end {
-            let next = if self.time_s + 1.000_001 * step >= end { end } else { self.time_s + step };
+        let mut steps = HalvedSteps::new(end, dt_s / pieces, self.tuned.max_step_halvings, JOINED_FRACTION);
+        let mut total = StepReport::default();
+        while let Some(next) = steps.next(self.time_s) {
             match self.slow_step(next, if next >= end { Instant::Shown } else { Instant::Hidden }) {
                 Ok(r) => {
                     total.cost.iterations += r.cost.iterations;
                     total.cost.residual_n = r.cost.residual_n;
                 }
                 Err(SolveError::NotConverged { place, residual_n, iterations, .. }) => {
-                    halvings += 1;
-                    step *= 0.5;
                     total.cost.halved_steps += 1;
-                    if halvings > self.tuned.max_step_halvings {
+                    if !steps.halve() {
                         if self.time_s > start {
                             self.show();
                         }
                         return Err(SolveError::StepFailed {
                             model: Model::Catenary,
                             time_s: self.time_s,
-                            dt_s: step,
+                            dt_s: steps.step(),
                             residual_n,
                             place,
                             cause: FailureCause::NoBalance { iterations },

@@ -33,7 +33,7 @@ const MOST_DEPTH: u32 = 12;
 /// A point of the answer.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model) struct Point {
-    pub s: f64,
+    pub arc_length: f64,
     pub at: Vec2,
     /// Internal force, N.
     pub force: Vec2,
@@ -63,9 +63,9 @@ impl<'a> Nodes<'a> {
         let tension = p.force.norm();
         let strain = tension / self.problem.axial_stiffness;
         // Where a span meets a wheel each has its own rounding of the same point.
-        let before = self.out.last().map_or(p.s, |n| n.arc_length_m);
+        let before = self.out.last().map_or(p.arc_length, |n| n.arc_length_m);
         let node = Node {
-            arc_length_m: if p.s < before { before } else { p.s },
+            arc_length_m: if p.arc_length < before { before } else { p.arc_length },
             x_m: p.at.x,
             y_m: p.at.y,
             tension_n: tension,
@@ -98,7 +98,7 @@ impl<'a> Nodes<'a> {
             // A fold is a point without tension: its direction turns at once, and no number says
             // how sharply.
             let curvature = if square > 0.0 { -cross(force, c.span().weight) / square } else { 0.0 };
-            Point { s: s0 + s, at: at + c.position_at(s), force, curvature }
+            Point { arc_length: s0 + s, at: at + c.position_at(s), force, curvature }
         };
         let (a, b) = (point(0.0), point(c.span().length));
         self.push(a);
@@ -188,7 +188,7 @@ fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &Slide<'_>, e: &Equilibrium, k: usi
         let passed = pass(&chain, a, before.norm(), arc.arrive, psi, m);
         let lambda = chain.thermal_stretch * (1.0 + passed.tension / chain.axial_stiffness);
         nodes.push(Point {
-            s: from + passed.material,
+            arc_length: from + passed.material,
             at: a.touch(arc.arrive - a.facing * psi),
             force: perp(a.touch(arc.arrive - a.facing * psi) - a.at) * (-a.facing / a.radius * passed.tension),
             curvature: -a.facing * lambda / a.radius,

@@ -17,9 +17,6 @@ pub struct CatenarySettings {
     /// Most iterations of Newton's method for one set of modes; 60 pulleys from a cold start took
     /// 25. Smaller: long rows of pulleys fail. Larger: a failure costs more.
     pub max_iterations: usize,
-    /// Most halvings of one iteration's step. Smaller: a stiff cable fails. Larger: a failure costs
-    /// more.
-    pub max_halvings: usize,
     /// Most rounds of wheel geometry; κR = 0.5 takes 12. Smaller: wheels as round as the cable
     /// beside them fail. Larger: a failure costs more.
     pub max_wheel_rounds: usize,
@@ -44,7 +41,6 @@ impl Default for CatenarySettings {
             max_move_fraction: 0.01,
             max_step_halvings: 10,
             max_iterations: 200,
-            max_halvings: 40,
             max_wheel_rounds: 60,
             kept_stretch_fraction: 0.2,
             joint_mode_rounds: 12,

@@ -1,23 +1,25 @@
 //! `Dynamics` advances the state of a cable in contact: its motion, quasi-static steps and
 //! equilibria.
 
-use std::sync::Arc;
-
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::SlideOver;
-use crate::model::fem::newton::mixed_free::FreeStep;
-use crate::model::fem::settings::Tuning;
+use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
+use crate::model::fem::obstacle::moving_outline::prepare_way;
+use crate::model::fem::remesh::adapt::{remesh, settle_down};
+use crate::model::fem::results;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::control::{HandDrive, Memory, Pacing, Rollback, SolverMemory};
-use crate::model::fem::state::stepping::Sleep;
-use crate::model::fem::state::stepping::StepSizeController;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, WorkBudget};
+use crate::model::fem::state::control::{HandDrive, Pacing, Rollback, SolverMemory};
+use crate::model::fem::state::momentum::MovingMass;
+use crate::model::fem::state::step_setup::renew_input;
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause};
+use crate::model::fem::time::bdf2::{Weights, note_balanced, note_lag, set_inertia};
+use crate::model::fem::time::momentum::{account_for_step, forces_in_step};
+use crate::model::fem::time::{bdf2, branches, hands, self_contact};
 use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::held_warning;
-use crate::model::{Inertia, Model, Settings, StepReport};
-use crate::problem::Problem;
-use crate::solution::{Cost, Warning, WarningCause};
+use crate::model::{Inertia, Model, StepReport};
+use crate::solution::{CableSolution, Cost, Warning, WarningCause};
 
 /// The moving cable, or the resting one where it can touch something.
 #[derive(Clone, Debug)]
@@ -31,40 +33,13 @@ pub struct Dynamics {
     pub(super) rested: bool,
 }
 
-impl Dynamics {
-    /// Builds it at the route.
-    ///
-    /// # Errors
-    /// None today: a feature that the model lacks is refused when it is asked for.
-    pub fn new(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Result<Self, SolveError> {
-        let longest = tuning.step.longest_s;
-        let cable = CableState::new(problem, settings, tuning);
-        Ok(Self {
-            rollback: Rollback::default(),
-            solver: SolverMemory {
-                unknowns: Unknowns::default(),
-                memory: Memory(None),
-                free: FreeStep::default(),
-                decay: Vec::new(),
-                work_left: WorkBudget::Unlimited,
-            },
-            pacing: Pacing {
-                pace: StepSizeController::new(settings.inner_step_s.unwrap_or(longest)),
-                sleep: Sleep::default(),
-                tolerance: settings.tolerance,
-                due: f64::INFINITY,
-            },
-            hand_drive: HandDrive {
-                hand_speed: settings.hand_speed_m_per_s,
-                hand_stiffness: settings.hand_stiffness_n_per_m,
-                pulled: vec![false; cable.problem.supports.len()],
-                aims: Vec::new(),
-            },
-            rested: false,
-            cable,
-        })
-    }
+/// Lets the outline of the robot wait where it is; returns whether it was moving.
+fn waits(cable: &mut CableState) -> bool {
+    let at = cable.motion.placement;
+    cable.outline.as_mut().is_some_and(|outline| outline.wait_at(at))
+}
 
+impl Dynamics {
     /// Forgets the steps before the present instant, and the frequency that was seen in them.
     pub(super) fn forget_history(&mut self) {
         self.cable.forget_history();
@@ -100,15 +75,21 @@ impl Dynamics {
         self.cable.answers.held_back.clear();
         let end = self.cable.motion.time + dt_s;
         self.pacing.due = end;
-        self.cable.begin_way(end);
+        if let (Some(outline), Some(at)) = (&mut self.cable.outline, self.cable.motion.placement) {
+            outline.begin_way((self.cable.motion.time, at), end);
+        }
         match inertia {
-            Inertia::Dynamic => self.cable.begin_account(),
+            Inertia::Dynamic => {
+                let begun =
+                    self.cable.motion.account.begun(self.cable.motion.time, || MovingMass::of(&self.cable).momentum());
+                self.cable.motion.account = begun;
+            }
             // Without inertia supports are where they are drawn to.
             Inertia::QuasiStatic => self.cable.motion.hands.fill(None),
         }
         if inertia == Inertia::Dynamic && gauge.asks(self.cable.motion.time) {
-            self.cable.gauge_tension();
-            let at_rest = self.cable.motion.v.iter().all(|v| *v == Vec2::zeros());
+            results::gauge_tension(&mut self.cable);
+            let at_rest = self.cable.motion.velocities.iter().all(|v| *v == Vec2::zeros());
             gauge.begin(self.cable.motion.time, at_rest, &self.cable.answers.gauged.arc_length, |k| {
                 self.cable.answers.gauged.tension[k]
             });
@@ -121,11 +102,11 @@ impl Dynamics {
             return Ok(self.report(Converged::default(), 0, 0.0));
         }
         if inertia == Inertia::Dynamic && self.cable.motion.step_before == 0.0 && self.cable.meets_nothing() {
-            self.cable.open_folds();
+            self.cable.motion.open_folds(&self.cable.mesh);
         }
         let pieces = match inertia {
             Inertia::Dynamic => (dt_s / self.pacing.pace.longest_step() - 1e-9).ceil().max(1.0),
-            Inertia::QuasiStatic => self.cable.pieces(end, dragged),
+            Inertia::QuasiStatic => self.cable.static_steps(end, dragged),
         };
         let h = dt_s / pieces;
         let (mut total, mut halved) = (Converged::default(), 0);
@@ -143,8 +124,8 @@ impl Dynamics {
                 dt_s,
             );
             if self.pacing.sleep.falls_asleep(&self.cable) {
-                self.cable.motion.v.fill(Vec2::zeros());
-                self.cable.motion.w.fill(0.0);
+                self.cable.motion.velocities.fill(Vec2::zeros());
+                self.cable.motion.slide_rates.fill(0.0);
                 self.forget_history();
             }
         } else {
@@ -202,8 +183,13 @@ impl Dynamics {
                     tried
                 }
             };
-            let finite =
-                self.cable.motion.x.iter().chain(&self.cable.motion.v).all(|p| p.iter().all(|c| c.is_finite()));
+            let finite = self
+                .cable
+                .motion
+                .positions
+                .iter()
+                .chain(&self.cable.motion.velocities)
+                .all(|p| p.iter().all(|c| c.is_finite()));
             match tried {
                 Ok(done) if finite => {
                     total = Converged { iterations: total.iterations + done.iterations, ..done };
@@ -230,12 +216,12 @@ impl Dynamics {
                         cause: FailureCause::StateNotFinite,
                     });
                     self.rollback.restore(&mut self.cable);
-                    if f.cause == FailureCause::CornerPulls && self.cable.settle_down(f.node) {
-                        self.cable.renew_input();
+                    if f.cause == FailureCause::CornerPulls && settle_down(&mut self.cable, f.node) {
+                        renew_input(&mut self.cable);
                         continue;
                     }
                     // A cable that cannot get out of the way of the robot holds it.
-                    if depth >= self.cable.mesh.tuning.step.halvings_before_robot_waits && self.cable.outline_waits() {
+                    if depth >= self.cable.mesh.tuning.step.halvings_before_robot_waits && waits(&mut self.cable) {
                         (depth, size) = (0, left);
                         continue;
                     }
@@ -278,7 +264,7 @@ impl Dynamics {
         };
         let held = self.cable.answers.held_back.iter().filter_map(|&k| {
             let (node, s) = (node_of(k)?, self.cable.problem.supports.get(k)?);
-            let behind = (self.cable.input.target.get(node)? - self.cable.motion.x[node]).norm();
+            let behind = (self.cable.input.target.get(node)? - self.cable.motion.positions[node]).norm();
             let cause = WarningCause::Blocked { support: s.name.clone() };
             Some(Warning::new(cause, &self.cable.problem.cable.name, self.cable.mesh.arc_length[node], [behind, 0.0]))
         });
@@ -288,5 +274,99 @@ impl Dynamics {
         });
         let warnings = held.chain(drawn).chain(self.hand_drive.warnings(&self.cable)).collect();
         StepReport { cost, warnings }
+    }
+
+    /// The answer at this instant.
+    #[must_use]
+    pub fn solution(&self) -> CableSolution {
+        results::solution(&self.cable)
+    }
+
+    /// Sets the input of a step of `h` (s); returns the weights of its history.
+    pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Weights {
+        self.hand_drive.follow(&mut self.cable, self.pacing.due, h, dragged);
+        let now = self.cable.motion.time;
+        prepare_way(&mut self.cable, [now, now + h], Some(dragged));
+        self.cable.contacts.set_slip(self.cable.contacts.tuning.slip_m);
+        let contact = self.cable.contacts.tuning;
+        self.cable.adapt_stiffness([contact.stiffness_rise, contact.stiffness_fall], 1.0);
+        let weights = Weights::of_step(&self.cable.motion, h);
+        set_inertia(&mut self.cable, weights, h, &mut self.solver.decay);
+        let (m, input, mesh) = (&self.cable.motion, &self.cable.input, &self.cable.mesh);
+        self.cable.contacts.look_around(&self.cable.problem, mesh, &m.positions, |k| {
+            if mesh.held[k] { (input.target[k] - m.positions[k]).norm() } else { m.velocities[k].norm() * h }
+        });
+        weights
+    }
+
+    pub(in crate::model::fem) fn dynamic_step(
+        &mut self,
+        h: f64,
+        dragged: &[Option<Vec2>],
+    ) -> Result<Converged, Failure> {
+        let weights = self.begin_step(h, dragged);
+        let Weights { now, past, a, .. } = weights;
+        let (mut unknowns, exact) = (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.tolerance);
+        self.cable.contacts.prepare(
+            &self.cable.problem,
+            &self.cable.mesh,
+            &unknowns.positions,
+            &self.cable.motion.positions,
+        );
+        self.cable.input.tolerance = self.cable.input.rounded_tolerance(&self.cable.motion.positions);
+        let done = self.solver.rub_and_minimise(&mut self.cable, &mut unknowns);
+        self.cable.input.tolerance = exact;
+        let done = done?;
+        let most = self.cable.mesh.tuning.remesh.max_reverse_turn_rad;
+        if let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.positions).pulled_corner(most) {
+            return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
+        }
+        note_lag(&mut self.cable, &unknowns);
+        hands::keep_forces(&mut self.cable, &unknowns);
+        note_balanced(&mut self.cable, &unknowns);
+        let given = forces_in_step(&self.cable, &unknowns, self.solver.touches());
+        let slid = MovingMass::of(&self.cable).sliding_momentum();
+        branches::relax(&mut self.cable, h, &unknowns.positions);
+        self.cable.commit_contacts(&unknowns);
+        let (m, mesh) = (&mut self.cable.motion, &self.cable.mesh);
+        for k in 0..unknowns.positions.len() {
+            let v = (unknowns.positions[k] - weights.place(m, k)) * a;
+            let s = mesh.arc_length[k];
+            let w = (s + unknowns.slides[k] - s * now + m.previous_arc_length[k] * past) * a;
+            if let (Some(x), Some(v)) = (m.older_positions.get_mut(k), m.older_velocities.get_mut(k)) {
+                (*x, *v) = (m.previous_positions[k], m.previous_velocities[k]);
+            }
+            m.previous_positions[k] = m.positions[k];
+            m.previous_velocities[k] = m.velocities[k];
+            m.previous_arc_length[k] = s;
+            m.previous_slide_rates[k] = m.slide_rates[k];
+            m.positions[k] = unknowns.positions[k];
+            m.velocities[k] = v;
+            m.slide_rates[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
+        }
+        self.cable.mesh.slide(&unknowns.slides);
+        account_for_step(&mut self.cable, weights, given, slid, &unknowns.slides);
+        self.solver.unknowns = unknowns;
+        self.cable.motion.time += h;
+        results::gauge_tension(&mut self.cable);
+        let cable = &self.cable;
+        let smooth = !cable.mesh.spread.is_lumped() && cable.answers.gauged.bars.iter().all(|tension| *tension > 0.0);
+        self.cable.motion.note_step(h, smooth);
+        self.pacing.pace.observe(&self.cable, h);
+        bdf2::land(&mut self.cable, h, a);
+        self_contact::land(&mut self.cable, h, a);
+        let momentum = MovingMass::of(&self.cable).momentum();
+        self.cable.motion.account.close(self.cable.motion.time, momentum);
+        self.cable.contacts.outline_motion = None;
+        if !self.cable.meshing.never_slides {
+            self.cable.answers.keeps = self.cable.motion.time >= self.pacing.due * (1.0 - f64::EPSILON);
+            remesh(&mut self.cable, Inertia::Dynamic);
+            self.cable.answers.keeps = false;
+            self.cable.answers.stepped = self.cable.answers.kept.take();
+            if let Some(node) = IntersectionCheck::of(&self.cable).crossing() {
+                return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerCrossed });
+            }
+        }
+        Ok(done)
     }
 }

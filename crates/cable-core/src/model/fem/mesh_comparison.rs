@@ -69,7 +69,7 @@ impl TwoMeshes {
             self.errors = match exact {
                 // A cable that touches itself nowhere rests as one that cannot; once it moves it
                 // may.
-                Some(exact) if !fine.cable.touches_itself() => beside(&fine.cable.solution(), &exact.answer, problem),
+                Some(exact) if !fine.cable.touches_itself() => beside(&fine.solution(), &exact.answer, problem),
                 _ => coarser(problem, settings, fine, dragged).map(|found| found.0).unwrap_or_default(),
             };
             return;
@@ -78,7 +78,7 @@ impl TwoMeshes {
             return;
         }
         if let Some(exact) = exact {
-            let mut answer = fine.cable.solution();
+            let mut answer = fine.solution();
             self.errors = beside(&answer, &exact.answer, problem);
             while refinement == Refinement::Allowed
                 && exceeds(&self.errors, &answer, settings)
@@ -86,7 +86,7 @@ impl TwoMeshes {
             {
                 let bars = 2 * fine.cable.meshing.even_bars;
                 let Some(finer) = laid_over(problem, settings, fine, bars, &exact.answer, dragged) else { break };
-                let next = finer.cable.solution();
+                let next = finer.solution();
                 let errors = beside(&next, &exact.answer, problem);
                 if !(errors.relative(&next) < self.errors.relative(&answer)) {
                     break;
@@ -116,7 +116,7 @@ impl TwoMeshes {
         if inertia != Inertia::QuasiStatic {
             return;
         }
-        let answer = fine.cable.solution();
+        let answer = fine.solution();
         let coarse = match (before.exact, before.coarse) {
             (Some(mut exact), _) => {
                 if let Some(other) = go_on(&mut exact, dt_s, dragged) {
@@ -132,7 +132,7 @@ impl TwoMeshes {
         };
         let Some(coarse) = coarse else { return };
         // Friction is as wrong as the steps that it remembers.
-        self.errors = before.errors.or_larger(&ErrorEstimates::between(&coarse.cable.solution(), &answer));
+        self.errors = before.errors.or_larger(&ErrorEstimates::between(&coarse.solution(), &answer));
         self.coarse = Some(coarse);
     }
 }
@@ -159,13 +159,12 @@ fn coarser(
     if fine.cable.meshing.even_bars < LEAST_BARS {
         return None;
     }
-    let answer = fine.cable.solution();
+    let answer = fine.solution();
     let coarse = laid_over(problem, settings, fine, fine.cable.meshing.even_bars / 2, &answer, dragged)?;
-    let other = coarse.cable.solution();
+    let other = coarse.solution();
     let errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
     let coarsest = laid_over(problem, settings, fine, fine.cable.meshing.even_bars / 4, &answer, dragged);
-    let change =
-        coarsest.map(|c| ErrorEstimates::between(&c.cable.solution(), &other).times(FIRST_ORDER_ERROR_FRACTION));
+    let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(FIRST_ORDER_ERROR_FRACTION));
     Some((change.map_or(errors, |change| errors.or_larger(&change)), coarse))
 }
 

@@ -3,15 +3,16 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | `state` | the state of the cable (`state/cable.rs`), and the parts that control it (`state/control.rs`) |
-//! | `dynamics` | advances that state: steps, halvings, reports |
+//! | `state` | the state of the cable (`state/cable.rs`) and its parts, the setup of a step, and what controls it (`state/control.rs`) |
+//! | `dynamics` | advances that state: one step with inertia, halvings, reports |
 //! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
 //! | `equilibrium` | equilibria in contact, and steps without inertia |
-//! | `time` | setup of a step, BDF2, step sizes, sleep, hands, momentum |
+//! | `time` | BDF2, step sizes, sleep, hands, momentum, checkpoints |
 //! | `newton` | one step: its initial guess, its Newton iterations, and what bounds them |
 //! | `system` | input and energies of a step: value, gradient and banded Hessian |
 //! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
-//! | `obstacle`, `transfer` | the robot's outline; states and answers of other models |
+//! | `obstacle` | the robot's outline; does the cable run through an obstacle? |
+//! | `transfer` | the first state along the route; states and answers of other models |
 //! | `results`, `mesh_comparison` | the answer of a state, and its errors |
 //! | `settings` | the tuned constants |
 //!
@@ -40,7 +41,10 @@ use std::sync::Arc;
 use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
+use crate::model::fem::equilibrium::quasi_static::slides_as_a_whole;
 use crate::model::fem::mesh_comparison::{Refinement, TwoMeshes};
+use crate::model::fem::obstacle::moving_outline::outline_report;
+use crate::model::fem::obstacle::moving_outline::place_outline;
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::system::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;
@@ -160,7 +164,7 @@ impl FemModel {
         let taken =
             self.dynamics.warm_start(&lay.answer, before.cable.time(), &self.dragged).is_ok() && self.dynamics.rested;
         let greatest = lay.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
-        let found = self.dynamics.cable.solution();
+        let found = self.dynamics.solution();
         let pairs = lay.answer.supports.iter().zip(&found.supports);
         let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
         let tuning = self.tuning().start;
@@ -211,7 +215,7 @@ impl FemModel {
         let start = self.dynamics.cable.state();
         let before = if known { None } else { Some(self.dynamics.clone()) };
         let mut found = self.dynamics.settle(&self.dragged);
-        let slid = if known || found.is_err() { None } else { self.dynamics.cable.slides_as_a_whole() };
+        let slid = if known || found.is_err() { None } else { slides_as_a_whole(&self.dynamics.cable) };
         if let Some(why) = slid {
             found = Err(SolveError::NoRestingPlace { why });
         }
@@ -220,7 +224,7 @@ impl FemModel {
             Ok(FirstEquilibrium::Rejected | FirstEquilibrium::Unknown) => Vec::new(),
             // A cable that slides from its first place may come to rest elsewhere.
             Err(slides) => {
-                let answer = self.dynamics.cable.solution();
+                let answer = self.dynamics.solution();
                 let rises = !(work(&self.problem, &start, &answer, self.dynamics.cable.time()) > 0.0);
                 if found.is_err() || rises || slides_on(&self.problem, self.settings, &answer) {
                     found = Err(slides);
@@ -251,7 +255,7 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let (off, s) = self.dynamics.cable.bending_error();
+        let (off, s) = results::bending_error(&self.dynamics.cable);
         self.unbent = Some(off);
         let limit = self.settings.tolerance;
         if off <= limit {
@@ -306,7 +310,7 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let answer = self.dynamics.cable.solution();
+        let answer = self.dynamics.solution();
         let bar = self.dynamics.cable.even();
         let found = Elastica::from_mesh(&self.problem, self.dynamics.cable.time(), &self.dragged, &answer, bar)?;
         let cost = self.take_bent(found)?;
@@ -334,9 +338,11 @@ impl FemModel {
         if !found.stiffen(&self.problem) {
             return None;
         }
-        let (estimate, errors) = found.refine(&self.problem, STIFF_ESTIMATE_FRACTION * self.settings.tolerance)?;
+        let (estimate, errors) =
+            elastica::refine(&mut found, &self.problem, STIFF_ESTIMATE_FRACTION * self.settings.tolerance)?;
         let (iterations, residual_n) = found.cost();
-        self.bent = Some(CableSolution { error_estimate: Some(estimate), errors, ..found.solution(&self.problem) });
+        self.bent =
+            Some(CableSolution { error_estimate: Some(estimate), errors, ..elastica::solution(&found, &self.problem) });
         Some(Cost { iterations, residual_n, ..Cost::default() })
     }
 
@@ -367,8 +373,7 @@ impl FemModel {
 
     /// A warning of a mesh that is coarser than the tolerance asks for.
     fn coarse_warning(&self) -> Option<Warning> {
-        let (estimate, asked) =
-            (self.meshes.errors.relative(&self.dynamics.cable.solution())?, self.settings.tolerance);
+        let (estimate, asked) = (self.meshes.errors.relative(&self.dynamics.solution())?, self.settings.tolerance);
         let cause = WarningCause::CoarseForces { elements: self.dynamics.cable.meshing.even_bars };
         (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
     }
@@ -438,7 +443,7 @@ impl Mechanics for FemModel {
             }
             let mut report = self.dynamics.advance_gauged(dt_s, inertia, &self.dragged, gauge)?;
             self.meshes.follow(&self.problem, self.settings, &self.dynamics, dt_s, inertia, &self.dragged);
-            let led = !touches_nothing(&self.problem) || self.dynamics.cable.slides_anywhere();
+            let led = !touches_nothing(&self.problem) || self.dynamics.cable.mesh.slides_anywhere();
             match if led { self.bend_warning() } else { None } {
                 Some(warning) => report.warnings.push(warning),
                 // An error below the tolerance tells nothing of the other errors of a step.
@@ -504,11 +509,13 @@ impl Mechanics for FemModel {
 
     fn set_robot_pose(&mut self, to: RigidPose) {
         self.led = Some(to);
-        self.dynamics.cable.set_robot_pose(to);
+        if let Some(outline) = &mut self.dynamics.cable.outline {
+            outline.lead_to(to);
+        }
     }
 
     fn robot_contact(&self) -> Option<RobotContact> {
-        self.dynamics.cable.outline_report()
+        outline_report(&self.dynamics.cable)
     }
 
     fn solution(&self) -> CableSolution {
@@ -518,7 +525,7 @@ impl Mechanics for FemModel {
         match self.present {
             Part::Statics => self.statics.solution(),
             Part::Dynamics => {
-                let answer = self.dynamics.cable.solution();
+                let answer = self.dynamics.solution();
                 let meshes = self.meshes.errors;
                 let estimates = [self.unbent, meshes.relative(&answer)].into_iter().flatten();
                 let errors = match self.unbent {
@@ -556,7 +563,7 @@ impl Mechanics for FemModel {
         });
         self.dynamics.solver.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
         self.dynamics.cable.problem = own.problem;
-        self.dynamics.cable.place_outline();
+        place_outline(&mut self.dynamics.cable);
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

@@ -6,12 +6,13 @@ use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
 use crate::model::fem::mesh::sliding_node::{Balanced, Load, SlideOver, SlidingNode};
 use crate::model::fem::mesh::tangent_path::angle_between;
+use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::floor_friction::OverRound;
-use crate::model::fem::system::friction_state::{ContactPair, ContactSet, FrictionContact};
+use crate::model::fem::system::friction_state::ContactPair;
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::time::{branches, self_contact};
 use crate::problem::Problem;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
@@ -29,10 +30,16 @@ const SAG_ROUNDS: usize = 4;
 /// away from the round that is drawn.
 const PATH_EXCESS_DIAMETERS: f64 = 0.005;
 
-/// The answer at positions `x` and velocities `v`.
+/// The answer of a cable at this instant: that of the last step as it was balanced, else that of
+/// the mesh as it is.
 #[must_use]
-pub fn solution(d: &CableState, x: &[Vec2], v: &[Vec2]) -> CableSolution {
-    let problem = &d.problem;
+pub fn solution(cable: &CableState) -> CableSolution {
+    cable.answers.stepped.as_ref().map_or_else(|| solution_now(cable), |s| CableSolution::clone(s))
+}
+
+/// The answer with the mesh as it is.
+fn solution_now(d: &CableState) -> CableSolution {
+    let (problem, x, v) = (&d.problem, &d.motion.positions, &d.motion.velocities);
     let tension = bar_tensions(d, x);
     let (ends, lain) = end_forces(d, x, &tension);
     CableSolution {
@@ -43,91 +50,86 @@ pub fn solution(d: &CableState, x: &[Vec2], v: &[Vec2]) -> CableSolution {
         assumptions: Assumptions {
             bending_stiffness_n_m2: problem.bending_stiffness,
             self_contact: problem.cable.self_contact,
-            inertia: d.inertia_counts(),
+            inertia: d.motion.inertia_counts(),
         },
-        momentum: d.momentum_account(),
+        momentum: d.motion.account.report(d.motion.inertia_counts()),
         ..CableSolution::default()
     }
 }
 
-impl CableState {
-    /// The answer with the mesh as it is.
-    pub(in crate::model::fem) fn solution_now(&self) -> CableSolution {
-        solution(self, &self.motion.x, &self.motion.v)
+/// Keeps the answer of a step before the first change of its mesh.
+pub(in crate::model::fem) fn keep_answer(cable: &mut CableState) {
+    if cable.answers.keeps && cable.answers.kept.is_none() {
+        cable.answers.kept = Some(Box::new(solution_now(cable)));
     }
+}
 
-    /// Reads the tension at each node, as [`nodes`] has it.
-    pub(in crate::model::fem) fn gauge_tension(&mut self) {
-        let mut gauged = std::mem::take(&mut self.answers.gauged);
-        let x = &self.motion.x;
-        gauged.arc_length.clone_from(&self.mesh.arc_length);
-        gauged.bars.clear();
-        if self.meshing.never_slides {
-            let mesh = &self.mesh;
-            gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| {
-                let t = mesh.bar(e).tension((pair[1] - pair[0]).norm());
-                let t = if t > 0.0 { t + branches::force(self, e) } else { t };
-                if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
-            }));
-        } else {
-            gauged.bars.extend((0..self.mesh.rest_length.len()).map(|e| bar_tension(self, x, e)));
-        }
-        let ends = end_forces(self, x, &gauged.bars).0.map(|f| f.norm());
-        gauged.tension.clear();
-        gauged.tension.push(ends[0]);
-        gauged.tension.extend(gauged.bars.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])));
-        gauged.tension.push(ends[1]);
-        for (k, _) in self.mesh.sliding.iter().enumerate().filter(|(_, s)| s.is_some()) {
-            if let (Some(t), Some(load)) = (gauged.tension.get_mut(k), self.load(k)) {
-                *t = larger(load.tension[0], load.tension[1]);
-            }
-        }
-        self.answers.gauged = gauged;
+/// Reads the tension at each node, as [`nodes`] has it.
+pub(in crate::model::fem) fn gauge_tension(cable: &mut CableState) {
+    let mut gauged = std::mem::take(&mut cable.answers.gauged);
+    let x = &cable.motion.positions;
+    gauged.arc_length.clone_from(&cable.mesh.arc_length);
+    gauged.bars.clear();
+    if cable.meshing.never_slides {
+        let mesh = &cable.mesh;
+        gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| {
+            let t = mesh.bar(e).tension((pair[1] - pair[0]).norm());
+            let t = if t > 0.0 { t + branches::force(cable, e) } else { t };
+            if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
+        }));
+    } else {
+        gauged.bars.extend((0..cable.mesh.rest_length.len()).map(|e| bar_tension(cable, x, e)));
     }
+    let ends = end_forces(cable, x, &gauged.bars).0.map(|f| f.norm());
+    gauged.tension.clear();
+    gauged.tension.push(ends[0]);
+    gauged.tension.extend(gauged.bars.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])));
+    gauged.tension.push(ends[1]);
+    for (k, _) in cable.mesh.sliding.iter().enumerate().filter(|(_, s)| s.is_some()) {
+        if let (Some(t), Some(load)) = (gauged.tension.get_mut(k), cable.load(k)) {
+            *t = larger(load.tension[0], load.tension[1]);
+        }
+    }
+    cable.answers.gauged = gauged;
+}
 
-    /// True if the cable slides through any node.
-    pub(in crate::model::fem) fn slides_anywhere(&self) -> bool {
-        self.mesh.sliding.iter().any(Option::is_some)
+/// Error of the tension of a stiff cable where it bends round obstacles and pulleys, in parts
+/// of the greatest tension, and the arc length (m) where it is greatest. A sliding node carries
+/// no moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
+/// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the
+/// normal force of a contact has any direction in between: along the cable that is ½ψ of it.
+pub(in crate::model::fem) fn bending_error(cable: &CableState) -> (f64, f64) {
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
+    let tension = bar_tensions(cable, x);
+    let most = tension.iter().map(|t| t.abs()).fold(0.0, larger);
+    let (mut off, mut at) = (0.0, 0.0);
+    let mut take = |force: f64, node: usize| {
+        if force > off {
+            (off, at) = (force, mesh.arc_length[node]);
+        }
+    };
+    for k in 1..mesh.nodes().saturating_sub(1) {
+        let (Some(sliding), Some(load)) = (&mesh.sliding[k], cable.load(k)) else { continue };
+        let point = 0.5 * (load.tension[0] + load.tension[1]) * (1.0 - (0.5 * load.turn).cos());
+        let radius = sliding.end.radius;
+        let lying = if radius > 0.0 { 0.5 * mesh.bending_stiffness / (radius * radius) } else { point };
+        take(if lying < point { lying } else { point }, k);
     }
-
-    /// Error of the tension of a stiff cable where it bends round obstacles and pulleys, in parts
-    /// of the greatest tension, and the arc length (m) where it is greatest. A sliding node carries
-    /// no moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
-    /// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the
-    /// normal force of a contact has any direction in between: along the cable that is ½ψ of it.
-    pub(in crate::model::fem) fn bending_error(&self) -> (f64, f64) {
-        let (mesh, x) = (&self.mesh, &self.motion.x);
-        let tension = bar_tensions(self, x);
-        let most = tension.iter().map(|t| t.abs()).fold(0.0, larger);
-        let (mut off, mut at) = (0.0, 0.0);
-        let mut take = |force: f64, node: usize| {
-            if force > off {
-                (off, at) = (force, mesh.arc_length[node]);
-            }
-        };
-        for k in 1..mesh.nodes().saturating_sub(1) {
-            let (Some(sliding), Some(load)) = (&mesh.sliding[k], self.load(k)) else { continue };
-            let point = 0.5 * (load.tension[0] + load.tension[1]) * (1.0 - (0.5 * load.turn).cos());
-            let radius = sliding.end.radius;
-            let lying = if radius > 0.0 { 0.5 * mesh.bending_stiffness / (radius * radius) } else { point };
-            take(if lying < point { lying } else { point }, k);
-        }
-        let mut touches: Vec<ContactPair> = Vec::new();
-        self.contacts.find(&self.problem, mesh, x, &mut touches);
-        for t in touches.iter().filter(|t| !t.on_segment && t.node > 0 && t.node + 1 < mesh.nodes()) {
-            let bend = turn(mesh.path(t.node - 1, x).direction, mesh.path(t.node, x).direction);
-            take(0.5 * bend.abs() * t.load(&self.contacts.barrier), t.node);
-        }
-        for t in touches.iter().filter(|t| t.on_segment) {
-            // The next node the cable could have touched with.
-            let ends = [t.node, t.node + 1].into_iter().filter(|&k| k > 0 && k + 1 < mesh.nodes());
-            for k in ends {
-                let bend = turn(mesh.path(k - 1, x).direction, mesh.path(k, x).direction);
-                take(0.5 * bend.abs() * t.load(&self.contacts.barrier), k);
-            }
-        }
-        (if most > 0.0 { off / most } else { 0.0 }, at)
+    let mut touches: Vec<ContactPair> = Vec::new();
+    cable.contacts.find(&cable.problem, mesh, x, &mut touches);
+    for t in touches.iter().filter(|t| !t.on_segment && t.node > 0 && t.node + 1 < mesh.nodes()) {
+        let bend = turn(mesh.path(t.node - 1, x).direction, mesh.path(t.node, x).direction);
+        take(0.5 * bend.abs() * t.load(&cable.contacts.barrier), t.node);
     }
+    for t in touches.iter().filter(|t| t.on_segment) {
+        // The next node the cable could have touched with.
+        let ends = [t.node, t.node + 1].into_iter().filter(|&k| k > 0 && k + 1 < mesh.nodes());
+        for k in ends {
+            let bend = turn(mesh.path(k - 1, x).direction, mesh.path(k, x).direction);
+            take(0.5 * bend.abs() * t.load(&cable.contacts.barrier), k);
+        }
+    }
+    (if most > 0.0 { off / most } else { 0.0 }, at)
 }
 
 /// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than
@@ -235,7 +237,7 @@ fn free_end(d: &CableState, node: usize) -> Option<Vec2> {
     if d.motion.hands[k].is_some() {
         return Some(d.problem.hung_on(k, d.time()) - d.answers.reaction[node]);
     }
-    let rests = d.problem.supports.get(k)?.mass == 0.0 || !d.inertia_counts();
+    let rests = d.problem.supports.get(k)?.mass == 0.0 || !d.motion.inertia_counts();
     rests.then(|| d.problem.hung_on(k, d.time()))
 }
 
@@ -243,7 +245,7 @@ fn free_end(d: &CableState, node: usize) -> Option<Vec2> {
 fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
     let mut sum = Vec2::zeros();
     for rub in d.contacts.friction_contacts.iter().filter(|r| r.touch.node == node && !r.touch.on_segment) {
-        sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + rub_force(&d.contacts, rub, x);
+        sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + d.contacts.friction_force(rub, x);
     }
     if let Some(&limit) = d.input.floor_limit.get(node) {
         sum -= friction::at_plane(d.contacts.floor_slid[node], limit, d.contacts.slip).1;
@@ -268,7 +270,7 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
         sum += touch.pair.gap.normal * touch.load(&d.contacts.barrier);
     }
     for rub in &d.contacts.friction_contacts {
-        sum += rub_force(&d.contacts, rub, x);
+        sum += d.contacts.friction_force(rub, x);
     }
     for k in 0..x.len() {
         let floor =
@@ -284,11 +286,6 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
         }
     }
     sum
-}
-
-/// Friction force on the cable, N.
-pub(in crate::model::fem) fn rub_force(contacts: &ContactSet, rub: &FrictionContact, x: &[Vec2]) -> Vec2 {
-    -rub.tangent * friction::at(rub.sliding(x), rub.limit, contacts.slip).1
 }
 
 fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 2]) -> Vec<Node> {
@@ -312,7 +309,7 @@ fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], ends: &[Vec2; 
     for k in 0..n {
         if let (Some(sliding), Some(load)) = (&mesh.sliding[k], d.load(k)) {
             for p in on_round(d, k, sliding, &load, x, tension) {
-                let velocity = p.force.try_normalize(0.0).unwrap_or_default() * (-d.motion.w[k] * p.stretch);
+                let velocity = p.force.try_normalize(0.0).unwrap_or_default() * (-d.motion.slide_rates[k] * p.stretch);
                 let curvature =
                     if sliding.end.radius > 0.0 { p.stretch * sliding.end.sense / sliding.end.radius } else { 0.0 };
                 if out.last().is_none_or(|l: &Node| p.arc_length > l.arc_length_m + 1e-9) {
@@ -418,7 +415,8 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
         sagged = [0, 1].map(|j| larger(straight[j] + smaller(sags[j], room[j]), smaller(straight[j], 0.0)));
     }
     // As far round as it would run into an edge beside a corner it does not sag.
-    let clear = |turned: f64| !d.is_over_an_edge(node, node.end.center + normal(turned) * radius, 0.0);
+    let clear =
+        |turned: f64| !IntersectionCheck::of(d).is_over_an_edge(node, node.end.center + normal(turned) * radius, 0.0);
     let before = if clear(-sagged[0]) { sagged[0] } else { straight[0] };
     let after = if clear(sagged[1]) { sagged[1] } else { straight[1] };
     // A last mark that the cable has come off, to be taken out after the step, is drawn with the
@@ -588,20 +586,20 @@ fn supports(d: &CableState, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Ve
         .filter_map(|(k, (s, node))| {
             let Some(node) = *node else { return pulley(d, k, x, tension) };
             let last = x.len() - 1;
-            let lies = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
+            let on_ground = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
             let hand = d.motion.hands[k];
             let reaction = match node {
                 _ if hand.is_some() => d.answers.reaction[node],
                 // A dead load is what hangs there: the cable pulls it the other way; a lump it may
                 // pull faster. Of one that lies the ground takes a part, which is the contact's.
-                _ if !d.mesh.held[node] && lies => -problem.hung_on(k, d.time()),
+                _ if !d.mesh.held[node] && on_ground => -problem.hung_on(k, d.time()),
                 0 if !d.mesh.held[node] => ends[0],
                 k if k == last && !d.mesh.held[node] => -ends[1],
                 _ if !d.mesh.held[node] => -problem.hung_on(k, d.time()),
                 // On the ground the end's own share of weight and friction is the ground's, not the
                 // support's.
-                0 if lies => ends[0],
-                k if k == last && lies => -ends[1],
+                0 if on_ground => ends[0],
+                k if k == last && on_ground => -ends[1],
                 _ => d.answers.reaction[node],
             };
             Some(SupportReaction {
@@ -770,7 +768,7 @@ fn report(
     for rub in rubs.clone() {
         let e = rub.touch.node.min(bars - 1);
         let along = d.mesh.path(e, x).direction;
-        friction_n += rub_force(&d.contacts, rub, x).dot(&along) * part(&rub.touch);
+        friction_n += d.contacts.friction_force(rub, x).dot(&along) * part(&rub.touch);
         if rub.sliding(x).abs() > 0.999 * d.contacts.slip {
             slips += rub.limit;
         }
@@ -808,7 +806,7 @@ fn report(
     let press = |t: &ContactPair| t.pair.gap.normal * (t.load(&d.contacts.barrier) * part(t));
     let mut samples: Vec<ContactSample> = stretch.iter().map(|t| ContactSample::new(arc(t), press(t))).collect();
     for rub in rubs {
-        samples.push(ContactSample::new(arc(&rub.touch), rub_force(&d.contacts, rub, x) * part(&rub.touch)));
+        samples.push(ContactSample::new(arc(&rub.touch), d.contacts.friction_force(rub, x) * part(&rub.touch)));
     }
     samples.sort_by(|a, b| a.arc_length_m.total_cmp(&b.arc_length_m));
     out.set_samples(samples);

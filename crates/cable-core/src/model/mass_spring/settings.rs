@@ -244,9 +244,6 @@ pub struct NewtonTuning {
     /// Shift, of EA over the shortest element or of the stiffness of contacts, beyond which the
     /// solve fails. Smaller gives up early, larger late.
     pub max_shift: f64,
-    /// Least shift, of EA over the shortest element. Smaller is below round-off, larger slows the
-    /// last steps.
-    pub min_shift: f64,
     /// Steps in which friction follows the normal forces at once, which is fastest; later ones
     /// first solve with them frozen, as the first may run in circles. Smaller freezes soon, larger
     /// circles for longer.
@@ -273,7 +270,6 @@ impl Default for NewtonTuning {
             shift_decrease: 0.1,
             shift_increase: 8.0,
             max_shift: 1e3,
-            min_shift: 1e-14,
             eager_friction_steps: 150,
             max_frozen_steps: 25,
             max_move_radii: 0.5,
@@ -293,16 +289,16 @@ pub struct QuasiStaticTuning {
     /// Greatest number of equilibria in a step. Smaller goes farther at once in long steps, larger
     /// takes longer.
     pub max_parts: f64,
-    /// Shortest part of the path between two equilibria that is tried after a failure. Smaller
-    /// tries longer, larger gives up early.
-    pub min_part: f64,
+    /// Most halvings of the path between two equilibria after failures. Fewer give up early, more
+    /// try longer.
+    pub max_halvings: u32,
     /// Points of a motion within a step that measure its path. Fewer miss a motion to and fro.
     pub path_samples: u32,
 }
 
 impl Default for QuasiStaticTuning {
     fn default() -> Self {
-        Self { max_path_lengths: 0.5, max_parts: 1e4, min_part: 1.0 / 1024.0, path_samples: 8 }
+        Self { max_path_lengths: 0.5, max_parts: 1e4, max_halvings: 10, path_samples: 8 }
     }
 }
 

@@ -24,6 +24,13 @@ use crate::model::spans::verify::penetration;
 use crate::model::spans::verify::penetration::Penetration;
 use crate::model::spans::verify::tunnelling;
 
+/// Extent (m or rad) by which the interval of a contact has turned round when it is released:
+/// rounding of what touches in a point.
+const RELEASE_OVERLAP: f64 = 1e-10;
+
+/// Depth inside an obstacle from which it is met, of the strand: points nearer than that are one.
+const DEPTH_FRACTION: f64 = 1e-9;
+
 /// Part of p by which an end of a contact may be off the end of an arc and be taken to be there:
 /// Newton's steps go beyond it by less.
 const ARC_END_FRACTION: f64 = 1e-8;
@@ -91,7 +98,7 @@ fn release(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> 
     let worst = (0..strand.contacts.len())
         .filter(|&j| !is_round_wheel(&strand.contacts[j], course))
         .min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
-    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -course.settings.changes.release_overlap) else {
+    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -RELEASE_OVERLAP) else {
         return Ok(false);
     };
     let_go(strand, course, j)
@@ -106,10 +113,7 @@ fn is_round_wheel(c: &Contact, course: &Course) -> bool {
 fn lifted(strand: &CableRun, course: &Course) -> Option<usize> {
     let wheels = strand.contacts.iter().filter(|c| is_round_wheel(c, course));
     let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
-    wheels
-        .min_by(|a, b| turned(a).total_cmp(&turned(b)))
-        .filter(|c| turned(c) < -course.settings.changes.release_overlap)?
-        .wheel
+    wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -RELEASE_OVERLAP)?.wheel
 }
 
 /// S: lets go of what has shrunk to next to nothing beside a load, whose weight a span that turned
@@ -177,10 +181,10 @@ fn turn_eye(c: &mut Contact) {
     c.curve ^= 1;
     c.ends.p = [-c.ends.p[0], -c.ends.p[1]];
     let s = 0.5 * (c.ends.s[0] + c.ends.s[1]);
-    let knot = |k: usize| Knot { p: c.ends.p[k], s, tension: c.ends.t[k], m: 0.0 };
+    let knot = |k: usize| Knot { coordinate: c.ends.p[k], arc_length: s, tension: c.ends.t[k], mobilised: 0.0 };
     // Nothing is left between: it holds what it has.
-    let held = c.history.knots().first().map_or(s, |k| k.s);
-    c.history = TensionProfile::new(Knot { s: held, ..knot(0) }, Knot { s: held, ..knot(1) });
+    let held = c.history.knots().first().map_or(s, |k| k.arc_length);
+    c.history = TensionProfile::new(Knot { arc_length: held, ..knot(0) }, Knot { arc_length: held, ..knot(1) });
     if let Mode::Slide(m) = c.mode
         && m != 0.0
     {
@@ -225,8 +229,7 @@ fn meet(strand: &mut CableRun, course: &Course, world: &World, sought: Sought) -
     if world.is_empty() {
         return Ok(false);
     }
-    let tuned = &course.settings.changes;
-    let deep = tuned.depth_fraction * (strand.to - strand.from);
+    let deep = DEPTH_FRACTION * (strand.to - strand.from);
     let mut any = false;
     // From the last span, so that those before keep their number.
     for k in (0..strand.spans()).rev() {
@@ -282,7 +285,13 @@ fn passed(
         obstacle: 0,
         feature: corner.feature,
     };
-    touch(strand, course, k, &Penetration { s, at: corner.at, tangent, gap, body: corner.body }, Sought::Rest)?;
+    touch(
+        strand,
+        course,
+        k,
+        &Penetration { arc_length: s, at: corner.at, tangent, gap, body: corner.body },
+        Sought::Rest,
+    )?;
     Ok(true)
 }
 
@@ -297,21 +306,21 @@ enum Sought {
 
 /// Lays span k down where it hit.
 fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, sought: Sought) -> Result<(), Failure> {
-    let no_seat = Failure::NoSeat { s: hit.s, at: hit.at };
+    let impossible = Failure::ContactImpossible { s: hit.arc_length, at: hit.at };
     let back = hit.gap.normal.dot(&perp(hit.tangent)) < 0.0;
     let curve_index = 2 * hit.body + usize::from(back);
-    let Some(curve) = course.curves.get(curve_index) else { return Err(no_seat) };
+    let Some(curve) = course.curves.get(curve_index) else { return Err(impossible) };
     let load = course.law.load;
     // In a kink there is nothing but its edges.
     let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(hit.gap.feature.checked_sub(back)?, hit.at));
-    let Some(i) = curve.piece_of(hit.gap.feature, hit.at).or_else(kink) else { return Err(no_seat) };
+    let Some(i) = curve.piece_of(hit.gap.feature, hit.at).or_else(kink) else { return Err(impossible) };
     // Of a wall or an underside the cable goes round the corner that is nearer.
     let found = curve.chain(i, load).or_else(|| curve.chain(curve.corner_beside(i, hit.at)?, load));
-    let Some((i, chain_range)) = found else { return Err(no_seat) };
+    let Some((i, chain_range)) = found else { return Err(impossible) };
     let edge = curve.place_on(i, 0.0).turn == 0.0;
     let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
     let ends = strand.ends_of(course, k);
-    let force = strand.force(course, k, hit.s).norm();
+    let force = strand.force(course, k, hit.arc_length).norm();
     let same =
         |c: &Contact| c.curve == curve_index && c.chain_range == chain_range && c.wheel.is_none() && !c.is_load();
     let end = |j: Option<usize>, side: usize| {
@@ -334,18 +343,18 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, so
         .filter(|c| same(c) && p > c.ends.p[1] && bears(c, (c.ends.p[1], p)))
     {
         let p = beyond_edges(curve, chain_range, p, 1, ends[1], None);
-        (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.s, force);
+        (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.arc_length, force);
         return Ok(());
     }
     if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0] && bears(c, (p, c.ends.p[0]))) {
         let p = beyond_edges(curve, chain_range, p, 0, ends[0], None);
-        (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.s, force);
+        (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.arc_length, force);
         return Ok(());
     }
     let mut contact = Contact {
         curve: curve_index,
         chain_range,
-        ends: Ends { p: [p, p], s: [hit.s, hit.s], t: [force, force] },
+        ends: Ends { p: [p, p], s: [hit.arc_length, hit.arc_length], t: [force, force] },
         mode: if curve.friction > 0.0 && sought == Sought::Step { Mode::Hold } else { Mode::Slide(0.0) },
         history: TensionProfile::default(),
         wheel: None,
@@ -356,7 +365,7 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, so
         smooth: sought == Sought::Rest,
     };
     let track = course.track(&contact);
-    let mut lies = [None, None];
+    let mut held_ends = [None, None];
     for side in 0..2 {
         let outer = if side == 0 { k == 0 } else { k == strand.contacts.len() };
         if let (true, Tie::Held(at)) = (outer, strand.ties[side])
@@ -364,22 +373,27 @@ fn touch(strand: &mut CableRun, course: &Course, k: usize, hit: &Penetration, so
             && (if side == 0 { end <= p } else { end >= p })
         {
             let s = if side == 0 { strand.from } else { strand.to };
-            lies[side] = Some(end);
+            held_ends[side] = Some(end);
             (contact.ends.p[side], contact.ends.s[side]) = (end, s);
             // From the end that is held: so much is laid from there to the other.
             let laid = track.slide(end, p, force, 0.0).material;
-            if lies[1 - side].is_none() {
+            if held_ends[1 - side].is_none() {
                 contact.ends.s[1 - side] = s + laid;
             }
         }
     }
-    let knot = |side: usize| Knot { p: contact.ends.p[side], s: contact.ends.s[side], tension: force, m: 0.0 };
+    let knot = |side: usize| Knot {
+        coordinate: contact.ends.p[side],
+        arc_length: contact.ends.s[side],
+        tension: force,
+        mobilised: 0.0,
+    };
     contact.history = TensionProfile::new(knot(0), knot(1));
     let g = strand.forces[k];
     strand.contacts.insert(k, contact);
     strand.forces.insert(k, g);
     for side in 0..2 {
-        if let Some(p) = lies[side] {
+        if let Some(p) = held_ends[side] {
             strand.ties[side] = Tie::Lies(p);
         }
     }

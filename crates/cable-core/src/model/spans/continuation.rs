@@ -231,7 +231,7 @@ impl CableEquilibrium {
             }
         }
         let at = nodes.first().map_or(Vec2::zeros(), Node::at);
-        Err(first.unwrap_or(Failure::NoSeat { s: 0.0, at }))
+        Err(first.unwrap_or(Failure::ContactImpossible { s: 0.0, at }))
     }
 
     /// Lays it along the route as it is, or shrunk until it is taut and then let out again.
@@ -257,7 +257,7 @@ impl CableEquilibrium {
                 continue;
             }
             let laid = contacts::lay(layout, k, &self.course, &begin, resolution.ring);
-            let no_way = Failure::NoSeat { s: layout.strands[k].material[0], at: goal.places[0] };
+            let no_way = Failure::ContactImpossible { s: layout.strands[k].material[0], at: goal.places[0] };
             let (strand, way) = laid.ok_or(no_way)?;
             self.strands.push(strand);
             came.push(way);
@@ -488,8 +488,8 @@ impl CableEquilibrium {
 
     /// Material that lies loose and the length of ground it lies on, m; None where none does.
     pub fn loose(&self) -> Option<[f64; 2]> {
-        let lies = self.strands.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.lies(&self.course));
-        lies.reduce(|[a, b], [c, d]| [a + c, b + d])
+        let lengths = self.strands.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.lying_lengths(&self.course));
+        lengths.reduce(|[a, b], [c, d]| [a + c, b + d])
     }
 
     /// The most that friction can hold of what lies loose, N.
@@ -673,8 +673,8 @@ impl CableEquilibrium {
     /// tension instead, so that it can be followed.
     fn take_up(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) {
         let held = |k: usize| layout.strands[k].supports.iter().all(Option::is_some);
-        let lies = |k: usize| self.strands[k].loose.as_ref().is_some_and(Loose::spreads);
-        let follows = (0..self.strands.len()).all(|k| self.strands[k].loose.is_none() || (lies(k) && !held(k)));
+        let spreads = |k: usize| self.strands[k].loose.as_ref().is_some_and(Loose::spreads);
+        let follows = (0..self.strands.len()).all(|k| self.strands[k].loose.is_none() || (spreads(k) && !held(k)));
         if self.loose().is_none() || !follows || self.instant.places == to.places {
             return;
         }

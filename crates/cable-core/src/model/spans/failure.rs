@@ -22,7 +22,7 @@ pub(in crate::model::spans) enum Failure {
     /// A point load lies on an obstacle.
     LoadLies { s: f64 },
     /// An obstacle is met where this model cannot lay the cable.
-    NoSeat { s: f64, at: Vec2 },
+    ContactImpossible { s: f64, at: Vec2 },
     /// A cable that lies loose is drawn along: material point, m.
     Drawn { s: f64 },
     /// The answer does not pass the check that does not use the solver.

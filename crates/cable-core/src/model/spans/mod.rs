@@ -343,7 +343,9 @@ fn error_of(problem: &Problem, failure: Failure) -> SolveError {
         Failure::Passed { at } => unsupported(Unsupported::CornerPassed { at_m: at }),
         Failure::SupportInside { at } => unsupported(Unsupported::SupportInside { at_m: at }),
         Failure::LoadLies { s } => unsupported(Unsupported::LoadOnObstacle { arc_length_m: s }),
-        Failure::NoSeat { s, at } => unsupported(Unsupported::ContactWithoutSeat { arc_length_m: s, at_m: at }),
+        Failure::ContactImpossible { s, at } => {
+            unsupported(Unsupported::ContactImpossible { arc_length_m: s, at_m: at })
+        }
         Failure::Drawn { s } => unsupported(Unsupported::LooseCableDrawn { arc_length_m: s }),
         Failure::Unsound { what, s, at } => {
             unsupported(Unsupported::Unverified { finding: what, arc_length_m: s, at_m: at })

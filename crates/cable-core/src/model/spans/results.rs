@@ -105,9 +105,9 @@ struct Stretch {
     to: f64,
     /// Tension (N) and material (m) at its start.
     tension: f64,
-    s: f64,
+    arc_length: f64,
     /// Friction coefficient called upon.
-    m: f64,
+    mobilised: f64,
     pivot: Pivot,
     /// Of the cable, m.
     cable_radius: f64,
@@ -121,7 +121,7 @@ impl Stretch {
             Some(pivot) if pivot.reaches(from) && pivot.reaches(to) => pivot,
             _ => Pivot::new(track.curve, track.chain_range, &track.law, middle),
         };
-        Self { from, to, tension, s, m: history.called(track, middle), pivot, cable_radius }
+        Self { from, to, tension, arc_length: s, mobilised: history.called(track, middle), pivot, cable_radius }
     }
 
     /// Parts that nodes cut it into.
@@ -136,8 +136,8 @@ impl Stretch {
     /// Tension and material at p.
     fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
         let piece = SegmentCursor { law: &track.law, from: self.pivot.spot(self.from), p0: self.from };
-        let way = piece.slide(p, self.tension, self.m);
-        (way.tension, self.s + way.material)
+        let way = piece.slide(p, self.tension, self.mobilised);
+        (way.tension, self.arc_length + way.material)
     }
 }
 
@@ -147,10 +147,10 @@ fn stretches(track: &Track<'_>, cable_radius: f64, history: &TensionProfile, [p1
     let (mut p, mut k) = (p1, 0);
     while p < p2 {
         let border = track.next_border(p, p2);
-        while knots.get(k).is_some_and(|knot| knot.p <= p) {
+        while knots.get(k).is_some_and(|knot| knot.coordinate <= p) {
             k += 1;
         }
-        let next = knots.get(k).map_or(border, |knot| if knot.p < border { knot.p } else { border });
+        let next = knots.get(k).map_or(border, |knot| if knot.coordinate < border { knot.coordinate } else { border });
         out.push(Stretch::new(track, cable_radius, history, [p, next]));
         p = next;
     }
@@ -160,7 +160,7 @@ fn stretches(track: &Track<'_>, cable_radius: f64, history: &TensionProfile, [p1
 fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretches: &[Stretch]) {
     let mut push = |place: &Place, (tension, s): (f64, f64)| {
         let curvature = if place.stretch > 0.0 { place.turn * track.law.stretch(tension) / place.stretch } else { 0.0 };
-        nodes.push(Point { s, at: place.at, force: place.tangent * tension, curvature });
+        nodes.push(Point { arc_length: s, at: place.at, force: place.tangent * tension, curvature });
     };
     push(&track.place(c.ends.p[0]), (c.ends.t[0], c.ends.s[0]));
     for stretch in stretches {
@@ -186,7 +186,7 @@ fn load_nodes(nodes: &mut Nodes<'_>, strand: &CableRun, course: &Course, j: usiz
         let ends = (j + side == 0 || j + side == strand.contacts.len()) && !strand.has_span(j + side);
         let along = || place.tangent * c.ends.t[side];
         let force = pulls(side).or_else(|| pulls(1 - side).filter(|_| ends)).unwrap_or_else(along);
-        nodes.push(Point { s: c.ends.s[side], at: place.at, force, curvature: 0.0 });
+        nodes.push(Point { arc_length: c.ends.s[side], at: place.at, force, curvature: 0.0 });
     }
 }
 
@@ -251,12 +251,12 @@ fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
         let count = stretch.nodes();
         let h = (stretch.to - stretch.from) / count as f64;
         for k in 0..count {
-            let (mut force, mut middle) = (Vec2::zeros(), stretch.s);
+            let (mut force, mut middle) = (Vec2::zeros(), stretch.arc_length);
             for (u, weight) in GAUSS_3 {
                 let p = stretch.from + (k as f64 + u) * h;
                 let (t, s) = stretch.at(track, p);
                 let place = stretch.pivot.place(p);
-                force += (place.normal - place.tangent * stretch.m) * (weight * h * track.law.press(&place, t));
+                force += (place.normal - place.tangent * stretch.mobilised) * (weight * h * track.law.press(&place, t));
                 middle = if u == 0.5 { s } else { middle };
             }
             out.push(ContactSample::new(middle, force));
@@ -402,15 +402,16 @@ fn heap(strand: &CableRun, course: &Course, j: usize, name: &str) -> Vec<Contact
 fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> {
     /// Share of mobilised friction from which on it counts as all of it: rounding.
     const LIMIT: f64 = 1.0 - 1e-9;
-    let state = |s: &Stretch| if s.m.abs() >= LIMIT * friction { ContactState::Slip } else { ContactState::Stick };
+    let state =
+        |s: &Stretch| if s.mobilised.abs() >= LIMIT * friction { ContactState::Slip } else { ContactState::Stick };
     let Some(first) = stretches.first().map(state).filter(|f| stretches.iter().any(|s| state(s) != *f)) else {
         return Vec::new();
     };
     let mut out = vec![ContactPart { begins_m: c.ends.s[0], ends_m: c.ends.s[1], state: first }];
     for s in stretches {
         if let Some(last) = out.last_mut().filter(|last| last.state != state(s)) {
-            last.ends_m = s.s;
-            out.push(ContactPart { begins_m: s.s, ends_m: c.ends.s[1], state: state(s) });
+            last.ends_m = s.arc_length;
+            out.push(ContactPart { begins_m: s.arc_length, ends_m: c.ends.s[1], state: state(s) });
         }
     }
     out

@@ -127,7 +127,7 @@ impl Turned<'_> {
                 Failure::OffWheel { support: (self.problem.supports.len() - 1).saturating_sub(support) }
             }
             Failure::LoadLies { s } => Failure::LoadLies { s: self.s(s) },
-            Failure::NoSeat { s, at } => Failure::NoSeat { s: self.s(s), at },
+            Failure::ContactImpossible { s, at } => Failure::ContactImpossible { s: self.s(s), at },
             Failure::Drawn { s } => Failure::Drawn { s: self.s(s) },
             Failure::Unsound { what, s, at } => Failure::Unsound { what, s: self.s(s), at },
             same @ (Failure::Passed { .. } | Failure::SupportInside { .. }) => same,

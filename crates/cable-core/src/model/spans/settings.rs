@@ -211,12 +211,6 @@ pub struct InitialSettings {
     /// as drawn round the wheel. Smaller: the chords of a coarse polygon are left. Larger: of a
     /// route that only comes near more is taken for its round.
     pub wheel_route_radii: f64,
-    /// Rounds of moving a free end to where the material ends; each gains the digits of the strain.
-    /// Smaller: the end is off. Larger: nothing gained.
-    pub end_fit_rounds: usize,
-    /// Most corners by which a contact is extended. Smaller: it ends in a rounded corner of many
-    /// points. Larger: nothing gained.
-    pub max_extended_corners: usize,
     /// Part of the strand's material that two contacts keep between them at least. Smaller: a span
     /// of no length. Larger: contacts near each other are moved apart.
     pub contact_spacing_fraction: f64,
@@ -241,13 +235,6 @@ pub struct ChangeSettings {
     /// Distance from a contact within which a load is caught by it when Newton stalls, of the
     /// strand. Smaller: the step fails. Larger: a load that hangs is laid down.
     pub catch_distance_fraction: f64,
-    /// Depth inside an obstacle from which it is met, of the strand. Smaller: rounding at touch
-    /// points is met. Larger: it is seen.
-    pub depth_fraction: f64,
-    /// Extent (m or rad) by which the interval of a contact has turned round when it is released.
-    /// Smaller: rounding releases what touches in a point. Larger: a contact that pulls is
-    /// accepted.
-    pub release_overlap: f64,
     /// Points of a span among which the nearest to a corner that was passed is sought. Smaller: the
     /// contact begins beside the corner. Larger: dearer.
     pub corner_search_points: usize,
@@ -350,8 +337,6 @@ impl Default for InitialSettings {
             route_excess_fraction: 0.05,
             post_approach_radii: 2.5,
             wheel_route_radii: 0.1,
-            end_fit_rounds: 6,
-            max_extended_corners: 8,
             contact_spacing_fraction: 1e-4,
             adopted_contact_distance_m: 2.5e-4,
         }
@@ -365,8 +350,6 @@ impl Default for ChangeSettings {
             max_load_releases: 4,
             shed_length_fraction: 1e-4,
             catch_distance_fraction: 0.02,
-            depth_fraction: 1e-9,
-            release_overlap: 1e-10,
             corner_search_points: 64,
             lying_fraction: 0.02,
             pocket_tension_fraction: 1e-2,

@@ -1,10 +1,10 @@
 //! The active set says which contacts there are, and which of them are a point and which a stretch.
 
 use crate::math::{Vec2, perp};
-use crate::model::fem::elastica::start::contact_at;
-use crate::model::fem::elastica::{
+use crate::model::fem::elastica::boundary_value::{
     ANGLE, ARC, Contact, Elastica, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, place, tangent,
 };
+use crate::model::fem::elastica::start::contact_at;
 use crate::problem::Problem;
 
 /// Changes of the set of contacts before it is given up. 1 to 4 are usual.
@@ -37,7 +37,7 @@ const POINT_SLACK: f64 = 1e-3;
 fn split(piece: &Piece, node: usize) -> (Piece, Piece) {
     let cut = piece.grid[node];
     let part = |nodes: &[[f64; STATES]], grid: &[f64], from: f64, to: f64| Piece {
-        lies: None,
+        contact: None,
         grid: grid.iter().map(|g| (g - from) / (to - from)).collect(),
         nodes: nodes
             .iter()
@@ -66,7 +66,7 @@ impl Elastica {
             let saved = self.clone();
             let solved = self.newton();
             if let Some(k) = self.shrinking.take().or_else(|| self.vanishing(problem)) {
-                points.extend(self.pieces[k].lies);
+                points.extend(self.pieces[k].contact);
                 if !solved {
                     *self = Self { steps: self.steps, work: self.work, ..saved };
                 }
@@ -92,14 +92,14 @@ impl Elastica {
     fn lift(&mut self, from: &Self) -> bool {
         let line = |k: usize| from.contacts.get(k).is_some_and(|c| c.radius.is_none());
         let inner = |k: usize| k > 0 && k + 1 < from.pieces.len();
-        let stretch = (0..from.pieces.len()).find(|&k| inner(k) && from.pieces[k].lies.is_some_and(line));
+        let stretch = (0..from.pieces.len()).find(|&k| inner(k) && from.pieces[k].contact.is_some_and(line));
         let point = from.joints.iter().position(|j| matches!(j, Joint::ContactPair(k) if line(*k)));
         if stretch.is_none() && point.is_none() {
             return false;
         }
         *self = Self { steps: self.steps, work: self.work, ..from.clone() };
         if let Some(k) = stretch {
-            let Some(contact) = self.pieces[k].lies else { return false };
+            let Some(contact) = self.pieces[k].contact else { return false };
             let middle = self.pieces[k].nodes.len() / 2;
             let (before, after) = split(&self.pieces[k], middle);
             self.pieces.splice(k..=k, [before, after]);
@@ -115,7 +115,7 @@ impl Elastica {
     /// The first piece that lies on hardly anything.
     fn vanishing(&self, problem: &Problem) -> Option<usize> {
         let short = |p: &Piece| {
-            let c = p.lies.and_then(|k| self.contacts.get(k));
+            let c = p.contact.and_then(|k| self.contacts.get(k));
             c.is_some_and(|c| p.nodes[0][LENGTH] < POINT * c.radius.unwrap_or(problem.radius))
         };
         let inner = |k: usize| k > 0 && k + 1 < self.pieces.len();
@@ -124,7 +124,7 @@ impl Elastica {
 
     /// A stretch becomes a point.
     fn contract(&mut self, k: usize) {
-        let Some(contact) = self.pieces[k].lies else { return };
+        let Some(contact) = self.pieces[k].contact else { return };
         self.pieces.remove(k);
         self.joints.remove(k);
         self.joints[k - 1] = Joint::ContactPair(contact);
@@ -154,7 +154,7 @@ impl Elastica {
             node
         });
         let piece = Piece {
-            lies: Some(contact),
+            contact: Some(contact),
             nodes: nodes.collect(),
             grid: (0..=ELEMENTS).map(|i| i as f64 / ELEMENTS as f64).collect(),
         };
@@ -203,7 +203,7 @@ impl Elastica {
         }
         // A stretch that would have to pull, or that leaves its feature.
         for k in 0..self.pieces.len() {
-            let Some(c) = self.pieces[k].lies.and_then(|c| self.contacts.get(c)) else { continue };
+            let Some(c) = self.pieces[k].contact.and_then(|c| self.contacts.get(c)) else { continue };
             let pulley = matches!(c.owner, Owner::Pulley(_));
             for u in &self.pieces[k].nodes {
                 let deeper = !pulley && self.better(problem, c, place(u), tangent(u)).is_some();
@@ -219,7 +219,7 @@ impl Elastica {
         ];
         for (which, tip) in tips {
             let Some((piece, Some(u))) = tip else { continue };
-            let contact = piece.lies.and_then(|c| self.contacts.get(c));
+            let contact = piece.contact.and_then(|c| self.contacts.get(c));
             if contact.is_some_and(|c| self.tip_push(which, c, u) < -CONTACT_CURVATURE_TOLERANCE * size) {
                 return None;
             }
@@ -236,7 +236,7 @@ impl Elastica {
     fn release(&mut self, joint: usize) {
         let after = self.pieces.remove(joint + 1);
         self.joints.remove(joint);
-        self.pieces[joint].lies = None;
+        self.pieces[joint].contact = None;
         let before = &mut self.pieces[joint];
         let (a, b) = (before.nodes[0][LENGTH], after.nodes[0][LENGTH]);
         let whole = a + b;
@@ -262,7 +262,7 @@ impl Elastica {
         let deep = OVERLAP_TOLERANCE * problem.radius;
         let mut worst: Option<(f64, usize, usize, crate::contact::Gap)> = None;
         let world = &problem.world;
-        for (k, piece) in self.pieces.iter().enumerate().filter(|(_, p)| p.lies.is_none()) {
+        for (k, piece) in self.pieces.iter().enumerate().filter(|(_, p)| p.contact.is_none()) {
             let mut look = |x: Vec2, i: usize| {
                 let Some(gap) = world.signed_gap(x, self.length) else { return };
                 if gap.gap_m < -deep && worst.is_none_or(|w| gap.gap_m < w.0) {

@@ -1,12 +1,14 @@
 //! This module reads an answer out of a solved elastica.
 
 use crate::math::{Vec2, larger, perp};
-use crate::model::fem::elastica::{
+use crate::model::fem::elastica::boundary_value::{
     ANGLE, ARC, Elastica, End, Joint, LENGTH, MOMENT, Owner, Piece, STATES, force, place, tangent, tension,
 };
 use crate::problem::Problem;
 use crate::solution::ErrorEstimates;
-use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
+use crate::solution::{
+    Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Cost, Node, SupportReaction,
+};
 
 /// Most nodes of a piece in an answer.
 const MOST_PARTS: f64 = 400.0;
@@ -24,6 +26,7 @@ const NODE_SPACING_FRACTION: f64 = 1e-3;
 /// is squared.
 const PEAK_HALVINGS: usize = 24;
 
+/// The answer.
 /// Part of what halving the elements changes that may be left of an error: a fifteenth by the
 /// fourth order, twice that where the last elements beside a contact do not have it yet.
 const HALVING_ERROR_FRACTION: f64 = 2.0 / 15.0;
@@ -31,277 +34,280 @@ const HALVING_ERROR_FRACTION: f64 = 2.0 / 15.0;
 /// Elements of all pieces together that are refined to.
 const MOST_ELEMENTS: usize = 4000;
 
-impl Elastica {
-    /// Halves the elements until the forces change by less than `tolerance` of the greatest;
-    /// returns what error is left, in parts of the greatest tension.
-    pub fn refine(&mut self, problem: &Problem, tolerance: f64) -> Option<(f64, ErrorEstimates)> {
-        loop {
-            let mut fine = self.halved();
-            fine.regrid();
-            if !fine.settle(problem) {
-                return None;
-            }
-            let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
-            if fine.joints == self.joints {
-                for (a, b) in self.pieces.iter().zip(&fine.pieces) {
-                    for (u, v) in [(a.nodes.first(), b.nodes.first()), (a.nodes.last(), b.nodes.last())] {
-                        let (Some(u), Some(v)) = (u, v) else { return None };
-                        change = larger(change, (force(u) - force(v)).norm());
-                        largest = larger(largest, force(v).norm());
-                    }
-                }
-            } else {
-                change = f64::INFINITY;
-            }
-            let estimate = if largest > 0.0 { change / (15.0 * largest) } else { change };
-            let coarse = std::mem::replace(self, fine);
-            let count: usize = self.pieces.iter().map(|p| p.nodes.len()).sum();
-            if estimate <= tolerance || count > MOST_ELEMENTS {
-                let errors = ErrorEstimates::between(&coarse.solution(problem), &self.solution(problem))
-                    .times(HALVING_ERROR_FRACTION);
-                return estimate.is_finite().then_some((estimate, errors));
-            }
-        }
+/// The answer with its error, at the whole stiffness.
+pub fn answer(mut elastica: Elastica, problem: &Problem, tolerance: f64) -> Option<(CableSolution, Cost)> {
+    if !elastica.stiffen(problem) {
+        return None;
     }
+    let (estimate, errors) = refine(&mut elastica, problem, tolerance)?;
+    let (iterations, residual_n) = elastica.cost();
+    let answer = CableSolution { error_estimate: Some(estimate), errors, ..solution(&elastica, problem) };
+    Some((answer, Cost { iterations, residual_n, ..Cost::default() }))
+}
 
-    /// The answer.
-    #[must_use]
-    pub fn solution(&self, problem: &Problem) -> CableSolution {
-        let nodes = self.nodes(problem);
-        CableSolution {
-            name: problem.cable.name.clone(),
-            supports: self.supports(problem, &nodes),
-            contacts: self.contact_reports(problem),
-            nodes,
-            assumptions: Assumptions { bending_stiffness_n_m2: self.bending, ..Assumptions::default() },
-            ..CableSolution::default()
-        }
-    }
-
-    fn nodes(&self, problem: &Problem) -> Vec<Node> {
-        let mut out: Vec<Node> = Vec::new();
-        let area = problem.cable.area_m2();
-        for piece in &self.pieces {
-            for u in self.drawn(problem, piece) {
-                let t = tension(&u);
-                let node = Node {
-                    arc_length_m: u[ARC],
-                    x_m: u[0],
-                    y_m: u[1],
-                    tension_n: t,
-                    strain: t / problem.axial_stiffness,
-                    stress_pa: t / area,
-                    curvature_per_m: self.thermal_stretch * u[MOMENT] / self.bending,
-                    force_n: force(&u).into(),
-                    ..Node::default()
-                };
-                match out.last_mut() {
-                    // The greater tension counts where two pieces meet, and the force beyond.
-                    Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * self.length => {
-                        if node.tension_n > l.tension_n {
-                            *l = node;
-                        }
-                        l.force_n = node.force_n;
-                    }
-                    _ => out.push(node),
-                }
-            }
-        }
-        if let Some(first) = out.first_mut() {
-            first.arc_length_m = 0.0;
-        }
-        if let Some(last) = out.last_mut() {
-            last.arc_length_m = self.length;
-        }
-        out
-    }
-
-    fn supports(&self, problem: &Problem, nodes: &[Node]) -> Vec<SupportReaction> {
-        let ends = |k: usize| {
-            (self.pieces.get(k).and_then(|p| p.nodes.last()), self.pieces.get(k + 1).and_then(|p| p.nodes.first()))
-        };
-        let last = problem.supports.len() - 1;
-        let mut out = Vec::with_capacity(last + 1);
-        for (k, s) in problem.supports.iter().enumerate() {
-            let mut r = SupportReaction { name: s.name.clone(), ..SupportReaction::default() };
-            let mut put = |f: Vec2, x: Vec2, arc: f64| {
-                (r.reaction_x_n, r.reaction_y_n, r.x_m, r.y_m, r.arc_length_m) = (f.x, f.y, x.x, x.y, arc);
-            };
-            if k == 0 || k == last {
-                let which = usize::from(k > 0);
-                let (u, node) = if which == 0 {
-                    (self.pieces.first().and_then(|p| p.nodes.first()), nodes.first())
-                } else {
-                    (self.pieces.last().and_then(|p| p.nodes.last()), nodes.last())
-                };
-                if let (Some(u), Some(node)) = (u, node) {
-                    let f = match self.ends[which] {
-                        End::Held(..) => force(u) * if which == 0 { 1.0 } else { -1.0 },
-                        End::Loaded(load) => -load,
-                    };
-                    put(f, node.at(), node.arc_length_m);
-                }
-            } else {
-                for (j, joint) in self.joints.iter().enumerate() {
-                    let (Some(a), Some(b)) = ends(j) else { continue };
-                    match *joint {
-                        Joint::Held(of, ..) if of == k => put(force(b) - force(a), place(b), b[ARC]),
-                        Joint::Load(Some(of), _, load) if of == k => put(-load, place(b), b[ARC]),
-                        _ => {}
-                    }
-                }
-            }
-            let pulley = |c: usize| self.contacts.get(c).is_some_and(|c| c.owner == Owner::Pulley(k));
-            let begins =
-                self.joints.iter().position(|j| matches!(j, Joint::ContactPair(c) | Joint::Begin(c) if pulley(*c)));
-            let stops =
-                self.joints.iter().rposition(|j| matches!(j, Joint::ContactPair(c) | Joint::End(c) if pulley(*c)));
-            if let (Some(i), Some(j)) = (begins, stops)
-                && let ((Some(a), _), (_, Some(b))) = (ends(i), ends(j))
-            {
-                let on = self.body * (b[ARC] - a[ARC]);
-                let at = s.at.unwrap_or_default();
-                put(force(b) - force(a) + on, at, 0.5 * (a[ARC] + b[ARC]));
-                (r.tension_before_n, r.tension_after_n) = (Some(tension(a)), Some(tension(b)));
-            }
-            out.push(r);
-        }
-        out
-    }
-
-    fn contact_reports(&self, problem: &Problem) -> Vec<ContactReport> {
-        let mut out = Vec::new();
-        for (j, joint) in self.joints.iter().enumerate() {
-            let (k, stretch) = match *joint {
-                Joint::ContactPair(k) => (k, None),
-                Joint::Begin(k) => (k, self.pieces.get(j + 1)),
-                // The stretch that the cable begins with.
-                Joint::End(k) if j == 0 => (k, self.pieces.first()),
-                _ => continue,
-            };
-            let Some(c) = self.contacts.get(k) else { continue };
-            let Owner::Obstacle(obstacle) = c.owner else { continue };
-            let (Some(a), Some(b)) = (self.pieces[j].nodes.last(), self.pieces[j + 1].nodes.first()) else { continue };
-            let mut r = ContactReport {
-                obstacle: problem.world.obstacle_name(obstacle).to_owned(),
-                normal_n: self.push(j),
-                tension_before_n: tension(a),
-                tension_after_n: tension(b),
-                begins_m: a[ARC],
-                ends_m: b[ARC],
-                state: if c.slips || c.mobilised == 0.0 { ContactState::Slip } else { ContactState::Stick },
-                ..ContactReport::default()
-            };
-            let mut samples = vec![ContactSample::new(a[ARC], force(a) - force(b))];
-            if let (Joint::End(_), Some(p)) = (joint, stretch) {
-                // The point force comes after what lies.
-                samples = self.along(problem, p);
-                samples.push(ContactSample::new(a[ARC], force(a) - force(b)));
-            } else if let Some(p) = stretch {
-                samples.extend(self.along(problem, p));
-                if let (Some(last), Some(next)) = (p.nodes.last(), self.pieces.get(j + 2).and_then(|p| p.nodes.first()))
-                {
-                    samples.push(ContactSample::new(last[ARC], force(last) - force(next)));
-                }
-            }
-            let tip = match (*joint, stretch) {
-                (Joint::End(_), Some(p)) => p.nodes.first().map(|u| (0, u)),
-                (Joint::Begin(_), Some(p)) if j + 2 == self.pieces.len() => p.nodes.last().map(|u| (1, u)),
-                _ => None,
-            };
-            if let Some((which, u)) = tip {
-                let push = self.tip_push(which, c, u);
-                let force = perp(tangent(u)) * (-c.sense * push) + tangent(u) * (c.mobilised * push);
-                r.normal_n += push;
-                samples.insert(if which == 0 { 0 } else { samples.len() }, ContactSample::new(u[ARC], force));
-            }
-            r.set_samples(samples);
-            let (mut middle, mut normal) = (place(a), perp(tangent(a)) * -c.sense);
-            if let Some(p) = stretch {
-                let l = p.nodes[0][LENGTH];
-                for (e, pair) in p.nodes.windows(2).enumerate() {
-                    let half = self.read(p, 0.5 * (p.grid[e] + p.grid[e + 1]));
-                    let pressed =
-                        self.pressure(c, &pair[0]) + 4.0 * self.pressure(c, &half) + self.pressure(c, &pair[1]);
-                    r.normal_n += pressed * l * (p.grid[e + 1] - p.grid[e]) / 6.0;
-                }
-                let (Some(first), Some(last)) = (p.nodes.first(), p.nodes.last()) else { continue };
-                if let (Joint::Begin(_), Some(next)) = (joint, self.pieces.get(j + 2).and_then(|p| p.nodes.first())) {
-                    r.normal_n += self.push(j + 1);
-                    r.tension_after_n = tension(next);
-                } else if *joint == Joint::Begin(k) {
-                    r.tension_after_n = tension(last);
-                } else {
-                    r.tension_before_n = tension(first);
-                }
-                (r.begins_m, r.ends_m) = (first[ARC], last[ARC]);
-                r.turn_deg = (last[ANGLE] - first[ANGLE]).to_degrees();
-                let u = self.read(p, 0.5);
-                (middle, normal) = (place(&u), perp(tangent(&u)) * -c.sense);
-            }
-            r.friction_n = c.mobilised * r.normal_n;
-            r.arc_length_m = 0.5 * (r.begins_m + r.ends_m);
-            (r.x_m, r.y_m, r.normal) = (middle.x, middle.y, [normal.x, normal.y]);
-            out.push(r);
-        }
-        out
-    }
-
-    /// A piece at as many places as it takes to draw it with straight lines.
-    fn drawn(&self, problem: &Problem, piece: &Piece) -> Vec<[f64; STATES]> {
-        let flat = (FLATNESS[0] * 2.0 * problem.radius).min(FLATNESS[1]);
-        let mut out: Vec<[f64; STATES]> = piece.nodes.first().copied().into_iter().collect();
-        for (pair, g) in piece.nodes.windows(2).zip(piece.grid.windows(2)) {
-            let (a, b) = (&pair[0], &pair[1]);
-            // A sagitta of length times turn over 8.
-            let off = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]) / 8.0;
-            let parts = (off / flat).sqrt().ceil().clamp(1.0, MOST_PARTS) as usize;
-            let mut places: Vec<f64> = (1..parts).map(|i| g[0] + i as f64 / parts as f64 * (g[1] - g[0])).collect();
-            let apart = NODE_SPACING_FRACTION * (g[1] - g[0]);
-            let clear = |x: &f64| places.iter().chain(g).all(|y| (x - y).abs() > apart);
-            places.extend(self.peak(piece, [g[0], g[1]]).filter(clear));
-            places.sort_by(f64::total_cmp);
-            out.extend(places.into_iter().map(|x| self.read(piece, x)));
-            // A node just before the end tells the spread force from the point force at the end.
-            if piece.lies.is_some() && g[1] >= 1.0 {
-                out.push(self.read(piece, 1.0 - END_NODE_OFFSET));
-            }
-            out.push(*b);
-        }
-        out
-    }
-
-    /// The place of the greatest tension between two places of a piece, if it is at neither:
-    /// between nodes it is read too small by the square of their distance.
-    fn peak(&self, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
-        let rises = |x: f64| {
-            let u = self.read(piece, x);
-            let (t, by) = (tangent(&u), self.slope(piece.lies, &u));
-            Vec2::new(by[4], by[5]).dot(&t) + force(&u).dot(&perp(t)) * by[ANGLE] > 0.0
-        };
-        if !rises(from) || rises(to) {
+/// Halves the elements until the forces change by less than `tolerance` of the greatest;
+/// returns what error is left, in parts of the greatest tension.
+pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Option<(f64, ErrorEstimates)> {
+    loop {
+        let mut fine = elastica.halved();
+        fine.regrid();
+        if !fine.settle(problem) {
             return None;
         }
-        for _ in 0..PEAK_HALVINGS {
-            let middle = 0.5 * (from + to);
-            if rises(middle) { from = middle } else { to = middle }
+        let (mut change, mut largest): (f64, f64) = (0.0, 0.0);
+        if fine.joints == elastica.joints {
+            for (a, b) in elastica.pieces.iter().zip(&fine.pieces) {
+                for (u, v) in [(a.nodes.first(), b.nodes.first()), (a.nodes.last(), b.nodes.last())] {
+                    let (Some(u), Some(v)) = (u, v) else { return None };
+                    change = larger(change, (force(u) - force(v)).norm());
+                    largest = larger(largest, force(v).norm());
+                }
+            }
+        } else {
+            change = f64::INFINITY;
         }
-        Some(from)
+        let estimate = if largest > 0.0 { change / (15.0 * largest) } else { change };
+        let coarse = std::mem::replace(elastica, fine);
+        let count: usize = elastica.pieces.iter().map(|p| p.nodes.len()).sum();
+        if estimate <= tolerance || count > MOST_ELEMENTS {
+            let errors = ErrorEstimates::between(&solution(&coarse, problem), &solution(elastica, problem))
+                .times(HALVING_ERROR_FRACTION);
+            return estimate.is_finite().then_some((estimate, errors));
+        }
     }
+}
 
-    /// Force of a contact on a piece that lies on it, from place to place.
-    fn along(&self, problem: &Problem, piece: &Piece) -> Vec<ContactSample> {
-        let of = |pair: &[[f64; STATES]]| {
-            let (a, b) = (&pair[0], &pair[1]);
-            let on = force(a) - force(b) - self.body * (b[ARC] - a[ARC]);
-            ContactSample::new(0.5 * (a[ARC] + b[ARC]), on)
+pub fn solution(elastica: &Elastica, problem: &Problem) -> CableSolution {
+    let nodes = nodes(elastica, problem);
+    CableSolution {
+        name: problem.cable.name.clone(),
+        supports: supports(elastica, problem, &nodes),
+        contacts: contact_reports(elastica, problem),
+        nodes,
+        assumptions: Assumptions { bending_stiffness_n_m2: elastica.bending, ..Assumptions::default() },
+        ..CableSolution::default()
+    }
+}
+
+fn nodes(elastica: &Elastica, problem: &Problem) -> Vec<Node> {
+    let mut out: Vec<Node> = Vec::new();
+    let area = problem.cable.area_m2();
+    for piece in &elastica.pieces {
+        for u in drawn(elastica, problem, piece) {
+            let t = tension(&u);
+            let node = Node {
+                arc_length_m: u[ARC],
+                x_m: u[0],
+                y_m: u[1],
+                tension_n: t,
+                strain: t / problem.axial_stiffness,
+                stress_pa: t / area,
+                curvature_per_m: elastica.thermal_stretch * u[MOMENT] / elastica.bending,
+                force_n: force(&u).into(),
+                ..Node::default()
+            };
+            match out.last_mut() {
+                // The greater tension counts where two pieces meet, and the force beyond.
+                Some(l) if node.arc_length_m <= l.arc_length_m + 1e-12 * elastica.length => {
+                    if node.tension_n > l.tension_n {
+                        *l = node;
+                    }
+                    l.force_n = node.force_n;
+                }
+                _ => out.push(node),
+            }
+        }
+    }
+    if let Some(first) = out.first_mut() {
+        first.arc_length_m = 0.0;
+    }
+    if let Some(last) = out.last_mut() {
+        last.arc_length_m = elastica.length;
+    }
+    out
+}
+
+fn supports(elastica: &Elastica, problem: &Problem, nodes: &[Node]) -> Vec<SupportReaction> {
+    let ends = |k: usize| {
+        (elastica.pieces.get(k).and_then(|p| p.nodes.last()), elastica.pieces.get(k + 1).and_then(|p| p.nodes.first()))
+    };
+    let last = problem.supports.len() - 1;
+    let mut out = Vec::with_capacity(last + 1);
+    for (k, s) in problem.supports.iter().enumerate() {
+        let mut r = SupportReaction { name: s.name.clone(), ..SupportReaction::default() };
+        let mut put = |f: Vec2, x: Vec2, arc: f64| {
+            (r.reaction_x_n, r.reaction_y_n, r.x_m, r.y_m, r.arc_length_m) = (f.x, f.y, x.x, x.y, arc);
         };
-        self.drawn(problem, piece).windows(2).map(of).collect()
+        if k == 0 || k == last {
+            let which = usize::from(k > 0);
+            let (u, node) = if which == 0 {
+                (elastica.pieces.first().and_then(|p| p.nodes.first()), nodes.first())
+            } else {
+                (elastica.pieces.last().and_then(|p| p.nodes.last()), nodes.last())
+            };
+            if let (Some(u), Some(node)) = (u, node) {
+                let f = match elastica.ends[which] {
+                    End::Held(..) => force(u) * if which == 0 { 1.0 } else { -1.0 },
+                    End::Loaded(load) => -load,
+                };
+                put(f, node.at(), node.arc_length_m);
+            }
+        } else {
+            for (j, joint) in elastica.joints.iter().enumerate() {
+                let (Some(a), Some(b)) = ends(j) else { continue };
+                match *joint {
+                    Joint::Held(of, ..) if of == k => put(force(b) - force(a), place(b), b[ARC]),
+                    Joint::Load(Some(of), _, load) if of == k => put(-load, place(b), b[ARC]),
+                    _ => {}
+                }
+            }
+        }
+        let pulley = |c: usize| elastica.contacts.get(c).is_some_and(|c| c.owner == Owner::Pulley(k));
+        let begins =
+            elastica.joints.iter().position(|j| matches!(j, Joint::ContactPair(c) | Joint::Begin(c) if pulley(*c)));
+        let stops =
+            elastica.joints.iter().rposition(|j| matches!(j, Joint::ContactPair(c) | Joint::End(c) if pulley(*c)));
+        if let (Some(i), Some(j)) = (begins, stops)
+            && let ((Some(a), _), (_, Some(b))) = (ends(i), ends(j))
+        {
+            let on = elastica.body * (b[ARC] - a[ARC]);
+            let at = s.at.unwrap_or_default();
+            put(force(b) - force(a) + on, at, 0.5 * (a[ARC] + b[ARC]));
+            (r.tension_before_n, r.tension_after_n) = (Some(tension(a)), Some(tension(b)));
+        }
+        out.push(r);
     }
+    out
+}
 
-    /// Newton steps and the largest imbalance of the equations that is left.
-    #[must_use]
-    pub fn cost(&self) -> (usize, f64) {
-        (self.steps, self.residual)
+fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport> {
+    let mut out = Vec::new();
+    for (j, joint) in elastica.joints.iter().enumerate() {
+        let (k, stretch) = match *joint {
+            Joint::ContactPair(k) => (k, None),
+            Joint::Begin(k) => (k, elastica.pieces.get(j + 1)),
+            // The stretch that the cable begins with.
+            Joint::End(k) if j == 0 => (k, elastica.pieces.first()),
+            _ => continue,
+        };
+        let Some(c) = elastica.contacts.get(k) else { continue };
+        let Owner::Obstacle(obstacle) = c.owner else { continue };
+        let (Some(a), Some(b)) = (elastica.pieces[j].nodes.last(), elastica.pieces[j + 1].nodes.first()) else {
+            continue;
+        };
+        let mut r = ContactReport {
+            obstacle: problem.world.obstacle_name(obstacle).to_owned(),
+            normal_n: elastica.push(j),
+            tension_before_n: tension(a),
+            tension_after_n: tension(b),
+            begins_m: a[ARC],
+            ends_m: b[ARC],
+            state: if c.slips || c.mobilised == 0.0 { ContactState::Slip } else { ContactState::Stick },
+            ..ContactReport::default()
+        };
+        let mut samples = vec![ContactSample::new(a[ARC], force(a) - force(b))];
+        if let (Joint::End(_), Some(p)) = (joint, stretch) {
+            // The point force comes after what lies.
+            samples = along(elastica, problem, p);
+            samples.push(ContactSample::new(a[ARC], force(a) - force(b)));
+        } else if let Some(p) = stretch {
+            samples.extend(along(elastica, problem, p));
+            if let (Some(last), Some(next)) = (p.nodes.last(), elastica.pieces.get(j + 2).and_then(|p| p.nodes.first()))
+            {
+                samples.push(ContactSample::new(last[ARC], force(last) - force(next)));
+            }
+        }
+        let tip = match (*joint, stretch) {
+            (Joint::End(_), Some(p)) => p.nodes.first().map(|u| (0, u)),
+            (Joint::Begin(_), Some(p)) if j + 2 == elastica.pieces.len() => p.nodes.last().map(|u| (1, u)),
+            _ => None,
+        };
+        if let Some((which, u)) = tip {
+            let push = elastica.tip_push(which, c, u);
+            let force = perp(tangent(u)) * (-c.sense * push) + tangent(u) * (c.mobilised * push);
+            r.normal_n += push;
+            samples.insert(if which == 0 { 0 } else { samples.len() }, ContactSample::new(u[ARC], force));
+        }
+        r.set_samples(samples);
+        let (mut middle, mut normal) = (place(a), perp(tangent(a)) * -c.sense);
+        if let Some(p) = stretch {
+            let l = p.nodes[0][LENGTH];
+            for (e, pair) in p.nodes.windows(2).enumerate() {
+                let half = elastica.read(p, 0.5 * (p.grid[e] + p.grid[e + 1]));
+                let pressed =
+                    elastica.pressure(c, &pair[0]) + 4.0 * elastica.pressure(c, &half) + elastica.pressure(c, &pair[1]);
+                r.normal_n += pressed * l * (p.grid[e + 1] - p.grid[e]) / 6.0;
+            }
+            let (Some(first), Some(last)) = (p.nodes.first(), p.nodes.last()) else { continue };
+            if let (Joint::Begin(_), Some(next)) = (joint, elastica.pieces.get(j + 2).and_then(|p| p.nodes.first())) {
+                r.normal_n += elastica.push(j + 1);
+                r.tension_after_n = tension(next);
+            } else if *joint == Joint::Begin(k) {
+                r.tension_after_n = tension(last);
+            } else {
+                r.tension_before_n = tension(first);
+            }
+            (r.begins_m, r.ends_m) = (first[ARC], last[ARC]);
+            r.turn_deg = (last[ANGLE] - first[ANGLE]).to_degrees();
+            let u = elastica.read(p, 0.5);
+            (middle, normal) = (place(&u), perp(tangent(&u)) * -c.sense);
+        }
+        r.friction_n = c.mobilised * r.normal_n;
+        r.arc_length_m = 0.5 * (r.begins_m + r.ends_m);
+        (r.x_m, r.y_m, r.normal) = (middle.x, middle.y, [normal.x, normal.y]);
+        out.push(r);
     }
+    out
+}
+
+/// A piece at as many places as it takes to draw it with straight lines.
+fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STATES]> {
+    let flat = (FLATNESS[0] * 2.0 * problem.radius).min(FLATNESS[1]);
+    let mut out: Vec<[f64; STATES]> = piece.nodes.first().copied().into_iter().collect();
+    for (pair, g) in piece.nodes.windows(2).zip(piece.grid.windows(2)) {
+        let (a, b) = (&pair[0], &pair[1]);
+        // A sagitta of length times turn over 8.
+        let off = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]) / 8.0;
+        let parts = (off / flat).sqrt().ceil().clamp(1.0, MOST_PARTS) as usize;
+        let mut places: Vec<f64> = (1..parts).map(|i| g[0] + i as f64 / parts as f64 * (g[1] - g[0])).collect();
+        let apart = NODE_SPACING_FRACTION * (g[1] - g[0]);
+        let clear = |x: &f64| places.iter().chain(g).all(|y| (x - y).abs() > apart);
+        places.extend(peak(elastica, piece, [g[0], g[1]]).filter(clear));
+        places.sort_by(f64::total_cmp);
+        out.extend(places.into_iter().map(|x| elastica.read(piece, x)));
+        // A node just before the end tells the spread force from the point force at the end.
+        if piece.contact.is_some() && g[1] >= 1.0 {
+            out.push(elastica.read(piece, 1.0 - END_NODE_OFFSET));
+        }
+        out.push(*b);
+    }
+    out
+}
+
+/// The place of the greatest tension between two places of a piece, if it is at neither:
+/// between nodes it is read too small by the square of their distance.
+fn peak(elastica: &Elastica, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
+    let rises = |x: f64| {
+        let u = elastica.read(piece, x);
+        let (t, by) = (tangent(&u), elastica.slope(piece.contact, &u));
+        Vec2::new(by[4], by[5]).dot(&t) + force(&u).dot(&perp(t)) * by[ANGLE] > 0.0
+    };
+    if !rises(from) || rises(to) {
+        return None;
+    }
+    for _ in 0..PEAK_HALVINGS {
+        let middle = 0.5 * (from + to);
+        if rises(middle) { from = middle } else { to = middle }
+    }
+    Some(from)
+}
+
+/// Force of a contact on a piece that lies on it, from place to place.
+fn along(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<ContactSample> {
+    let of = |pair: &[[f64; STATES]]| {
+        let (a, b) = (&pair[0], &pair[1]);
+        let on = force(a) - force(b) - elastica.body * (b[ARC] - a[ARC]);
+        ContactSample::new(0.5 * (a[ARC] + b[ARC]), on)
+    };
+    drawn(elastica, problem, piece).windows(2).map(of).collect()
 }

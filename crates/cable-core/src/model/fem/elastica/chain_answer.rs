@@ -15,7 +15,7 @@ const CONTACT_MERGE_BARS: f64 = 2.5;
 impl Chain<'_> {
     /// Force of a contact on the cable, N.
     fn force_of(&self, t: &ContactPair) -> Vec2 {
-        let along = (self.x[t.node + 1] - self.x[t.node]).normalize();
+        let along = (self.positions[t.node + 1] - self.positions[t.node]).normalize();
         t.gap.normal * t.push + along * (t.mobilised * t.push)
     }
 
@@ -28,7 +28,7 @@ impl Chain<'_> {
     fn forces(&self, moments: &[f64]) -> Vec<Vec2> {
         (0..self.tension.len())
             .map(|e| {
-                let d = self.x[e + 1] - self.x[e];
+                let d = self.positions[e + 1] - self.positions[e];
                 let l = d.norm();
                 (d * self.tension[e] - perp(d) * ((moments[e + 1] - moments[e]) / l)) / l
             })
@@ -57,8 +57,8 @@ impl Chain<'_> {
     fn answer_nodes(&self, moments: &[f64], forces: &[Vec2], pushes: &[ContactPair]) -> Vec<Node> {
         let p = self.problem;
         let area = p.cable.area_m2();
-        let last = self.x.len() - 1;
-        let mut out = Vec::with_capacity(self.x.len() + pushes.len());
+        let last = self.positions.len() - 1;
+        let mut out = Vec::with_capacity(self.positions.len() + pushes.len());
         let node = |s: f64, x: Vec2, pull: f64, moment: f64, force: Vec2| Node {
             arc_length_m: s,
             x_m: x.x,
@@ -71,7 +71,7 @@ impl Chain<'_> {
             ..Node::default()
         };
         for k in 0..last {
-            let (a, b) = (self.x[k], self.x[k + 1]);
+            let (a, b) = (self.positions[k], self.positions[k + 1]);
             let t = (b - a).normalize();
             let half = self.body * (0.5 * (self.arc[k + 1] - self.arc[k]));
             let mut inside: Vec<&ContactPair> =
@@ -106,7 +106,7 @@ impl Chain<'_> {
 
     fn supports(&self, forces: &[Vec2], nodes: &[Node]) -> Vec<SupportReaction> {
         let p = self.problem;
-        let last = self.x.len() - 1;
+        let last = self.positions.len() - 1;
         let ends = p.supports.len().saturating_sub(1);
         let reaction = |(k, s): (usize, &crate::problem::SupportPoint)| {
             let arc = if k == 0 { 0.0 } else { s.arc_length.filter(|_| k < ends).unwrap_or(p.length) };
@@ -123,8 +123,8 @@ impl Chain<'_> {
                 name: s.name.clone(),
                 reaction_x_n: f.x,
                 reaction_y_n: f.y,
-                x_m: self.x[i].x,
-                y_m: self.x[i].y,
+                x_m: self.positions[i].x,
+                y_m: self.positions[i].y,
                 arc_length_m: if k == ends { nodes.last().map_or(arc, |n| n.arc_length_m) } else { arc },
                 ..SupportReaction::default()
             }
@@ -148,7 +148,9 @@ impl Chain<'_> {
             left = rest;
             let (Some(a), Some(b)) = (group.first(), group.last()) else { break };
             let middle = group[group.len() / 2];
-            let at = |t: &ContactPair| self.x[t.node] + (self.x[t.node + 1] - self.x[t.node]) * t.gap.fraction;
+            let at = |t: &ContactPair| {
+                self.positions[t.node] + (self.positions[t.node + 1] - self.positions[t.node]) * t.gap.fraction
+            };
             let x = at(middle);
             let normal_n: f64 = group.iter().map(|t| t.push).sum();
             let friction_n: f64 = group.iter().map(|t| t.mobilised * t.push).sum();

@@ -121,7 +121,7 @@ pub(super) struct Chain<'a> {
     pub(super) body: Vec2,
     pub(super) lay: Option<&'a CableSolution>,
     pub(super) arc: Vec<f64>,
-    pub(super) x: Vec<Vec2>,
+    pub(super) positions: Vec<Vec2>,
     /// Rest lengths of the bars now and when all is paid out, m.
     rest: Vec<f64>,
     whole: Vec<f64>,
@@ -196,12 +196,12 @@ pub(super) fn settle_chain<'a>(
     let Some(mut chain) = Chain::new(problem, time_s, dragged, &Curve::new(&answer.nodes), Some(answer), 1.0) else {
         return LetGo::Unknown;
     };
-    let from = chain.x.clone();
+    let from = chain.positions.clone();
     if !chain.settle(REDUCED_RESISTANCE_FACTOR) {
         return LetGo::Unknown;
     }
     let near = STABILITY_DISTANCE_BARS * chain.bar;
-    let stays = from.iter().zip(&chain.x).all(|(a, b)| (a - b).norm() <= near);
+    let stays = from.iter().zip(&chain.positions).all(|(a, b)| (a - b).norm() <= near);
     match (chain.stable, stays) {
         (true, true) => LetGo::Stays,
         (true, false) => LetGo::Leaves(Box::new(chain)),
@@ -274,7 +274,7 @@ impl<'a> Chain<'a> {
             body,
             lay,
             arc: vec![0.0],
-            x: Vec::new(),
+            positions: Vec::new(),
             rest: Vec::new(),
             whole: Vec::new(),
             tension: Vec::new(),
@@ -296,13 +296,13 @@ impl<'a> Chain<'a> {
             }
         }
         let n = chain.arc.len();
-        chain.x = chain.arc.iter().map(|&s| curve.at(s).0).collect();
+        chain.positions = chain.arc.iter().map(|&s| curve.at(s).0).collect();
         chain.held = vec![false; n];
         chain.load = vec![Vec2::zeros(); n];
         for (s, at, angle, force) in stops {
             let k = chain.arc.partition_point(|a| *a < s - 1e-9 * length).min(n - 1);
             if let Some(at) = at {
-                chain.x[k] = at;
+                chain.positions[k] = at;
                 chain.held[k] = true;
             }
             if let Some(angle) = angle {
@@ -315,7 +315,7 @@ impl<'a> Chain<'a> {
         }
         for e in 0..n - 1 {
             let ds = chain.arc[e + 1] - chain.arc[e];
-            let way = (chain.x[e + 1] - chain.x[e]).norm();
+            let way = (chain.positions[e + 1] - chain.positions[e]).norm();
             let whole = problem.thermal_stretch * ds;
             chain.whole.push(whole);
             let pull = curve.at(0.5 * (chain.arc[e] + chain.arc[e + 1])).1;
@@ -326,8 +326,14 @@ impl<'a> Chain<'a> {
                 chain.load[k] += body * (0.5 * ds);
             }
         }
-        push_chain_out(problem, &chain.held, &|_, _| false, &mut chain.x, FIRST_CLEARANCE_FRACTION * problem.radius);
-        (chain.depth(&chain.x) < OVERLAP_LIMIT * problem.radius).then_some(chain)
+        push_chain_out(
+            problem,
+            &chain.held,
+            &|_, _| false,
+            &mut chain.positions,
+            FIRST_CLEARANCE_FRACTION * problem.radius,
+        );
+        (chain.depth(&chain.positions) < OVERLAP_LIMIT * problem.radius).then_some(chain)
     }
 
     /// Stiffness of contacts, N/m.
@@ -373,7 +379,7 @@ impl<'a> Chain<'a> {
     fn find_touches(&mut self) {
         let mut found: Vec<ContactPair> = Vec::with_capacity(self.touches.len());
         let known = std::mem::take(&mut self.touches);
-        self.pairs(&self.x, self.bar, |node, p| {
+        self.pairs(&self.positions, self.bar, |node, p| {
             if p.weight <= 0.0 {
                 return;
             }
@@ -397,7 +403,7 @@ impl<'a> Chain<'a> {
 
     /// Lets go; returns whether it comes to rest, in a place that is stable.
     pub fn settle(&mut self, resistance: f64) -> bool {
-        let n = self.x.len();
+        let n = self.positions.len();
         let mut matrix = BandMatrix::new(2 * n, HALF_BAND);
         let Ok(mut factor) = BandFactor::new(2 * n, HALF_BAND) else { return false };
         let weight = self.scale / self.problem.length;
@@ -432,7 +438,10 @@ impl<'a> Chain<'a> {
             for k in 0..n {
                 moved = larger(moved, step[k].norm());
                 if k + 1 < n {
-                    turned = larger(turned, (step[k + 1] - step[k]).norm() / (self.x[k + 1] - self.x[k]).norm());
+                    turned = larger(
+                        turned,
+                        (step[k + 1] - step[k]).norm() / (self.positions[k + 1] - self.positions[k]).norm(),
+                    );
                 }
             }
             if !moved.is_finite() {
@@ -442,7 +451,7 @@ impl<'a> Chain<'a> {
             let mut next: Vec<Vec2>;
             let mut tries = 0;
             loop {
-                next = self.x.iter().zip(&step).map(|(x, d)| x + d * part).collect();
+                next = self.positions.iter().zip(&step).map(|(x, d)| x + d * part).collect();
                 if self.depth(&next) < OVERLAP_LIMIT * self.problem.radius {
                     break;
                 }
@@ -486,12 +495,12 @@ impl<'a> Chain<'a> {
 
     /// Moves all nodes a little sideways, in the shape of a wave.
     fn nudge(&mut self, waves: usize) {
-        let n = self.x.len();
-        let from = self.x.clone();
+        let n = self.positions.len();
+        let from = self.positions.clone();
         for k in (1..n - 1).filter(|&k| !self.held[k]) {
             let phase = std::f64::consts::PI * (waves * k) as f64 / n as f64;
             let along = from[k + 1] - from[k - 1];
-            self.x[k] += perp(along)
+            self.positions[k] += perp(along)
                 * (PERTURBATION_FRACTION * self.problem.radius * phase.sin() / larger(along.norm(), 1e-300));
         }
     }
@@ -518,7 +527,7 @@ impl<'a> Chain<'a> {
         shift: f64,
         exact: bool,
     ) -> Option<(Vec<Vec2>, bool)> {
-        let n = self.x.len();
+        let n = self.positions.len();
         let stiff = self.stiffness();
         let mut out = Vec::new();
         let mut changed = false;
@@ -584,7 +593,7 @@ impl<'a> Chain<'a> {
 
     /// Direction of the bar that a contact is on.
     fn along(&self, t: &ContactPair) -> Vec2 {
-        (self.x[t.node + 1] - self.x[t.node]).normalize()
+        (self.positions[t.node + 1] - self.positions[t.node]).normalize()
     }
 
     /// The matrix with friction that follows its normal force in the same step: with the force of
@@ -627,7 +636,7 @@ impl<'a> Chain<'a> {
             let d = perp(t.gap.normal);
             *at_node -= d * d.transpose() * (t.push / far);
         } else if round {
-            let (k, d) = (2 * t.node, self.x[t.node + 1] - self.x[t.node]);
+            let (k, d) = (2 * t.node, self.positions[t.node + 1] - self.positions[t.node]);
             let (l, n) = (d.norm(), t.gap.normal);
             let (turns, slides) = ([-n / l, n / l], [d * ((1.0 - f) / l), d * (f / l)]);
             for (i, j) in [(0, 0), (0, 1), (1, 1)] {
@@ -640,10 +649,10 @@ impl<'a> Chain<'a> {
 
     /// Bars, bends and resistance.
     fn add_chain(&self, matrix: &mut BandMatrix, push: &mut impl FnMut(usize, Vec2), shift: f64, exact: bool) {
-        let n = self.x.len();
+        let n = self.positions.len();
         let ea = self.problem.axial_stiffness;
         for e in 0..n - 1 {
-            let d = self.x[e + 1] - self.x[e];
+            let d = self.positions[e + 1] - self.positions[e];
             let l = d.norm();
             let t = d / l;
             let (axial, pull) = (ea / self.rest[e], ea * (l / self.rest[e] - 1.0));
@@ -660,7 +669,7 @@ impl<'a> Chain<'a> {
                 continue;
             }
             let bend = BendingEnergy { stiffness: ei, length: 0.5 * (self.whole[k - 1] + self.whole[k]), from: 0.0 };
-            let x = [self.x[k - 1], self.x[k], self.x[k + 1]];
+            let x = [self.positions[k - 1], self.positions[k], self.positions[k + 1]];
             let (g, h) = (bend.gradient(&x), bend.hessian(&x, curvature));
             for i in 0..3 {
                 push(k + i - 1, -g[i]);
@@ -672,7 +681,7 @@ impl<'a> Chain<'a> {
         for &(k, after, direction) in &self.clamps {
             let first = if after { k } else { k - 1 };
             let bend = ClampBend { stiffness: ei, length: 0.5 * self.whole[first], direction, from: 0.0 };
-            let x = [self.x[first], self.x[first + 1]];
+            let x = [self.positions[first], self.positions[first + 1]];
             let (g, h) = (bend.gradient(&x), bend.hessian(&x, curvature));
             for i in 0..2 {
                 push(first + i, -g[i]);
@@ -690,26 +699,26 @@ impl<'a> Chain<'a> {
 
     fn take(&mut self, step: &[Vec2], part: f64, next: &[Vec2]) {
         for e in 0..self.rest.len() {
-            let d = self.x[e + 1] - self.x[e];
+            let d = self.positions[e + 1] - self.positions[e];
             let l = d.norm();
             let longer = (step[e + 1] - step[e]).dot(&d) / (l * part);
             let pull = self.problem.axial_stiffness * ((l + longer) / self.rest[e] - 1.0);
             self.tension[e] += part * (pull - self.tension[e]);
         }
-        self.x.copy_from_slice(next);
+        self.positions.copy_from_slice(next);
     }
 
     /// Curvatures at all nodes, 1/m of unstretched length.
     pub fn bends(&self) -> Vec<f64> {
-        let n = self.x.len();
+        let n = self.positions.len();
         let mut bends = vec![0.0; n];
         for k in 1..n - 1 {
-            let psi = turn(self.x[k] - self.x[k - 1], self.x[k + 1] - self.x[k]);
+            let psi = turn(self.positions[k] - self.positions[k - 1], self.positions[k + 1] - self.positions[k]);
             bends[k] = psi / (0.5 * (self.arc[k + 1] - self.arc[k - 1]));
         }
         for &(k, after, t) in &self.clamps {
             let first = if after { k } else { k - 1 };
-            let d = self.x[first + 1] - self.x[first];
+            let d = self.positions[first + 1] - self.positions[first];
             let psi = if after { turn(t, d) } else { turn(d, t) };
             bends[k] = psi / (0.5 * (self.arc[first + 1] - self.arc[first]));
         }
@@ -718,14 +727,14 @@ impl<'a> Chain<'a> {
 
     /// Its nodes as an answer: places, tensions and bends.
     pub fn nodes(&self) -> Vec<Node> {
-        let n = self.x.len();
+        let n = self.positions.len();
         let bends = self.bends();
         let pull = |k: usize| 0.5 * (self.tension[k.saturating_sub(1)] + self.tension[k.min(n - 2)]);
         (0..n)
             .map(|k| Node {
                 arc_length_m: self.arc[k],
-                x_m: self.x[k].x,
-                y_m: self.x[k].y,
+                x_m: self.positions[k].x,
+                y_m: self.positions[k].y,
                 tension_n: pull(k),
                 curvature_per_m: bends[k],
                 ..Node::default()
@@ -783,7 +792,7 @@ mod tests {
                 Chain::new(&problem, 0.0, &[None, None], &Curve::new(&straight.nodes), Some(&straight), 1.0)
                     .ok_or("no chain")?;
             assert!(chain.settle(REDUCED_RESISTANCE_FACTOR), "{part}");
-            let off = chain.x.iter().map(|x| (x.y - 1.0).abs()).fold(0.0, larger);
+            let off = chain.positions.iter().map(|x| (x.y - 1.0).abs()).fold(0.0, larger);
             assert!(chain.stable, "{part}");
             assert_eq!(off < 1e-9, stays, "{part} of the critical force: {off} m aside");
         }

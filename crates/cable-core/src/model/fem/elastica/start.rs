@@ -3,10 +3,10 @@
 
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};
-use crate::model::fem::elastica::relax::{Chain, ContactPair};
-use crate::model::fem::elastica::{
+use crate::model::fem::elastica::boundary_value::{
     ANGLE, ARC, Contact, Elastica, End, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, tangent,
 };
+use crate::model::fem::elastica::relax::{Chain, ContactPair};
 use crate::model::fem::free::beam::mesh::places;
 use crate::model::fem::free::stations::place as support_place;
 use crate::model::fem::mesh::sliding_node::round_of;
@@ -336,7 +336,7 @@ impl Elastica {
                 *angle = nearest_turn(*angle, u[ANGLE]);
             }
         }
-        for piece in self.pieces.iter_mut().filter(|p| p.lies.is_none()) {
+        for piece in self.pieces.iter_mut().filter(|p| p.contact.is_none()) {
             for u in &mut piece.nodes {
                 let k = curve.chord(u[ARC]);
                 let (a, b) = (&curve.nodes[k], &curve.nodes[k + 1]);
@@ -567,11 +567,11 @@ impl Elastica {
         Some(())
     }
 
-    fn piece(&self, curve: &Curve<'_>, lies: Option<usize>, [from, to]: [f64; 2]) -> Piece {
+    fn piece(&self, curve: &Curve<'_>, contact: Option<usize>, [from, to]: [f64; 2]) -> Piece {
         let l = to - from;
-        let count = if lies.is_some() { LYING_ELEMENTS } else { FREE_ELEMENTS };
+        let count = if contact.is_some() { LYING_ELEMENTS } else { FREE_ELEMENTS };
         let layers = [from, to].map(|s| self.layer(curve.at(s).1));
-        let grid: Vec<f64> = if lies.is_some() {
+        let grid: Vec<f64> = if contact.is_some() {
             (0..=count).map(|i| i as f64 / count as f64).collect()
         } else {
             places(layers, l, count).iter().map(|s| s / l).collect()
@@ -581,10 +581,10 @@ impl Elastica {
             let (at, pull) = curve.at(s);
             let angle = curve.angle(s, [from, to]);
             let f = Vec2::new(angle.cos(), angle.sin()) * pull;
-            let moment = lies.and_then(|k| self.contacts.get(k)).map_or(0.0, |c| self.bending * c.curvature());
+            let moment = contact.and_then(|k| self.contacts.get(k)).map_or(0.0, |c| self.bending * c.curvature());
             [at.x, at.y, angle, moment, f.x, f.y, s, l]
         };
-        Piece { lies, nodes: grid.iter().map(node).collect(), grid }
+        Piece { contact, nodes: grid.iter().map(node).collect(), grid }
     }
 
     /// Adds the layers at the ends of free pieces, θ ∓ Δ e^{−s/λ}, and counts the angles of clamps
@@ -627,7 +627,7 @@ impl Elastica {
             }
         }
         for k in 0..count {
-            if self.pieces[k].lies.is_some() {
+            if self.pieces[k].contact.is_some() {
                 continue;
             }
             let (first, last) = (end(&self.pieces[k], 0)?, end(&self.pieces[k], 1)?);
@@ -686,8 +686,8 @@ impl Elastica {
         let h = piece.grid[e + 1] - piece.grid[e];
         let z = ((x - piece.grid[e]) / h).clamp(0.0, 1.0);
         let [(fa, ga), (fb, gb)] = [a, b].map(|u| {
-            let f = self.slope(piece.lies, u);
-            (f, self.second_slope(piece.lies, u, &f, h))
+            let f = self.slope(piece.contact, u);
+            (f, self.second_slope(piece.contact, u, &f, h))
         });
         let (z2, z3) = (z * z, z * z * z);
         let (z4, z5) = (z2 * z2, z2 * z3);
@@ -701,9 +701,9 @@ impl Elastica {
 
     /// Change of the slope `f` of a state along a piece, by central differences over a part of an
     /// element of length `h`.
-    fn second_slope(&self, lies: Option<usize>, u: &[f64; STATES], f: &[f64; STATES], h: f64) -> [f64; STATES] {
+    fn second_slope(&self, contact: Option<usize>, u: &[f64; STATES], f: &[f64; STATES], h: f64) -> [f64; STATES] {
         let step = DIFFERENCE * h;
-        let [back, on] = [-step, step].map(|by| self.slope(lies, &std::array::from_fn(|i| u[i] + by * f[i])));
+        let [back, on] = [-step, step].map(|by| self.slope(contact, &std::array::from_fn(|i| u[i] + by * f[i])));
         std::array::from_fn(|i| (on[i] - back[i]) / (2.0 * step))
     }
 
@@ -712,7 +712,7 @@ impl Elastica {
         let make = |piece: &Piece| {
             let (Some(first), Some(last)) = (piece.nodes.first(), piece.nodes.last()) else { return piece.clone() };
             let l = first[LENGTH];
-            if piece.lies.is_some() {
+            if piece.contact.is_some() {
                 return piece.clone();
             }
             let layers = [first, last].map(|u| self.layer(force(u).norm()));
@@ -723,7 +723,7 @@ impl Elastica {
             for u in &mut nodes {
                 u[LENGTH] = l;
             }
-            Piece { lies: None, grid, nodes }
+            Piece { contact: None, grid, nodes }
         };
         self.pieces = self.pieces.iter().map(make).collect();
     }
@@ -741,7 +741,7 @@ impl Elastica {
             for (k, u) in piece.nodes.iter().enumerate() {
                 nodes[2 * k] = *u;
             }
-            Piece { lies: piece.lies, grid, nodes }
+            Piece { contact: piece.contact, grid, nodes }
         };
         Self { pieces: self.pieces.iter().map(halve).collect(), ..self.clone() }
     }

@@ -4,8 +4,8 @@
 use crate::math::{bounded, larger};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::SolverMemory;
+use crate::model::fem::state::step_setup::{StickSlipChanges, update_grips};
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
-use crate::model::fem::time::step_setup::StickSlipChanges;
 
 /// A solution with refreshed normal forces, grips and factors.
 #[derive(Clone, Copy, Debug)]
@@ -48,9 +48,9 @@ impl SolverMemory {
         let (mut off, mut part) = (0.0, 1.0);
         let mut before = Vec::with_capacity(cable.contacts.friction_contacts.capacity());
         for round in 0..rounds {
-            cable.contacts.look_around(&cable.problem, &cable.mesh, &unknowns.x, |_| 0.0);
+            cable.contacts.look_around(&cable.problem, &cable.mesh, &unknowns.positions, |_| 0.0);
             std::mem::swap(&mut before, &mut cable.contacts.friction_contacts);
-            cable.contacts.prepare(&cable.problem, &cable.mesh, &unknowns.x, &cable.motion.x);
+            cable.contacts.prepare(&cable.problem, &cable.mesh, &unknowns.positions, &cable.motion.positions);
             if round > 0 {
                 let now = cable.contacts.ease(&before, part);
                 // Forces that go to and fro get no nearer by steps as long as before.
@@ -63,10 +63,10 @@ impl SolverMemory {
                 }
                 off = now;
             }
-            cable.input.shift = cable.soft_shift();
+            cable.input.shift = cable.meshing.soft_shift();
             let done = self.minimise(cable, unknowns)?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
-            grips = cable.update_grips(unknowns, spare == 0);
+            grips = update_grips(cable, unknowns, spare == 0);
             if grips.wrong < fewest {
                 (fewest, spare) = (grips.wrong, tuning.whole_lag_rounds);
             } else {

@@ -4,10 +4,13 @@ use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::newton::initial_guess::{bow, depenetrate};
+use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
+use crate::model::fem::obstacle::moving_outline::{prepare_way, put_outline};
+use crate::model::fem::remesh::adapt::remesh;
 use crate::model::fem::results;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
-use crate::model::fem::system::step_input::{load_scale, tolerance};
+use crate::model::fem::state::step_setup::prepare_input;
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, load_scale, tolerance};
 use crate::model::{Inertia, Model, StepReport};
 use crate::state::State;
 
@@ -16,85 +19,58 @@ use crate::state::State;
 /// 10 000 bars on a floor that was 0.7 of the work); more: coarser rests.
 const LENGTH_ROUNDINGS: f64 = 2.0;
 
-impl CableState {
-    /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
-    pub(in crate::model::fem) fn soft_shift(&self) -> f64 {
-        self.meshing.bar_weight / 0.1
+/// The resistance that a way down begins with, N/m: what acts on an element over a tenth of a
+/// metre, dead loads with it where they are what counts. With the weight alone a cable of 5 g/m
+/// under 100 N, laid through a post, was thrown about and found no rest.
+fn first_resistance(cable: &CableState) -> f64 {
+    let whole = load_scale(&cable.problem).1 / cable.meshing.even_bars as f64;
+    if whole > cable.mesh.tuning.equilibrium.dead_load_weights * cable.meshing.bar_weight {
+        whole / 0.1
+    } else {
+        cable.meshing.soft_shift()
     }
+}
 
-    /// The resistance that a way down begins with, N/m: what acts on an element over a tenth of a
-    /// metre, dead loads with it where they are what counts. With the weight alone a cable of 5 g/m
-    /// under 100 N, laid through a post, was thrown about and found no rest.
-    fn first_resistance(&self) -> f64 {
-        let whole = load_scale(&self.problem).1 / self.meshing.even_bars as f64;
-        if whole > self.mesh.tuning.equilibrium.dead_load_weights * self.meshing.bar_weight {
-            whole / 0.1
-        } else {
-            self.soft_shift()
-        }
+/// Why a cable that nothing but friction holds does not rest where it was brought: what each
+/// node alone is let off with adds up.
+pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoEquilibrium> {
+    if cable.problem.supports.iter().any(|s| s.at.is_some()) || cable.contacts.own.shape.is_on() {
+        return None;
     }
+    let left = results::unbalanced(cable, &cable.motion.positions, cable.motion.time).norm();
+    let scale = load_scale(&cable.problem).1;
+    (left > cable.mesh.tuning.equilibrium.unheld_load_fraction * scale)
+        .then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
+}
 
-    /// Why a cable that nothing but friction holds does not rest where it was brought: what each
-    /// node alone is let off with adds up.
-    pub(in crate::model::fem) fn slides_as_a_whole(&self) -> Option<NoEquilibrium> {
-        if self.problem.supports.iter().any(|s| s.at.is_some()) || self.contacts.own.shape.is_on() {
-            return None;
-        }
-        let left = results::unbalanced(self, &self.motion.x, self.motion.time).norm();
-        let scale = load_scale(&self.problem).1;
-        (left > self.mesh.tuning.equilibrium.unheld_load_fraction * scale)
-            .then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
+/// The obstacle through which a cable runs that found no rest at `x`: it cannot get out of
+/// there.
+fn through(cable: &CableState, x: &[Vec2]) -> Option<NoEquilibrium> {
+    let (mesh, world) = (&cable.mesh, &cable.problem.world);
+    if x.len() != mesh.nodes() {
+        return None;
     }
+    // Its centre line is in the thing itself, or nearly: what only touches is not through.
+    let least = -0.9 * cable.problem.radius;
+    let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
+    let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
+    let [a, b] = mesh.straight(e, x);
+    let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
+    let obstacle = world.obstacle_name(gap.obstacle).to_owned();
+    Some(NoEquilibrium::ThroughObstacle { obstacle, at_m: gap.point, arc_length_m: mesh.arc_length[e] })
+}
 
-    /// Least distance (m) that both ends have moved to `sought`, if that is more than the length of
-    /// the cable.
-    fn ran_away(&self, sought: &[Vec2]) -> Option<f64> {
-        let moved = |a: Option<&Vec2>, b: Option<&Vec2>| Some((a? - b?).norm());
-        let now = &self.motion.x;
-        let way = moved(sought.first(), now.first())?.min(moved(sought.last(), now.last())?);
-        (way > self.problem.length).then_some(way)
-    }
+/// Least distance (m) that both ends have moved from where they are `now` to `sought`, if that is
+/// more than the length (m) of the cable.
+fn ran_away(length: f64, now: &[Vec2], sought: &[Vec2]) -> Option<f64> {
+    let moved = |a: Option<&Vec2>, b: Option<&Vec2>| Some((a? - b?).norm());
+    let way = moved(sought.first(), now.first())?.min(moved(sought.last(), now.last())?);
+    (way > length).then_some(way)
+}
 
-    /// The obstacle through which a cable runs that found no rest at `x`: it cannot get out of
-    /// there.
-    fn through(&self, x: &[Vec2]) -> Option<NoEquilibrium> {
-        let (mesh, world) = (&self.mesh, &self.problem.world);
-        if x.len() != mesh.nodes() {
-            return None;
-        }
-        // Its centre line is in the thing itself, or nearly: what only touches is not through.
-        let least = -0.9 * self.problem.radius;
-        let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
-        let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
-        let [a, b] = mesh.straight(e, x);
-        let gap = world.signed_gap((a + b) * 0.5, f64::INFINITY)?;
-        let obstacle = world.obstacle_name(gap.obstacle).to_owned();
-        Some(NoEquilibrium::ThroughObstacle { obstacle, at_m: gap.point, arc_length_m: mesh.arc_length[e] })
-    }
-
-    /// True if the cable is in touch with itself.
-    pub(in crate::model::fem) fn touches_itself(&self) -> bool {
-        self.contacts.own.smallest_gap(&self.mesh, &self.motion.x, self.mesh.tuning.contact.reach_m).is_some()
-    }
-
-    /// True if two bars of the cable cross.
-    fn crosses_itself(&self) -> bool {
-        !crate::contact::self_crossings::crossings(&self.motion.x, |_| true).is_empty()
-    }
-
-    /// Steps without inertia that keep every support's move below half an element.
-    pub(in crate::model::fem) fn pieces(&self, end: f64, dragged: &[Option<Vec2>]) -> f64 {
-        let even = self.problem.length / self.meshing.even_bars as f64;
-        let mut most: f64 = 0.0;
-        for (k, s) in self.problem.supports.iter().enumerate() {
-            if let (Some((at, _)), Some(now)) = (s.position_at(end), self.support_position(k)) {
-                let at = dragged.get(k).copied().flatten().unwrap_or(at);
-                most = most.max((at - now).norm());
-            }
-        }
-        let carried = self.outline.as_ref().map_or(0.0, |o| o.pieces(self.mesh.tuning.outline.max_way_m));
-        larger(most / (0.5 * even), carried).ceil().clamp(1.0, 1e4)
-    }
+/// True if two bars of a cable at positions `x` (m) cross.
+fn crosses_itself(x: &[Vec2]) -> bool {
+    !crate::contact::self_crossings::crossings(x, |_| true).is_empty()
 }
 
 impl Dynamics {
@@ -119,7 +95,7 @@ impl Dynamics {
     fn rest_rounds(&mut self, to: f64, dragged: &[Option<Vec2>], pull: f64) -> Result<Converged, Failure> {
         let (mut total, mut settled) = (Converged::default(), false);
         for round in 0..self.cable.mesh.tuning.equilibrium.corner_rounds {
-            self.cable.prepare_way([to, to], Some(dragged));
+            prepare_way(&mut self.cable, [to, to], Some(dragged));
             self.cable.adapt_slip();
             self.cable.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
             self.cable.input.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;
@@ -138,7 +114,7 @@ impl Dynamics {
             }
             if round == 0
                 && pull.is_finite()
-                && let Some(node) = self.cable.pulled_by(&unknowns.x, pull)
+                && let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.positions).pulled_corner(pull)
             {
                 let residual = done.map_or_else(|f| f.residual, |d| d.residual);
                 return Err(Failure { node, residual, cause: FailureCause::CornerPulls });
@@ -150,7 +126,7 @@ impl Dynamics {
             if settled || round + 1 == self.cable.mesh.tuning.equilibrium.corner_rounds {
                 break;
             }
-            let found = self.cable.remesh(Inertia::QuasiStatic);
+            let found = remesh(&mut self.cable, Inertia::QuasiStatic);
             // Marks that are moved take strain from bar to bar, which has to be balanced once more.
             settled = !found.bars;
             if settled && !found.marks {
@@ -170,7 +146,7 @@ impl Dynamics {
         let tuning = self.cable.mesh.tuning.equilibrium;
         for (part, iterations) in tuning.polish_residuals.into_iter().zip(tuning.polish_iterations) {
             self.rollback.save(&self.cable);
-            self.cable.prepare_way([to, to], Some(dragged));
+            prepare_way(&mut self.cable, [to, to], Some(dragged));
             self.cable.input.most_noise = exact;
             (self.cable.input.tolerance, self.cable.input.max_iterations) =
                 (larger(part * exact, rounding), iterations);
@@ -192,7 +168,7 @@ impl Dynamics {
     /// number of bars.
     fn rounding_of_bars(&self) -> f64 {
         let (cable, problem) = (&self.cable, &self.cable.problem);
-        let farthest = cable.motion.x.iter().map(|x| x.norm()).fold(0.0, larger);
+        let farthest = cable.motion.positions.iter().map(|x| x.norm()).fold(0.0, larger);
         LENGTH_ROUNDINGS * f64::EPSILON * farthest * problem.axial_stiffness / cable.even()
     }
 
@@ -205,10 +181,13 @@ impl Dynamics {
         }
         self.rollback.save(&self.cable);
         let reach = self.cable.problem.length / self.cable.meshing.even_bars as f64;
-        let laid = self.cable.motion.x.clone();
+        let laid = self.cable.motion.positions.clone();
         let found = self.rest_step(self.cable.motion.time, dragged).is_ok();
         let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= reach;
-        if !(found && laid.len() == self.cable.motion.x.len() && laid.iter().zip(&self.cable.motion.x).all(near)) {
+        if !(found
+            && laid.len() == self.cable.motion.positions.len()
+            && laid.iter().zip(&self.cable.motion.positions).all(near))
+        {
             self.rollback.restore(&mut self.cable);
         }
     }
@@ -217,18 +196,18 @@ impl Dynamics {
     /// over changed.
     fn accept_rest(&mut self, unknowns: &Unknowns, to: f64) -> bool {
         self.accept_unknowns(unknowns, to);
-        self.cable.remesh(Inertia::QuasiStatic).seats
+        remesh(&mut self.cable, Inertia::QuasiStatic).sliding_nodes
     }
 
     /// The same, corners as they are.
     fn accept_unknowns(&mut self, unknowns: &Unknowns, to: f64) {
         self.cable.commit_contacts(unknowns);
         self.cable.contacts.outline_motion = None;
-        self.cable.motion.x.clone_from(&unknowns.x);
-        self.cable.motion.v.fill(Vec2::zeros());
-        self.cable.motion.w.fill(0.0);
+        self.cable.motion.positions.clone_from(&unknowns.positions);
+        self.cable.motion.velocities.fill(Vec2::zeros());
+        self.cable.motion.slide_rates.fill(0.0);
         self.cable.motion.time = to;
-        self.cable.slide(&unknowns.slide);
+        self.cable.mesh.slide(&unknowns.slides);
         self.cable.mesh.sliding.iter_mut().flatten().for_each(|s| s.balanced = None);
         self.forget_history();
     }
@@ -254,11 +233,11 @@ impl Dynamics {
     /// The same; `noise` is the greatest force, in tolerances, that rounding may hide on the way.
     fn relax_within(&mut self, noise: f64, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         // Stretches into which the outline moves go out of its way before anything slides.
-        self.cable.prepare_way([to, to], Some(dragged));
-        self.cable.motion.x.clone_from_slice(self.cable.input.begins());
+        prepare_way(&mut self.cable, [to, to], Some(dragged));
+        self.cable.motion.positions.clone_from_slice(self.cable.input.begins());
         self.cable.contacts.outline_motion = None;
-        let laid = self.cable.motion.x.clone();
-        let mut resistance = self.cable.first_resistance();
+        let laid = self.cable.motion.positions.clone();
+        let mut resistance = first_resistance(&self.cable);
         let (full, floor) = (resistance, 1e-5 * resistance);
         // Set where Newton without resistance has failed: then steps are solved exactly, until what
         // resists is nothing.
@@ -266,7 +245,7 @@ impl Dynamics {
         let mut total = 0;
         let mut last = Failure { node: 0, residual: f64::NAN, cause: FailureCause::StillMoves };
         for round in 0..self.cable.mesh.tuning.equilibrium.max_relaxation_steps {
-            self.cable.prepare_input(to, Some(dragged));
+            prepare_input(&mut self.cable, to, Some(dragged));
             self.cable.adapt_slip();
             let even = self.cable.problem.length / self.cable.meshing.even_bars as f64;
             self.cable.input.inertia.fill(resistance);
@@ -289,8 +268,8 @@ impl Dynamics {
                     let (mut moved, mut resists, mut slowest): (f64, f64, usize) = (0.0, 0.0, 0);
                     // Resistance adds up along a creeping stretch.
                     let mut drift = Vec2::zeros();
-                    for (k, (a, b)) in unknowns.x.iter().zip(&self.cable.motion.x).enumerate() {
-                        let way = (a - b).norm().max(unknowns.slide[k].abs());
+                    for (k, (a, b)) in unknowns.positions.iter().zip(&self.cable.motion.positions).enumerate() {
+                        let way = (a - b).norm().max(unknowns.slides[k].abs());
                         moved = moved.max(way);
                         let free = if self.cable.mesh.held[k] { 0.0 } else { self.cable.input.inertia[k] };
                         drift = if free > 0.0 { drift + (a - b) * free } else { Vec2::zeros() };
@@ -302,7 +281,7 @@ impl Dynamics {
                     last =
                         Failure { node: slowest, residual: done.residual + resists, cause: FailureCause::StillMoves };
                     let remeshed = self.accept_rest(&unknowns, self.cable.motion.time);
-                    if self.cable.ran_away(&laid).is_some() {
+                    if ran_away(self.cable.problem.length, &self.cable.motion.positions, &laid).is_some() {
                         return Err(Failure { node: 0, residual: f64::NAN, cause: FailureCause::SlidesAway });
                     }
                     if remeshed {
@@ -353,10 +332,10 @@ impl Dynamics {
         self.rollback.save(&self.cable);
         self.cable.motion.followers.fill(None);
         self.cable.motion.hands.fill(None);
-        if !self.rested && self.cable.put_outline() {
-            let mut x = std::mem::take(&mut self.cable.motion.x);
+        if !self.rested && put_outline(&mut self.cable) {
+            let mut x = std::mem::take(&mut self.cable.motion.positions);
             depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
-            self.cable.motion.x = x;
+            self.cable.motion.positions = x;
             self.forget_history();
         }
         match self.find_rest(dragged)? {
@@ -366,10 +345,10 @@ impl Dynamics {
                 Ok(self.report(done, 0, 0.0))
             }
             Err(f) => {
-                let at_m = self.cable.motion.x.get(f.node).copied().unwrap_or_default();
-                let sought = self.cable.motion.x.clone();
+                let at_m = self.cable.motion.positions.get(f.node).copied().unwrap_or_default();
+                let sought = self.cable.motion.positions.clone();
                 self.rollback.restore(&mut self.cable);
-                if self.cable.ran_away(&sought).is_some() {
+                if ran_away(self.cable.problem.length, &self.cable.motion.positions, &sought).is_some() {
                     return Err(SolveError::NoRestingPlace { why: NoEquilibrium::SlidesOff });
                 }
                 if f.cause == FailureCause::WorkSpent {
@@ -378,7 +357,7 @@ impl Dynamics {
                     let (residual_n, place) = (f.residual, self.cable.place(f.node));
                     return Err(SolveError::TooMuchWork { model, iterations, segments, residual_n, place });
                 }
-                if let Some(why) = self.cable.through(&sought) {
+                if let Some(why) = through(&self.cable, &sought) {
                     return Err(SolveError::NoRestingPlace { why });
                 }
                 let arc_length = self.cable.mesh.arc_length.get(f.node).copied().unwrap_or(f64::NAN);
@@ -406,7 +385,7 @@ impl Dynamics {
         else {
             return;
         };
-        let (x, geometry) = (&self.cable.motion.x, self.cable.problem.world.geometry());
+        let (x, geometry) = (&self.cable.motion.positions, self.cable.problem.world.geometry());
         let clear = (0..self.cable.mesh.rest_length.len()).all(|e| {
             let [[a, b], [c, d]] = [self.cable.mesh.straight(e, x), self.cable.mesh.straight(e, &to)];
             geometry
@@ -417,17 +396,18 @@ impl Dynamics {
         if !clear {
             return;
         }
-        self.cable.motion.x = to;
+        self.cable.motion.positions = to;
         self.forget_history();
         // Its bars are straight: what sags between its nodes makes their tension wrong, evenly, so
         // that little force is left over.
-        self.cable.prepare_input(self.cable.motion.time, Some(dragged));
+        let now = self.cable.motion.time;
+        prepare_input(&mut self.cable, now, Some(dragged));
         self.cable.input.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;
         let exact = self.cable.input.tolerance;
         self.cable.input.tolerance = tolerance(&self.cable.problem, 0.0);
         let mut unknowns = self.solver.present_unknowns(&self.cable);
         if self.solver.free.solve(&self.cable.mesh, &self.cable.input, &mut unknowns).is_some() {
-            self.cable.motion.x.clone_from(&unknowns.x);
+            self.cable.motion.positions.clone_from(&unknowns.positions);
             self.forget_history();
         }
         self.solver.unknowns = unknowns;
@@ -446,15 +426,15 @@ impl Dynamics {
             self.cable.contacts.own.shape.diameter = 0.0;
             let found = self.relax(time, dragged);
             self.cable.contacts.own.shape = shape;
-            if found.is_ok() && !self.cable.touches_itself() && !self.cable.crosses_itself() {
+            if found.is_ok() && !self.cable.touches_itself() && !crosses_itself(&self.cable.motion.positions) {
                 return Ok(found);
             }
             self.rollback.restore(&mut self.cable);
             self.rollback.save(&self.cable);
             self.begin_on_a_bow();
         }
-        let overlap = self.cable.contacts.own.smallest_gap(&self.cable.mesh, &self.cable.motion.x, 0.0);
-        if overlap.is_some() || self.cable.crosses_itself() {
+        let overlap = self.cable.contacts.own.smallest_gap(&self.cable.mesh, &self.cable.motion.positions, 0.0);
+        if overlap.is_some() || crosses_itself(&self.cable.motion.positions) {
             let arc_length_m = self.cable.mesh.arc_length[overlap.map_or(0, |o| o.1)];
             let feature = Unsupported::SelfContactAtStart { arc_length_m };
             return Err(SolveError::Unsupported { model: Model::Fem, feature });
@@ -466,21 +446,21 @@ impl Dynamics {
     /// touch itself: along a straight line it would, or stand on itself as a row of beads does.
     fn begin_on_a_bow(&mut self) {
         let cable = &mut self.cable;
-        let way: f64 = cable.motion.x.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
+        let way: f64 = cable.motion.positions.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
         if !cable.problem.cable.route_m.is_empty()
             || cable.problem.length < cable.mesh.tuning.start.arc_length_ratio * way
         {
             return;
         }
-        let Some(arc) = bow(&cable.problem, &cable.mesh, &cable.motion.x) else { return };
-        let straight = std::mem::replace(&mut cable.motion.x, arc);
+        let Some(arc) = bow(&cable.problem, &cable.mesh, &cable.motion.positions) else { return };
+        let straight = std::mem::replace(&mut cable.motion.positions, arc);
         for k in (0..straight.len()).filter(|&k| cable.mesh.held[k]) {
-            cable.motion.x[k] = straight[k];
+            cable.motion.positions[k] = straight[k];
         }
-        if cable.cuts_nothing() {
+        if IntersectionCheck::of(cable).cuts_nothing() {
             cable.forget_history();
         } else {
-            cable.motion.x = straight;
+            cable.motion.positions = straight;
         }
     }
 }

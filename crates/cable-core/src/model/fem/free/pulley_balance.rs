@@ -19,9 +19,13 @@ use crate::model::fem::free::pulley_friction::Rubbing;
 use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
 use crate::model::fem::free::stations::{Hold, Layout, SpanEnds, Wheel};
+use crate::numerics::backtrack;
 
 /// Newton steps for the pulleys together. Measured: 3 to 8.
 const MAX_STEPS: usize = 40;
+
+/// Lengths of a step that are tried.
+const MAX_HALVINGS: usize = 12;
 /// Powers of ten by which a fold is rounded off at first: to a tenth of the load, where any start
 /// converges.
 const FOLD_ROUNDING_DECADES: i32 = 6;
@@ -293,25 +297,17 @@ impl Network {
                 return stable;
             }
             let from: Vec<f64> = pulleys.iter().map(|&k| self.layout.stops[k].arc_length).collect();
-            let mut alpha = 1.0;
-            let mut better = false;
-            for _ in 0..12 {
-                self.move_pulleys(pulleys, &from, &step, alpha);
+            let better = backtrack(1.0, MAX_HALVINGS, |part| {
+                self.move_pulleys(pulleys, &from, &step, part);
                 self.steps += 1;
-                if self.solve_spans().is_ok() {
-                    let next = faults(self);
-                    if size(&next) < size(&now) {
-                        now = next;
-                        better = true;
-                        break;
-                    }
-                }
-                alpha *= 0.5;
-            }
-            if !better {
+                self.solve_spans().ok()?;
+                Some(faults(self)).filter(|next| size(next) < size(&now))
+            });
+            let Some(next) = better else {
                 self.move_pulleys(pulleys, &from, &step, 0.0);
                 return self.solve_spans().is_ok() && stable && size(&now) <= BALANCE_LIMIT;
-            }
+            };
+            now = next;
         }
         false
     }

@@ -15,6 +15,7 @@
 //! more than a stiff cable gives by, so that friction could be found the other way round. Newton
 //! with a line search for one set of modes, then the modes are asked.
 
+use crate::numerics::backtrack;
 use nalgebra::{DMatrix, DVector};
 
 use crate::math::{Vec2, cross, larger, perp};
@@ -408,25 +409,18 @@ impl Network {
             let step = matrix.lu().solve(&-&e.residual).filter(|s| s.iter().all(|v| v.is_finite()));
             let Some(step) = step else { return Err(failure) };
             let (from, norm) = (self.rubbing.clone(), e.residual.norm_squared());
-            let mut alpha = self.longest_step(pulleys, &step);
-            let mut better = false;
-            for _ in 0..MAX_HALVINGS {
-                self.move_unknowns(&from, &step, alpha);
+            let better = backtrack(self.longest_step(pulleys, &step), MAX_HALVINGS, |part| {
+                self.move_unknowns(&from, &step, part);
                 self.steps += 1;
-                if self.take_unknowns(pulleys).is_ok() {
-                    let next = self.equations(pulleys);
-                    if next.residual.norm_squared() <= (1.0 - 1e-4 * alpha) * norm {
-                        (e, better) = (next, true);
-                        break;
-                    }
-                }
-                alpha *= 0.5;
-            }
-            if !better {
+                self.take_unknowns(pulleys).ok()?;
+                Some(self.equations(pulleys)).filter(|next| next.residual.norm_squared() <= (1.0 - 1e-4 * part) * norm)
+            });
+            let Some(next) = better else {
                 self.move_unknowns(&from, &step, 0.0);
                 self.take_unknowns(pulleys)?;
                 return if worst <= RESIDUAL_LIMIT { Ok(()) } else { Err(failure) };
-            }
+            };
+            e = next;
         }
         let worst = e.residual.amax();
         if worst <= RESIDUAL_LIMIT { Ok(()) } else { Err(Failure::Unbalanced(first, worst)) }

@@ -12,6 +12,7 @@
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::stations::{Layout, SpanEnds};
+use crate::numerics::backtrack;
 
 /// Newton steps a span may take. Measured: 3 to 14, up to 40 for a span folded on itself.
 const MAX_STEPS: usize = 200;
@@ -219,19 +220,15 @@ pub fn solve(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2, gues
             return done(w, force);
         }
         let (value, slope) = (w.energy - force.dot(&d), gap.dot(&step));
-        let mut alpha = 1.0;
-        let mut taken = None;
-        for _ in 0..MAX_HALVINGS {
+        let taken = backtrack(1.0, MAX_HALVINGS, |alpha| {
             let trial = force + step * alpha;
             let t = walk(material, layout, ends, trial);
             let descends = t.energy - trial.dot(&d) <= value + ARMIJO * alpha * slope;
             let closes = (t.reach - d).norm() <= (1.0 - ARMIJO * alpha) * gap.norm();
-            if (descends && alpha < 1.0) || closes || (descends && (t.reach - d).norm() <= 2.0 * gap.norm()) {
-                taken = Some((trial, t));
-                break;
-            }
-            alpha *= 0.5;
-        }
+            let accepted =
+                (descends && alpha < 1.0) || closes || (descends && (t.reach - d).norm() <= 2.0 * gap.norm());
+            accepted.then_some((trial, t))
+        });
         match taken {
             Some((f, t)) => {
                 (force, w) = (f, t);

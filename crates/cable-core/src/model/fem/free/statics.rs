@@ -5,6 +5,7 @@
 //! found is in tension and stable by construction. The mesh follows the error estimate where the
 //! scene does not give one.
 
+use crate::numerics::HalvedSteps;
 use std::sync::Arc;
 
 use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
@@ -50,7 +51,9 @@ const SLOW_MOVE: f64 = 0.01;
 /// Most slow steps in one call.
 const MAX_SLOW_STEPS: f64 = 400.0;
 /// Greatest number of halvings of a slow step.
-const MAX_HALVINGS: usize = 8;
+const MAX_HALVINGS: u32 = 8;
+/// Part of a slow step that is taken with the step before it.
+const JOINED_FRACTION: f64 = 0.5;
 
 /// The balance of pulleys without friction. On wheels it is found with the material on them by a
 /// mean of the tension (to 1e-7 of it), and then exactly.
@@ -168,7 +171,7 @@ impl Statics {
         let rubs = self.problem.supports.iter().any(|s| s.friction > 0.0);
         let steps = if rubs { self.slow_steps(start, end, dragged) } else { 1.0 };
         let mut report = StepReport::default();
-        let (mut step, mut halvings) = (dt_s / steps, 0);
+        let mut pieces = HalvedSteps::new(end, dt_s / steps, MAX_HALVINGS, JOINED_FRACTION);
         // A hand goes straight.
         let from: Vec<Option<Vec2>> = (0..dragged.len()).map(|k| self.support_at(k)).collect();
         let drawn = |time: f64| -> Vec<Option<Vec2>> {
@@ -176,18 +179,17 @@ impl Statics {
             let at = |to: Vec2, from: &Option<Vec2>| from.map_or(to, |f| f + (to - f) * part);
             dragged.iter().zip(&from).map(|(to, from)| to.map(|to| at(to, from))).collect()
         };
-        while self.time < end {
-            let next = if self.time + 1.5 * step >= end { end } else { self.time + step };
+        while let Some(next) = pieces.next(self.time) {
             match self.rest_at(next, &drawn(next)) {
                 Ok(r) => {
                     report.cost.iterations += r.cost.iterations;
                     report.cost.residual_n = r.cost.residual_n;
                     report.warnings = r.warnings;
                 }
-                Err(error) if halvings == MAX_HALVINGS || !rubs => return Err(error),
-                Err(_) => {
-                    step *= 0.5;
-                    halvings += 1;
+                Err(error) => {
+                    if !rubs || !pieces.halve() {
+                        return Err(error);
+                    }
                     report.cost.halved_steps += 1;
                 }
             }

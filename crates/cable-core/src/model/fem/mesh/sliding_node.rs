@@ -64,7 +64,7 @@ pub struct SlidingNode {
     pub floor_factor: f64,
     /// Parts of the weight of the bars before and after it on rounds that act there; less than 1
     /// where they are nearly slack (see `bar_weight.rs`).
-    pub lies: [f64; 2],
+    pub lying_fractions: [f64; 2],
     /// Tensions between which friction acted in the last step with inertia. None at rest and of a
     /// new node.
     pub balanced: Option<Balanced>,
@@ -82,7 +82,7 @@ impl SlidingNode {
             factor: 1.0,
             exponent: 0.0,
             floor_factor: 1.0,
-            lies: [1.0; 2],
+            lying_fractions: [1.0; 2],
             balanced: None,
         }
     }

@@ -23,11 +23,11 @@ use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::Vec2;
 use crate::model::fem::newton::gap_constraint::Stop;
-use crate::model::fem::newton::step_context::{StepContext, longest};
 use crate::model::fem::settings::NewtonTuning;
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::self_contact::Coupling;
+use crate::model::fem::system::step_context::{StepContext, longest};
 
 /// The contacts that a step is about to make.
 #[derive(Clone, Debug)]
@@ -185,7 +185,7 @@ mod tests {
         let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
         d.settle(&[]).unwrap();
         d.advance(STEP, Inertia::Dynamic, &[]).unwrap();
-        for (k, (x, v)) in d.cable.motion.x.iter_mut().zip(&mut d.cable.motion.v).enumerate() {
+        for (k, (x, v)) in d.cable.motion.positions.iter_mut().zip(&mut d.cable.motion.velocities).enumerate() {
             let gap = 5.0 * ContactTuning::default().reach_m + 8e-3 * (1.0 + (0.13 * k as f64).sin());
             (*x, *v) = (Vec2::new(0.1 * k as f64, radius + gap), Vec2::new(0.0, -5.0));
         }

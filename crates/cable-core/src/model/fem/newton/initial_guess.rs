@@ -3,7 +3,8 @@
 
 use crate::contact::Gap;
 use crate::math::{Vec2, cross, perp};
-use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::mesh::Mesh;
+use crate::numerics::bisect;
 use crate::problem::Problem;
 use crate::problem::ground_route::above_ground;
 use crate::scene::SupportKind;
@@ -113,11 +114,7 @@ pub fn bow(problem: &Problem, mesh: &Mesh, x: &[Vec2]) -> Option<Vec<Vec2>> {
         return None;
     }
     // Half of the angle u of the arc: sin u / u is chord over length.
-    let (mut low, mut high) = (0.0, std::f64::consts::PI);
-    for _ in 0..ARC_HALVINGS {
-        let middle = 0.5 * (low + high);
-        (low, high) = if middle.sin() * length > chord * middle { (middle, high) } else { (low, middle) };
-    }
+    let [low, _] = bisect([0.0, std::f64::consts::PI], ARC_HALVINGS, |half| half.sin() * length > chord * half);
     let along = (to - from) / chord;
     let up = if perp(along).dot(&problem.body_force(0.0)) > 0.0 { -perp(along) } else { perp(along) };
     let radius = 0.5 * length / low;

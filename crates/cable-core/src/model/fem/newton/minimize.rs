@@ -16,16 +16,16 @@ use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
 use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
-use crate::model::fem::newton::step_context::StepContext;
-use crate::model::fem::system::assembly::{Mesh, System};
-use crate::model::fem::system::bar_energy;
+use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::contact_energy::{add_floor, add_friction, add_touch};
 use crate::model::fem::system::friction_state::ContactPair;
-use crate::model::fem::system::self_contact;
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::self_contact::{Coupling, SelfContactLaws};
+use crate::model::fem::system::step_context::StepContext;
 use crate::model::fem::system::step_input::{
     Converged, Failure, FailureCause, StepInput, Unknowns, WORK_MAGNITUDE_FRACTION, WorkBudget, node_scale,
 };
+use crate::model::fem::system::{bar_energy, self_contact};
 
 /// Energies are trusted to this part of the sum of their magnitudes.
 const ENERGY_NOISE: f64 = 1e-13;
@@ -131,7 +131,7 @@ impl Workspace {
         Ok(Self {
             direction: vec![0.0; 2 * mesh.nodes()],
             plain: Vec::with_capacity(2 * mesh.nodes()),
-            trial: Unknowns { x: vec![Vec2::zeros(); mesh.nodes()], slide: vec![0.0; mesh.nodes()] },
+            trial: Unknowns { positions: vec![Vec2::zeros(); mesh.nodes()], slides: vec![0.0; mesh.nodes()] },
             touches: Vec::with_capacity(mesh.nodes()),
             magnitude: 0.0,
             rounding: Rounding::default(),
@@ -162,7 +162,7 @@ impl Workspace {
     /// Number of nodes it has room for.
     #[must_use]
     pub fn nodes(&self) -> usize {
-        self.trial.x.len()
+        self.trial.positions.len()
     }
 
     /// Φ with gradient and Hessian at unknowns.
@@ -173,7 +173,7 @@ impl Workspace {
         curvature: Curvature,
     ) -> f64 {
         let StepContext { problem, mesh, contacts, input } = *step;
-        let x = &unknowns.x;
+        let x = &unknowns.positions;
         let mut touches = std::mem::take(&mut self.touches);
         contacts.find(problem, mesh, x, &mut touches);
         let s = &mut self.system;
@@ -203,7 +203,7 @@ impl Workspace {
         for i in 0..x.len() {
             let (k, scale) = (input.inertia[i], node_scale(input, i));
             let (kinetic, work) = if mesh.sliding[i].is_some() {
-                let away = unknowns.slide[i] - input.predicted_slide[i];
+                let away = unknowns.slides[i] - input.predicted_slide[i];
                 s.gradient[2 * i] += scale * k * away;
                 s.hessian.add(2 * i, 2 * i, scale * k);
                 (0.5 * k * away * away, 0.0)
@@ -353,12 +353,12 @@ impl Workspace {
             if !value.is_finite() || !residual.is_finite() {
                 return failed(FailureCause::EnergyNotFinite);
             }
-            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.x[k]);
+            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.positions[k]);
             // A support that squeezes the cable harder than numbers can tell has come as far as it
             // can.
             let squeezed = left && input.may_lag && self.rounding.noise > input.tolerance;
             if squeezed {
-                self.goal.clone_from(&unknowns.x);
+                self.goal.clone_from(&unknowns.positions);
             }
             let left = left && !squeezed;
             done.residual = residual;
@@ -378,11 +378,11 @@ impl Workspace {
             self.work_left.spend(mesh.nodes());
             done.iterations += 1;
             // The gradient is needed after pinning overwrote the Hessian only, so it stays valid.
-            if !self.solve(mesh, input, &unknowns.x, shift) {
+            if !self.solve(mesh, input, &unknowns.positions, shift) {
                 let mut tries = 0;
                 loop {
                     self.assemble(step, unknowns, Curvature::Clipped);
-                    if self.solve(mesh, input, &unknowns.x, shift) {
+                    if self.solve(mesh, input, &unknowns.positions, shift) {
                         break;
                     }
                     shift = grow(shift, input);
@@ -415,7 +415,7 @@ impl Workspace {
                         if pushes > mesh.tuning.newton.max_pushes && !input.may_lag {
                             return failed(FailureCause::SupportShort);
                         } else if pushes > mesh.tuning.newton.max_pushes {
-                            self.goal.clone_from(&unknowns.x);
+                            self.goal.clone_from(&unknowns.positions);
                         }
                     }
                 }
@@ -448,7 +448,7 @@ impl Workspace {
         let downhill = self.slope();
         self.plain.clone_from(&self.direction);
         let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
-        self.ahead.solve(step, equations, &unknowns.x, &mut self.direction);
+        self.ahead.solve(step, equations, &unknowns.positions, &mut self.direction);
         // The undamped Newton does not use the energy.
         if self.carried.is_empty() && !(self.slope() <= step.mesh.tuning.newton.min_descent_fraction * downhill) {
             self.direction.clone_from(&self.plain);
@@ -471,15 +471,15 @@ impl Workspace {
             for k in 0..n {
                 let moves = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * fraction;
                 if mesh.sliding[k].is_some() {
-                    trial.slide[k] = unknowns.slide[k] + moves.x;
-                    trial.x[k] = unknowns.x[k];
+                    trial.slides[k] = unknowns.slides[k] + moves.x;
+                    trial.positions[k] = unknowns.positions[k];
                     continue;
                 }
-                trial.slide[k] = 0.0;
-                trial.x[k] = unknowns.x[k] + moves;
+                trial.slides[k] = 0.0;
+                trial.positions[k] = unknowns.positions[k] + moves;
                 // A full step ends exactly on target.
                 if mesh.held[k] && fraction == 1.0 {
-                    trial.x[k] = self.goal[k];
+                    trial.positions[k] = self.goal[k];
                 }
             }
             let new_value = self.assemble(step, &trial, Curvature::Exact);

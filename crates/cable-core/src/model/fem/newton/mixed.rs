@@ -16,10 +16,10 @@ use crate::contact::friction::Branch;
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::step_context::StepContext;
-use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::friction_state::ContactSet;
+use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::system::step_context::StepContext;
 use crate::model::fem::system::step_input::{Converged, Failure, StepInput, Unknowns};
 
 /// Strain that counts as none.
@@ -80,8 +80,8 @@ impl Workspace {
         self_touch: SelfTouch,
         unknowns: &mut Unknowns,
     ) -> Option<Converged> {
-        self.begun.x.clone_from(&unknowns.x);
-        self.begun.slide.clone_from(&unknowns.slide);
+        self.begun.positions.clone_from(&unknowns.positions);
+        self.begun.slides.clone_from(&unknowns.slides);
         self.goal.clone_from(&step.input.target);
         self.carry_pulls(step.mesh, unknowns);
         let done = self.iterate_undamped(step, self_touch, unknowns);
@@ -95,14 +95,14 @@ impl Workspace {
 
     /// To where the step began.
     fn go_back(&self, unknowns: &mut Unknowns) {
-        unknowns.x.clone_from(&self.begun.x);
-        unknowns.slide.clone_from(&self.begun.slide);
+        unknowns.positions.clone_from(&self.begun.positions);
+        unknowns.slides.clone_from(&self.begun.slides);
     }
 
     fn carry_pulls(&mut self, mesh: &Mesh, unknowns: &Unknowns) {
         self.carried.clear();
         for (e, l) in mesh.rest_length.iter().enumerate() {
-            let strain = (unknowns.x[e + 1] - unknowns.x[e]).norm() / l - 1.0;
+            let strain = (unknowns.positions[e + 1] - unknowns.positions[e]).norm() / l - 1.0;
             let taut = strain >= 0.0;
             let pull = bar_energy::stiffness(mesh, taut) * strain;
             self.carried.push(bar_energy::Carried { pull, taut });
@@ -113,18 +113,18 @@ impl Workspace {
     /// nothing is in the way.
     fn move_on(&mut self, step: &StepContext<'_>, unknowns: &mut Unknowns) {
         let StepContext { mesh, input, .. } = *step;
-        if unknowns.x != input.begins() {
+        if unknowns.positions != input.begins() {
             return;
         }
         for (k, d) in self.direction.chunks_exact_mut(2).enumerate() {
             let to = match (mesh.held[k], mesh.is_free(k)) {
                 (true, _) => self.goal[k],
                 (_, true) => input.predicted[k],
-                _ => unknowns.x[k],
+                _ => unknowns.positions[k],
             };
-            (d[0], d[1]) = (to.x - unknowns.x[k].x, to.y - unknowns.x[k].y);
+            (d[0], d[1]) = (to.x - unknowns.positions[k].x, to.y - unknowns.positions[k].y);
         }
-        self.ahead.stop(step, &unknowns.x, &mut self.direction);
+        self.ahead.stop(step, &unknowns.positions, &mut self.direction);
         let whole = self.whole(input);
         let free = self.free_way(step, unknowns, whole);
         self.place(mesh, unknowns, free);
@@ -139,8 +139,9 @@ impl Workspace {
         let StepContext { mesh, contacts, input, .. } = *step;
         self.move_on(step, unknowns);
         self.branches.clear();
-        self.branches
-            .extend(contacts.friction_contacts.iter().map(|r| Branch::at(r.sliding(&unknowns.x), contacts.slip)));
+        self.branches.extend(
+            contacts.friction_contacts.iter().map(|r| Branch::at(r.sliding(&unknowns.positions), contacts.slip)),
+        );
         let mut first = f64::NAN;
         self.near_enough = false;
         for iterations in 0..=mesh.tuning.newton.mixed_iterations {
@@ -151,31 +152,33 @@ impl Workspace {
                 return None;
             }
             let residual = self.residual(mesh, input).force;
-            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.x[k]);
+            let left = (0..mesh.nodes()).any(|k| mesh.held[k] && self.goal[k] != unknowns.positions[k]);
             if iterations == 0 {
                 first = residual;
             }
             let sound = value.is_finite() && residual.is_finite() && self.rounding.noise <= input.tolerance;
-            if sound && residual <= input.tolerance && !left && self.flags_hold(mesh, contacts, &unknowns.x) {
+            if sound && residual <= input.tolerance && !left && self.flags_hold(mesh, contacts, &unknowns.positions) {
                 return Some(Converged { iterations, residual });
             }
             self.near_enough = sound && residual < mesh.tuning.newton.handed_on_residual_fraction * first;
             if iterations == mesh.tuning.newton.mixed_iterations || !sound {
                 return None;
             }
-            if !self.solve(mesh, input, &unknowns.x, input.shift) && !self.ease(mesh, input, &unknowns.x) {
+            if !self.solve(mesh, input, &unknowns.positions, input.shift)
+                && !self.ease(mesh, input, &unknowns.positions)
+            {
                 self.assemble(step, unknowns, Curvature::Clipped);
-                if !self.solve(mesh, input, &unknowns.x, input.shift) {
+                if !self.solve(mesh, input, &unknowns.positions, input.shift) {
                     return None;
                 }
             }
             let free = self.look_ahead(step, unknowns);
             let whole = self.whole(input);
             self.slid.clear();
-            self.slid.extend(contacts.friction_contacts.iter().map(|r| r.sliding(&unknowns.x)));
+            self.slid.extend(contacts.friction_contacts.iter().map(|r| r.sliding(&unknowns.positions)));
             self.walk(mesh, input, unknowns, if free < whole { free } else { whole });
             for (b, (from, r)) in self.branches.iter_mut().zip(self.slid.iter().zip(&contacts.friction_contacts)) {
-                *b = b.next([*from, r.sliding(&unknowns.x)], contacts.slip);
+                *b = b.next([*from, r.sliding(&unknowns.positions)], contacts.slip);
             }
         }
         None
@@ -240,7 +243,7 @@ impl Workspace {
         let direction = &self.direction;
         let step = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]) * part;
         for (e, carried) in self.carried.iter_mut().enumerate() {
-            let d = unknowns.x[e + 1] - unknowns.x[e];
+            let d = unknowns.positions[e + 1] - unknowns.positions[e];
             let p = d.norm();
             let (now, slope) = bar_energy::pull(mesh, input, e, carried.taut, p);
             let along = if p > 0.0 { d.dot(&(step(e + 1) - step(e))) / p } else { 0.0 };
@@ -254,11 +257,11 @@ impl Workspace {
         for k in 0..mesh.nodes() {
             let step = Vec2::new(self.direction[2 * k], self.direction[2 * k + 1]) * part;
             if mesh.sliding[k].is_some() {
-                unknowns.slide[k] += step.x;
+                unknowns.slides[k] += step.x;
             } else if mesh.held[k] && part == 1.0 {
-                unknowns.x[k] = self.goal[k];
+                unknowns.positions[k] = self.goal[k];
             } else {
-                unknowns.x[k] += step;
+                unknowns.positions[k] += step;
             }
         }
     }
@@ -290,7 +293,7 @@ mod tests {
         let mut d = Dynamics::new(problems(&scene).unwrap().remove(0), settings, Default::default()).unwrap();
         d.settle(&[]).unwrap();
         let n = d.cable.mesh.nodes() - 1;
-        for (k, v) in d.cable.motion.v.iter_mut().enumerate() {
+        for (k, v) in d.cable.motion.velocities.iter_mut().enumerate() {
             let s = std::f64::consts::PI * k as f64 / n as f64;
             *v = Vec2::new(waves[0] * s.sin(), waves[1] * s.sin() + waves[2] * (3.0 * s).sin() - 3.0);
         }
@@ -363,12 +366,12 @@ mod tests {
                 let mut trial = d.clone();
                 trial.begin_step(STEP, &[]);
                 let mut expected = trial.solver.present_unknowns(&trial.cable);
-                trial.cable.contacts.prepare(&trial.cable.problem, &trial.cable.mesh, &expected.x, &trial.cable.motion.x);
+                trial.cable.contacts.prepare(&trial.cable.problem, &trial.cable.mesh, &expected.positions, &trial.cable.motion.positions);
                 let mut memory = Workspace::new(&trial.cable.mesh).unwrap();
                 let (step, mut found) = (trial.cable.step_context(), expected.clone());
                 let found_undamped = memory.undamped_newton(&step, SelfTouch::Avoid, &mut found).is_some();
                 if found_undamped && memory.descend(&step, &mut expected).is_ok() {
-                    let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm());
+                    let off = found.positions.iter().zip(&expected.positions).map(|(a, b)| (a - b).norm());
                     worst = off.fold(worst, larger);
                     compared += 1;
                     touching += usize::from(memory.touches.len() > 2);

@@ -20,8 +20,8 @@
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
-use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::bar_energy;
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{Converged, StepInput, Unknowns};
 
 /// Roundings of a coordinate that a bar's length may be off by.
@@ -68,11 +68,11 @@ impl FreeStep {
     /// Finds the unknowns at the end of a step; None (and the unknowns as it was) where it does not
     /// converge.
     pub fn solve(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &mut Unknowns) -> Option<Converged> {
-        self.start.clone_from(&unknowns.x);
+        self.start.clone_from(&unknowns.positions);
         self.make_room(mesh);
-        let done = self.newton(mesh, input, &mut unknowns.x);
+        let done = self.newton(mesh, input, &mut unknowns.positions);
         if done.is_none() {
-            unknowns.x.clone_from(&self.start);
+            unknowns.positions.clone_from(&self.start);
         }
         done
     }
@@ -265,7 +265,7 @@ mod tests {
     use super::*;
     use crate::model::fem::dynamics::Dynamics;
     use crate::model::fem::newton::minimize::Workspace;
-    use crate::model::fem::newton::step_context::StepContext;
+    use crate::model::fem::system::step_context::StepContext;
     use crate::model::{Inertia, Settings};
     use crate::problem::problems;
     use crate::scene::{Support, SupportKind, catalog};
@@ -299,17 +299,17 @@ mod tests {
             for k in 0..n {
                 let s = k as f64 / (n - 1) as f64 * std::f64::consts::PI;
                 let push = Vec2::new(waves[0] * s.sin() + waves[1] * (2.0 * s).sin(), waves[2] * s.sin() + waves[3] * (3.0 * s).sin());
-                input.predicted[k] = d.cable.motion.x[k] + push * 0.004;
+                input.predicted[k] = d.cable.motion.positions[k] + push * 0.004;
                 input.inertia[k] = d.cable.mesh.share(k) * a * a;
             }
-            let start = Unknowns { x: d.cable.motion.x.clone(), slide: vec![0.0; n] };
+            let start = Unknowns { positions: d.cable.motion.positions.clone(), slides: vec![0.0; n] };
             let (mut free, mut found) = (FreeStep::default(), start.clone());
             let Some(done) = free.solve(&d.cable.mesh, &input, &mut found) else { return Err(TestCaseError::fail("not solved")) };
             prop_assert!(done.residual <= 1e-7 && done.iterations <= 12, "{done:?}");
             let (mut general, mut expected) = (Workspace::new(&d.cable.mesh).unwrap(), start);
             let step = StepContext { input: &input, ..d.cable.step_context() };
             prop_assert!(general.minimise(&step, &mut expected).is_ok());
-            let off = found.x.iter().zip(&expected.x).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+            let off = found.positions.iter().zip(&expected.positions).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
             prop_assert!(off < 1e-7, "{off}");
             let scale = 1e-4 * (1.0 + general.gradient_at(0).norm());
             prop_assert!((free.gradient_at(0) - general.gradient_at(0)).norm() < scale);
@@ -322,7 +322,7 @@ mod tests {
         d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
         let mut input = d.cable.input.clone();
         input.predicted[7].x = f64::NAN;
-        let start = Unknowns { x: d.cable.motion.x.clone(), slide: vec![0.0; d.cable.mesh.nodes()] };
+        let start = Unknowns { positions: d.cable.motion.positions.clone(), slides: vec![0.0; d.cable.mesh.nodes()] };
         let mut unknowns = start.clone();
         assert_eq!(FreeStep::default().solve(&d.cable.mesh, &input, &mut unknowns), None);
         assert_eq!(unknowns, start);

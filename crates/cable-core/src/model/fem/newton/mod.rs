@@ -7,4 +7,3 @@ pub mod minimize;
 pub(in crate::model::fem) mod mixed;
 pub(in crate::model::fem) mod mixed_free;
 pub(in crate::model::fem) mod step_bound;
-pub(in crate::model::fem) mod step_context;

@@ -5,7 +5,7 @@ use crate::contact::sweep::Sweep;
 use crate::math::Vec2;
 use crate::model::fem::mesh::tangent_path::{End, Path};
 use crate::model::fem::newton::minimize::Workspace;
-use crate::model::fem::newton::step_context::{StepContext, longest};
+use crate::model::fem::system::step_context::{StepContext, longest};
 use crate::model::fem::system::step_input::{StepInput, Unknowns};
 
 impl Workspace {
@@ -33,8 +33,8 @@ impl Workspace {
             if slides != [false, false] {
                 let go = [e, e + 1].map(|k| if mesh.sliding[k].is_some() { direction[2 * k] } else { 0.0 });
                 let change = go[1] - go[0];
-                let whole = mesh.rest_length[e] / mesh.thermal_stretch + unknowns.slide[e + 1] - unknowns.slide[e];
-                let straight = mesh.path(e, &unknowns.x).straight;
+                let whole = mesh.rest_length[e] / mesh.thermal_stretch + unknowns.slides[e + 1] - unknowns.slides[e];
+                let straight = mesh.path(e, &unknowns.positions).straight;
                 let length = if straight > 0.0 && straight < whole { straight } else { whole };
                 if change < 0.0 && -change * free > (1.0 - mesh.tuning.newton.kept_cable_fraction) * length {
                     free = (1.0 - mesh.tuning.newton.kept_cable_fraction) * length / -change;
@@ -43,7 +43,7 @@ impl Workspace {
             if problem.world.is_empty() || slides == [true, true] {
                 continue;
             }
-            let x = &unknowns.x;
+            let x = &unknowns.positions;
             let from = mesh.straight(e, x);
             let to = if slides == [false, false] {
                 [from[0] + move_of(e) * free, from[1] + move_of(e + 1) * free]
@@ -59,7 +59,7 @@ impl Workspace {
             };
         }
         let limits = [mesh.tuning.newton.kept_gap_fraction, most, free];
-        contacts.own.shape.free_fraction(&unknowns.x, &mesh.arc_length, &move_of, limits, &mut self.order)
+        contacts.own.shape.free_fraction(&unknowns.positions, &mesh.arc_length, &move_of, limits, &mut self.order)
     }
 
     /// The same from where the system was assembled last. A step shorter than every gap leaves,
@@ -124,7 +124,7 @@ mod tests {
             let mut d = lying();
             d.begin_step(1.0 / 240.0, &[]);
             let unknowns = d.solver.present_unknowns(&d.cable);
-            d.cable.contacts.prepare(&d.cable.problem, &d.cable.mesh, &unknowns.x, &d.cable.motion.x);
+            d.cable.contacts.prepare(&d.cable.problem, &d.cable.mesh, &unknowns.positions, &d.cable.motion.positions);
             let mut memory = Workspace::new(&d.cable.mesh).unwrap();
             let step = d.cable.step_context();
             memory.assemble(&step, &unknowns, Curvature::Exact);

@@ -7,16 +7,39 @@
 //! over an edge.
 
 use crate::error::SolveError;
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, bounded, perp, smaller};
 use crate::model::Model;
-use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
+use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::Path;
 use crate::model::fem::state::cable::CableState;
+use crate::model::fem::system::mesh::Mesh;
+use crate::problem::Problem;
 
-impl CableState {
+/// A cable among its obstacles, at given positions.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::fem) struct IntersectionCheck<'a> {
+    problem: &'a Problem,
+    mesh: &'a Mesh,
+    /// Reach of the barrier, m.
+    reach: f64,
+    /// Position of each node, m.
+    positions: &'a [Vec2],
+}
+
+impl<'a> IntersectionCheck<'a> {
+    /// Of a cable as it lies.
+    pub(in crate::model::fem) fn of(cable: &'a CableState) -> Self {
+        Self::at(cable, &cable.motion.positions)
+    }
+
+    /// Of a cable at positions `x` (m).
+    pub(in crate::model::fem) fn at(cable: &'a CableState, x: &'a [Vec2]) -> Self {
+        Self { problem: &cable.problem, mesh: &cable.mesh, reach: cable.contacts.barrier.reach, positions: x }
+    }
+
     /// True if a bar meets nothing.
     pub(in crate::model::fem) fn is_clear(&self, e: usize) -> bool {
-        self.way_is_clear(&self.mesh.path(e, &self.motion.x), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))
+        self.way_is_clear(&self.mesh.path(e, self.positions), [e, e + 1].map(|k| self.mesh.sliding[k].as_ref()))
     }
 
     /// Returns whether every bar between two nodes that move is clear of obstacles. The place of
@@ -28,9 +51,9 @@ impl CableState {
 
     /// True if the cable meets or leaves the round of a corner where that is over one of the
     /// corner's edges: it has folded back and would run through the edge.
-    pub(in crate::model::fem) fn beyond_its_corner(&self, k: usize, x: &[Vec2]) -> bool {
+    pub(in crate::model::fem) fn beyond_its_corner(&self, k: usize) -> bool {
         let Some(node) = self.mesh.sliding[k] else { return false };
-        let meets = [self.mesh.path(k - 1, x).ends[1], self.mesh.path(k, x).ends[0]];
+        let meets = [self.mesh.path(k - 1, self.positions).ends[1], self.mesh.path(k, self.positions).ends[0]];
         meets.into_iter().any(|p| self.is_over_an_edge(&node, p, 0.0))
     }
 
@@ -42,7 +65,7 @@ impl CableState {
         let body = node.feature().and_then(|f| Some((f, geometry.body_of(f)?)));
         let Some((f, body)) = body.filter(|b| b.1.center.is_none()) else { return false };
         let Some(corner) = body.corner((f - body.first) / 2) else { return false };
-        let least = body.offset + least * self.contacts.barrier.reach;
+        let least = body.offset + least * self.reach;
         let into = [corner.before.map(|t| (-t, perp(t))), corner.after.map(|t| (t, perp(t)))];
         let from = p - node.end.center;
         into.into_iter().flatten().any(|(t, n)| from.dot(&t) > 0.0 && from.dot(&n).abs() < least)
@@ -55,7 +78,7 @@ impl CableState {
         let rounds = nodes.map(|s| s.and_then(SlidingNode::feature));
         (0..2).all(|j| {
             nodes[j].is_none_or(|s| !self.is_over_an_edge(s, way.ends[j], self.mesh.tuning.remesh.min_gap_reaches))
-        }) && geometry.is_clear(way.ends, self.mesh.tuning.remesh.min_gap_reaches * self.contacts.barrier.reach, rounds)
+        }) && geometry.is_clear(way.ends, self.mesh.tuning.remesh.min_gap_reaches * self.reach, rounds)
     }
 
     /// True if the straight way past node `k` meets nothing.
@@ -63,7 +86,7 @@ impl CableState {
         if self.problem.world.is_empty() {
             return true;
         }
-        let x = &self.motion.x;
+        let x = self.positions;
         let way = Path::between(&self.mesh.end(k - 1, x), &self.mesh.end(k + 1, x));
         self.way_is_clear(&way, [k - 1, k + 1].map(|j| self.mesh.sliding[j].as_ref()))
     }
@@ -71,7 +94,7 @@ impl CableState {
     /// A bar tangent to a corner or circle that runs through something: with all others watched by
     /// the search of the step, proof that the cable crosses nothing.
     pub(in crate::model::fem) fn crossing(&self) -> Option<usize> {
-        let (mesh, geometry) = (&self.mesh, self.problem.world.geometry());
+        let (mesh, geometry) = (self.mesh, self.problem.world.geometry());
         (0..mesh.rest_length.len()).find(|&e| {
             let nodes = [e, e + 1].map(|k| mesh.sliding[k].as_ref());
             let slides =
@@ -79,7 +102,7 @@ impl CableState {
             if !nodes.into_iter().any(slides) {
                 return false;
             }
-            let way = mesh.path(e, &self.motion.x);
+            let way = mesh.path(e, self.positions);
             let over = (0..2).any(|j| nodes[j].is_some_and(|s| self.is_over_an_edge(s, way.ends[j], 0.0)));
             // The scene answers for the places of supports and pulleys.
             let own = (0..2).all(|j| slides(nodes[j]) || mesh.is_free(e + j));
@@ -90,7 +113,7 @@ impl CableState {
     /// Refuses to go on from where a node is inside an obstacle. A bar that only cuts a corner is
     /// left to the rest to come.
     pub(in crate::model::fem) fn refuse_buried(&self) -> Result<(), SolveError> {
-        let (mesh, x, world) = (&self.mesh, &self.motion.x, &self.problem.world);
+        let (mesh, x, world) = (self.mesh, self.positions, &self.problem.world);
         if world.is_empty() {
             return Ok(());
         }
@@ -108,5 +131,27 @@ impl CableState {
             }
         }
         Ok(())
+    }
+
+    /// The sliding node of an obstacle that the cable turns round the wrong way by more than
+    /// `wrong` (rad), or runs through beside: there a corner would have to pull.
+    pub(in crate::model::fem) fn pulled_corner(&self, wrong: f64) -> Option<usize> {
+        (1..self.mesh.nodes().saturating_sub(1)).find(|&k| {
+            self.mesh.sliding[k].is_some_and(|node| {
+                let shared = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
+                let is_wrong = || self.mesh.turn(k, self.positions) < -wrong || self.beyond_its_corner(k);
+                node.feature().is_some() && !shared(k - 1) && !shared(k + 1) && is_wrong()
+            })
+        })
+    }
+
+    /// Distance at which the cable runs round a corner or circle, m: the reach of the barrier, but
+    /// no more than that of an end of the cable that is fixed on that round.
+    pub(in crate::model::fem) fn clearance(&self, feature: usize) -> f64 {
+        let reach = self.reach;
+        let Some((center, radius)) = round_of(self.problem.world.geometry(), feature, 0.0, 0.0) else { return reach };
+        let fixed = [0, self.mesh.nodes() - 1].into_iter().filter(|&k| self.mesh.held[k]);
+        let gaps = fixed.map(|k| bounded((self.positions[k] - center).norm() - radius, 0.0, reach));
+        gaps.fold(reach, smaller)
     }
 }

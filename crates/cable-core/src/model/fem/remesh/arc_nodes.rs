@@ -3,8 +3,10 @@
 use crate::math::smaller;
 use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::mesh::tangent_path::{End, rotate};
-
+use crate::model::fem::remesh::edit::{insert, remove};
+use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::momentum::attribute_to;
 
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
 const MARK_TOLERANCE: f64 = 1e-9;
@@ -12,117 +14,113 @@ const MARK_TOLERANCE: f64 = 1e-9;
 /// Logarithm of two tensions below which the next term of the series (x³/720) is rounding.
 const SERIES_LOG_RATIO: f64 = 1e-4;
 
-impl CableState {
-    /// Moves the mark of a round with one node to where the arc is strained as a whole as friction
-    /// would strain it: in its middle where nothing rubs. In motion the material between the old
-    /// mark and the new one is that of the bar that it leaves, whose strain stays.
-    pub(in crate::model::fem) fn move_marks(&mut self, rests: bool) -> bool {
-        let mut moved = false;
-        for k in 1..self.mesh.nodes().saturating_sub(1) {
-            let Some(node) = self.mesh.sliding[k] else { continue };
-            let shared = |j: usize| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
-            if !(node.end.radius > 0.0) || shared(k - 1) || shared(k + 1) {
-                continue;
-            }
-            let x = &self.motion.x;
-            let paths = [self.mesh.path(k - 1, x), self.mesh.path(k, x)];
-            let tensions = [0, 1].map(|j| self.mesh.bar(k - 1 + j).tension(paths[j].length));
-            let whole = paths[0].arcs[1] + paths[1].arcs[0];
-            let shift = part_before(tensions) * whole - paths[0].arcs[1];
-            if !(shift.abs() * node.end.radius > MARK_TOLERANCE) {
-                continue;
-            }
-            let bars = if rests {
-                k - 1..k + 1
-            } else if shift > 0.0 {
-                k..k + 1
-            } else {
-                k - 1..k
-            };
-            let sum = |of: &dyn Fn(usize) -> f64| bars.clone().map(of).sum::<f64>();
-            let stretch = sum(&|e| paths[e + 1 - k].length) / sum(&|e| self.mesh.rest_length[e]);
-            let material = shift * node.end.radius / (stretch * self.mesh.thermal_stretch);
-            let room =
-                self.mesh.tuning.remesh.removed_distance * self.mesh.tuning.remesh.removed_distance * self.even();
-            let s = &self.mesh.arc_length;
-            if s[k] + material < s[k - 1] + room || s[k] + material > s[k + 1] - room {
-                continue;
-            }
-            self.keep_answer();
-            moved = true;
-            self.as_of(node.slide_over, |d| d.turn_mark(k, shift, material));
+/// Moves the mark of a round with one node to where the arc is strained as a whole as friction
+/// would strain it: in its middle where nothing rubs. In motion the material between the old
+/// mark and the new one is that of the bar that it leaves, whose strain stays.
+pub(in crate::model::fem) fn move_marks(cable: &mut CableState, rests: bool) -> bool {
+    let mut moved = false;
+    for k in 1..cable.mesh.nodes().saturating_sub(1) {
+        let Some(node) = cable.mesh.sliding[k] else { continue };
+        let shared = |j: usize| cable.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
+        if !(node.end.radius > 0.0) || shared(k - 1) || shared(k + 1) {
+            continue;
         }
-        moved
-    }
-
-    /// Turns the mark of a node by an angle (rad), past material (m).
-    fn turn_mark(&mut self, k: usize, shift: f64, material: f64) {
-        let Some(node) = self.mesh.sliding[k] else { return };
-        let turned =
-            SlidingNode { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
-        self.mesh.sliding[k] = Some(turned);
-        self.mesh.arc_length[k] += material;
-        self.motion.s_before[k] += material;
-        self.mesh.rest_length[k - 1] += self.mesh.thermal_stretch * material;
-        self.mesh.rest_length[k] -= self.mesh.thermal_stretch * material;
-        self.motion.x[k] = turned.position();
-        self.motion.x_before[k] = self.motion.x[k];
-    }
-
-    /// Gives long arcs more marks and takes away those that the tangent has passed.
-    pub(in crate::model::fem) fn wind(&mut self, rests: bool) -> bool {
-        let even = self.even();
-        let mut changed = false;
-        let mut k = 1;
-        let mut changes = 0;
-        while k + 1 < self.mesh.nodes() && changes < self.mesh.tuning.remesh.max_changes {
-            let Some(node) = self.mesh.sliding[k].filter(|s| s.end.radius > 0.0) else {
-                k += 1;
-                continue;
-            };
-            let shared = [k - 1, k + 1].map(|j| self.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
-            let x = &self.motion.x;
-            let arcs = [self.mesh.path(k - 1, x).arcs[1], self.mesh.path(k, x).arcs[0]];
-            // On a large round the marks of a cable at rest are as far apart as nodes elsewhere:
-            // what friction holds is known between marks only.
-            let spacing = if rests {
-                smaller(0.5 * self.mesh.tuning.remesh.max_marked_arc_rad, even / node.end.radius)
-            } else {
-                0.5 * self.mesh.tuning.remesh.max_marked_arc_rad
-            };
-            let big =
-                |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > self.mesh.tuning.remesh.one_mark_bars * even;
-            changes += 1;
-            if (!shared[0] && shared[1] && arcs[0] < 0.0) || (!shared[1] && shared[0] && arcs[1] < 0.0) {
-                self.remove(k);
-                changed = true;
-            } else if !shared[0] && big(arcs[0]) {
-                self.add_mark(k, 0, arcs[0] - spacing);
-                changed = true;
-            } else if !shared[1] && big(arcs[1]) {
-                self.add_mark(k, 1, arcs[1] - spacing);
-                changed = true;
-                k += 1;
-            } else {
-                k += 1;
-                changes = 0;
-            }
+        let x = &cable.motion.positions;
+        let paths = [cable.mesh.path(k - 1, x), cable.mesh.path(k, x)];
+        let tensions = [0, 1].map(|j| cable.mesh.bar(k - 1 + j).tension(paths[j].length));
+        let whole = paths[0].arcs[1] + paths[1].arcs[0];
+        let shift = part_before(tensions) * whole - paths[0].arcs[1];
+        if !(shift.abs() * node.end.radius > MARK_TOLERANCE) {
+            continue;
         }
-        changed
+        let bars = if rests {
+            k - 1..k + 1
+        } else if shift > 0.0 {
+            k..k + 1
+        } else {
+            k - 1..k
+        };
+        let sum = |of: &dyn Fn(usize) -> f64| bars.clone().map(of).sum::<f64>();
+        let stretch = sum(&|e| paths[e + 1 - k].length) / sum(&|e| cable.mesh.rest_length[e]);
+        let material = shift * node.end.radius / (stretch * cable.mesh.thermal_stretch);
+        let room = cable.mesh.tuning.remesh.removed_distance * cable.mesh.tuning.remesh.removed_distance * cable.even();
+        let s = &cable.mesh.arc_length;
+        if s[k] + material < s[k - 1] + room || s[k] + material > s[k + 1] - room {
+            continue;
+        }
+        keep_answer(cable);
+        moved = true;
+        attribute_to(cable, node.slide_over, |d| turn_mark(d, k, shift, material));
     }
+    moved
+}
 
-    /// Adds a mark on the round of node `k`, `angle` (rad) before it (`side` 0) or after it (1).
-    fn add_mark(&mut self, k: usize, side: usize, angle: f64) {
-        let Some(node) = self.mesh.sliding[k] else { return };
-        let bar = k - 1 + side;
-        let sign = if side == 0 { -1.0 } else { 1.0 };
-        let mark = rotate(node.end.mark, node.end.sense * sign * angle);
-        let length = self.mesh.path(bar, &self.motion.x).length;
-        let s = [self.mesh.arc_length[bar], self.mesh.arc_length[bar + 1]];
-        let part = angle * node.end.radius / length * (s[1] - s[0]);
-        let arc_length = if side == 0 { s[1] - part } else { s[0] + part };
-        self.insert(bar + 1, arc_length, Some(SlidingNode { end: End { mark, ..node.end }, ..node }));
+/// Turns the mark of a node by an angle (rad), past material (m).
+fn turn_mark(cable: &mut CableState, k: usize, shift: f64, material: f64) {
+    let Some(node) = cable.mesh.sliding[k] else { return };
+    let turned = SlidingNode { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
+    cable.mesh.sliding[k] = Some(turned);
+    cable.mesh.arc_length[k] += material;
+    cable.motion.previous_arc_length[k] += material;
+    cable.mesh.rest_length[k - 1] += cable.mesh.thermal_stretch * material;
+    cable.mesh.rest_length[k] -= cable.mesh.thermal_stretch * material;
+    cable.motion.positions[k] = turned.position();
+    cable.motion.previous_positions[k] = cable.motion.positions[k];
+}
+
+/// Gives long arcs more marks and takes away those that the tangent has passed.
+pub(in crate::model::fem) fn wind(cable: &mut CableState, rests: bool) -> bool {
+    let even = cable.even();
+    let mut changed = false;
+    let mut k = 1;
+    let mut changes = 0;
+    while k + 1 < cable.mesh.nodes() && changes < cable.mesh.tuning.remesh.max_changes {
+        let Some(node) = cable.mesh.sliding[k].filter(|s| s.end.radius > 0.0) else {
+            k += 1;
+            continue;
+        };
+        let shared = [k - 1, k + 1].map(|j| cable.mesh.sliding[j].is_some_and(|s| s.shares_round(&node)));
+        let x = &cable.motion.positions;
+        let arcs = [cable.mesh.path(k - 1, x).arcs[1], cable.mesh.path(k, x).arcs[0]];
+        // On a large round the marks of a cable at rest are as far apart as nodes elsewhere:
+        // what friction holds is known between marks only.
+        let spacing = if rests {
+            smaller(0.5 * cable.mesh.tuning.remesh.max_marked_arc_rad, even / node.end.radius)
+        } else {
+            0.5 * cable.mesh.tuning.remesh.max_marked_arc_rad
+        };
+        let big =
+            |arc: f64| arc > 2.0 * spacing && arc * node.end.radius > cable.mesh.tuning.remesh.one_mark_bars * even;
+        changes += 1;
+        if (!shared[0] && shared[1] && arcs[0] < 0.0) || (!shared[1] && shared[0] && arcs[1] < 0.0) {
+            remove(cable, k);
+            changed = true;
+        } else if !shared[0] && big(arcs[0]) {
+            add_mark(cable, k, 0, arcs[0] - spacing);
+            changed = true;
+        } else if !shared[1] && big(arcs[1]) {
+            add_mark(cable, k, 1, arcs[1] - spacing);
+            changed = true;
+            k += 1;
+        } else {
+            k += 1;
+            changes = 0;
+        }
     }
+    changed
+}
+
+/// Adds a mark on the round of node `k`, `angle` (rad) before it (`side` 0) or after it (1).
+fn add_mark(cable: &mut CableState, k: usize, side: usize, angle: f64) {
+    let Some(node) = cable.mesh.sliding[k] else { return };
+    let bar = k - 1 + side;
+    let sign = if side == 0 { -1.0 } else { 1.0 };
+    let mark = rotate(node.end.mark, node.end.sense * sign * angle);
+    let length = cable.mesh.path(bar, &cable.motion.positions).length;
+    let s = [cable.mesh.arc_length[bar], cable.mesh.arc_length[bar + 1]];
+    let part = angle * node.end.radius / length * (s[1] - s[0]);
+    let arc_length = if side == 0 { s[1] - part } else { s[0] + part };
+    insert(cable, bar + 1, arc_length, Some(SlidingNode { end: End { mark, ..node.end }, ..node }));
 }
 
 /// The part of an arc before its mark: with the tension T₁ of one bar before it and T₂ of the other

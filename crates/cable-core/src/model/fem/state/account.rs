@@ -1,6 +1,25 @@
 //! The momentum account sums up the impulses on a cable since the step of its caller began.
 
 use crate::math::Vec2;
+use crate::model::fem::mesh::sliding_node::SlideOver;
+use crate::solution::MomentumAccount;
+
+/// Numbers of the kinds of force in [`Kinds`].
+pub(in crate::model::fem) const WEIGHT: usize = 0;
+/// See `WEIGHT`.
+pub(in crate::model::fem) const LOADS: usize = 1;
+/// See `WEIGHT`.
+pub(in crate::model::fem) const SUPPORTS: usize = 2;
+/// See `WEIGHT`.
+pub(in crate::model::fem) const CONTACTS: usize = 3;
+
+/// The kind of the force of what a node slides over.
+pub(in crate::model::fem) fn kind_of(slide_over: SlideOver) -> usize {
+    match slide_over {
+        SlideOver::Pulley(_) => SUPPORTS,
+        SlideOver::Obstacle { .. } => CONTACTS,
+    }
+}
 
 /// Something for each kind of force: weight, loads, supports, contacts.
 pub(in crate::model::fem) type Kinds = [Vec2; 4];
@@ -31,7 +50,53 @@ impl Account {
         self.to = time;
     }
 
+    /// An impulse of a kind of force acted, N s.
     pub(in crate::model::fem) fn add(&mut self, kind: usize, impulse: Vec2) {
         self.sum[kind] += impulse;
+    }
+
+    /// That of a cable that was put elsewhere: what was counted is not of it.
+    pub(in crate::model::fem) fn unknown() -> Self {
+        Self { from: f64::NAN, to: f64::NAN, ..Self::default() }
+    }
+
+    /// That of a step of the caller which begins at the time `now` (s); `momentum` tells that of
+    /// the cable (kg m/s) where the account does not know it.
+    pub(in crate::model::fem) fn begun(self, now: f64, momentum: impl FnOnce() -> Vec2) -> Self {
+        let known = if self.to == now { self } else { Self { reached: momentum(), ..Self::default() } };
+        Self { from: now, to: now, before: known.reached, sum: known.late, late: [Vec2::zeros(); 4], ..known }
+    }
+
+    /// It goes up to the time `now` (s), at which the cable has a momentum (kg m/s), on the mesh
+    /// that was balanced.
+    pub(in crate::model::fem) fn close(&mut self, now: f64, momentum: Vec2) {
+        (self.reached, self.to) = (momentum, now);
+    }
+
+    /// A plastic contact of the step of velocities gave the cable so much, and of what the step's
+    /// contact forces gave it so much is not of its history, N s.
+    pub(in crate::model::fem) fn land(&mut self, given: Vec2, forgotten: Vec2) {
+        self.add(CONTACTS, given);
+        self.last[CONTACTS] -= forgotten;
+    }
+
+    /// Material that comes to lie on a round or leaves it takes a part of the history with it, N s.
+    pub(in crate::model::fem) fn take_history(&mut self, slide_over: SlideOver, impulse: Vec2) {
+        self.last[kind_of(slide_over)] += impulse;
+    }
+
+    /// Of the caller's last step, where there is one with inertia.
+    pub(in crate::model::fem) fn report(&self, inertia_counts: bool) -> Option<MomentumAccount> {
+        let over_s = self.to - self.from;
+        let [weight, loads, supports, contacts] = [0, 1, 2, 3].map(|k| <[f64; 2]>::from(self.sum[k] - self.late[k]));
+        (over_s > 0.0 && inertia_counts).then(|| MomentumAccount {
+            over_s,
+            before_kg_m_per_s: self.before.into(),
+            after_kg_m_per_s: self.reached.into(),
+            weight_n_s: weight,
+            loads_n_s: loads,
+            supports_n_s: supports,
+            contacts_n_s: contacts,
+        })
     }
 }

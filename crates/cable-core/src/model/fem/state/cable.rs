@@ -3,22 +3,19 @@
 
 use std::sync::Arc;
 
-use crate::contact::barrier::Barrier;
 use crate::error::{Place, SolveError, Unsupported};
-use crate::math::{Vec2, bounded};
-use crate::model::fem::mesh::sliding_node::SlideOver;
-use crate::model::fem::newton::initial_guess::{depenetrate, place_nodes, route};
-use crate::model::fem::settings::{ContactTuning, StartTuning, Tuning};
+use crate::math::{Vec2, larger};
+use crate::model::Model;
+use crate::model::fem::mesh::sliding_node::{Load, SlideOver};
 use crate::model::fem::state::history::Motion;
+use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::moving_outline::MovingOutline;
-use crate::model::fem::system::assembly::Mesh;
-use crate::model::fem::system::friction_state::{ContactPair, ContactSet, slip_at_rest};
+use crate::model::fem::system::friction_state::{ContactSet, slip_at_rest};
 use crate::model::fem::system::loss::Loss;
-use crate::model::fem::system::step_input::{StepInput, Unknowns, load_scale, tolerance};
-use crate::model::fem::touches_nothing;
-use crate::model::{Model, Settings};
-use crate::problem::{Problem, Series};
-use crate::scene::SupportKind;
+use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::system::step_context::StepContext;
+use crate::model::fem::system::step_input::{StepInput, Unknowns, load_scale};
+use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;
 
@@ -31,27 +28,6 @@ pub(in crate::model::fem) struct Gauged {
     pub(in crate::model::fem) tension: Vec<f64>,
     /// Tension of each bar, N.
     pub(in crate::model::fem) bars: Vec<f64>,
-}
-
-/// The division of the cable into bars, and the nodes of supports and loads.
-#[derive(Clone, Debug)]
-pub(in crate::model::fem) struct Meshing {
-    /// True if corners and posts get sliding nodes.
-    pub(in crate::model::fem) slides: bool,
-    /// True if there is no obstacle and no pulley that nodes could slide over.
-    pub(in crate::model::fem) never_slides: bool,
-    /// Number of bars of the even mesh.
-    pub(in crate::model::fem) even_bars: usize,
-    /// Normal force of an even bar on flat ground, N.
-    pub(in crate::model::fem) bar_weight: f64,
-    /// Node of each support; None for one that slides.
-    pub(in crate::model::fem) support_node: Vec<Option<usize>>,
-    /// Node of each point load, and its force.
-    pub(in crate::model::fem) loads: Vec<(usize, Series)>,
-    /// True if the last step was found to touch nothing but its supports.
-    pub(in crate::model::fem) freely: bool,
-    /// Room for the contacts among which corners are looked for.
-    pub(in crate::model::fem) found: Vec<ContactPair>,
 }
 
 /// Report of the last step.
@@ -90,135 +66,27 @@ pub(in crate::model::fem) struct CableState {
 }
 
 impl CableState {
-    /// The cable along its route.
-    pub(in crate::model::fem) fn new(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Self {
-        let Tuning { contact, start, .. } = *tuning;
-        let (outline, problem) = MovingOutline::of(problem);
-        let route = route(&problem);
-        let segments = segments(&problem, settings, &start);
-        let even = problem.length / segments as f64;
-        let mut breaks = vec![0.0, problem.length];
-        breaks.extend(problem.supports.iter().filter_map(|s| s.arc_length));
-        breaks.extend(problem.loads.iter().map(|l| l.arc_length));
-        breaks.sort_by(f64::total_cmp);
-        breaks.dedup_by(|a, b| *a - *b < 1e-9 * problem.length);
-        if !problem.world.is_empty() || problem.cable.self_contact {
-            for (s, _) in &route {
-                if breaks.iter().all(|b| (b - s).abs() > start.route_node_bars * even) {
-                    breaks.push(*s);
-                }
-            }
-            breaks.sort_by(f64::total_cmp);
-        }
-        let mesh = Mesh::new(&problem, tuning, &breaks, segments, spreads_mass(&problem));
-        let n = mesh.nodes();
-        let support_node: Vec<Option<usize>> =
-            problem.supports.iter().map(|s| s.arc_length.and_then(|a| mesh.node_at(a))).collect();
-        let loads = problem.loads.iter().filter_map(|l| Some((mesh.node_at(l.arc_length)?, l.force.clone()))).collect();
-        let (normal_per_m, whole) = load_scale(&problem);
-        let barrier = Barrier { reach: contact.reach_m, stiffness: contact.stiffness_weights * normal_per_m * even };
-        let input = StepInput { tolerance: tolerance(&problem, whole), ..StepInput::default() };
-        let mut cable = Self {
-            contacts: ContactSet::new(barrier, contact, n),
-            motion: Motion {
-                x: place_nodes(&mesh, &route),
-                v: vec![Vec2::zeros(); n],
-                x_before: vec![Vec2::zeros(); n],
-                v_before: vec![Vec2::zeros(); n],
-                x_older: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
-                v_older: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
-                s_before: mesh.arc_length.clone(),
-                w: vec![0.0; n],
-                w_before: vec![0.0; n],
-                followers: vec![None; problem.supports.len()],
-                hands: vec![None; problem.supports.len()],
-                placement: problem.outline.as_ref().map(|o| o.placement),
-                ..Motion::default()
-            },
-            meshing: Meshing {
-                // A sliding node scales the forces of all that lies beyond it; what touches itself
-                // has one scale.
-                slides: !problem.cable.self_contact,
-                never_slides: problem.world.is_empty()
-                    && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley),
-                even_bars: segments,
-                bar_weight: normal_per_m * even,
-                support_node,
-                loads,
-                freely: false,
-                found: Vec::with_capacity(n),
-            },
-            loss: if mesh.spread.is_lumped() { Loss::default() } else { Loss::of(&problem, even) },
-            answers: StepAnswers {
-                reaction: vec![Vec2::zeros(); n],
-                held_back: Vec::new(),
-                stepped: None,
-                keeps: false,
-                kept: None,
-                gauged: Gauged::default(),
-            },
-            outline,
-            mesh,
-            input,
-            problem,
-        };
-        if cable.problem.cable.self_contact {
-            cable.contacts.own.shape.diameter = cable.problem.cable.diameter_m;
-            cable.contacts.own.friction = cable.problem.cable.friction;
-        }
-        cable.forget_history();
-        cable.prepare_input(0.0, None);
-        for k in 0..n {
-            if cable.mesh.held[k] {
-                cable.motion.x[k] = cable.input.target[k];
-            }
-        }
-        cable.thread_pulleys(None);
-        let mut x = std::mem::take(&mut cable.motion.x);
-        depenetrate(&cable.problem, &cable.mesh, &mut x, 0.9 * contact.reach_m);
-        cable.motion.x = x;
-        cable.forget_history();
-        cable
-    }
-
     /// True if there is nothing to touch: no obstacle, and the cable can pass itself.
     pub(in crate::model::fem) fn meets_nothing(&self) -> bool {
-        self.problem.world.is_empty() && !self.contacts.own.shape.is_on()
+        self.contacts.meets_nothing(&self.problem)
     }
 
     /// Takes the friction of a balanced step over into the memory of the contacts.
     pub(in crate::model::fem) fn commit_contacts(&mut self, unknowns: &Unknowns) {
-        self.contacts.commit(&self.problem, &self.mesh, &unknowns.x, &self.motion.x, &unknowns.slide);
+        self.contacts.commit(&self.problem, &self.mesh, &unknowns.positions, &self.motion.positions, &unknowns.slides);
     }
 
     /// Forgets the steps before the present instant.
     pub(in crate::model::fem) fn forget_history(&mut self) {
         self.answers.stepped = None;
-        let m = &mut self.motion;
-        m.x_before.clone_from(&m.x);
-        m.v_before.clone_from(&m.v);
-        m.w_before.clone_from(&m.w);
-        m.s_before.clone_from(&self.mesh.arc_length);
-        m.step_before = 0.0;
-        m.branch.clear();
-        self.forget_account();
-    }
-
-    /// Sets the input anew after a change of the mesh, for what is read off it between steps.
-    pub(in crate::model::fem) fn renew_input(&mut self) {
-        self.prepare_input(self.motion.time, None);
-    }
-
-    /// Centre of a pulley, m; None for other supports and pulleys that have let go.
-    fn pulley_center(&self, support: usize) -> Option<Vec2> {
-        self.mesh.sliding.iter().flatten().find(|s| s.slide_over == SlideOver::Pulley(support)).map(|s| s.end.center)
+        self.motion.forget(&self.mesh.arc_length);
     }
 
     /// Position of a support, m.
     pub(in crate::model::fem) fn support_position(&self, support: usize) -> Option<Vec2> {
         match self.meshing.support_node.get(support).copied().flatten() {
-            Some(node) => self.motion.x.get(node).copied(),
-            None => self.pulley_center(support),
+            Some(node) => self.motion.positions.get(node).copied(),
+            None => self.mesh.pulley_center(support),
         }
     }
 
@@ -240,36 +108,6 @@ impl CableState {
         Ok(())
     }
 
-    /// The barrier's stiffness follows the greatest tension; `change` bounds by how much, up and
-    /// down; `ahead` is how many times that tension is reckoned with.
-    pub(in crate::model::fem) fn adapt_stiffness(&mut self, [up, down]: [f64; 2], ahead: f64) {
-        if self.meets_nothing() {
-            return;
-        }
-        let most = self.greatest_tension();
-        let ContactTuning { stiffness_weights, stiffness_tensions, .. } = self.contacts.tuning;
-        let least = stiffness_weights * self.meshing.bar_weight;
-        let wanted = if stiffness_tensions * most > least { stiffness_tensions * most } else { least };
-        let now = self.contacts.barrier.stiffness;
-        self.contacts.barrier.stiffness = bounded(wanted * ahead, now * down, now * up);
-    }
-
-    /// The same for the sliding at which friction is fully mobilised, where inertia does not count.
-    pub(in crate::model::fem) fn adapt_slip(&mut self) {
-        let (weight, tension) = (load_scale(&self.problem).0 * self.problem.length, self.greatest_tension());
-        self.contacts.set_slip(slip_at_rest(
-            &self.contacts.tuning,
-            &self.problem,
-            if tension > weight { tension } else { weight },
-        ));
-    }
-
-    /// Greatest tension of a bar, N.
-    fn greatest_tension(&self) -> f64 {
-        let tension = |e| self.mesh.bar(e).tension(self.mesh.path(e, &self.motion.x).length);
-        (0..self.mesh.rest_length.len()).map(tension).fold(0.0, |most, t| if t > most { t } else { most })
-    }
-
     /// `h` (s), or less where a support lets go on the way.
     pub(in crate::model::fem) fn until_release(&self, h: f64) -> f64 {
         let now = self.motion.time;
@@ -280,13 +118,8 @@ impl CableState {
     /// The place of a node, in the words of the scene.
     pub(in crate::model::fem) fn place(&self, node: usize) -> Box<Place> {
         let arc_length = self.mesh.arc_length.get(node).copied().unwrap_or(f64::NAN);
-        let at = self.motion.x.get(node).copied().unwrap_or(Vec2::repeat(f64::NAN));
+        let at = self.motion.positions.get(node).copied().unwrap_or(Vec2::repeat(f64::NAN));
         self.problem.place(arc_length, at, self.motion.time)
-    }
-
-    /// True if masses accelerate: it moves, or came here in a step with inertia.
-    pub(in crate::model::fem) fn inertia_counts(&self) -> bool {
-        self.motion.step_before > 0.0 || self.motion.v.iter().any(|v| v.norm_squared() > 0.0)
     }
 
     /// Time reached, s.
@@ -301,22 +134,9 @@ impl CableState {
         State {
             time_s: self.motion.time,
             arc_length_m: self.mesh.arc_length.clone(),
-            position_m: self.motion.x.clone(),
-            velocity_m_per_s: self.motion.v.clone(),
+            position_m: self.motion.positions.clone(),
+            velocity_m_per_s: self.motion.velocities.clone(),
             in_motion: false,
-        }
-    }
-
-    /// The answer at this instant.
-    #[must_use]
-    pub fn solution(&self) -> CableSolution {
-        self.answers.stepped.as_ref().map_or_else(|| self.solution_now(), |s| CableSolution::clone(s))
-    }
-
-    /// Keeps the answer of a step before the first change of its mesh.
-    pub(in crate::model::fem) fn keep_answer(&mut self) {
-        if self.answers.keeps && self.answers.kept.is_none() {
-            self.answers.kept = Some(Box::new(self.solution_now()));
         }
     }
 
@@ -324,22 +144,57 @@ impl CableState {
     #[cfg(test)]
     pub(in crate::model::fem) fn smallest_gap(&self) -> f64 {
         let mut touches = Vec::new();
-        self.contacts.find(&self.problem, &self.mesh, &self.motion.x, &mut touches);
+        self.contacts.find(&self.problem, &self.mesh, &self.motion.positions, &mut touches);
         touches.iter().map(|t| t.pair.gap.gap_m).fold(f64::INFINITY, |a, b| if b < a { b } else { a })
     }
-}
 
-/// True if the mass is spread over the bars. Where the cable can touch something it is lumped all
-/// the time: contacts take momentum of one node, nodes come and go with corners and pulleys, and a
-/// mass that changed as contact begins would change the energy.
-fn spreads_mass(problem: &Problem) -> bool {
-    touches_nothing(problem) && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley)
-}
+    /// The input of the solve of the present step.
+    pub(in crate::model::fem) fn step_context(&self) -> StepContext<'_> {
+        StepContext { problem: &self.problem, mesh: &self.mesh, contacts: &self.contacts, input: &self.input }
+    }
 
-/// Elements of a cable where neither the scene nor the settings give a number: finer where it can
-/// touch an obstacle.
-fn segments(problem: &Problem, settings: Settings, tuning: &StartTuning) -> usize {
-    let element = if problem.world.is_empty() { tuning.free_bar_m } else { tuning.bar_m };
-    let automatic = (problem.length / element).ceil().max(tuning.min_bars).min(tuning.max_bars) as usize;
-    settings.segments.or(problem.cable.segments).unwrap_or(automatic).max(2)
+    /// The load of a sliding node as the cable lies now.
+    pub(in crate::model::fem) fn load(&self, k: usize) -> Option<Load> {
+        self.step_context().load_at(k, &self.motion.positions, None)
+    }
+
+    /// Length of an even bar, m of arc length.
+    pub(in crate::model::fem) fn even(&self) -> f64 {
+        self.problem.length / self.meshing.even_bars as f64
+    }
+
+    /// The barrier's stiffness follows the greatest tension: see [`ContactSet::adapt_stiffness`].
+    pub(in crate::model::fem) fn adapt_stiffness(&mut self, bounds: [f64; 2], ahead: f64) {
+        if !self.meets_nothing() {
+            let tension = self.mesh.greatest_tension(&self.motion.positions);
+            self.contacts.adapt_stiffness(tension, self.meshing.bar_weight, bounds, ahead);
+        }
+    }
+
+    /// The same for the sliding at which friction is fully mobilised, where inertia does not count.
+    pub(in crate::model::fem) fn adapt_slip(&mut self) {
+        let weight = load_scale(&self.problem).0 * self.problem.length;
+        let tension = self.mesh.greatest_tension(&self.motion.positions);
+        let force = if tension > weight { tension } else { weight };
+        self.contacts.set_slip(slip_at_rest(&self.contacts.tuning, &self.problem, force));
+    }
+
+    /// True if the cable is in touch with itself.
+    pub(in crate::model::fem) fn touches_itself(&self) -> bool {
+        self.contacts.own.smallest_gap(&self.mesh, &self.motion.positions, self.mesh.tuning.contact.reach_m).is_some()
+    }
+
+    /// Steps without inertia that keep every support's move below half an element.
+    pub(in crate::model::fem) fn static_steps(&self, end: f64, dragged: &[Option<Vec2>]) -> f64 {
+        let even = self.problem.length / self.meshing.even_bars as f64;
+        let mut most: f64 = 0.0;
+        for (k, s) in self.problem.supports.iter().enumerate() {
+            if let (Some((at, _)), Some(now)) = (s.position_at(end), self.support_position(k)) {
+                let at = dragged.get(k).copied().flatten().unwrap_or(at);
+                most = most.max((at - now).norm());
+            }
+        }
+        let carried = self.outline.as_ref().map_or(0.0, |o| o.pieces(self.mesh.tuning.outline.max_way_m));
+        larger(most / (0.5 * even), carried).ceil().clamp(1.0, 1e4)
+    }
 }

@@ -1,31 +1,48 @@
 //! The history holds where the cable is and how it moves; a checkpoint is a state to which a failed
 //! step returns.
 
-use crate::math::RigidPose;
-use crate::math::Vec2;
+use crate::math::{RigidPose, Vec2, cross, perp};
 use crate::model::fem::state::account::Account;
-use crate::model::fem::system::assembly::Mesh;
 use crate::model::fem::system::friction_state::ContactSet;
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::input_filter::{Hand, SmoothedTarget};
+
+/// Distance (parts of a bar) by which the middle of a fold is moved aside. Less: the fold opens
+/// later than it would; more: its bars are stretched by half of the square of it.
+const ASIDE: f64 = 1e-4;
+
+/// Sine of the turn off a line below which a fold lies in it.
+const FOLD_LINE_SINE: f64 = 1e-6;
+
+/// Part by which steps may differ and count as even.
+const EVEN_STEP_TOLERANCE: f64 = 1e-9;
+
+/// Even steps whose bars all pulled before BDF3 has its part: as many as its differences of
+/// velocities reach back. With less of a bar's snap in them chains whose bars rattle gain energy,
+/// half of mgL in a fold of 41 bars.
+const STEPS_BEFORE_BDF3: usize = 3;
 
 /// The parts of the state that a step may change, kept to go back to.
 #[derive(Clone, Debug, Default)]
 pub(in crate::model::fem) struct Motion {
-    pub(in crate::model::fem) x: Vec<Vec2>,
-    pub(in crate::model::fem) v: Vec<Vec2>,
-    pub(in crate::model::fem) x_before: Vec<Vec2>,
-    pub(in crate::model::fem) v_before: Vec<Vec2>,
-    /// Place and velocity two steps ago, where the integrator looks so far back.
-    pub(in crate::model::fem) x_older: Vec<Vec2>,
-    pub(in crate::model::fem) v_older: Vec<Vec2>,
+    /// Position of each node, m; of a sliding one its mark.
+    pub(in crate::model::fem) positions: Vec<Vec2>,
+    /// Velocity of each node that moves with its material, m/s.
+    pub(in crate::model::fem) velocities: Vec<Vec2>,
+    /// Position and velocity one step ago.
+    pub(in crate::model::fem) previous_positions: Vec<Vec2>,
+    pub(in crate::model::fem) previous_velocities: Vec<Vec2>,
+    /// Position and velocity two steps ago, where the integrator looks so far back.
+    pub(in crate::model::fem) older_positions: Vec<Vec2>,
+    pub(in crate::model::fem) older_velocities: Vec<Vec2>,
     /// Arc length at sliding nodes one step ago, m.
-    pub(in crate::model::fem) s_before: Vec<f64>,
+    pub(in crate::model::fem) previous_arc_length: Vec<f64>,
     /// Forces of the relaxation branches of each bar, one bar after the other, N; empty: none (see
     /// `loss`).
-    pub(in crate::model::fem) branch: Vec<f64>,
-    /// Rate of the arc length at sliding nodes, m/s.
-    pub(in crate::model::fem) w: Vec<f64>,
-    pub(in crate::model::fem) w_before: Vec<f64>,
+    pub(in crate::model::fem) branch_forces: Vec<f64>,
+    /// Rate of the arc length at sliding nodes, m/s, now and one step ago.
+    pub(in crate::model::fem) slide_rates: Vec<f64>,
+    pub(in crate::model::fem) previous_slide_rates: Vec<f64>,
     /// Last step, s; 0 = no history, the next step is implicit Euler.
     pub(in crate::model::fem) step_before: f64,
     /// Steps as long as the last, one after the other, after each of which all bars pulled.
@@ -44,24 +61,131 @@ impl Motion {
     /// Becomes a copy without new memory where there is room.
     pub(in crate::model::fem) fn copy_from(&mut self, other: &Self) {
         let Self {
-            x, v, x_before, v_before, x_older, v_older, s_before, w, w_before, followers, hands, branch, ..
+            positions: x,
+            velocities: v,
+            previous_positions: x_before,
+            previous_velocities: v_before,
+            older_positions: x_older,
+            older_velocities: v_older,
+            previous_arc_length: s_before,
+            slide_rates: w,
+            previous_slide_rates: w_before,
+            followers,
+            hands,
+            branch_forces: branch,
+            ..
         } = other;
-        self.x.clone_from(x);
-        self.branch.clone_from(branch);
-        self.v.clone_from(v);
-        self.x_before.clone_from(x_before);
-        self.v_before.clone_from(v_before);
-        self.x_older.clone_from(x_older);
-        self.v_older.clone_from(v_older);
-        self.s_before.clone_from(s_before);
-        self.w.clone_from(w);
-        self.w_before.clone_from(w_before);
+        self.positions.clone_from(x);
+        self.branch_forces.clone_from(branch);
+        self.velocities.clone_from(v);
+        self.previous_positions.clone_from(x_before);
+        self.previous_velocities.clone_from(v_before);
+        self.older_positions.clone_from(x_older);
+        self.older_velocities.clone_from(v_older);
+        self.previous_arc_length.clone_from(s_before);
+        self.slide_rates.clone_from(w);
+        self.previous_slide_rates.clone_from(w_before);
         self.followers.clone_from(followers);
         self.hands.clone_from(hands);
         (self.step_before, self.even_steps) = (other.step_before, other.even_steps);
         (self.time, self.placement) = (other.time, other.placement);
         self.account = other.account;
     }
+
+    /// Forgets the steps before the present instant; the arc length of each node is `arc_length`
+    /// (m).
+    pub(in crate::model::fem) fn forget(&mut self, arc_length: &[f64]) {
+        self.previous_positions.clone_from(&self.positions);
+        self.previous_velocities.clone_from(&self.velocities);
+        self.previous_slide_rates.clone_from(&self.slide_rates);
+        self.previous_arc_length.clear();
+        self.previous_arc_length.extend_from_slice(arc_length);
+        self.step_before = 0.0;
+        self.branch_forces.clear();
+        self.account = Account::unknown();
+    }
+
+    /// True if masses accelerate: it moves, or came here in a step with inertia.
+    pub(in crate::model::fem) fn inertia_counts(&self) -> bool {
+        self.step_before > 0.0 || self.velocities.iter().any(|v| v.norm_squared() > 0.0)
+    }
+
+    /// True if a step of `h` (s) is as long as the one before.
+    pub(in crate::model::fem) fn is_even(&self, h: f64) -> bool {
+        (h - self.step_before).abs() <= EVEN_STEP_TOLERANCE * h
+    }
+
+    /// Counts a step of `h` (s). Where contact may change what was, or a bar did not pull, it is
+    /// not `smooth`, and history is not looked for so far back.
+    pub(in crate::model::fem) fn note_step(&mut self, h: f64, smooth: bool) {
+        let count = if self.is_even(h) { self.even_steps } else { 0 };
+        self.even_steps = if smooth { (count + 1).min(STEPS_BEFORE_BDF3) } else { 0 };
+        self.step_before = h;
+    }
+
+    /// True if a step of `h` (s) may look back three steps.
+    pub(in crate::model::fem) fn looks_back_three(&self, h: f64) -> bool {
+        self.even_steps >= STEPS_BEFORE_BDF3 && self.is_even(h)
+    }
+
+    /// Moves the middle of each fold that lies in one line a little aside, as a motion begins. In
+    /// the line itself a bar would have to pass through no length to turn over: a weight that fell
+    /// beside its slack cable hung in the fold.
+    pub(in crate::model::fem) fn open_folds(&mut self, mesh: &Mesh) {
+        let x = &mut self.positions;
+        for k in 1..x.len().saturating_sub(1) {
+            let (a, b) = (x[k] - x[k - 1], x[k + 1] - x[k]);
+            let size = a.norm() * b.norm();
+            if mesh.is_free(k) && a.dot(&b) < 0.0 && cross(a, b).abs() <= FOLD_LINE_SINE * size {
+                x[k] += perp(a) * ASIDE;
+            }
+        }
+    }
+
+    /// Puts a node in before node `k`, at an arc length (m).
+    pub(in crate::model::fem) fn insert_node(&mut self, k: usize, arc_length: f64, node: NodeMotion) {
+        let (
+            h,
+            NodeMotion {
+                position: x,
+                velocity: v,
+                previous_velocity: v_before,
+                slide_rate: w,
+                previous_slide_rate: w_before,
+            },
+        ) = (self.step_before, node);
+        self.positions.insert(k, x);
+        self.velocities.insert(k, v);
+        self.previous_positions.insert(k, x - (v + v_before) * (0.5 * h));
+        self.previous_velocities.insert(k, v_before);
+        self.slide_rates.insert(k, w);
+        self.previous_slide_rates.insert(k, w_before);
+        self.previous_arc_length.insert(k, arc_length - (w + w_before) * (0.5 * h));
+    }
+
+    /// Takes node `k` out.
+    pub(in crate::model::fem) fn remove_node(&mut self, k: usize) {
+        self.positions.remove(k);
+        self.velocities.remove(k);
+        self.previous_positions.remove(k);
+        self.previous_velocities.remove(k);
+        self.slide_rates.remove(k);
+        self.previous_slide_rates.remove(k);
+        self.previous_arc_length.remove(k);
+    }
+}
+
+/// The motion of one node, now and one step ago.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::fem) struct NodeMotion {
+    /// Position, m.
+    pub(in crate::model::fem) position: Vec2,
+    /// Velocities, m/s.
+    pub(in crate::model::fem) velocity: Vec2,
+    pub(in crate::model::fem) previous_velocity: Vec2,
+    /// Rates of the arc length at a sliding node, m/s.
+    pub(in crate::model::fem) slide_rate: f64,
+    pub(in crate::model::fem) previous_slide_rate: f64,
 }
 
 /// A state to go back to.

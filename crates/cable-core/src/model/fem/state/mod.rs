@@ -1,8 +1,12 @@
-//! These modules hold the state of a cable in motion, of which `dynamics` is made.
+//! These modules hold the state of a cable in motion in its parts, what controls it, and the setup
+//! of a step.
 
 pub(in crate::model::fem) mod account;
 pub(in crate::model::fem) mod cable;
 pub(in crate::model::fem) mod control;
 pub(in crate::model::fem) mod history;
+pub(in crate::model::fem) mod meshing;
+pub(in crate::model::fem) mod momentum;
 pub(in crate::model::fem) mod moving_outline;
+pub(in crate::model::fem) mod step_setup;
 pub(in crate::model::fem) mod stepping;

@@ -51,4 +51,32 @@ impl MovingOutline {
     pub(in crate::model::fem) fn pieces(&self, max_way_m: f64) -> f64 {
         self.shape.max_displacement(&self.from.1, &self.to.1) / max_way_m
     }
+
+    /// Leads it to a pose: it goes there in the next advance.
+    pub(in crate::model::fem) fn lead_to(&mut self, to: RigidPose) {
+        if to.at.iter().all(|c| c.is_finite()) && to.angle.is_finite() {
+            self.led_before = std::mem::replace(&mut self.to.1, to);
+        }
+    }
+
+    /// Its way for an advance from the time `now` (s), at which it is at a pose, to the time `end`
+    /// (s).
+    pub(in crate::model::fem) fn begin_way(&mut self, (now, at): (f64, RigidPose), end: f64) {
+        self.from = (now, at);
+        self.to.0 = end;
+        self.waits = false;
+    }
+
+    /// True if it is to move.
+    pub(in crate::model::fem) fn moves(&self) -> bool {
+        self.led_before != self.to.1
+    }
+
+    /// Lets it wait where it is, at a pose, until the end of this advance; returns whether it was
+    /// moving.
+    pub(in crate::model::fem) fn wait_at(&mut self, at: Option<RigidPose>) -> bool {
+        let was_moving = !self.waits && at != Some(self.to.1);
+        self.waits |= was_moving;
+        was_moving
+    }
 }

@@ -5,196 +5,16 @@
 //! of the identity, so the band and the numbering never change. Before pinning, minus the gradient
 //! at a held node is the force of the cable on its support.
 
-use std::sync::Arc;
-
-use crate::energy::axial::Bar;
 use crate::energy::bending::{BendingEnergy, ClampBend, turn};
 use crate::energy::{Curvature, Energy};
-use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH, BandMatrix};
+use crate::linalg::BandMatrix;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::mesh::sliding_node::SlidingNode;
-use crate::model::fem::mesh::tangent_path::{End, Path};
-use crate::model::fem::settings::Tuning;
-use crate::model::fem::system::mass::Spread;
-use crate::problem::Problem;
-
-/// A direction prescribed at a node; it bends the bars on both sides of the node, each by itself.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Clamp {
-    /// The node.
-    pub node: usize,
-    /// Unit vector of growing arc length.
-    pub direction: Vec2,
-}
-
-/// A cable cut into bars.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Mesh {
-    /// The tuned constants by which it is solved.
-    pub tuning: Arc<Tuning>,
-    /// Unstretched arc length of each node at rest temperature, m, increasing.
-    pub arc_length: Vec<f64>,
-    /// Unstretched length of each bar at the present temperature (thermal stretch · ds), m.
-    pub rest_length: Vec<f64>,
-    /// True if each node is held in place.
-    pub held: Vec<bool>,
-    /// Directions prescribed.
-    pub clamps: Vec<Clamp>,
-    /// The corner, post or pulley of each sliding node; None: the node moves with the material.
-    pub sliding: Vec<Option<SlidingNode>>,
-    /// 1 + αΔT: unstretched length of a metre of arc length.
-    pub thermal_stretch: f64,
-    /// EA, N.
-    pub axial_stiffness: f64,
-    /// EI, N·m²; 0 = no bending.
-    pub bending_stiffness: f64,
-    /// Difference of its mass from that lumped at its nodes.
-    pub spread: Spread,
-}
-
-impl Mesh {
-    /// Cuts a cable into about `segments` bars with a node at each of `breaks` (arc lengths, m,
-    /// increasing, the ends among them) and even bars in between. All nodes are free. `spreads`:
-    /// whether its mass is spread over the bars.
-    #[must_use]
-    pub fn new(problem: &Problem, tuning: Arc<Tuning>, breaks: &[f64], segments: usize, spreads: bool) -> Self {
-        let mut arc_length: Vec<f64> = Vec::with_capacity(segments + breaks.len());
-        let mut stretches = Vec::with_capacity(breaks.len());
-        for pair in breaks.windows(2) {
-            let count = bars_between(pair[1] - pair[0], problem.length, segments);
-            let step = (pair[1] - pair[0]) / count as f64;
-            arc_length.extend((0..count).map(|k| pair[0] + step * k as f64));
-            stretches.push((count, step));
-        }
-        arc_length.extend(breaks.last());
-        let rest_length = arc_length.windows(2).map(|p| problem.thermal_stretch * (p[1] - p[0])).collect();
-        Self {
-            tuning,
-            held: vec![false; arc_length.len()],
-            sliding: vec![None; arc_length.len()],
-            thermal_stretch: problem.thermal_stretch,
-            rest_length,
-            arc_length,
-            clamps: Vec::new(),
-            axial_stiffness: problem.axial_stiffness,
-            bending_stiffness: problem.bending_stiffness,
-            spread: if spreads { Spread::of(&stretches) } else { Spread::default() },
-        }
-    }
-
-    /// Mass that moves with a node, kg; `support_node` is the node of each support.
-    #[must_use]
-    pub fn mass_with(&self, problem: &Problem, support_node: &[Option<usize>], node: usize) -> f64 {
-        let lumps = problem.supports.iter().zip(support_node).filter(|(_, k)| **k == Some(node));
-        problem.linear_density * self.share(node) + lumps.map(|(s, _)| s.mass).sum::<f64>()
-    }
-
-    /// Becomes a copy without new memory where there is room; `slides`: whether there can be
-    /// sliding nodes to copy.
-    pub fn copy_from(&mut self, other: &Self, slides: bool) {
-        let Self { tuning, arc_length, rest_length, held, clamps, sliding, spread, .. } = other;
-        self.tuning.clone_from(tuning);
-        self.arc_length.clone_from(arc_length);
-        self.rest_length.clone_from(rest_length);
-        self.held.clone_from(held);
-        self.clamps.clone_from(clamps);
-        self.spread.copy_from(spread);
-        if slides {
-            self.sliding.clone_from(sliding);
-        }
-        self.thermal_stretch = other.thermal_stretch;
-        self.axial_stiffness = other.axial_stiffness;
-        self.bending_stiffness = other.bending_stiffness;
-    }
-
-    /// Number of nodes.
-    #[must_use]
-    pub fn nodes(&self) -> usize {
-        self.arc_length.len()
-    }
-
-    /// True if nothing resists bending.
-    #[must_use]
-    pub fn is_flexible(&self) -> bool {
-        self.bending_stiffness == 0.0
-    }
-
-    /// Half-bandwidth of the Hessian.
-    #[must_use]
-    pub fn half_bandwidth(&self) -> usize {
-        if self.bending_stiffness > 0.0 { BENDING_HALF_BANDWIDTH } else { BARS_HALF_BANDWIDTH }
-    }
-
-    /// The end that node `k` makes for the bars beside it.
-    #[must_use]
-    pub fn end(&self, k: usize, x: &[Vec2]) -> End {
-        self.sliding[k].as_ref().map_or_else(|| End::point(x[k]), |s| s.end)
-    }
-
-    /// The way of bar `e`.
-    #[must_use]
-    pub fn path(&self, e: usize, x: &[Vec2]) -> Path {
-        if self.sliding[e].is_none() && self.sliding[e + 1].is_none() {
-            return Path::line(x[e], x[e + 1]);
-        }
-        Path::between(&self.end(e, x), &self.end(e + 1, x))
-    }
-
-    /// Ends of the straight part of bar `e`, m.
-    #[must_use]
-    pub fn straight(&self, e: usize, x: &[Vec2]) -> [Vec2; 2] {
-        if self.sliding[e].is_none() && self.sliding[e + 1].is_none() { [x[e], x[e + 1]] } else { self.path(e, x).ends }
-    }
-
-    /// Features that the ends of bar `e` run round.
-    #[must_use]
-    pub fn rounds(&self, e: usize) -> [Option<usize>; 2] {
-        [e, e + 1].map(|k| self.sliding[k].as_ref().and_then(SlidingNode::feature))
-    }
-
-    /// True if a node moves with the material and nothing prescribes where it is.
-    #[must_use]
-    pub fn is_free(&self, k: usize) -> bool {
-        !self.held[k] && self.sliding[k].is_none()
-    }
-
-    /// The bar from node `e` to node `e + 1`.
-    #[must_use]
-    pub fn bar(&self, e: usize) -> Bar {
-        Bar { rest_length: self.rest_length[e], stiffness: self.axial_stiffness }
-    }
-
-    /// Arc length that belongs to a node (half of the bars beside it, at rest temperature, and what
-    /// of them is spread), m: weight, wind and what momentum a node has are this times their value
-    /// per metre.
-    #[must_use]
-    pub fn share(&self, node: usize) -> f64 {
-        let s = &self.arc_length;
-        let before = if node > 0 { s[node] - s[node - 1] } else { 0.0 };
-        let after = if node + 1 < s.len() { s[node + 1] - s[node] } else { 0.0 };
-        0.5 * (before + after) + self.spread.more.get(node).copied().unwrap_or(0.0)
-    }
-
-    /// The node at an arc length (m), within a millionth of the cable.
-    #[must_use]
-    pub fn node_at(&self, arc_length: f64) -> Option<usize> {
-        let near = 1e-6 * self.arc_length.last().copied().unwrap_or(0.0);
-        let k = self.arc_length.partition_point(|&s| s < arc_length - near);
-        (k < self.nodes() && (self.arc_length[k] - arc_length).abs() <= near).then_some(k)
-    }
-}
+use crate::model::fem::system::mesh::Mesh;
 
 /// True if the turn at an inner node bends the cable: not where it or a neighbour slides over
 /// something.
 fn bends(mesh: &Mesh, node: usize) -> bool {
     mesh.sliding[node - 1..=node + 1].iter().all(Option::is_none)
-}
-
-/// Even bars for a stretch of `length` out of `whole` when the whole is to have about `segments`.
-#[must_use]
-pub fn bars_between(length: f64, whole: f64, segments: usize) -> usize {
-    let share = (segments as f64 * length / whole).round();
-    if share >= 1.0 { share as usize } else { 1 }
 }
 
 /// Value, gradient and Hessian of all energies of a mesh.
@@ -329,8 +149,12 @@ impl System {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
     use crate::linalg::BandFactor;
+    use crate::model::fem::system::mass::Spread;
+    use crate::model::fem::system::mesh::Clamp;
 
     fn mesh(bending_stiffness: f64) -> Mesh {
         Mesh {

@@ -14,8 +14,9 @@
 
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::bar_weight::Weight;
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{StepInput, Unknowns, WORK_MAGNITUDE_FRACTION};
 
 /// EA with which a bar resists at its length, N: a flexible one only pulls, as it gives way
@@ -140,7 +141,7 @@ pub fn add(
     if mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
         return add_sliding(s, mesh, input, e, unknowns, curvature);
     }
-    let d = unknowns.x[e + 1] - unknowns.x[e];
+    let d = unknowns.positions[e + 1] - unknowns.positions[e];
     let (p, l, scale) = (d.norm(), mesh.rest_length[e], input.scale[e]);
     let t = if p > 0.0 { d / p } else { Vec2::x() };
     let taut = carried.map_or(!(p < l), |c| c.taut);
@@ -157,8 +158,11 @@ pub fn add(
     s.hessian.add_spring(2 * e, [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric]);
     let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + 2.0 * input.loss_energy(e, lossy, l, p));
     // The undamped Newton does not use the energy, so its round-off is not estimated.
-    let rounding =
-        if carried.is_some() { 0.0 } else { scale * WORK_MAGNITUDE_FRACTION * pull.abs() * unknowns.x[e].norm() };
+    let rounding = if carried.is_some() {
+        0.0
+    } else {
+        scale * WORK_MAGNITUDE_FRACTION * pull.abs() * unknowns.positions[e].norm()
+    };
     (energy, energy + rounding)
 }
 
@@ -171,8 +175,8 @@ fn add_sliding(
     unknowns: &Unknowns,
     curvature: Curvature,
 ) -> (f64, f64) {
-    let path = mesh.path(e, &unknowns.x);
-    let (p, l, scale) = (path.length, rest_length(mesh, e, &unknowns.slide), input.scale[e]);
+    let path = mesh.path(e, &unknowns.positions);
+    let (p, l, scale) = (path.length, rest_length(mesh, e, &unknowns.slides), input.scale[e]);
     let slides = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
     let Stretch { energy, slope: [pull, push], curvature: h } = Stretch::of(mesh, input, e, [p, l]);
     let h = h.map(|h| scale * h);
@@ -181,21 +185,22 @@ fn add_sliding(
     if curvature == Curvature::Clipped && geometric < 0.0 {
         geometric = 0.0;
     }
-    let rounding = WORK_MAGNITUDE_FRACTION * pull.abs() * unknowns.x[e].norm();
+    let rounding = WORK_MAGNITUDE_FRACTION * pull.abs() * unknowns.positions[e].norm();
     let carried = mesh.thermal_stretch;
     let hung = Weight::of(mesh, e, &path, input.body);
     let sign = [-1.0, 1.0];
     // Work is measured from the sliding node itself: with friction the two sides of it count
     // differently.
-    let weight = [0, 1].map(|j| if slides[j] { input.body.dot(&(hung.center - unknowns.x[e + j])) } else { 0.0 });
+    let weight =
+        [0, 1].map(|j| if slides[j] { input.body.dot(&(hung.center - unknowns.positions[e + j])) } else { 0.0 });
     // Generalised directions of P and of L, and of the weight's lever, at both ends.
     let along = [0, 1].map(|j| if slides[j] { Vec2::zeros() } else { t * sign[j] });
     let length = [0, 1].map(|j| if slides[j] { Vec2::new(carried * sign[j], 0.0) } else { Vec2::zeros() });
     let lever = [0, 1].map(|j| if slides[j] { Vec2::new(sign[j], 0.0) } else { Vec2::zeros() });
-    let change = unknowns.slide[e + 1] - unknowns.slide[e];
+    let change = unknowns.slides[e + 1] - unknowns.slides[e];
     // Half of what the bar held at first is among the forces on its nodes.
     let held = mesh.arc_length[e + 1] - mesh.arc_length[e];
-    let half = (unknowns.x[e] + unknowns.x[e + 1]) * 0.5;
+    let half = (unknowns.positions[e] + unknowns.positions[e + 1]) * 0.5;
     let shifted = input.body.dot(&(hung.center - half)) * held;
     let hang = [0, 1].map(|j| {
         if slides[j] { Vec2::zeros() } else { hung.slope[j] * change + (hung.slope[j] - input.body * 0.5) * held }
@@ -213,12 +218,13 @@ fn add_sliding(
             if curvature == Curvature::Exact {
                 block -= (lever[j] * hung.slope[k].transpose() + hung.slope[j] * lever[k].transpose()) * scale;
                 if j == k && !slides[j] {
-                    block -= Weight::bend(mesh, e, j, &path, unknowns.x[e + j], input.body) * ((held + change) * scale);
+                    block -= Weight::bend(mesh, e, j, &path, unknowns.positions[e + j], input.body)
+                        * ((held + change) * scale);
                 }
             }
             s.add_block(e + j, e + k, &block);
         }
     }
-    let fallen = weight[1] * unknowns.slide[e + 1] - weight[0] * unknowns.slide[e] + shifted;
+    let fallen = weight[1] * unknowns.slides[e + 1] - weight[0] * unknowns.slides[e] + shifted;
     (scale * (energy - fallen), scale * (energy + fallen.abs() + rounding))
 }

@@ -19,7 +19,7 @@
 
 use crate::math::{Mat2, Vec2, larger, perp, smaller};
 use crate::model::fem::mesh::tangent_path::Path;
-use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::mesh::Mesh;
 
 /// The weight of one bar with a sliding node at an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,8 +41,8 @@ impl Weight {
     #[must_use]
     pub fn of(mesh: &Mesh, e: usize, path: &Path, body: Vec2) -> Self {
         let full = Self::spread_evenly(mesh, e, path, body);
-        let lies = lies(mesh, e);
-        if lies == 1.0 { full } else { full.lying(lies, mesh, e, path, body) }
+        let lying = lying_fraction(mesh, e);
+        if lying == 1.0 { full } else { full.lying(lying, mesh, e, path, body) }
     }
 
     /// The same if its material is spread evenly over its way.
@@ -114,7 +114,7 @@ impl Weight {
             + across * (full.excess * path.length)
             + u * (middle - own - u * full.excess).transpose();
         // Symmetric but for rounding.
-        (bend + bend.transpose()) * (0.5 * lies(mesh, e) / path.length)
+        (bend + bend.transpose()) * (0.5 * lying_fraction(mesh, e) / path.length)
     }
 
     /// Pull in the middle of the straight part of a bar of `material` (m) that as a whole has the
@@ -146,9 +146,10 @@ fn is_large(mesh: &Mesh, k: usize) -> bool {
 }
 
 /// Part of the weight of bar `e` on rounds that acts there.
-fn lies(mesh: &Mesh, e: usize) -> f64 {
+fn lying_fraction(mesh: &Mesh, e: usize) -> f64 {
     let of = |k: usize, side: usize| {
-        mesh.sliding[k].map_or(1.0, |s| if is_large(mesh, k) || mesh.nodes() == 2 { s.lies[side] } else { 0.0 })
+        mesh.sliding[k]
+            .map_or(1.0, |s| if is_large(mesh, k) || mesh.nodes() == 2 { s.lying_fractions[side] } else { 0.0 })
     };
     smaller(of(e, 1), of(e + 1, 0))
 }
@@ -193,6 +194,16 @@ pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
     before + after
 }
 
+/// Parts of the weight of the bars beside sliding node `k` on rounds that may act there, at
+/// positions `x` (m) under a distributed force `body` (N/m).
+pub(in crate::model::fem) fn parts_that_lie(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> [f64; 2] {
+    [k - 1, k].map(|e| {
+        let path = mesh.path(e, x);
+        let tension = mesh.axial_stiffness * (path.length / mesh.rest_length[e] - 1.0);
+        may_lie(mesh, e, &path, body, tension)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -208,7 +219,7 @@ mod tests {
 
     fn on(end: End) -> SlidingNode {
         let slide_over = SlideOver::Obstacle { obstacle: 0, feature: 0 };
-        SlidingNode { lies: [0.7; 2], ..SlidingNode::new(end, 0.3, slide_over) }
+        SlidingNode { lying_fractions: [0.7; 2], ..SlidingNode::new(end, 0.3, slide_over) }
     }
 
     /// A bar with its mark on a round at the origin at one end (`j` the free one), and a mark at an
@@ -244,14 +255,14 @@ mod tests {
         #[test]
         fn the_weight_acts_at_the_mean_of_the_way_and_its_slopes_are_those_of_its_work(
             place in (1.3f64..3.0, 0.0f64..6.2), round in (0.2f64..1.0, any::<bool>(), -0.4f64..1.5), first in any::<bool>(),
-            lies in 0.0f64..1.5,
+            lying in 0.0f64..1.5,
         ) {
             let (j, sense) = (usize::from(first), if round.1 { 1.0 } else { -1.0 });
             let (mut mesh, x) = bar(j, unit(place.1) * place.0, round.0, sense, round.2);
             let path = mesh.path(0, &x);
             prop_assume!(path.length > 0.1);
             if let Some(node) = &mut mesh.sliding[1 - j] {
-                node.lies = [1.0; 2];
+                node.lying_fractions = [1.0; 2];
             }
             // The centroid, summed along the way.
             let end = mesh.sliding[1 - j].unwrap().end;
@@ -265,7 +276,7 @@ mod tests {
             prop_assert!((w.center - sum / path.length).norm() < 1e-6, "{} {}", w.center, sum / path.length);
             // Slope and bend, by differences, with a part of it lying there.
             if let Some(node) = &mut mesh.sliding[1 - j] {
-                node.lies = [smaller(lies, 1.0); 2];
+                node.lying_fractions = [smaller(lying, 1.0); 2];
             }
             let w = weight(&mesh, &x);
             let h = 1e-5;
@@ -304,7 +315,7 @@ mod tests {
             let input = StepInput { body: BODY, scale: vec![1.4], predicted_length: mesh.rest_length.clone(), ..StepInput::default() };
             let energy = |x: &[Vec2], slide: &[f64]| {
                 let mut s = System::new(&mesh);
-                let unknowns = Unknowns { x: x.to_vec(), slide: slide.to_vec() };
+                let unknowns = Unknowns { positions: x.to_vec(), slides: slide.to_vec() };
                 (bar_energy::add(&mut s, &mesh, &input, 0, &unknowns, Curvature::Exact, None).0, s)
             };
             let mut slides = [0.0; 2];

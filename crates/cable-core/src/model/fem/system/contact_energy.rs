@@ -3,8 +3,9 @@
 use crate::contact::friction::{self, Branch};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{StepInput, Unknowns, node_scale};
 
 /// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.
@@ -110,13 +111,16 @@ pub fn add_floor(s: &mut System, mesh: &Mesh, input: &StepInput, contacts: &Cont
     for (i, &limit) in input.floor_limit.iter().enumerate() {
         let scale = node_scale(input, i);
         if let Some(sliding) = &mesh.sliding[i] {
-            let (d, slope, bend) =
-                friction::at(contacts.floor_slid[i].x + unknowns.slide[i], limit * sliding.floor_factor, contacts.slip);
+            let (d, slope, bend) = friction::at(
+                contacts.floor_slid[i].x + unknowns.slides[i],
+                limit * sliding.floor_factor,
+                contacts.slip,
+            );
             value += d * scale;
             s.gradient[2 * i] += slope * scale;
             s.hessian.add(2 * i, 2 * i, bend * scale);
         } else {
-            let slid = contacts.floor_slid[i] + (unknowns.x[i] - input.start[i]);
+            let slid = contacts.floor_slid[i] + (unknowns.positions[i] - input.start[i]);
             let (d, slope, bend) = friction::at_plane(slid, limit, contacts.slip);
             value += d * scale;
             s.add_gradient(i, slope * scale);

@@ -13,7 +13,8 @@
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::mean_factor;
-use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::mesh::Mesh;
+use crate::problem::Problem;
 
 /// Iterations for the rate at which tension grows over a round: Newton's method on a function that
 /// is convex and near to an exponential.
@@ -42,8 +43,8 @@ fn shares(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] 
 /// m: half of the straight part of each bar beside it, and all that lies on its round.
 pub(in crate::model::fem) fn reaches(mesh: &Mesh, k: usize, x: &[Vec2], slide: Option<&[f64]>) -> [f64; 3] {
     let [_, before, on] = if k > 0 { shares(mesh, k - 1, x, slide) } else { [0.0; 3] };
-    let [lies, after, _] = if k + 1 < mesh.nodes() { shares(mesh, k, x, slide) } else { [0.0; 3] };
-    [before, on + lies, after]
+    let [leaving, after, _] = if k + 1 < mesh.nodes() { shares(mesh, k, x, slide) } else { [0.0; 3] };
+    [before, on + leaving, after]
 }
 
 /// Floor friction as the slope of the scaled energy by the slide sees it, in parts of its own size.
@@ -111,6 +112,35 @@ pub(in crate::model::fem) fn as_slide(slid: Vec2, along: Vec2) -> Vec2 {
 /// The reverse.
 pub(in crate::model::fem) fn as_move(slide: Vec2, along: Vec2) -> Vec2 {
     along * -slide.x
+}
+
+/// Friction of the floor for a node counts as found when it changes by less than this part. More:
+/// the cones of a report are not those that were solved for (the checker asks for 1e-3); less:
+/// rounds of what moves by rounding.
+const FLOOR_FRICTION_TOLERANCE: f64 = 1e-6;
+
+/// Plan view: the friction that the floor has for each node where the cable lies now; returns
+/// whether any of it changed.
+pub(in crate::model::fem) fn renew_limits(
+    limits: &mut Vec<f64>,
+    problem: &Problem,
+    mesh: &Mesh,
+    x: &[Vec2],
+    slide: Option<&[f64]>,
+) -> bool {
+    let Some((friction, normal)) = problem.floor_friction else {
+        limits.clear();
+        return false;
+    };
+    let mut changed = limits.len() != mesh.nodes();
+    limits.resize(mesh.nodes(), 0.0);
+    for (k, limit) in limits.iter_mut().enumerate() {
+        let reach: f64 = reaches(mesh, k, x, slide).iter().sum();
+        let now = friction * normal * reach;
+        changed |= !((now - *limit).abs() <= FLOOR_FRICTION_TOLERANCE * (now + *limit));
+        *limit = now;
+    }
+    changed
 }
 
 #[cfg(test)]

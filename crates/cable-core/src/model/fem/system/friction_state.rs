@@ -6,7 +6,7 @@ use crate::contact::neighbour_lists::NeighbourLists;
 use crate::contact::pairs::Pair;
 use crate::math::{RigidPose, Vec2, bounded, larger};
 use crate::model::fem::settings::ContactTuning;
-use crate::model::fem::system::assembly::Mesh;
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::self_contact::Own;
 use crate::problem::Problem;
 
@@ -85,16 +85,6 @@ impl OutlineMotion {
     #[must_use]
     pub fn way(&self, p: Vec2) -> Vec2 {
         p - self.to.carried(&self.from, p)
-    }
-}
-
-impl ContactSet {
-    /// Renumbers what friction remembers: `change` gives the new number of a node, None if it is
-    /// gone.
-    pub fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
-        self.friction_contacts.clear();
-        let old = std::mem::take(&mut self.memory);
-        self.memory.extend(old.into_iter().filter_map(|m| Some(Memory { node: change(m.node)?, ..m })));
     }
 }
 
@@ -496,6 +486,57 @@ impl ContactSet {
             rub.slid = memory.slid;
             rub.origin = rub.touch.interpolate(end);
         }
+    }
+
+    /// True if there is nothing to touch: no obstacle, and the cable can pass itself.
+    pub(in crate::model::fem) fn meets_nothing(&self, problem: &Problem) -> bool {
+        problem.world.is_empty() && !self.own.shape.is_on()
+    }
+
+    /// The barrier's stiffness follows the greatest tension (N) beside the normal force of an even
+    /// bar on flat ground, `bar_weight` (N); `up` and `down` bound by how much; `ahead` is how many
+    /// times what follows is reckoned with.
+    pub(in crate::model::fem) fn adapt_stiffness(
+        &mut self,
+        tension: f64,
+        bar_weight: f64,
+        [up, down]: [f64; 2],
+        ahead: f64,
+    ) {
+        let ContactTuning { stiffness_weights, stiffness_tensions, .. } = self.tuning;
+        let least = stiffness_weights * bar_weight;
+        let wanted = if stiffness_tensions * tension > least { stiffness_tensions * tension } else { least };
+        let now = self.barrier.stiffness;
+        self.barrier.stiffness = bounded(wanted * ahead, now * down, now * up);
+    }
+
+    /// Friction force of a contact on the cable at `x` (m), N.
+    #[must_use]
+    pub fn friction_force(&self, rub: &FrictionContact, x: &[Vec2]) -> Vec2 {
+        -rub.tangent * friction::at(rub.sliding(x), rub.limit, self.slip).1
+    }
+
+    /// Force of the cable on an obstacle, N.
+    #[must_use]
+    pub fn force_on(&self, obstacle: usize, problem: &Problem, mesh: &Mesh, x: &[Vec2]) -> Vec2 {
+        let mut sum = Vec2::zeros();
+        let mut touches = Vec::new();
+        self.find(problem, mesh, x, &mut touches);
+        for touch in touches.iter().filter(|t| t.pair.gap.obstacle == obstacle) {
+            sum -= touch.pair.gap.normal * touch.load(&self.barrier);
+        }
+        for rub in self.friction_contacts.iter().filter(|r| r.touch.pair.gap.obstacle == obstacle) {
+            sum -= self.friction_force(rub, x);
+        }
+        sum
+    }
+
+    /// Renumbers what friction remembers: `change` gives the new number of a node, None if it is
+    /// gone.
+    pub fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
+        self.friction_contacts.clear();
+        let old = std::mem::take(&mut self.memory);
+        self.memory.extend(old.into_iter().filter_map(|m| Some(Memory { node: change(m.node)?, ..m })));
     }
 }
 

@@ -9,5 +9,7 @@ pub(in crate::model::fem) mod floor_friction;
 pub(in crate::model::fem) mod friction_state;
 pub(in crate::model::fem) mod loss;
 pub mod mass;
+pub(in crate::model::fem) mod mesh;
 pub(in crate::model::fem) mod self_contact;
+pub(in crate::model::fem) mod step_context;
 pub(in crate::model::fem) mod step_input;

@@ -8,7 +8,8 @@ use crate::contact::friction;
 use crate::contact::self_contact::{SelfContact, SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::system::assembly::{Mesh, System};
+use crate::model::fem::system::assembly::System;
+use crate::model::fem::system::mesh::Mesh;
 
 /// Friction of one contact of the cable with itself during a step.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -63,7 +63,7 @@ fn dragging_along_a_floor_takes_the_friction_of_its_weight() {
             d.advance(1.0 / 60.0, inertia, &[]).unwrap();
             assert!(d.cable.smallest_gap() > 0.0);
             if d.cable.state().time_s > from {
-                sum -= d.cable.solution().supports[1].reaction_x_n;
+                sum -= d.solution().supports[1].reaction_x_n;
                 count += 1.0;
             }
         }
@@ -83,11 +83,11 @@ fn a_held_end_does_not_creep() {
     let here = d.cable.state().position_m.last().copied();
     let hand = [None, here];
     d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
-    let (before, start) = (-d.cable.solution().supports[1].reaction_x_n, d.cable.state());
+    let (before, start) = (-d.solution().supports[1].reaction_x_n, d.cable.state());
     for _ in 0..120 {
         d.advance(1.0 / 60.0, Inertia::Dynamic, &hand).unwrap();
     }
-    let after = -d.cable.solution().supports[1].reaction_x_n;
+    let after = -d.solution().supports[1].reaction_x_n;
     assert!((after / before - 1.0).abs() < 1e-2, "{before} N became {after} N");
     for (a, b) in start.position_m.iter().zip(&d.cable.state().position_m) {
         assert!((a - b).norm() < 1e-3);
@@ -151,7 +151,7 @@ fn a_barrier_as_stiff_as_the_cable_is_taut_keeps_a_gap_that_numbers_can_tell() {
     for _ in 0..12 {
         halved += d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap().cost.halved_steps;
         let gap = d.cable.smallest_gap();
-        let pull = d.cable.solution().supports[1].reaction_x_n.abs();
+        let pull = d.solution().supports[1].reaction_x_n.abs();
         println!("{gap:e} m under {pull:.0} N, {halved} halved");
         assert!(pull > 5e4, "{pull}");
         // A hundredth of the tension turns at a node here: φ'(u) = −0.2 of the barrier's stiffness,
@@ -234,7 +234,7 @@ fn the_same_run_gives_the_same_bits() {
 fn the_answer_lists_the_floor() {
     let mut d = build(&drag(60));
     d.settle(&[]).unwrap();
-    let s = d.cable.solution();
+    let s = d.solution();
     assert_eq!(s.contacts.len(), 1);
     let expected = weight_per_m() * 12.0;
     assert!((s.contacts[0].normal_n / expected - 1.0).abs() < 1e-3, "{:?}", s.contacts[0]);
@@ -261,7 +261,7 @@ fn a_floor_carries_what_lies_on_it_up_to_the_held_ends() {
             d.settle(&[]).unwrap();
             d
         };
-        let answer = d.cable.solution();
+        let answer = d.solution();
         let weight = weight_per_m() * 11.99;
         assert_eq!(answer.contacts.len(), 1, "{:?}", answer.contacts);
         let contact = &answer.contacts[0];
@@ -337,7 +337,7 @@ fn a_cable_that_lands_stays_on_the_ground() {
     d.settle(&[]).unwrap();
     // Thrown down flat with 2.4 m/s from 5 cm: a barrier without landing throws it back at half of
     // that, 7 cm up.
-    for (x, v) in d.cable.motion.x.iter_mut().zip(&mut d.cable.motion.v) {
+    for (x, v) in d.cable.motion.positions.iter_mut().zip(&mut d.cable.motion.velocities) {
         (x.y, v.y) = (x.y + 0.05, -2.4);
     }
     d.forget_history();
@@ -367,7 +367,7 @@ fn legs_that_touch() -> Dynamics {
     let mut d = build(&scene);
     d.settle(&[]).unwrap();
     for k in 1..d.cable.mesh.nodes() - 1 {
-        d.cable.motion.v[k].x = 3.0 * (std::f64::consts::FRAC_PI_2 * d.cable.mesh.arc_length[k]).sin();
+        d.cable.motion.velocities[k].x = 3.0 * (std::f64::consts::FRAC_PI_2 * d.cable.mesh.arc_length[k]).sin();
     }
     for _ in 0..60 {
         d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
@@ -385,12 +385,14 @@ fn legs_that_land_on_each_other_go_on_together() {
     assert!(rubs.len() > 2, "{}", rubs.len());
     for k in 0..d.cable.mesh.nodes() {
         let way = if d.cable.mesh.held[k] { 0.0 } else { 1.0 };
-        d.cable.motion.v[k] = Vec2::new(if d.cable.mesh.arc_length[k] < 2.0 { 2.0 } else { -1.0 } * way, 0.3 * way);
+        d.cable.motion.velocities[k] =
+            Vec2::new(if d.cable.mesh.arc_length[k] < 2.0 { 2.0 } else { -1.0 } * way, 0.3 * way);
     }
-    let momentum =
-        |d: &Dynamics| (0..d.cable.mesh.nodes()).map(|k| d.cable.motion.v[k] * d.cable.mesh.share(k)).sum::<Vec2>();
+    let momentum = |d: &Dynamics| {
+        (0..d.cable.mesh.nodes()).map(|k| d.cable.motion.velocities[k] * d.cable.mesh.share(k)).sum::<Vec2>()
+    };
     let fastest = |d: &Dynamics| {
-        rubs.iter().map(|r| r.pair.normal.dot(&r.pair.difference(&d.cable.motion.v)).abs()).fold(0.0, f64::max)
+        rubs.iter().map(|r| r.pair.normal.dot(&r.pair.difference(&d.cable.motion.velocities)).abs()).fold(0.0, f64::max)
     };
     let (before, approach) = (momentum(&d), fastest(&d));
     crate::model::fem::time::self_contact::land(&mut d.cable, 1.0 / 240.0, 240.0);
@@ -403,7 +405,7 @@ fn legs_that_land_on_each_other_go_on_together() {
 #[test]
 fn legs_rub_on_each_other_and_remember_it() {
     let mut d = legs_that_touch();
-    let (start, by) = (d.cable.motion.x.clone(), 3e-6);
+    let (start, by) = (d.cable.motion.positions.clone(), 3e-6);
     let mut slid = start.clone();
     for k in (0..d.cable.mesh.nodes()).filter(|&k| d.cable.mesh.arc_length[k] > 2.0) {
         slid[k].y += by;

@@ -3,7 +3,10 @@
 
 use std::sync::Arc;
 
+use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
+use crate::model::fem::remesh::adapt::settle_down;
 use crate::model::{Inertia, Settings};
 use crate::problem::problems;
 use crate::scene::{Cable, Motion, Obstacle, Scene, Shape, Support, SupportKind, catalog};
@@ -58,7 +61,7 @@ fn ratios(scene: &Scene, inertia: Inertia, from: f64) -> Vec<f64> {
         d.advance(1.0 / 60.0, inertia, &[]).unwrap();
         assert!(d.cable.smallest_gap() > 0.0);
         if f64::from(k) / 60.0 > from {
-            let r = &d.cable.solution().supports[1];
+            let r = &d.solution().supports[1];
             out.push(r.reaction_x_n.hypot(r.reaction_y_n) / LOAD);
         }
     }
@@ -163,11 +166,11 @@ fn a_load_held_over_a_corner_for_a_minute_loses_nothing() {
     for _ in 0..120 {
         d.advance(1.0 / 60.0, Inertia::QuasiStatic, &[]).unwrap();
     }
-    let (start, pull) = (d.cable.state(), d.cable.solution().supports[1].clone());
+    let (start, pull) = (d.cable.state(), d.solution().supports[1].clone());
     for _ in 0..3600 {
         d.advance(1.0 / 60.0, Inertia::Dynamic, &[]).unwrap();
     }
-    let (end, after) = (d.cable.state(), &d.cable.solution().supports[1]);
+    let (end, after) = (d.cable.state(), &d.solution().supports[1]);
     let change = (after.reaction_x_n - pull.reaction_x_n).hypot(after.reaction_y_n - pull.reaction_y_n);
     assert!(change / pull.reaction_x_n.hypot(pull.reaction_y_n) < 1e-5, "{change} N");
     assert!((end.position_m[0] - start.position_m[0]).norm() < 1e-6);
@@ -203,7 +206,7 @@ fn thrown_off_a_beam(speed: f64) -> Dynamics {
     assert!(d.cable.mesh.sliding.iter().flatten().count() > 0);
     for k in 1..d.cable.mesh.nodes() - 1 {
         if d.cable.mesh.sliding[k].is_none() {
-            d.cable.motion.v[k].y = speed;
+            d.cable.motion.velocities[k].y = speed;
         }
     }
     d
@@ -215,7 +218,7 @@ fn a_corner_never_pulls_at_what_is_thrown_off_it() {
     d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
     // The node at the corner stood still and is drawn along by its neighbours, 7 cm up by then;
     // held for the step, it would lie at the corner.
-    let nodes = d.cable.solution().nodes;
+    let nodes = d.solution().nodes;
     let i = nodes.partition_point(|n| n.x_m < 0.0);
     let (a, b) = (&nodes[i - 1], &nodes[i]);
     let y = a.y_m + (b.y_m - a.y_m) * (0.0 - a.x_m) / (b.x_m - a.x_m);
@@ -223,16 +226,21 @@ fn a_corner_never_pulls_at_what_is_thrown_off_it() {
     assert!(y > RADIUS + 5e-3, "{y}");
 }
 
+/// The corner that would have to pull at positions `x` (m).
+fn pulled(d: &Dynamics, x: &[Vec2]) -> Option<usize> {
+    IntersectionCheck::at(&d.cable, x).pulled_corner(d.cable.mesh.tuning.remesh.max_reverse_turn_rad)
+}
+
 #[test]
 fn a_pose_that_turns_a_corner_the_wrong_way_is_noticed() {
     let d = thrown_off_a_beam(0.0);
-    let mut x = d.cable.motion.x.clone();
-    assert_eq!(d.cable.pulled(&x), None);
+    let mut x = d.cable.motion.positions.clone();
+    assert_eq!(pulled(&d, &x), None);
     let first = d.cable.mesh.sliding.iter().position(Option::is_some).unwrap();
     for (k, at) in x.iter_mut().enumerate().filter(|(k, _)| d.cable.mesh.sliding[*k].is_none()) {
         at.y += if k < first + 2 { 0.1 } else { 0.0 };
     }
-    assert_eq!(d.cable.pulled(&x), Some(first));
+    assert_eq!(pulled(&d, &x), Some(first));
 }
 
 #[test]
@@ -240,12 +248,12 @@ fn a_cable_that_folds_back_at_a_corner_does_not_run_through_its_edge() {
     let mut d = build(&over_a_beam(0.3, 42, 0.3));
     d.settle(&[]).unwrap();
     let k = d.cable.mesh.sliding.iter().position(Option::is_some).unwrap();
-    let mut x = d.cable.motion.x.clone();
-    assert_eq!(d.cable.pulled(&x), None);
+    let mut x = d.cable.motion.positions.clone();
+    assert_eq!(pulled(&d, &x), None);
     // It comes up the left side of the beam, and now goes back there: round the corner and through
     // the top.
     x[k + 1] = d.cable.mesh.sliding[k].unwrap().end.center - crate::math::Vec2::new(0.5, 0.5);
-    assert_eq!(d.cable.pulled(&x), Some(k));
+    assert_eq!(pulled(&d, &x), Some(k));
 }
 
 /// A mark that is not in the middle of its arc: the node that takes its place must not stretch one
@@ -265,7 +273,8 @@ fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
     d.settle(&[]).unwrap();
     let k = (0..d.cable.mesh.nodes()).find(|&k| d.cable.mesh.sliding[k].is_some()).unwrap();
     let turn = {
-        let path = [d.cable.mesh.path(k - 1, &d.cable.motion.x), d.cable.mesh.path(k, &d.cable.motion.x)];
+        let path =
+            [d.cable.mesh.path(k - 1, &d.cable.motion.positions), d.cable.mesh.path(k, &d.cable.motion.positions)];
         path[0].arcs[1] + path[1].arcs[0]
     };
     let node = d.cable.mesh.sliding[k].unwrap();
@@ -281,10 +290,12 @@ fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
     d.cable.mesh.rest_length[k - 1] += material;
     d.cable.mesh.rest_length[k] -= material;
     let tensions = |d: &Dynamics| {
-        [k - 1, k].map(|e| stiff * (d.cable.mesh.path(e, &d.cable.motion.x).length / d.cable.mesh.rest_length[e] - 1.0))
+        [k - 1, k].map(|e| {
+            stiff * (d.cable.mesh.path(e, &d.cable.motion.positions).length / d.cable.mesh.rest_length[e] - 1.0)
+        })
     };
     let before = tensions(&d);
-    assert!(d.cable.settle_down(k));
+    assert!(settle_down(&mut d.cable, k));
     let after = tensions(&d);
     // Two tangents are longer than the arc between them; both bars share that.
     let longer = radius * (2.0 * (0.5 * turn).tan() - turn);

@@ -14,19 +14,13 @@
 //! cable back at 0.4 to 0.8 of its speed.
 
 use crate::math::Vec2;
-use crate::model::Inertia;
-use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::history::Motion;
 use crate::model::fem::system::loss::damping_time;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
+use crate::model::fem::system::step_input::Unknowns;
+use crate::model::fem::time::branches;
 use crate::model::fem::time::self_contact::{carried_on, plastic};
-use crate::model::fem::time::{branches, hands, self_contact};
-
-/// Roundings in the force of inertia of a node. Fewer: small steps of heavy lumps fail; more: they
-/// are coarse.
-const ROUNDING: f64 = 16.0;
 
 /// Part of BDF3 in a step of a cable that can touch nothing. It is A-stable up to ½; 0.48 is V. N.
 /// Vatsa's, M. H. Carpenter's and D. P. Lockard's ("Re-evaluation of an optimized second order
@@ -34,14 +28,6 @@ const ROUNDING: f64 = 16.0;
 /// vibrations are slower, up to twice, and damped, up to 25 times; more: what bars ring is not
 /// damped at all.
 const THIRD: f64 = 0.48;
-
-/// Part by which steps may differ and count as even.
-const EVEN_STEP_TOLERANCE: f64 = 1e-9;
-
-/// Even steps whose bars all pulled before BDF3 has its part: as many as its differences of
-/// velocities reach back. With less of a bar's snap in them chains whose bars rattle gain energy,
-/// half of mgL in a fold of 41 bars.
-const STEPS_BEFORE_BDF3: usize = 3;
 
 /// The weights of its history in a step: v = a (x − x̂), x̂ = now x₀ − past x₋ + older x₌.
 #[derive(Clone, Copy, Debug)]
@@ -68,294 +54,166 @@ impl Weights {
         Self { now: (2.0 + THIRD) / alpha, past: (0.5 + THIRD) / alpha, older: THIRD / 3.0 / alpha, a: alpha / h }
     }
 
-    fn place(self, m: &Motion, k: usize) -> Vec2 {
-        self.of([&m.x, &m.x_before, &m.x_older], k)
+    pub(in crate::model::fem) fn place(self, m: &Motion, k: usize) -> Vec2 {
+        self.of([&m.positions, &m.previous_positions, &m.older_positions], k)
     }
 
     fn velocity(self, m: &Motion, k: usize) -> Vec2 {
-        self.of([&m.v, &m.v_before, &m.v_older], k)
+        self.of([&m.velocities, &m.previous_velocities, &m.older_velocities], k)
     }
 
     fn of(self, [now, before, older]: [&[Vec2]; 3], k: usize) -> Vec2 {
         let recent = now[k] * self.now - before[k] * self.past;
         if self.older > 0.0 { recent + older[k] * self.older } else { recent }
     }
+
+    /// Those of a step of `h` (s) after a motion.
+    pub(in crate::model::fem) fn of_step(motion: &Motion, h: f64) -> Self {
+        if motion.looks_back_three(h) { Self::blended(h) } else { Self::bdf2(h, motion.step_before) }
+    }
 }
 
-impl CableState {
-    /// Makes contacts plastic: what still comes nearer stops, and what goes away goes no faster
-    /// than without the force of the contact, as nothing presses on what leaves (J. J. Moreau,
-    /// "Unilateral contact and dry friction in finite freedom dynamics", in: Nonsmooth Mechanics
-    /// and Applications, CISM 302, 1988). What was drawn away by the cable itself keeps its speed:
-    /// stopped in each step, it would stay until one step carries it out of the barrier's reach,
-    /// and finer steps would hold it harder.
-    ///
-    /// An impact is over with its step: the history of nodes that change has what the other forces
-    /// gave them, and of the contact what holds against those ([`carried_on`]). With all of the
-    /// contact in it a third of an impact would come after it and throw the cable back; with none
-    /// of it contacts would press by half too much in the next step; without what the others gave
-    /// BDF2 would give two thirds of their next impulse only.
-    fn land(&mut self, h: f64, a: f64) {
-        let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-        let mass = |k: usize| self.mesh.mass_with(&self.problem, &self.meshing.support_node, k);
-        let m = &mut self.motion;
-        for (touch, load) in self.contacts.pressing() {
-            let n = touch.pair.gap.normal;
-            let carried = self.contacts.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
-            let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.x)) / h);
-            let speed = (touch.interpolate(&m.v) - of_it).dot(&n);
-            let shares = touch.shares();
-            let nodes = [touch.node, touch.node + usize::from(touch.on_segment)];
-            let free = [0, 1].map(|j| if self.mesh.is_free(nodes[j]) { shares[j] } else { 0.0 });
-            let sum = free[0] * shares[0] + free[1] * shares[1];
-            if sum < 1e-3 {
-                continue;
-            }
-            let give = [0, 1].map(|j| if free[j] > 0.0 { free[j] / mass(nodes[j]) } else { 0.0 });
-            let sum = give[0] * shares[0] + give[1] * shares[1];
-            // Impulses: what the contact gave in the step, and what is taken of it.
-            let made = load / a;
-            let taken = plastic(speed, made * sum) / sum;
-            if speed.abs() < self.mesh.tuning.step.plastic_speed_m_per_s {
-                continue;
-            }
-            let change = touch.interpolate(&m.v) - touch.interpolate(&m.v_before);
-            let acted = n * made + touch.tangent() * (self.contacts.rubs(touch, &m.x) / a);
-            let over = acted - carried_on(acted - change / sum, n, touch.pair.gap.friction);
-            for j in 0..2 {
-                if free[j] > 0.0 {
-                    let k = nodes[j];
-                    m.v[k] -= n * (taken * give[j]);
-                    m.v_before[k] += (over - n * taken) * give[j];
-                    m.x_before[k] = m.x[k] - (m.v[k] + m.v_before[k]) * (0.5 * h);
-                    given -= n * (taken * free[j]);
-                    forgotten += over * free[j];
-                }
-            }
+/// Makes contacts plastic: what still comes nearer stops, and what goes away goes no faster
+/// than without the force of the contact, as nothing presses on what leaves (J. J. Moreau,
+/// "Unilateral contact and dry friction in finite freedom dynamics", in: Nonsmooth Mechanics
+/// and Applications, CISM 302, 1988). What was drawn away by the cable itself keeps its speed:
+/// stopped in each step, it would stay until one step carries it out of the barrier's reach,
+/// and finer steps would hold it harder.
+///
+/// An impact is over with its step: the history of nodes that change has what the other forces
+/// gave them, and of the contact what holds against those ([`carried_on`]). With all of the
+/// contact in it a third of an impact would come after it and throw the cable back; with none
+/// of it contacts would press by half too much in the next step; without what the others gave
+/// BDF2 would give two thirds of their next impulse only.
+pub(in crate::model::fem) fn land(cable: &mut CableState, h: f64, a: f64) {
+    let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
+    let mass = |k: usize| cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, k);
+    let m = &mut cable.motion;
+    for (touch, load) in cable.contacts.pressing() {
+        let n = touch.pair.gap.normal;
+        let carried = cable.contacts.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+        let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.positions)) / h);
+        let speed = (touch.interpolate(&m.velocities) - of_it).dot(&n);
+        let shares = touch.shares();
+        let nodes = [touch.node, touch.node + usize::from(touch.on_segment)];
+        let free = [0, 1].map(|j| if cable.mesh.is_free(nodes[j]) { shares[j] } else { 0.0 });
+        let sum = free[0] * shares[0] + free[1] * shares[1];
+        if sum < 1e-3 {
+            continue;
         }
-        self.account_for_landing(given, forgotten);
-    }
-
-    /// The weights of the history in a step of `h` (s).
-    fn weights(&self, h: f64) -> Weights {
-        let m = &self.motion;
-        if m.even_steps >= STEPS_BEFORE_BDF3 && self.is_even(h) {
-            Weights::blended(h)
-        } else {
-            Weights::bdf2(h, m.step_before)
+        let give = [0, 1].map(|j| if free[j] > 0.0 { free[j] / mass(nodes[j]) } else { 0.0 });
+        let sum = give[0] * shares[0] + give[1] * shares[1];
+        // Impulses: what the contact gave in the step, and what is taken of it.
+        let made = load / a;
+        let taken = plastic(speed, made * sum) / sum;
+        if speed.abs() < cable.mesh.tuning.step.plastic_speed_m_per_s {
+            continue;
         }
-    }
-
-    /// True if a step of `h` (s) is as long as the one before.
-    fn is_even(&self, h: f64) -> bool {
-        (h - self.motion.step_before).abs() <= EVEN_STEP_TOLERANCE * h
-    }
-
-    /// Counts a step of `h` (s). Where contact may change what was, history is not looked for so
-    /// far back.
-    fn note_step(&mut self, h: f64) {
-        let count = if self.is_even(h) { self.motion.even_steps } else { 0 };
-        let smooth = !self.mesh.spread.is_lumped() && self.answers.gauged.bars.iter().all(|tension| *tension > 0.0);
-        self.motion.even_steps = if smooth { (count + 1).min(STEPS_BEFORE_BDF3) } else { 0 };
-        self.motion.step_before = h;
-    }
-
-    /// Keeps what friction acts between at each sliding node.
-    fn note_balanced(&mut self, unknowns: &Unknowns) {
-        for k in 0..self.mesh.nodes() {
-            let Some(load) = self.load_at(k, &unknowns.x, Some(&unknowns.slide)) else { continue };
-            let inertia = self.input.inertia[k] * (unknowns.slide[k] - self.input.predicted_slide[k]);
-            if let Some(node) = &mut self.mesh.sliding[k] {
-                let [comes, leaves] = load.at_round();
-                // The step balances slopes by the slide, where inertia counts by what is stretched.
-                let [before, after] = load.at_material;
-                let stretch = 1.0 + 0.5 * (comes + leaves) / self.mesh.axial_stiffness;
-                let pulls = match node.grip {
-                    _ if load.floor != [0.0; 3] => comes - inertia,
-                    StickSlip::Stick => leaves + (before - inertia - after) / stretch,
-                    slips => load.ratio(slips, node.exponent) * leaves,
-                };
-                node.balanced = Some(Balanced { pull: [pulls, leaves], turn: load.turn });
+        let change = touch.interpolate(&m.velocities) - touch.interpolate(&m.previous_velocities);
+        let acted = n * made + touch.tangent() * (cable.contacts.rubs(touch, &m.positions) / a);
+        let over = acted - carried_on(acted - change / sum, n, touch.pair.gap.friction);
+        for j in 0..2 {
+            if free[j] > 0.0 {
+                let k = nodes[j];
+                m.velocities[k] -= n * (taken * give[j]);
+                m.previous_velocities[k] += (over - n * taken) * give[j];
+                m.previous_positions[k] = m.positions[k] - (m.velocities[k] + m.previous_velocities[k]) * (0.5 * h);
+                given -= n * (taken * free[j]);
+                forgotten += over * free[j];
             }
         }
     }
+    cable.motion.account.land(given, forgotten);
+}
 
-    /// Supports that could not get where they were to be: said, and their hands start again from
-    /// there.
-    fn note_lag(&mut self, unknowns: &Unknowns) {
-        for (support, node) in self.meshing.support_node.iter().enumerate() {
-            let Some(k) = node.filter(|&k| self.mesh.held[k]) else { continue };
-            if unknowns.x[k] != self.input.target[k] && !self.answers.held_back.contains(&support) {
-                self.answers.held_back.push(support);
-            }
-            if let Some(f) = &mut self.motion.followers[support]
-                && f.position() != unknowns.x[k]
-            {
-                f.stop_at(unknowns.x[k]);
-            }
-        }
-    }
-
-    /// Unbalanced force to reach in a step with inertia, N: not below the rounding of m a² (x −
-    /// x̃). That grows as the step shrinks: 5 kg at 20 m and 1/4000 s know their force to 1e-6 N
-    /// only.
-    fn rounded_tolerance(&self) -> f64 {
-        let mut tolerance = self.input.tolerance;
-        for (inertia, x) in self.input.inertia.iter().zip(&self.motion.x) {
-            let rounding = ROUNDING * f64::EPSILON * inertia * x.norm();
-            if rounding > tolerance {
-                tolerance = rounding;
-            }
-        }
-        tolerance
-    }
-
-    /// Lets the material slide through the sliding nodes, m of arc length each.
-    pub(in crate::model::fem) fn slide(&mut self, slide: &[f64]) {
-        let mesh = &mut self.mesh;
-        for (s, by) in mesh.arc_length.iter_mut().zip(slide) {
-            *s += by;
-        }
-        for e in 0..mesh.rest_length.len() {
-            if slide[e] != 0.0 || slide[e + 1] != 0.0 {
-                mesh.rest_length[e] = mesh.thermal_stretch * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
-            }
-        }
-    }
-
-    /// Inertia and damping of a step of `h` (s).
-    ///
-    /// The rate of a length has no history where velocities jump between two steps (a plastic
-    /// impulse, a change of the mesh): two steps extrapolate through the jump and add ½ EA τ Δv/l₀
-    /// to the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may touch
-    /// something is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a
-    /// small force, ¾ τ/h of that which BDF2 makes of a vibration.
-    fn set_inertia(&mut self, weights: Weights, h: f64, decay: &mut Vec<f64>) {
-        let Weights { now, past, a, .. } = weights;
-        let rubs = !(self.meets_nothing() && self.meshing.never_slides && self.problem.floor_friction.is_none());
-        let jumps = !self.meets_nothing();
-        let (m, input, mesh) = (&self.motion, &mut self.input, &self.mesh);
-        for k in 0..m.x.len() {
-            input.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
-            input.inertia[k] = self.problem.linear_density * mesh.share(k) * a * a;
-            if mesh.sliding[k].is_some() {
-                let w_hat = m.w[k] * now - m.w_before[k] * past;
-                let s = mesh.arc_length[k];
-                input.predicted_slide[k] = s * now - m.s_before[k] * past + w_hat / a - s;
-            }
-        }
-        // Of the masses alone: hands draw at their nodes, not at what these are coupled with.
-        let predicted = &input.predicted;
-        input.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
-            let chord = predicted[e + 1] - predicted[e];
-            (self.problem.linear_density * length * a * a, chord)
-        }));
-        for (s, node) in self.problem.supports.iter().zip(&self.meshing.support_node) {
-            if let Some(k) = node {
-                input.inertia[*k] += s.mass * a * a;
-            }
-        }
-        for (hand, node) in m.hands.iter().zip(&self.meshing.support_node) {
-            let (Some(hand), Some(k)) = (hand, *node) else { continue };
-            let (stiffness, at) = hand.pull(h, m.x[k]);
-            let (inertia, both) = (input.inertia[k], input.inertia[k] + stiffness);
-            input.predicted[k] = (input.predicted[k] * inertia + at * stiffness) / both;
-            input.inertia[k] = both;
-            input.hands.push((k, stiffness, at));
-        }
-        input.moves = true;
-        let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&self.problem, rubs));
-        input.loss.fill([self.problem.axial_stiffness * time * rate; 2]);
-        input.bending_damping = mesh.bending_stiffness * time / h;
-        for e in 0..mesh.rest_length.len() {
-            input.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
-                mesh.path(e, &m.x).length
-            } else {
-                let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
-                let older = if weights.older > 0.0 { length(&m.x_older) * weights.older } else { 0.0 };
-                length(&m.x) * now - length(&m.x_before) * past + older
+/// Keeps what friction acts between at each sliding node.
+pub(in crate::model::fem) fn note_balanced(cable: &mut CableState, unknowns: &Unknowns) {
+    for k in 0..cable.mesh.nodes() {
+        let Some(load) = cable.step_context().load_at(k, &unknowns.positions, Some(&unknowns.slides)) else { continue };
+        let inertia = cable.input.inertia[k] * (unknowns.slides[k] - cable.input.predicted_slide[k]);
+        if let Some(node) = &mut cable.mesh.sliding[k] {
+            let [comes, leaves] = load.at_round();
+            // The step balances slopes by the slide, where inertia counts by what is stretched.
+            let [before, after] = load.at_material;
+            let stretch = 1.0 + 0.5 * (comes + leaves) / cable.mesh.axial_stiffness;
+            let pulls = match node.grip {
+                _ if load.floor != [0.0; 3] => comes - inertia,
+                StickSlip::Stick => leaves + (before - inertia - after) / stretch,
+                slips => load.ratio(slips, node.exponent) * leaves,
             };
+            node.balanced = Some(Balanced { pull: [pulls, leaves], turn: load.turn });
         }
-        branches::add(self, h, rate, decay);
     }
 }
 
-impl Dynamics {
-    /// Sets the input of a step of `h` (s); returns the weights of its history.
-    pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Weights {
-        self.hand_drive.follow(&mut self.cable, self.pacing.due, h, dragged);
-        self.cable.prepare_way([self.cable.motion.time, self.cable.motion.time + h], Some(dragged));
-        self.cable.contacts.set_slip(self.cable.contacts.tuning.slip_m);
-        let contact = self.cable.contacts.tuning;
-        self.cable.adapt_stiffness([contact.stiffness_rise, contact.stiffness_fall], 1.0);
-        let weights = self.cable.weights(h);
-        self.cable.set_inertia(weights, h, &mut self.solver.decay);
-        let (m, input, mesh) = (&self.cable.motion, &self.cable.input, &self.cable.mesh);
-        self.cable.contacts.look_around(&self.cable.problem, mesh, &m.x, |k| {
-            if mesh.held[k] { (input.target[k] - m.x[k]).norm() } else { m.v[k].norm() * h }
-        });
-        weights
+/// Supports that could not get where they were to be: said, and their hands start again from
+/// there.
+pub(in crate::model::fem) fn note_lag(cable: &mut CableState, unknowns: &Unknowns) {
+    for (support, node) in cable.meshing.support_node.iter().enumerate() {
+        let Some(k) = node.filter(|&k| cable.mesh.held[k]) else { continue };
+        if unknowns.positions[k] != cable.input.target[k] && !cable.answers.held_back.contains(&support) {
+            cable.answers.held_back.push(support);
+        }
+        if let Some(f) = &mut cable.motion.followers[support]
+            && f.position() != unknowns.positions[k]
+        {
+            f.stop_at(unknowns.positions[k]);
+        }
     }
+}
 
-    pub(in crate::model::fem) fn dynamic_step(
-        &mut self,
-        h: f64,
-        dragged: &[Option<Vec2>],
-    ) -> Result<Converged, Failure> {
-        let weights = self.begin_step(h, dragged);
-        let Weights { now, past, a, .. } = weights;
-        let (mut unknowns, exact) = (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.tolerance);
-        self.cable.contacts.prepare(&self.cable.problem, &self.cable.mesh, &unknowns.x, &self.cable.motion.x);
-        self.cable.input.tolerance = self.cable.rounded_tolerance();
-        let done = self.solver.rub_and_minimise(&mut self.cable, &mut unknowns);
-        self.cable.input.tolerance = exact;
-        let done = done?;
-        if let Some(node) = self.cable.pulled(&unknowns.x) {
-            return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
-        }
-        self.cable.note_lag(&unknowns);
-        hands::keep_forces(&mut self.cable, &unknowns);
-        self.cable.note_balanced(&unknowns);
-        let given = self.cable.forces_in_step(&unknowns, self.solver.touches());
-        let slid = self.cable.sliding_momentum();
-        branches::relax(&mut self.cable, h, &unknowns.x);
-        self.cable.commit_contacts(&unknowns);
-        let (m, mesh) = (&mut self.cable.motion, &self.cable.mesh);
-        for k in 0..unknowns.x.len() {
-            let v = (unknowns.x[k] - weights.place(m, k)) * a;
+/// Inertia and damping of a step of `h` (s).
+///
+/// The rate of a length has no history where velocities jump between two steps (a plastic
+/// impulse, a change of the mesh): two steps extrapolate through the jump and add ½ EA τ Δv/l₀
+/// to the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may touch
+/// something is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a
+/// small force, ¾ τ/h of that which BDF2 makes of a vibration.
+pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weights, h: f64, decay: &mut Vec<f64>) {
+    let Weights { now, past, a, .. } = weights;
+    let rubs = !(cable.meets_nothing() && cable.meshing.never_slides && cable.problem.floor_friction.is_none());
+    let jumps = !cable.meets_nothing();
+    let (m, input, mesh) = (&cable.motion, &mut cable.input, &cable.mesh);
+    for k in 0..m.positions.len() {
+        input.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
+        input.inertia[k] = cable.problem.linear_density * mesh.share(k) * a * a;
+        if mesh.sliding[k].is_some() {
+            let w_hat = m.slide_rates[k] * now - m.previous_slide_rates[k] * past;
             let s = mesh.arc_length[k];
-            let w = (s + unknowns.slide[k] - s * now + m.s_before[k] * past) * a;
-            if let (Some(x), Some(v)) = (m.x_older.get_mut(k), m.v_older.get_mut(k)) {
-                (*x, *v) = (m.x_before[k], m.v_before[k]);
-            }
-            m.x_before[k] = m.x[k];
-            m.v_before[k] = m.v[k];
-            m.s_before[k] = s;
-            m.w_before[k] = m.w[k];
-            m.x[k] = unknowns.x[k];
-            m.v[k] = v;
-            m.w[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
+            input.predicted_slide[k] = s * now - m.previous_arc_length[k] * past + w_hat / a - s;
         }
-        self.cable.slide(&unknowns.slide);
-        self.cable.account_for_step(weights, given, slid, &unknowns.slide);
-        self.solver.unknowns = unknowns;
-        self.cable.motion.time += h;
-        self.cable.gauge_tension();
-        self.cable.note_step(h);
-        self.pacing.pace.observe(&self.cable, h);
-        self.cable.land(h, a);
-        self_contact::land(&mut self.cable, h, a);
-        self.cable.close_account();
-        self.cable.contacts.outline_motion = None;
-        if !self.cable.meshing.never_slides {
-            self.cable.answers.keeps = self.cable.motion.time >= self.pacing.due * (1.0 - f64::EPSILON);
-            self.cable.remesh(Inertia::Dynamic);
-            self.cable.answers.keeps = false;
-            self.cable.answers.stepped = self.cable.answers.kept.take();
-            if let Some(node) = self.cable.crossing() {
-                return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerCrossed });
-            }
-        }
-        Ok(done)
     }
+    // Of the masses alone: hands draw at their nodes, not at what these are coupled with.
+    let predicted = &input.predicted;
+    input.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
+        let chord = predicted[e + 1] - predicted[e];
+        (cable.problem.linear_density * length * a * a, chord)
+    }));
+    for (s, node) in cable.problem.supports.iter().zip(&cable.meshing.support_node) {
+        if let Some(k) = node {
+            input.inertia[*k] += s.mass * a * a;
+        }
+    }
+    for (hand, node) in m.hands.iter().zip(&cable.meshing.support_node) {
+        let (Some(hand), Some(k)) = (hand, *node) else { continue };
+        let (stiffness, at) = hand.pull(h, m.positions[k]);
+        let (inertia, both) = (input.inertia[k], input.inertia[k] + stiffness);
+        input.predicted[k] = (input.predicted[k] * inertia + at * stiffness) / both;
+        input.inertia[k] = both;
+        input.hands.push((k, stiffness, at));
+    }
+    input.moves = true;
+    let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&cable.problem, rubs));
+    input.loss.fill([cable.problem.axial_stiffness * time * rate; 2]);
+    input.bending_damping = mesh.bending_stiffness * time / h;
+    for e in 0..mesh.rest_length.len() {
+        input.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
+            mesh.path(e, &m.positions).length
+        } else {
+            let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
+            let older = if weights.older > 0.0 { length(&m.older_positions) * weights.older } else { 0.0 };
+            length(&m.positions) * now - length(&m.previous_positions) * past + older
+        };
+    }
+    branches::add(cable, h, rate, decay);
 }

@@ -30,7 +30,7 @@ pub(in crate::model::fem) fn relax(cable: &mut CableState, h: f64, x: &[Vec2]) {
         return;
     }
     let (count, bars, ea) = (cable.loss.branches.len(), cable.mesh.rest_length.len(), cable.problem.axial_stiffness);
-    let mut memory = std::mem::take(&mut cable.motion.branch);
+    let mut memory = std::mem::take(&mut cable.motion.branch_forces);
     if memory.len() != count * bars {
         memory.clear();
         memory.resize(count * bars, 0.0);
@@ -38,7 +38,7 @@ pub(in crate::model::fem) fn relax(cable: &mut CableState, h: f64, x: &[Vec2]) {
     for (k, b) in cable.loss.branches.iter().enumerate() {
         let [decay, part] = b.in_step(h);
         for e in 0..bars {
-            let before = strain(cable, e, &cable.motion.x);
+            let before = strain(cable, e, &cable.motion.positions);
             let change = if relaxes(cable, before) {
                 let now = strain(cable, e, x);
                 if relaxes(cable, now) { now - before } else { -before }
@@ -49,16 +49,16 @@ pub(in crate::model::fem) fn relax(cable: &mut CableState, h: f64, x: &[Vec2]) {
             *q = *q * decay + ea * part * change;
         }
     }
-    cable.motion.branch = memory;
+    cable.motion.branch_forces = memory;
 }
 
 /// The force of the branches of bar `e`, N.
 pub(in crate::model::fem) fn force(cable: &CableState, e: usize) -> f64 {
     let count = cable.loss.branches.len();
-    if !has_branches(cable) || cable.motion.branch.len() != count * cable.mesh.rest_length.len() {
+    if !has_branches(cable) || cable.motion.branch_forces.len() != count * cable.mesh.rest_length.len() {
         return 0.0;
     }
-    cable.motion.branch[e * count..][..count].iter().sum()
+    cable.motion.branch_forces[e * count..][..count].iter().sum()
 }
 
 /// Puts the loss of the branches in the place of the viscous one in a step of `h` (s), whose
@@ -73,14 +73,14 @@ pub(in crate::model::fem) fn add(cable: &mut CableState, h: f64, rate: f64, deca
     decay.clear();
     decay.extend(cable.loss.branches.iter().map(|b| b.in_step(h)[0]));
     stiffness += cable.loss.branches.iter().map(|b| ea * b.in_step(h)[1]).sum::<f64>();
-    let has_memory = cable.motion.branch.len() == count * bars;
+    let has_memory = cable.motion.branch_forces.len() == count * bars;
     for e in 0..bars {
-        let before = strain(cable, e, &cable.motion.x);
+        let before = strain(cable, e, &cable.motion.positions);
         if !relaxes(cable, before) {
             continue;
         }
         let kept = if has_memory {
-            cable.motion.branch[e * count..][..count].iter().zip(&*decay).map(|(q, d)| q * d).sum()
+            cable.motion.branch_forces[e * count..][..count].iter().zip(&*decay).map(|(q, d)| q * d).sum()
         } else {
             0.0
         };

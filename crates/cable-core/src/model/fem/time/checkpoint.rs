@@ -1,32 +1,10 @@
-//! A step that fails returns to the checkpoint before it; folds are opened as a motion begins.
+//! A step that fails returns to the checkpoint before it.
 
-use crate::math::{cross, perp};
+use crate::model::fem::obstacle::moving_outline::place_outline;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::Rollback;
 use crate::model::fem::state::history::Checkpoint;
-
-/// Distance (parts of a bar) by which the middle of a fold is moved aside. Less: the fold opens
-/// later than it would; more: its bars are stretched by half of the square of it.
-const ASIDE: f64 = 1e-4;
-
-/// Sine of the turn off a line below which a fold lies in it.
-const FOLD_LINE_SINE: f64 = 1e-6;
-
-impl CableState {
-    /// Moves the middle of each fold that lies in one line a little aside, as a motion begins. In
-    /// the line itself a bar would have to pass through no length to turn over: a weight that fell
-    /// beside its slack cable hung in the fold.
-    pub(in crate::model::fem) fn open_folds(&mut self) {
-        let (mesh, x) = (&self.mesh, &mut self.motion.x);
-        for k in 1..x.len().saturating_sub(1) {
-            let (a, b) = (x[k] - x[k - 1], x[k + 1] - x[k]);
-            let size = a.norm() * b.norm();
-            if mesh.is_free(k) && a.dot(&b) < 0.0 && cross(a, b).abs() <= FOLD_LINE_SINE * size {
-                x[k] += perp(a) * ASIDE;
-            }
-        }
-    }
-}
+use crate::model::fem::state::step_setup::renew_input;
 
 impl Rollback {
     /// Keeps the present state to go back to, in the memory of the one kept before.
@@ -67,8 +45,8 @@ impl Rollback {
                 load.0 = node;
             }
             self.can_restore = false;
-            cable.place_outline();
-            cable.renew_input();
+            place_outline(cable);
+            renew_input(cable);
         }
     }
 }

@@ -11,7 +11,7 @@ use crate::solution::Warning;
 
 /// Force that holds a support's node against its bars and what hangs there, N.
 fn holding_force(cable: &CableState, support: usize, node: usize) -> Vec2 {
-    let (mesh, x) = (&cable.mesh, &cable.motion.x);
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
     let pull = |e: usize| {
         let path = mesh.path(e, x);
         let tension = mesh.bar(e).tension(path.length);
@@ -29,7 +29,7 @@ fn holding_force(cable: &CableState, support: usize, node: usize) -> Vec2 {
 /// Keeps the force of the cable on what hands hold, as unknowns balances it.
 pub(in crate::model::fem) fn keep_forces(cable: &mut CableState, unknowns: &Unknowns) {
     for &(k, stiffness, at) in &cable.input.hands {
-        cable.answers.reaction[k] = (unknowns.x[k] - at) * stiffness;
+        cable.answers.reaction[k] = (unknowns.positions[k] - at) * stiffness;
     }
 }
 
@@ -58,8 +58,9 @@ impl HandDrive {
             } else {
                 let released = cable.motion.hands[k].take().and(node);
                 let begins = || {
-                    released
-                        .map_or(SmoothedTarget::at_rest(at), |node| SmoothedTarget::moving(at, cable.motion.v[node]))
+                    released.map_or(SmoothedTarget::at_rest(at), |node| {
+                        SmoothedTarget::moving(at, cable.motion.velocities[node])
+                    })
                 };
                 let mut f = cable.motion.followers[k].unwrap_or_else(begins);
                 f.follow(target, h, fastest);
@@ -73,7 +74,7 @@ impl HandDrive {
         cable.motion.hands.iter().enumerate().filter_map(|(k, hand)| {
             let (hand, node) = (hand.as_ref()?, cable.meshing.support_node[k]?);
             let fastest = self.hand_speed;
-            let (at, force) = (cable.motion.x[node], -cable.answers.reaction[node]);
+            let (at, force) = (cable.motion.positions[node], -cable.answers.reaction[node]);
             hand.warning(&cable.problem, k, cable.mesh.arc_length[node], at, force, fastest)
         })
     }

@@ -1,5 +1,4 @@
-//! These modules integrate in time: the setup of a step, BDF2, step sizes, sleep, hands, momentum,
-//! loss and landing.
+//! These modules integrate in time: BDF2, step sizes, sleep, hands, momentum, loss and landing.
 
 pub(in crate::model::fem) mod bdf2;
 pub(in crate::model::fem) mod branches;
@@ -8,6 +7,5 @@ pub(in crate::model::fem) mod hands;
 pub(in crate::model::fem) mod momentum;
 pub(in crate::model::fem) mod self_contact;
 pub(in crate::model::fem) mod sleeping;
-pub(in crate::model::fem) mod step_setup;
 pub(in crate::model::fem) mod step_size;
 pub(in crate::model::fem) mod step_solver;

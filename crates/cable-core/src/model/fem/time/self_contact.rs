@@ -27,7 +27,7 @@ pub(in crate::model::fem) fn land(cable: &mut CableState, h: f64, a: f64) {
     let m = &mut cable.motion;
     for rub in &cable.contacts.own.friction_contacts {
         let n = rub.pair.normal;
-        let speed = n.dot(&rub.pair.difference(&m.v));
+        let speed = n.dot(&rub.pair.difference(&m.velocities));
         let shares = rub.pair.shares();
         let give = |k: usize| if cable.mesh.is_free(k) { 1.0 / mass(k) } else { 0.0 };
         let sum: f64 = shares.iter().map(|&(k, part)| part * part * give(k)).sum();
@@ -36,20 +36,20 @@ pub(in crate::model::fem) fn land(cable: &mut CableState, h: f64, a: f64) {
             continue;
         }
         let taken = plastic(speed, made * sum) / sum;
-        let change = rub.pair.difference(&m.v) - rub.pair.difference(&m.v_before);
-        let (_, rubbing, _) = friction::at(rub.sliding(&m.x), rub.limit, cable.contacts.tuning.slip_m);
+        let change = rub.pair.difference(&m.velocities) - rub.pair.difference(&m.previous_velocities);
+        let (_, rubbing, _) = friction::at(rub.sliding(&m.positions), rub.limit, cable.contacts.tuning.slip_m);
         let acted = n * made - rub.pair.tangent() * (rubbing / a);
         let over = acted - carried_on(acted - change / sum, n, cable.contacts.own.friction);
         for (k, part) in shares.into_iter().filter(|&(k, _)| cable.mesh.is_free(k)) {
-            m.v[k] -= n * (taken * part * give(k));
-            m.v_before[k] += (over - n * taken) * (part * give(k));
-            m.x_before[k] = m.x[k] - (m.v[k] + m.v_before[k]) * (0.5 * h);
+            m.velocities[k] -= n * (taken * part * give(k));
+            m.previous_velocities[k] += (over - n * taken) * (part * give(k));
+            m.previous_positions[k] = m.positions[k] - (m.velocities[k] + m.previous_velocities[k]) * (0.5 * h);
             given -= n * (taken * part);
             forgotten += over * part;
         }
     }
     // Nothing, but where a support holds a side of the contact.
-    cable.account_for_landing(given, forgotten);
+    cable.motion.account.land(given, forgotten);
 }
 
 /// Contacts of the cable with itself at positions `x` (m): one report for each stretch of

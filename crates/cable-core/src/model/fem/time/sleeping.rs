@@ -7,6 +7,8 @@
 
 use crate::math::Vec2;
 use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::moving_outline::MovingOutline;
+use crate::model::fem::state::step_setup::prepare_input;
 use crate::model::fem::state::stepping::Sleep;
 
 /// Distance (m) by which a node of a sleeping cable may have moved.
@@ -20,20 +22,20 @@ impl Sleep {
     pub(in crate::model::fem) fn falls_asleep(&mut self, cable: &CableState) -> bool {
         let (motion, mesh, input) = (&cable.motion, &cable.mesh, &cable.input);
         let distance = sleep_distance(cable);
-        let same = self.place.len() == motion.x.len();
+        let same = self.place.len() == motion.positions.len();
         if same && motion.time - self.since < mesh.tuning.step.sleep_delay_s && motion.time >= self.since {
             return false;
         }
         let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= distance;
         let still = same
-            && self.place.iter().zip(&motion.x).all(near)
+            && self.place.iter().zip(&motion.positions).all(near)
             && self.arc_length.iter().zip(&mesh.arc_length).all(|(a, b)| (a - b).abs() <= distance);
         // A cable that touches nothing may be at the turn of a slow swing.
         let touches = !cable.contacts.friction_contacts.is_empty() || !cable.contacts.own.friction_contacts.is_empty();
         let falls_asleep = still && touches && self.same_input(cable);
         self.asleep |= falls_asleep;
         self.since = motion.time;
-        self.place.clone_from(&motion.x);
+        self.place.clone_from(&motion.positions);
         self.arc_length.clone_from(&mesh.arc_length);
         self.force.clone_from(&input.force);
         self.target.clone_from(&input.target);
@@ -59,7 +61,7 @@ impl Sleep {
         to: f64,
         dragged: &[Option<Vec2>],
     ) -> bool {
-        if cable.outline_moves() {
+        if cable.outline.as_ref().is_some_and(MovingOutline::moves) {
             self.asleep = false;
         }
         if !self.asleep {
@@ -78,7 +80,7 @@ impl Sleep {
             (None, Some(to)) => cable.support_position(k).is_none_or(|at| (at - to).norm() > distance * 1e-3),
             _ => false,
         });
-        cable.prepare_input(to, Some(dragged));
+        prepare_input(cable, to, Some(dragged));
         self.asleep = !follows && self.same_input(cable);
         self.asleep
     }

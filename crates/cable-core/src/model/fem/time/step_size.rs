@@ -51,16 +51,16 @@ impl StepSizeController {
             return;
         }
         let (m, mesh) = (&cable.motion, &cable.mesh);
-        let free = || (0..m.v.len()).filter(|&k| mesh.is_free(k)).map(|k| (k, mesh.share(k)));
+        let free = || (0..m.velocities.len()).filter(|&k| mesh.is_free(k)).map(|k| (k, mesh.share(k)));
         let (mut length, mut mean) = (0.0, [Vec2::zeros(); 2]);
         for (k, share) in free() {
             length += share;
-            mean[0] += (m.v[k] - m.v_before[k]) * share;
-            mean[1] += (m.v[k] + m.v_before[k]) * share;
+            mean[0] += (m.velocities[k] - m.previous_velocities[k]) * share;
+            mean[1] += (m.velocities[k] + m.previous_velocities[k]) * share;
         }
         for (k, share) in free() {
-            let change = m.v[k] - m.v_before[k] - mean[0] / length;
-            let speed = m.v[k] + m.v_before[k] - mean[1] / length;
+            let change = m.velocities[k] - m.previous_velocities[k] - mean[0] / length;
+            let speed = m.velocities[k] + m.previous_velocities[k] - mean[1] / length;
             self.seen[0] += share * change.norm_squared() / h;
             self.seen[1] += share * speed.norm_squared() * 0.25 * h;
         }
@@ -87,7 +87,7 @@ impl StepSizeController {
 fn is_string(cable: &CableState) -> bool {
     let (problem, mesh, motion) = (&cable.problem, &cable.mesh, &cable.motion);
     let weight = problem.body_force(motion.time).norm() * problem.length;
-    let taut = |e: usize| mesh.bar(e).tension(mesh.path(e, &motion.x).length) > weight;
+    let taut = |e: usize| mesh.bar(e).tension(mesh.path(e, &motion.positions).length) > weight;
     let alone = cable.contacts.friction_contacts.is_empty() && cable.contacts.own.friction_contacts.is_empty();
     alone && (0..mesh.rest_length.len()).all(taut)
 }

@@ -5,6 +5,7 @@ use crate::math::larger;
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::SolverMemory;
+use crate::model::fem::state::step_setup::update_grips;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 
@@ -19,7 +20,7 @@ impl SolverMemory {
     /// not always on the same side.
     pub(in crate::model::fem) fn predicted_unknowns(&mut self, cable: &CableState, h: f64) -> Unknowns {
         let mut unknowns = self.present_unknowns(cable);
-        for (k, (x, v)) in unknowns.x.iter_mut().zip(&cable.motion.v).enumerate() {
+        for (k, (x, v)) in unknowns.positions.iter_mut().zip(&cable.motion.velocities).enumerate() {
             if cable.mesh.is_free(k) {
                 *x += v * h;
             } else if cable.mesh.held[k] {
@@ -28,7 +29,7 @@ impl SolverMemory {
                 *x = cable.input.target[k];
             }
         }
-        if cable.is_out_of_reach(&unknowns.x) {
+        if cable.step_context().is_out_of_reach(&unknowns.positions) {
             unknowns
         } else {
             self.unknowns = unknowns;
@@ -49,7 +50,8 @@ impl SolverMemory {
             let same = |change: f64, most: f64| {
                 change <= larger(cable.mesh.tuning.step.friction_change * most, cable.meshing.bar_weight)
             };
-            if !cable.contacts.renew(&cable.problem, &cable.mesh, [&unknowns.x, &cable.motion.x], same) {
+            if !cable.contacts.renew(&cable.problem, &cable.mesh, [&unknowns.positions, &cable.motion.positions], same)
+            {
                 break;
             }
             let more = self.grip_and_minimise(cable, unknowns)?;
@@ -69,7 +71,7 @@ impl SolverMemory {
         let sliding = cable.mesh.sliding.iter().flatten().count();
         let (mut fewest, mut spare) = (usize::MAX, cable.mesh.tuning.step.grip_rounds);
         for _ in 0..cable.mesh.tuning.step.grip_rounds + cable.mesh.tuning.step.grip_rounds_each * sliding {
-            let grips = cable.update_grips(unknowns, spare == 0);
+            let grips = update_grips(cable, unknowns, spare == 0);
             if grips.hold() {
                 return Ok(done);
             }
@@ -88,10 +90,10 @@ impl SolverMemory {
     /// The present unknowns.
     pub(in crate::model::fem) fn present_unknowns(&mut self, cable: &CableState) -> Unknowns {
         let mut unknowns = std::mem::take(&mut self.unknowns);
-        unknowns.x.clear();
-        unknowns.x.extend_from_slice(cable.input.begins());
-        unknowns.slide.clear();
-        unknowns.slide.resize(cable.mesh.nodes(), 0.0);
+        unknowns.positions.clear();
+        unknowns.positions.extend_from_slice(cable.input.begins());
+        unknowns.slides.clear();
+        unknowns.slides.resize(cable.mesh.nodes(), 0.0);
         unknowns
     }
 
@@ -101,10 +103,10 @@ impl SolverMemory {
         cable: &mut CableState,
         unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
-        if cable.moves_freely(&unknowns.x)
+        if cable.step_context().moves_freely(&unknowns.positions)
             && let Some(done) = self.free.solve(&cable.mesh, &cable.input, unknowns)
         {
-            if cable.is_out_of_reach(&unknowns.x) {
+            if cable.step_context().is_out_of_reach(&unknowns.positions) {
                 for (k, reaction) in cable.answers.reaction.iter_mut().enumerate() {
                     *reaction = -self.free.gradient_at(k);
                 }

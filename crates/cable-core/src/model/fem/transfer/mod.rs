@@ -1,4 +1,173 @@
-//! These modules continue from the state or the answer of another mesh or model.
+//! These modules begin with a cable along its route, or continue from the state or the answer of
+//! another mesh or model.
 
+pub(in crate::model::fem) mod along_route;
 pub(in crate::model::fem) mod from_solution;
 pub(in crate::model::fem) mod from_state;
+
+use std::sync::Arc;
+
+use crate::error::SolveError;
+use crate::math::Vec2;
+use crate::model::Settings;
+use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::newton::initial_guess::depenetrate;
+use crate::model::fem::newton::mixed_free::FreeStep;
+use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
+use crate::model::fem::obstacle::moving_outline::put_outline;
+use crate::model::fem::settings::Tuning;
+use crate::model::fem::state::control::{HandDrive, Memory, Pacing, Rollback, SolverMemory};
+use crate::model::fem::state::step_setup::renew_input;
+use crate::model::fem::state::stepping::{Sleep, StepSizeController};
+use crate::model::fem::system::step_input::{Unknowns, WorkBudget};
+use crate::model::fem::transfer::along_route::cable_along_route;
+use crate::model::fem::transfer::from_solution::{
+    SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
+    state_of_solution,
+};
+use crate::model::fem::transfer::from_state::{follow_corners, thread_pulleys, unthread};
+use crate::problem::Problem;
+use crate::solution::CableSolution;
+use crate::state::State;
+
+impl Dynamics {
+    /// Builds it at the route.
+    ///
+    /// # Errors
+    /// None today: a feature that the model lacks is refused when it is asked for.
+    pub fn new(problem: Arc<Problem>, settings: Settings, tuning: Arc<Tuning>) -> Result<Self, SolveError> {
+        let longest = tuning.step.longest_s;
+        let cable = cable_along_route(problem, settings, tuning);
+        Ok(Self {
+            rollback: Rollback::default(),
+            solver: SolverMemory {
+                unknowns: Unknowns::default(),
+                memory: Memory(None),
+                free: FreeStep::default(),
+                decay: Vec::new(),
+                work_left: WorkBudget::Unlimited,
+            },
+            pacing: Pacing {
+                pace: StepSizeController::new(settings.inner_step_s.unwrap_or(longest)),
+                sleep: Sleep::default(),
+                tolerance: settings.tolerance,
+                due: f64::INFINITY,
+            },
+            hand_drive: HandDrive {
+                hand_speed: settings.hand_speed_m_per_s,
+                hand_stiffness: settings.hand_stiffness_n_per_m,
+                pulled: vec![false; cable.problem.supports.len()],
+                aims: Vec::new(),
+            },
+            rested: false,
+            cable,
+        })
+    }
+
+    /// Takes over a state (from statics: at rest).
+    ///
+    /// # Errors
+    /// When a number is not finite, and `Buried` when it is so far inside an obstacle that nodes
+    /// cannot be pushed out.
+    pub fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        if let Some(e) = state.refuse_non_finite() {
+            return Err(e);
+        }
+        if state.arc_length_m.len() < 2 || state.position_m.len() != state.arc_length_m.len() {
+            return Ok(());
+        }
+        self.rollback.save(&self.cable);
+        let taken = self.take(state);
+        if taken.is_err() {
+            self.rollback.restore(&mut self.cable);
+        }
+        taken
+    }
+
+    /// Goes on from an answer of the same cable at rest, holding what friction held there.
+    ///
+    /// # Errors
+    /// As [`Self::set_state`].
+    pub fn warm_start(
+        &mut self,
+        answer: &CableSolution,
+        time_s: f64,
+        dragged: &[Option<Vec2>],
+    ) -> Result<(), SolveError> {
+        let curve = SolutionCurve(&answer.nodes);
+        let state = state_of_solution(&self.cable, &curve, &State::of_nodes(&answer.nodes, time_s));
+        self.set_state(&state)?;
+        let moves = answer.nodes.iter().any(|n| n.vx_m_per_s != 0.0 || n.vy_m_per_s != 0.0);
+        let touches = !self.cable.problem.world.is_empty() || self.cable.problem.floor_friction.is_some();
+        if moves || !touches || self.cable.contacts.own.shape.is_on() {
+            return Ok(());
+        }
+        self.rollback.save(&self.cable);
+        restore_positions(&mut self.cable, &state);
+        adopt_sliding_nodes(&mut self.cable, &curve);
+        let mut x = std::mem::take(&mut self.cable.motion.positions);
+        depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
+        self.cable.motion.positions = x;
+        adopt_stretch(&mut self.cable, &curve);
+        renew_input(&mut self.cable);
+        adopt_friction(&mut self.cable, &curve);
+        adopt_floor_friction(&mut self.cable, &curve);
+        // Bars that stick from node to node are far from their balance by hardly any way: where
+        // Newton's method alone does not find it, a resistance that fades leads there. From bars
+        // that cut a corner it would lead to where they still do.
+        let found =
+            self.rest_step(time_s, dragged).or_else(|failed| match IntersectionCheck::of(&self.cable).cuts_nothing() {
+                true => self.relax(time_s, dragged),
+                false => Err(failed),
+            });
+        if found.is_ok() {
+            self.rested = true;
+        } else {
+            self.rollback.restore(&mut self.cable);
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, state: &State) -> Result<(), SolveError> {
+        self.pacing.sleep.wake();
+        let led = put_outline(&mut self.cable);
+        let same = state.arc_length_m == self.cable.mesh.arc_length && !led;
+        if !same {
+            unthread(&mut self.cable);
+        }
+        for (k, &s) in self.cable.mesh.arc_length.iter().enumerate() {
+            if self.cable.mesh.sliding[k].is_some() {
+                continue;
+            }
+            if let Some(p) = state.position_at(s) {
+                self.cable.motion.positions[k] = p;
+            }
+            self.cable.motion.velocities[k] = state.velocity_at(s).unwrap_or_default();
+        }
+        self.cable.motion.time = state.time_s;
+        self.cable.motion.followers.fill(None);
+        self.cable.motion.hands.fill(None);
+        self.cable.contacts.forget();
+        if !same {
+            thread_pulleys(&mut self.cable, Some(state));
+        }
+        // A state in motion goes on as it is; one at rest is brought to rest on this mesh.
+        let still = !state.in_motion && self.cable.motion.velocities.iter().all(|v| v.norm() == 0.0);
+        // So does a first equilibrium: bars that cut a corner would come to rest there. Within a
+        // run without inertia what friction holds is not disturbed.
+        if !same && (!still || state.time_s == 0.0) {
+            follow_corners(&mut self.cable, state);
+        }
+        if !same || IntersectionCheck::of(&self.cable).refuse_buried().is_err() {
+            let mut x = std::mem::take(&mut self.cable.motion.positions);
+            depenetrate(&self.cable.problem, &self.cable.mesh, &mut x, 0.9 * self.cable.contacts.barrier.reach);
+            self.cable.motion.positions = x;
+        }
+        IntersectionCheck::of(&self.cable).refuse_buried()?;
+        self.forget_history();
+        // A state at rest on another mesh is brought to rest on this one before it moves.
+        self.rested = same || !still;
+        renew_input(&mut self.cable);
+        Ok(())
+    }
+}

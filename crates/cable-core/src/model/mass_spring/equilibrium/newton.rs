@@ -21,6 +21,10 @@ use crate::model::mass_spring::forces::pulley;
 use crate::model::mass_spring::mesh::edit::remesh;
 use crate::model::mass_spring::mesh::nodes::Mesh;
 
+/// Least shift, of EA over the shortest element: some roundings of the diagonal, to which it adds
+/// nothing there, and from which a few failures raise it again.
+const MIN_SHIFT: f64 = 1e-14;
+
 /// Units in the last place by which positions are off when they are good: strain is off by that
 /// over l₀, tension EA times it. Two positions and the length between them lose about one each, and
 /// both springs of a node add up.
@@ -110,7 +114,7 @@ impl<'a> EquilibriumSolver<'a> {
             let left = self.residual();
             // Near round-off the energy no longer tells a better state, the unbalanced force does.
             if solved && new.is_finite() && (new < energy || left.force_n < worst.force_n) {
-                shift = (shift * tuning.shift_decrease).max(tuning.min_shift * unit);
+                shift = (shift * tuning.shift_decrease).max(MIN_SHIFT * unit);
                 curvature = Curvature::Exact;
                 (energy, worst) = (new, left);
                 self.system.fade *= tuning.first_stiffness_fade;

@@ -7,6 +7,10 @@ use crate::model::mass_spring::MassSpringModel;
 use crate::model::mass_spring::equilibrium::contact_energy::Anchors;
 use crate::model::mass_spring::equilibrium::newton::EquilibriumSolver;
 use crate::model::mass_spring::forces::nodal;
+use crate::numerics::HalvedSteps;
+
+/// Part of a step that is taken with the step before it.
+const JOINED_FRACTION: f64 = 0.5;
 
 /// This block solves equilibria and repeats the whole model's state where a part of a step fails.
 impl MassSpringModel {
@@ -64,10 +68,10 @@ impl MassSpringModel {
         };
         let targets = self.drives.targets.clone();
         let starts: Vec<Vec2> = nodes.iter().map(|&(_, n)| from[n]).collect();
-        let (mut done, mut part, mut iterations) = (0.0, 1.0 / parts, 0);
-        while done < 1.0 {
+        let mut steps = HalvedSteps::new(1.0, 1.0 / parts, tuning.max_halvings, JOINED_FRACTION);
+        let (mut done, mut iterations) = (0.0, 0);
+        while let Some(next) = steps.next(done) {
             let kept = self.clone();
-            let next = if done + part > 1.0 - 0.5 * part { 1.0 } else { done + part };
             self.clock.time_s = begin + (end - begin) * next;
             for (k, target) in targets.iter().enumerate() {
                 // A hand goes straight.
@@ -80,8 +84,7 @@ impl MassSpringModel {
                 }
                 Err(e) => {
                     *self = kept;
-                    part *= 0.5;
-                    if part * parts < tuning.min_part {
+                    if !steps.halve() {
                         return Err(e);
                     }
                 }

@@ -65,9 +65,9 @@ impl Mesh {
         segments: usize,
         support_arc_lengths: &[f64],
     ) -> Self {
-        let seats = separate_supports(&problem, &tuning.mesh, support_arc_lengths, segments);
-        let nodes = even_nodes(&problem, segments, &seats);
-        Self::on_nodes(problem, tuning, segments, &seats, nodes)
+        let separated = separate_supports(&problem, &tuning.mesh, support_arc_lengths, segments);
+        let nodes = even_nodes(&problem, segments, &separated);
+        Self::on_nodes(problem, tuning, segments, &separated, nodes)
     }
 
     /// Puts nodes at given arc lengths (m).
@@ -78,15 +78,15 @@ impl Mesh {
         support_arc_lengths: &[f64],
         nodes: Vec<f64>,
     ) -> Self {
-        let seats = separate_supports(&problem, &tuning.mesh, support_arc_lengths, segments);
-        Self::on_nodes(problem, tuning, segments, &seats, nodes)
+        let separated = separate_supports(&problem, &tuning.mesh, support_arc_lengths, segments);
+        Self::on_nodes(problem, tuning, segments, &separated, nodes)
     }
 
     fn on_nodes(
         problem: Arc<Problem>,
         tuning: Arc<Tuning>,
         segments: usize,
-        seats: &[f64],
+        separated: &[f64],
         arc_length: Vec<f64>,
     ) -> Self {
         let material_length: Vec<f64> = arc_length.windows(2).map(|w| w[1] - w[0]).collect();
@@ -101,7 +101,7 @@ impl Mesh {
             let k = arc_length.partition_point(|&v| v < at).min(count - 1);
             if k > 0 && at - arc_length[k - 1] < arc_length[k] - at { k - 1 } else { k }
         };
-        let support_node: Vec<usize> = seats.iter().map(|&s| nearest(s)).collect();
+        let support_node: Vec<usize> = separated.iter().map(|&s| nearest(s)).collect();
         let mut point_mass = vec![0.0; count];
         for (p, &k) in problem.supports.iter().zip(&support_node) {
             mass[k] += p.mass;
@@ -232,10 +232,10 @@ impl Mesh {
 }
 
 /// Arc lengths (m) of nodes with about `segments` elements on the whole cable, evenly between
-/// supports (at `seats`, m) and loads.
-fn even_nodes(problem: &Problem, segments: usize, seats: &[f64]) -> Vec<f64> {
+/// supports (at `separated`, m) and loads.
+fn even_nodes(problem: &Problem, segments: usize, separated: &[f64]) -> Vec<f64> {
     let close = SAME_PLACE_FRACTION * problem.length;
-    let at_pulleys: Vec<f64> = Pulley::all(problem).iter().map(|p| seats[p.support]).collect();
+    let at_pulleys: Vec<f64> = Pulley::all(problem).iter().map(|p| separated[p.support]).collect();
     let mut marks: Vec<f64> = problem.supports.iter().filter_map(|s| s.arc_length).collect();
     marks.extend(&at_pulleys);
     marks.extend(problem.loads.iter().map(|l| l.arc_length));

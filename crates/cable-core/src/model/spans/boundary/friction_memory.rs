@@ -32,13 +32,14 @@ const SHORTEST_STRETCH: f64 = 1e-12;
 /// A point from which the tension follows the law with m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Knot {
-    pub p: f64,
+    /// Boundary coordinate.
+    pub coordinate: f64,
     /// Material there, m.
-    pub s: f64,
+    pub arc_length: f64,
     /// Tension there, N.
     pub tension: f64,
-    /// m from here to the next knot.
-    pub m: f64,
+    /// Friction coefficient mobilised from here to the next knot, the m of the law.
+    pub mobilised: f64,
 }
 
 /// Tension and material along a contact as they were last.
@@ -83,10 +84,10 @@ pub(in crate::model::spans) enum Mode {
 /// The point at which sliding from an end stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Front {
-    pub p: f64,
+    pub coordinate: f64,
     /// The way from the end to it.
     pub way: Step,
-    pub m: f64,
+    pub mobilised: f64,
     /// True if the old tension stopped it; else it came to the other end.
     pub met: bool,
     /// Old material at p, m.
@@ -118,7 +119,7 @@ impl Clone for TensionProfile {
 impl TensionProfile {
     /// Material laid with one tension law from a point.
     pub fn new(start: Knot, end: Knot) -> Self {
-        Self { knots: if end.p > start.p { vec![start, end] } else { vec![start] } }
+        Self { knots: if end.coordinate > start.coordinate { vec![start, end] } else { vec![start] } }
     }
 
     /// Through these knots, as near as a part of the cone of friction allows.
@@ -136,11 +137,11 @@ impl TensionProfile {
         for knot in knots.iter().rev() {
             let mut knot = *knot;
             if let Some(next) = out.last() {
-                if knot.p >= next.p {
+                if knot.coordinate >= next.coordinate {
                     continue;
                 }
-                let reach = |m: f64| track.slide(next.p, knot.p, next.tension, m).tension;
-                knot.m = Self::between(&mut knot.tension, friction, reach, Growth::Falls);
+                let reach = |m: f64| track.slide(next.coordinate, knot.coordinate, next.tension, m).tension;
+                knot.mobilised = Self::between(&mut knot.tension, friction, reach, Growth::Falls);
             }
             out.push(knot);
         }
@@ -175,17 +176,17 @@ impl TensionProfile {
     /// that on every slope: what it is does not depend on the end from which the cable is counted.
     pub fn laid(track: &Track<'_>, start: Knot, [first, last]: [f64; 2]) -> Self {
         let way = |to: f64| {
-            let mut knots = vec![Knot { m: 0.0, ..start }];
-            let (mut p, mut tension, mut s) = (start.p, start.tension, start.s);
+            let mut knots = vec![Knot { mobilised: 0.0, ..start }];
+            let (mut p, mut tension, mut s) = (start.coordinate, start.tension, start.arc_length);
             while p != to {
                 let next = track.next_border(p, to);
                 let (m, way) = (track.even(0.5 * (p + next)), track.lay(p, next, tension));
                 // The law of a stretch stands at its left end.
                 if let (Some(knot), true) = (knots.last_mut(), next > p) {
-                    knot.m = m;
+                    knot.mobilised = m;
                 }
                 (p, tension, s) = (next, way.tension, s + way.material);
-                knots.push(Knot { p, s, tension, m });
+                knots.push(Knot { coordinate: p, arc_length: s, tension, mobilised: m });
             }
             knots
         };
@@ -196,41 +197,42 @@ impl TensionProfile {
         right
             .into_iter()
             .enumerate()
-            .for_each(|(k, knot)| out.push(if k == end { Knot { m: 0.0, ..knot } } else { knot }));
+            .for_each(|(k, knot)| out.push(if k == end { Knot { mobilised: 0.0, ..knot } } else { knot }));
         out
     }
 
     /// All of its material passed on along the boundary by a length, m.
     pub fn pass_on(&mut self, by_m: f64) {
-        self.knots.iter_mut().for_each(|knot| knot.s += by_m);
+        self.knots.iter_mut().for_each(|knot| knot.arc_length += by_m);
     }
 
     /// The same from the middle of its length with a tension there, N, what is missing or too much
     /// of its material at both ends alike; no end has less than that tension: weight that hangs
     /// down on both sides of a crest is held there.
     pub fn laid_from_middle(track: &Track<'_>, e: &Ends, tension: f64) -> Self {
-        let middle = Knot { p: track.middle(e.p), s: 0.5 * (e.s[0] + e.s[1]), tension, m: 0.0 };
+        let middle =
+            Knot { coordinate: track.middle(e.p), arc_length: 0.5 * (e.s[0] + e.s[1]), tension, mobilised: 0.0 };
         let mut laid = Self::laid(track, middle, e.p);
         let missing = tension - laid.ends().map_or(tension, |[a, b]| smaller(a.tension, b.tension));
         if missing > 0.0 {
             laid = Self::laid(track, Knot { tension: tension + missing, ..middle }, e.p);
         }
-        let off = laid.ends().map_or(0.0, |[a, b]| middle.s - 0.5 * (a.s + b.s));
-        laid.knots.iter_mut().for_each(|knot| knot.s += off);
+        let off = laid.ends().map_or(0.0, |[a, b]| middle.arc_length - 0.5 * (a.arc_length + b.arc_length));
+        laid.knots.iter_mut().for_each(|knot| knot.arc_length += off);
         laid
     }
 
     /// Counts its material anew from its first knot on, or from its last one back, as its tensions
     /// strain it.
     pub fn measure(&mut self, track: &Track<'_>, going: Going) {
-        let way = |a: &Knot, b: &Knot| track.slide(a.p, b.p, a.tension, a.m).material;
+        let way = |a: &Knot, b: &Knot| track.slide(a.coordinate, b.coordinate, a.tension, a.mobilised).material;
         if going == Going::Left {
             for k in (1..self.knots.len()).rev() {
-                self.knots[k - 1].s = self.knots[k].s - way(&self.knots[k - 1], &self.knots[k]);
+                self.knots[k - 1].arc_length = self.knots[k].arc_length - way(&self.knots[k - 1], &self.knots[k]);
             }
         } else {
             for k in 1..self.knots.len() {
-                self.knots[k].s = self.knots[k - 1].s + way(&self.knots[k - 1], &self.knots[k]);
+                self.knots[k].arc_length = self.knots[k - 1].arc_length + way(&self.knots[k - 1], &self.knots[k]);
             }
         }
     }
@@ -253,12 +255,12 @@ impl TensionProfile {
             let mut knot = *knot;
             let mut tension = knot.tension;
             if let Some(last) = self.knots.last_mut() {
-                if knot.p <= last.p {
+                if knot.coordinate <= last.coordinate {
                     continue;
                 }
                 let from = *last;
-                let reach = |m: f64| track.slide(from.p, knot.p, from.tension, m).tension;
-                last.m = Self::between(&mut tension, friction, reach, Growth::Grows);
+                let reach = |m: f64| track.slide(from.coordinate, knot.coordinate, from.tension, m).tension;
+                last.mobilised = Self::between(&mut tension, friction, reach, Growth::Grows);
                 knot.tension = tension;
             }
             self.knots.push(knot);
@@ -268,9 +270,9 @@ impl TensionProfile {
     /// The profile up to p, and from there on.
     pub fn split(&self, track: &Track<'_>, p: f64) -> (Self, Self) {
         let (tension, s) = self.at(track, p);
-        let knot = Knot { p, s, tension, m: self.called(track, p) };
-        let before = self.knots.iter().filter(|k| k.p < p).copied().chain([Knot { m: 0.0, ..knot }]);
-        let after = [knot].into_iter().chain(self.knots.iter().filter(|k| k.p > p).copied());
+        let knot = Knot { coordinate: p, arc_length: s, tension, mobilised: self.called(track, p) };
+        let before = self.knots.iter().filter(|k| k.coordinate < p).copied().chain([Knot { mobilised: 0.0, ..knot }]);
+        let after = [knot].into_iter().chain(self.knots.iter().filter(|k| k.coordinate > p).copied());
         (Self { knots: before.collect() }, Self { knots: after.collect() })
     }
 
@@ -281,14 +283,14 @@ impl TensionProfile {
 
     fn push(&mut self, k: Knot) {
         if let Some(last) = self.knots.last_mut() {
-            if k.p - last.p <= SHORTEST_STRETCH {
+            if k.coordinate - last.coordinate <= SHORTEST_STRETCH {
                 // A stretch of no extent.
-                last.m = k.m;
+                last.mobilised = k.mobilised;
                 return;
             }
             if self.knots.len() > 1 {
                 let n = self.knots.len();
-                if self.knots[n - 2].m == self.knots[n - 1].m {
+                if self.knots[n - 2].mobilised == self.knots[n - 1].mobilised {
                     self.knots.pop();
                 }
             }
@@ -299,9 +301,18 @@ impl TensionProfile {
     /// The knot from which the tension at p follows, seen going on to the right or back to the
     /// left, and whether it lies beyond what was there.
     fn knot(&self, p: f64, going: Going) -> (Knot, bool) {
-        let k = self.knots.partition_point(|k| if going == Going::Right { k.p <= p } else { k.p < p });
+        let k =
+            self.knots.partition_point(|k| if going == Going::Right { k.coordinate <= p } else { k.coordinate < p });
         match k.checked_sub(1).and_then(|j| self.knots.get(j)) {
-            None => (self.knots.first().copied().unwrap_or(Knot { p, s: 0.0, tension: 0.0, m: 0.0 }), true),
+            None => (
+                self.knots.first().copied().unwrap_or(Knot {
+                    coordinate: p,
+                    arc_length: 0.0,
+                    tension: 0.0,
+                    mobilised: 0.0,
+                }),
+                true,
+            ),
             Some(knot) => (*knot, k == self.knots.len()),
         }
     }
@@ -309,30 +320,33 @@ impl TensionProfile {
     /// Old tension and material at p.
     pub fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
         let (knot, beyond) = self.knot(p, Going::Right);
-        let way =
-            if beyond { track.lay(knot.p, p, knot.tension) } else { track.slide(knot.p, p, knot.tension, knot.m) };
-        (way.tension, knot.s + way.material)
+        let way = if beyond {
+            track.lay(knot.coordinate, p, knot.tension)
+        } else {
+            track.slide(knot.coordinate, p, knot.tension, knot.mobilised)
+        };
+        (way.tension, knot.arc_length + way.material)
     }
 
     /// The friction coefficient called upon at p.
     pub fn called(&self, track: &Track<'_>, p: f64) -> f64 {
         let (knot, beyond) = self.knot(p, Going::Right);
-        if beyond { track.even(p) } else { knot.m }
+        if beyond { track.even(p) } else { knot.mobilised }
     }
 
     /// From p towards `to`: how far the old tension has one law there, and its m.
     fn stretch(&self, track: &Track<'_>, p: f64, to: f64) -> (f64, f64) {
         let right = to > p;
         let (knot, beyond) = self.knot(p, if right { Going::Right } else { Going::Left });
-        let k = self.knots.partition_point(|k| if right { k.p <= p } else { k.p < p });
+        let k = self.knots.partition_point(|k| if right { k.coordinate <= p } else { k.coordinate < p });
         let border = if right { self.knots.get(k) } else { k.checked_sub(1).and_then(|j| self.knots.get(j)) };
         let mut next = track.next_border(p, to);
         if let Some(b) = border
-            && (if right { b.p < next } else { b.p > next })
+            && (if right { b.coordinate < next } else { b.coordinate > next })
         {
-            next = b.p;
+            next = b.coordinate;
         }
-        (next, if beyond { track.even(0.5 * (p + next)) } else { knot.m })
+        (next, if beyond { track.even(0.5 * (p + next)) } else { knot.mobilised })
     }
 
     /// dT/dp of the old tension at p.
@@ -348,24 +362,25 @@ impl TensionProfile {
         let m = track.friction * sign * if right { 1.0 } else { -1.0 };
         let (mut at, mut way) = (p, Step::none(t));
         if (t - old).abs() <= TENSION_ROUNDING * t.abs() {
-            return Front { p, way, m, met: true, old: s };
+            return Front { coordinate: p, way, mobilised: m, met: true, old: s };
         }
         while at != to {
             let (next, old_m) = self.stretch(track, at, to);
-            let (met, [there, here]) = track
-                .on(at, next)
-                .crossing(next, [Sliding { tension: old, m: old_m }, Sliding { tension: way.tension, m }]);
+            let (met, [there, here]) = track.on(at, next).crossing(
+                next,
+                [Sliding { tension: old, mobilised: old_m }, Sliding { tension: way.tension, mobilised: m }],
+            );
             way = way.then(here);
             if let Some(x) = met {
-                return Front { p: x, way, m, met: true, old: s + there.material };
+                return Front { coordinate: x, way, mobilised: m, met: true, old: s + there.material };
             }
             (old, s) = (there.tension, s + there.material);
             at = next;
             if (old - way.tension) * sign <= 0.0 {
-                return Front { p: at, way, m, met: true, old: s };
+                return Front { coordinate: at, way, mobilised: m, met: true, old: s };
             }
         }
-        Front { p: to, way, m, met: false, old: s }
+        Front { coordinate: to, way, mobilised: m, met: false, old: s }
     }
 
     /// The stick zone of a contact under its end tensions.
@@ -375,7 +390,7 @@ impl TensionProfile {
         let [t1, t2] = e.t;
         let left = self.front(track, p1, t1, p2);
         let right = self.front(track, p2, t2, p1);
-        if left.met && right.met && left.p <= right.p {
+        if left.met && right.met && left.coordinate <= right.coordinate {
             return Held::Between([left, right]);
         }
         // One has come past the other, or to the far end: either the tensions are too far apart …
@@ -384,8 +399,8 @@ impl TensionProfile {
             return beyond(if t2 > t1 { friction } else { -friction });
         }
         // (along a slope the load may make the tension behind the greater all the same) …
-        if left.m == right.m {
-            return beyond(left.m);
+        if left.mobilised == right.mobilised {
+            return beyond(left.mobilised);
         }
         if t2 > track.slide(p1, p2, t1, friction).tension {
             return beyond(friction);
@@ -394,23 +409,31 @@ impl TensionProfile {
             return beyond(-friction);
         }
         // … or they slide towards or away from each other.
-        let sign = if left.m > 0.0 { 1.0 } else { -1.0 };
+        let sign = if left.mobilised > 0.0 { 1.0 } else { -1.0 };
         let meet = crossing(p1, p2, TENSION_ROUNDING * (t1.abs() + t2.abs()), None, |x| {
-            let (r, l) = (track.slide(p2, x, t2, right.m).tension, track.slide(p1, x, t1, left.m).tension);
+            let (r, l) =
+                (track.slide(p2, x, t2, right.mobilised).tension, track.slide(p1, x, t1, left.mobilised).tension);
             let place = track.place(x);
-            let slope = track.law.slope(&place, r, right.m) - track.law.slope(&place, l, left.m);
+            let slope = track.law.slope(&place, r, right.mobilised) - track.law.slope(&place, l, left.mobilised);
             ((r - l) * sign, slope * sign)
         });
         let old = self.at(track, meet).1;
-        let front = |p: f64, t: f64, m: f64| Front { p: meet, way: track.slide(p, meet, t, m), m, met: true, old };
-        Held::Meet([front(p1, t1, left.m), front(p2, t2, right.m)])
+        let front = |p: f64, t: f64, m: f64| Front {
+            coordinate: meet,
+            way: track.slide(p, meet, t, m),
+            mobilised: m,
+            met: true,
+            old,
+        };
+        Held::Meet([front(p1, t1, left.mobilised), front(p2, t2, right.mobilised)])
     }
 
     /// Takes what came of a step as the new past. `held`: where it sticks, where that is known;
     /// `old`: memory.
     pub fn commit(&mut self, track: &Track<'_>, e: &Ends, mode: Mode, held: Option<Held>, old: &mut Self) {
-        let [first, last] = [0, 1].map(|k| Knot { p: e.p[k], s: e.s[k], tension: e.t[k], m: 0.0 });
-        if last.p <= first.p {
+        let [first, last] =
+            [0, 1].map(|k| Knot { coordinate: e.p[k], arc_length: e.s[k], tension: e.t[k], mobilised: 0.0 });
+        if last.coordinate <= first.coordinate {
             self.clear();
             self.knots.push(first);
             return;
@@ -420,21 +443,25 @@ impl TensionProfile {
                 let from = if m > 0.0 { last } else { first };
                 let to = if m > 0.0 { first } else { last };
                 let loose = match track.floored && m != 0.0 {
-                    true => track.slide_floored(from.p, to.p, from.tension, m).1,
+                    true => track.slide_floored(from.coordinate, to.coordinate, from.tension, m).1,
                     false => None,
                 };
                 self.clear();
                 let Some((p, material)) = loose else {
-                    self.knots.extend([Knot { m, ..first }, last]);
+                    self.knots.extend([Knot { mobilised: m, ..first }, last]);
                     return;
                 };
                 // Loose from there to the end that is not drawn, as even as friction keeps it:
                 // without tension.
-                let end = Knot { p, s: from.s + material, tension: 0.0, m };
+                let end = Knot { coordinate: p, arc_length: from.arc_length + material, tension: 0.0, mobilised: m };
                 let [a, b] = if m > 0.0 { [first, end] } else { [end, last] };
-                let laid = Self::laid(track, Knot { tension: 0.0, ..if m > 0.0 { a } else { b } }, [a.p, b.p]);
+                let laid = Self::laid(
+                    track,
+                    Knot { tension: 0.0, ..if m > 0.0 { a } else { b } },
+                    [a.coordinate, b.coordinate],
+                );
                 if m < 0.0 {
-                    self.push(Knot { m, ..first });
+                    self.push(Knot { mobilised: m, ..first });
                 }
                 laid.knots.iter().for_each(|knot| self.push(*knot));
                 if m > 0.0 {
@@ -446,32 +473,37 @@ impl TensionProfile {
                 Held::Between([left, right]) => {
                     old.clone_from(self);
                     self.clear();
-                    if left.p > first.p {
-                        self.push(Knot { m: left.m, ..first });
+                    if left.coordinate > first.coordinate {
+                        self.push(Knot { mobilised: left.mobilised, ..first });
                     }
-                    let mut p = left.p;
-                    while p < right.p {
-                        let (next, m) = old.stretch(track, p, right.p);
+                    let mut p = left.coordinate;
+                    while p < right.coordinate {
+                        let (next, m) = old.stretch(track, p, right.coordinate);
                         let (tension, s) = old.at(track, p);
-                        self.push(Knot { p, s, tension, m });
+                        self.push(Knot { coordinate: p, arc_length: s, tension, mobilised: m });
                         p = next;
                     }
-                    if right.p < last.p {
-                        let (tension, s) = old.at(track, right.p);
-                        self.push(Knot { p: right.p, s, tension, m: right.m });
+                    if right.coordinate < last.coordinate {
+                        let (tension, s) = old.at(track, right.coordinate);
+                        self.push(Knot {
+                            coordinate: right.coordinate,
+                            arc_length: s,
+                            tension,
+                            mobilised: right.mobilised,
+                        });
                     }
                     self.push(last);
                 }
                 Held::Meet([left, right]) => {
                     let (tension, s) = (left.way.tension, e.s[0] + left.way.material);
                     self.clear();
-                    self.push(Knot { m: left.m, ..first });
-                    self.push(Knot { p: left.p, s, tension, m: right.m });
+                    self.push(Knot { mobilised: left.mobilised, ..first });
+                    self.push(Knot { coordinate: left.coordinate, arc_length: s, tension, mobilised: right.mobilised });
                     self.push(last);
                 }
                 Held::Beyond(m, _) => {
                     self.clear();
-                    self.knots.extend([Knot { m, ..first }, last]);
+                    self.knots.extend([Knot { mobilised: m, ..first }, last]);
                 }
             },
         }

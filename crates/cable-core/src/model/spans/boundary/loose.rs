@@ -14,7 +14,7 @@ pub(in crate::model::spans) struct Loose {
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::model::spans) struct Part {
     /// Material at its ends, m.
-    pub s: [f64; 2],
+    pub arc_lengths: [f64; 2],
     /// Tension at its ends, N.
     pub tension: [f64; 2],
     pub form: Line,
@@ -34,14 +34,14 @@ pub(in crate::model::spans) enum Line {
     Spans { from: Vec2, force: Vec2 },
 }
 
-/// A stretch of a boundary, p from where to where, with the part `m` of friction that is called
-/// upon against going on.
+/// A stretch of a boundary between two coordinates, with the friction that is mobilised against
+/// going on, as a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Stretch {
     pub curve: usize,
     pub piece: i64,
-    pub p: [f64; 2],
-    pub m: f64,
+    pub coordinates: [f64; 2],
+    pub mobilised: f64,
 }
 
 /// A heap.

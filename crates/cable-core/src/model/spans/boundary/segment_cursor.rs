@@ -20,7 +20,8 @@ const FREE_SEARCH_LOOKS: usize = 3;
 /// A point of a piece and how far that goes.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct Pivot {
-    p: f64,
+    /// Boundary coordinate.
+    coordinate: f64,
     pub at: Place,
     /// b·t and b·n there, N/m.
     load: [f64; 2],
@@ -36,7 +37,7 @@ impl Pivot {
         let at = curve.place_on(i, p - origin);
         let first = if i > chain_range.first { origin } else { f64::NEG_INFINITY };
         let last = if i < chain_range.last { curve.origin(i + 1) } else { f64::INFINITY };
-        Self { p, at, load: law.spot(&at).load, ends: [first, last] }
+        Self { coordinate: p, at, load: law.spot(&at).load, ends: [first, last] }
     }
 
     /// The places of both ends of a contact, and the piece of the first.
@@ -62,7 +63,7 @@ impl Pivot {
 
     /// The point at p.
     pub fn place(&self, p: f64) -> Place {
-        let (at, x) = (&self.at, p - self.p);
+        let (at, x) = (&self.at, p - self.coordinate);
         if x == 0.0 {
             return *at;
         }
@@ -79,7 +80,7 @@ impl Pivot {
     /// As the law sees the point at p.
     pub fn spot(&self, p: f64) -> LocalLoad {
         let spot = LocalLoad { stretch: self.at.stretch, turns: self.turns(), load: self.load };
-        spot.on(p - self.p)
+        spot.on(p - self.coordinate)
     }
 }
 
@@ -100,7 +101,7 @@ pub(in crate::model::spans) struct Sliding {
     /// Tension, N.
     pub tension: f64,
     /// The friction coefficient called upon, with its sign.
-    pub m: f64,
+    pub mobilised: f64,
 }
 
 /// One piece of a track, from a point on it.
@@ -123,7 +124,7 @@ impl SegmentCursor<'_> {
     pub fn crossing(
         &self,
         p1: f64,
-        [Sliding { tension: t, m }, Sliding { tension: u, m: n }]: [Sliding; 2],
+        [Sliding { tension: t, mobilised: m }, Sliding { tension: u, mobilised: n }]: [Sliding; 2],
     ) -> (Option<f64>, [Step; 2]) {
         let law = self.law;
         let whole = p1 - self.p0;
@@ -149,7 +150,7 @@ impl SegmentCursor<'_> {
         if part > 0.0
             && part < MEETING_SKIP_FRACTION
             && let Some((at, ways)) =
-                self.closing(about, whole, [Sliding { tension: t, m }, Sliding { tension: u, m: n }])
+                self.closing(about, whole, [Sliding { tension: t, mobilised: m }, Sliding { tension: u, mobilised: n }])
         {
             return (Some(at), ways);
         }
@@ -163,7 +164,8 @@ impl SegmentCursor<'_> {
         if end.abs() <= TENSION_ROUNDING * t.abs() {
             return (Some(p1), [a, b]);
         }
-        let (at, ways) = self.meeting(p1, [Sliding { tension: t, m }, Sliding { tension: u, m: n }], end);
+        let (at, ways) =
+            self.meeting(p1, [Sliding { tension: t, mobilised: m }, Sliding { tension: u, mobilised: n }], end);
         (Some(at), ways)
     }
 
@@ -173,7 +175,7 @@ impl SegmentCursor<'_> {
         &self,
         about: f64,
         whole: f64,
-        [Sliding { tension: t, m }, Sliding { tension: u, m: n }]: [Sliding; 2],
+        [Sliding { tension: t, mobilised: m }, Sliding { tension: u, mobilised: n }]: [Sliding; 2],
     ) -> Option<(f64, [Step; 2])> {
         let mut way = about;
         for _ in 0..FREE_SEARCH_LOOKS {
@@ -201,7 +203,7 @@ impl SegmentCursor<'_> {
     fn meeting(
         &self,
         p1: f64,
-        [Sliding { tension: t, m }, Sliding { tension: u, m: n }]: [Sliding; 2],
+        [Sliding { tension: t, mobilised: m }, Sliding { tension: u, mobilised: n }]: [Sliding; 2],
         end: f64,
     ) -> (f64, [Step; 2]) {
         let sign = (t - u).signum();

@@ -87,7 +87,7 @@ fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, si
     let sign = if side == 0 { -1.0 } else { 1.0 };
     let target = -sign * gap;
     // The way the tension will have to go decides the slope of the sliding there.
-    let m = front.m.abs() * if (target > 0.0) == (side == 0) { -1.0 } else { 1.0 };
+    let m = front.mobilised.abs() * if (target > 0.0) == (side == 0) { -1.0 } else { 1.0 };
     let inner = e.p[side] + (e.p[1 - side] - e.p[side]) * 1e-9;
     let drop = (law.slope(&place, old_t, m) - history.slope(track, inner)).abs() / place.stretch;
     if drop <= SLOPE_DIFFERENCE_FRACTION * law.load.norm() {
@@ -186,7 +186,7 @@ fn holding(track: &Track<'_>, e: &Ends, spots: &[Place; 2], fronts: &[Front; 2])
     for k in 0..2 {
         let (f, place) = (&fronts[k], &spots[k]);
         out.residual[k] = e.s[k] + f.way.material - f.old;
-        let slope = law.slope(place, e.t[k], f.m);
+        let slope = law.slope(place, e.t[k], f.mobilised);
         let by_t = f.way.material_by_tension;
         out.by[k][3 * k] = -place.stretch / law.stretch(e.t[k]) - by_t * slope;
         out.by[k][3 * k + 1] = 1.0;
@@ -206,18 +206,18 @@ fn meeting(
     fronts: &[Front; 2],
 ) {
     let law = &track.law;
-    let place = track.place(fronts[0].p);
+    let place = track.place(fronts[0].coordinate);
     let t = fronts[0].way.tension;
-    let old = history.at(track, fronts[0].p).0;
+    let old = history.at(track, fronts[0].coordinate).0;
     let gain = place.stretch * (1.0 / law.stretch(t) - 1.0 / law.stretch(old));
-    let closing = law.slope(&place, t, fronts[0].m) - law.slope(&place, t, fronts[1].m);
+    let closing = law.slope(&place, t, fronts[0].mobilised) - law.slope(&place, t, fronts[1].mobilised);
     if closing == 0.0 {
         return;
     }
     for k in 0..2 {
         let sign = if k == 0 { -1.0 } else { 1.0 };
         let moved = gain * sign * fronts[k].way.by_tension / closing;
-        let slope = law.slope(&spots[k], e.t[k], fronts[k].m);
+        let slope = law.slope(&spots[k], e.t[k], fronts[k].mobilised);
         for row in &mut out.by {
             row[3 * k + 2] += moved;
             row[3 * k] -= moved * slope;
@@ -268,7 +268,8 @@ pub(in crate::model::spans) fn next_mode(
             // every p. The slip is least where the tension is what it was: before it the one
             // stretch is the greater, after it the other.
             let (old, _) = history.at(track, e.p[0]);
-            let least = if (old - e.t[0]) * m > 0.0 { history.front(track, e.p[0], e.t[0], e.p[1]).p } else { e.p[0] };
+            let least =
+                if (old - e.t[0]) * m > 0.0 { history.front(track, e.p[0], e.t[0], e.p[1]).coordinate } else { e.p[0] };
             let s = e.s[0] + track.slide(e.p[0], least, e.t[0], m).material;
             let slid = s - history.at(track, least).1;
             if m * slid > 0.0 && slid.abs() > stuck * (s.abs() + e.s[1].abs()) { Mode::Hold } else { mode }

@@ -63,7 +63,7 @@ pub(in crate::model::spans) fn enter(strand: &mut CableRun, course: &Course) -> 
         for kink in [Kink::Back, Kink::Ahead] {
             let Some((_, p)) = beyond(course, c, kink) else { continue };
             if (c.ends.p[0] - p) * kink.sign() > CHAIN_END_ROUNDING {
-                let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
+                let knot = Knot { coordinate: p, arc_length: c.ends.s[0], tension: c.ends.t[0], mobilised: 0.0 };
                 c.ends.p = [p; 2];
                 c.history = TensionProfile::new(knot, knot);
                 c.load = Some(RestingLoad { kink: Some(kink) });
@@ -93,7 +93,7 @@ pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: 
         _ => c.ends.p[0],
     };
     let c = &mut strand.contacts[j];
-    let knot = Knot { p, s: c.ends.s[0], tension: c.ends.t[0], m: 0.0 };
+    let knot = Knot { coordinate: p, arc_length: c.ends.s[0], tension: c.ends.t[0], mobilised: 0.0 };
     (c.chain_range, c.ends.p, c.history) = (chain_range, [p; 2], TensionProfile::new(knot, knot));
     c.load = Some(RestingLoad::default());
     c.mode = Mode::Slide(friction * if on { kink.sign() } else { -kink.sign() });

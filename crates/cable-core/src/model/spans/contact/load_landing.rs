@@ -11,7 +11,7 @@ use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie
 /// A load of span k, or the tip of it, that is deeper inside something than `deep` (m).
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct Landing {
-    s: f64,
+    arc_length: f64,
     at: Vec2,
     /// Direction of the cable there, about, of any length.
     along: Vec2,
@@ -41,7 +41,7 @@ pub(in crate::model::spans) fn find(
         let Some(gap) = world.signed_gap(at, strand.to - strand.from).filter(|g| g.gap_m < -deep) else { return };
         let Some(body) = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle) else { return };
         if worst.is_none_or(|w| gap.gap_m < w.gap.gap_m) {
-            *worst = Some(Landing { s, at, along, gap, body, tip });
+            *worst = Some(Landing { arc_length: s, at, along, gap, body, tip });
         }
     };
     let mut before: Option<Vec2> = None;
@@ -67,7 +67,7 @@ pub(in crate::model::spans) fn touch(
     k: usize,
     l: &Landing,
 ) -> Result<(), Failure> {
-    let no_seat = Failure::NoSeat { s: l.s, at: l.at };
+    let impossible = Failure::ContactImpossible { s: l.arc_length, at: l.at };
     let drawn = match l.tip.map(|side| strand.ties[side]) {
         Some(Tie::Hangs(force)) => force,
         _ => Vec2::zeros(),
@@ -79,21 +79,21 @@ pub(in crate::model::spans) fn touch(
     let down = load - l.gap.normal * load.dot(&l.gap.normal);
     let along = if pressed { l.along } else { down * if l.tip == Some(0) { -1.0 } else { 1.0 } };
     let index = 2 * l.body + usize::from(l.gap.normal.dot(&perp(along)) < 0.0);
-    let Some(curve) = course.curves.get(index) else { return Err(no_seat) };
+    let Some(curve) = course.curves.get(index) else { return Err(impossible) };
     // In a kink there is nothing but its edges.
     let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(l.gap.feature.checked_sub(back)?, l.at));
     let found = curve.piece_of(l.gap.feature, l.at).or_else(kink).and_then(|i| curve.chain(i, load));
-    let Some((i, chain_range)) = found else { return Err(no_seat) };
+    let Some((i, chain_range)) = found else { return Err(impossible) };
     let p = curve.project(i, l.at);
-    let tension = strand.force(course, k, l.s).norm();
-    let knot = |p: f64, s: f64, tension: f64| Knot { p, s, tension, m: 0.0 };
+    let tension = strand.force(course, k, l.arc_length).norm();
+    let knot = |p: f64, s: f64, tension: f64| Knot { coordinate: p, arc_length: s, tension, mobilised: 0.0 };
     let mut c = Contact {
         curve: index,
         chain_range,
-        ends: Ends { p: [p; 2], s: [l.s, l.s.next_up()], t: [tension; 2] },
+        ends: Ends { p: [p; 2], s: [l.arc_length, l.arc_length.next_up()], t: [tension; 2] },
         mode: Mode::Slide(0.0),
         held: None,
-        history: TensionProfile::new(knot(p, l.s, tension), knot(p, l.s, tension)),
+        history: TensionProfile::new(knot(p, l.arc_length, tension), knot(p, l.arc_length, tension)),
         wheel: None,
         flips: 0,
         next: Next::Span,
@@ -106,13 +106,13 @@ pub(in crate::model::spans) fn touch(
         strand.forces.insert(k + 1, g);
         return Ok(());
     };
-    c.ends.s = [l.s; 2];
+    c.ends.s = [l.arc_length; 2];
     if !pressed {
         let place = curve.place(p, chain_range);
         let (press, pull) = (-load.dot(&place.normal), load.dot(&place.tangent).abs());
         let rate = pull - curve.friction * press;
         if !(rate > 0.0) {
-            return Err(Failure::Compressed { s: l.s, at: l.at, tension: 0.0 });
+            return Err(Failure::Compressed { s: l.arc_length, at: l.at, tension: 0.0 });
         }
         // So much of it hangs below the surface, and lies along it.
         let hangs = if l.along.norm() > 0.0 { l.along } else { load };

@@ -148,7 +148,7 @@ pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way
 
 /// The place of a load in the state before, p.
 pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
-    c.history.knots().first().map_or(c.ends.p[0], |k| k.p)
+    c.history.knots().first().map_or(c.ends.p[0], |k| k.coordinate)
 }
 
 /// Checks the load that is contact j against its laws.
@@ -209,10 +209,10 @@ fn lift(strand: &mut CableRun, course: &Course, j: usize) {
     let after = strand.contacts[j].next == Next::Joined;
     for (side, end) in [(0, 0), (1, last)] {
         if let (true, Tie::Loose(force)) = (j == end, strand.ties[side]) {
-            let lies = if side == 0 { after } else { before };
+            let stays = if side == 0 { after } else { before };
             strand.contacts.remove(j);
-            strand.forces.remove(j + usize::from((side == 1) != lies));
-            if !lies {
+            strand.forces.remove(j + usize::from((side == 1) != stays));
+            if !stays {
                 strand.ties[side] = Tie::Hangs(force);
             }
             strand.resolve_span(course, if side == 0 { 0 } else { strand.contacts.len() });
@@ -254,7 +254,8 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
             }
             let tension = strand.force(course, k, a.s[1]).norm();
             let ends = Ends { p: [a.p[0], b.p[0]], s: [a.s[1], b.s[0]], t: [tension; 2] };
-            let knot = |side: usize| Knot { p: ends.p[side], s: ends.s[side], tension, m: 0.0 };
+            let knot =
+                |side: usize| Knot { coordinate: ends.p[side], arc_length: ends.s[side], tension, mobilised: 0.0 };
             let history = TensionProfile::new(knot(0), knot(1));
             let mode = Mode::Slide(0.0);
             let between = Contact { ends, history, mode, load: None, smooth: true, next: Next::Joined, ..load };
@@ -278,12 +279,12 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
 /// load rests with. The load that is nearest to an end is set down; whether there was one.
 pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> bool {
     let mut best: Option<(f64, usize, usize, f64)> = None;
-    let lies = |s: f64| strand.contacts.iter().any(|c| c.is_load() && c.ends.s[0] == s);
+    let is_contact = |s: f64| strand.contacts.iter().any(|c| c.is_load() && c.ends.s[0] == s);
     for (j, c) in strand.contacts.iter().enumerate() {
         for side in (0..2).filter(|&side| strand.has_span(j + side) && !c.is_load() && c.wheel.is_none()) {
             let [from, to] = [strand.material(j + side).0, strand.material(j + side).1];
             let inside = |l: &&PointForce| l.arc_length > strand.from && l.arc_length < strand.to;
-            let near = |l: &&PointForce| l.force.norm() > 0.0 && inside(l) && !lies(l.arc_length);
+            let near = |l: &&PointForce| l.force.norm() > 0.0 && inside(l) && !is_contact(l.arc_length);
             for l in course.loads.iter().filter(near) {
                 let off = (l.arc_length - c.ends.s[side]).abs();
                 let beside = l.arc_length >= from && l.arc_length <= to;
@@ -361,7 +362,8 @@ fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     let knots = c.history.knots();
     // Cable that had been laid before stays; where it is only now coming to lie nothing has rubbed
     // yet.
-    let fresh = c.smooth || !knots.first().zip(knots.last()).is_some_and(|(a, b)| q >= a.p && q <= b.p);
+    let fresh =
+        c.smooth || !knots.first().zip(knots.last()).is_some_and(|(a, b)| q >= a.coordinate && q <= b.coordinate);
     let (first, second) = c.history.split(&track, q);
     let after = s.next_up();
     let mut load = lying(c, q, [s, after], tension, FrictionPast::of(fresh));
@@ -421,7 +423,10 @@ fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, past: FrictionPast) ->
         ends: Ends { p: [p; 2], s, t: [tension; 2] },
         mode: if fresh { Mode::Slide(0.0) } else { Mode::Hold },
         held: None,
-        history: TensionProfile::new(Knot { p, s: s[0], tension, m: 0.0 }, Knot { p, s: s[0], tension, m: 0.0 }),
+        history: TensionProfile::new(
+            Knot { coordinate: p, arc_length: s[0], tension, mobilised: 0.0 },
+            Knot { coordinate: p, arc_length: s[0], tension, mobilised: 0.0 },
+        ),
         flips: 0,
         next: Next::Span,
         load: Some(RestingLoad::default()),

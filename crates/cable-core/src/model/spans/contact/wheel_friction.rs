@@ -94,14 +94,17 @@ impl WheelFriction {
     /// Begins with what is known of the cable on it: angle, material (m) and tension (N) at points
     /// in order.
     pub fn begin(&mut self, on: &OnWheel, points: &[[f64; 3]]) {
-        let knots: Vec<Knot> = points.iter().map(|&[p, s, tension]| Knot { p, s, tension, m: 0.0 }).collect();
+        let knots: Vec<Knot> = points
+            .iter()
+            .map(|&[p, s, tension]| Knot { coordinate: p, arc_length: s, tension, mobilised: 0.0 })
+            .collect();
         let friction = self.curve.friction;
         self.history = TensionProfile::through(&self.track(on), &knots, 1.0);
         self.held = None;
         if let (Some(a), Some(b), true) = (knots.first(), knots.last(), friction > 0.0)
-            && b.p > a.p
+            && b.coordinate > a.coordinate
         {
-            let reach = |m: f64| self.track(on).slide(a.p, b.p, a.tension, m).tension;
+            let reach = |m: f64| self.track(on).slide(a.coordinate, b.coordinate, a.tension, m).tension;
             let full = |m: f64| {
                 (b.tension - reach(m)).abs() <= SLIDING_CONE_TOLERANCE * (reach(friction) - reach(-friction)).abs()
             };

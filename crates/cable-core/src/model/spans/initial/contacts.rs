@@ -14,9 +14,13 @@ use crate::model::spans::initial::shortest_path::{Bend, Ring};
 use crate::model::spans::initial::tension;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 
-/// Something the cable bends round, in order.
+/// Rounds of moving a free end to where the material ends. What is off is in each the strain times
+/// what it was: six leave 1e-12 of it at a strain of 1 %, which is rounding.
+const END_FIT_ROUNDS: usize = 6;
+
+/// A wrap: something that the cable bends round, in order.
 #[derive(Clone, Debug)]
-struct Seat {
+struct Wrap {
     curve: usize,
     chain_range: ChainRange,
     /// First and last piece.
@@ -69,7 +73,7 @@ fn along(
         let near = near.map(|n| n * layout.problem.radius);
         lying(course, &layout.problem.world, near, &way.points, side).filter(|h| match ties[side] {
             Tie::Hangs(force) => {
-                let place = course.curves[h.curve].place(h.p[side], h.chain_range);
+                let place = course.curves[h.curve].place(h.coordinates[side], h.chain_range);
                 force.dot(&place.normal) <= LIFT_FRACTION * force.norm()
             }
             _ => true,
@@ -123,12 +127,16 @@ fn along(
     for (side, h) in heads.iter().enumerate() {
         let Some(h) = h else { continue };
         let way_at = |k: usize| at(way.along[k]);
-        let join = smaller(join, 0.5 * (h.p[1] - h.p[0]));
+        let join = smaller(join, 0.5 * (h.coordinates[1] - h.coordinates[0]));
         let s = if side == 0 { [from, way_at(first) - join] } else { [way_at(last) + join, to] };
-        let p = if side == 0 { [h.p[0], h.p[1] - join] } else { [h.p[0] + join, h.p[1]] };
+        let p = if side == 0 {
+            [h.coordinates[0], h.coordinates[1] - join]
+        } else {
+            [h.coordinates[0] + join, h.coordinates[1]]
+        };
         let c = contact(course, h.curve, h.chain_range, p, s, tension);
         contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
-        strand.ties[side] = end_tie(ties[side], h.p[side]);
+        strand.ties[side] = end_tie(ties[side], h.coordinates[side]);
     }
     strand.forces = vec![Vec2::zeros(); contacts.len() + 1];
     strand.contacts = contacts;
@@ -164,9 +172,17 @@ fn solve_spans(strand: &mut CableRun, course: &Course) -> Option<()> {
 
 /// A strand that lies on one boundary from end to end.
 fn lies_whole(mut strand: CableRun, course: &Course, [a, b]: [&Head; 2], tension: f64) -> CableRun {
-    let mut c = contact(course, a.curve, a.chain_range, [a.p[0], b.p[1]], [strand.from, strand.to], tension);
+    let mut c = contact(
+        course,
+        a.curve,
+        a.chain_range,
+        [a.coordinates[0], b.coordinates[1]],
+        [strand.from, strand.to],
+        tension,
+    );
     c.wheel = None;
-    strand.ties = [0, 1].map(|side| end_tie(strand.ties[side], if side == 0 { a.p[0] } else { b.p[1] }));
+    strand.ties =
+        [0, 1].map(|side| end_tie(strand.ties[side], if side == 0 { a.coordinates[0] } else { b.coordinates[1] }));
     strand.contacts.push(c);
     strand.forces = vec![Vec2::zeros(); 2];
     spread(&mut strand, course);
@@ -186,8 +202,8 @@ fn joint(course: &Course, heads: &[Option<Head>; 2], meet: bool, tension: f64) -
     match heads {
         [Some(a), Some(b)] if meet => {
             let (u, v) = (
-                course.curves[a.curve].place(a.p[1], a.chain_range),
-                course.curves[b.curve].place(b.p[0], b.chain_range),
+                course.curves[a.curve].place(a.coordinates[1], a.chain_range),
+                course.curves[b.curve].place(b.coordinates[0], b.chain_range),
             );
             let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
             0.5 * tension * turn / course.law.load.norm()
@@ -228,38 +244,38 @@ fn bends(
 ) -> Option<Vec<Contact>> {
     let TautString { way, first, last, .. } = *string;
     let FirstMaterial { at, tension } = *material;
-    let mut seats = seats(layout, part, course, instant, string)?;
-    let mut contacts = Vec::with_capacity(seats.len() + 2);
-    let rounds = stretched(course, &mut seats, [way.points[first], way.points[last]]);
-    for (k, seat) in seats.iter().enumerate() {
+    let mut wraps = wraps(layout, part, course, instant, string)?;
+    let mut contacts = Vec::with_capacity(wraps.len() + 2);
+    let rounds = stretched(course, &mut wraps, [way.points[first], way.points[last]]);
+    for (k, wrap) in wraps.iter().enumerate() {
         let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
         let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
-        let curve = &course.curves[seat.curve];
-        let p1 = curve.with_tangent(seat.pieces[0], arrive);
-        let p2 = curve.with_tangent(seat.pieces[1], leave);
+        let curve = &course.curves[wrap.curve];
+        let p1 = curve.with_tangent(wrap.pieces[0], arrive);
+        let p2 = curve.with_tangent(wrap.pieces[1], leave);
         // The turns counted along the string, brought to where the tangents are.
-        let turns = if curve.is_round() { ((p1 + seat.turn - p2) / std::f64::consts::TAU).round() } else { 0.0 };
+        let turns = if curve.is_round() { ((p1 + wrap.turn - p2) / std::f64::consts::TAU).round() } else { 0.0 };
         let p2 = p2 + std::f64::consts::TAU * turns;
         // An eye has no side of its own: it is passed on the one on which the string bends.
-        let eye = seat.wheel.is_some() && curve.place(p1, seat.chain_range).stretch == 0.0;
-        let (index, [p1, p2]) = if eye && p2 < p1 { (seat.curve ^ 1, [-p1, -p2]) } else { (seat.curve, [p1, p2]) };
+        let eye = wrap.wheel.is_some() && curve.place(p1, wrap.chain_range).stretch == 0.0;
+        let (index, [p1, p2]) = if eye && p2 < p1 { (wrap.curve ^ 1, [-p1, -p2]) } else { (wrap.curve, [p1, p2]) };
         let curve = &course.curves[index];
         // One that the string passes without a bend touches in one point, seen from either end.
         let [p1, p2] = if p2 > p1 { [p1, p2] } else { [0.5 * (p1 + p2); 2] };
-        let half = 0.5 * curve.length(p1, p2, seat.chain_range) / course.law.stretch(tension);
+        let half = 0.5 * curve.length(p1, p2, wrap.chain_range) / course.law.stretch(tension);
         // Round a post the string's points are not those of the cable: where it comes and goes on
         // the route itself.
         let seen = |p: f64, w: f64| {
-            let place = curve.place(p, seat.chain_range);
+            let place = curve.place(p, wrap.chain_range);
             if curve.is_round() {
                 way.close(place.at, w, course.settings.initial.post_approach_radii * place.stretch)
             } else {
                 w
             }
         };
-        let s = at(0.5 * (seen(p1, seat.way[0]) + seen(p2, seat.way[1])));
-        let mut c = contact(course, index, seat.chain_range, [p1, p2], [s - half, s + half], tension);
-        c.wheel = seat.wheel;
+        let s = at(0.5 * (seen(p1, wrap.way[0]) + seen(p2, wrap.way[1])));
+        let mut c = contact(course, index, wrap.chain_range, [p1, p2], [s - half, s + half], tension);
+        c.wheel = wrap.wheel;
         contacts.push(c);
     }
     Some(contacts)
@@ -343,10 +359,10 @@ pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
     let n = strand.contacts.len();
     let mut before = strand.from;
     for j in 0..n {
-        let lies = j == 0 && !strand.ties[0].has_span();
+        let is_end = j == 0 && !strand.ties[0].has_span();
         let room = strand.to - least * (n - j) as f64;
         let e = &mut strand.contacts[j].ends;
-        if !lies && e.s[0] < before + least {
+        if !is_end && e.s[0] < before + least {
             let shift = before + least - e.s[0];
             e.s = [e.s[0] + shift, e.s[1] + shift];
         }
@@ -358,11 +374,11 @@ pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
         before = e.s[1];
     }
     let loose = [0, 1].map(|side| matches!(strand.ties[side], Tie::Loose(_)));
-    let lies = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
+    let tied = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
     for (j, c) in strand.contacts.iter_mut().enumerate() {
         let track = course.track(c);
         let free = [loose[0] && j == 0, loose[1] && j + 1 == n];
-        let held = [lies[0] && j == 0, lies[1] && j + 1 == n];
+        let held = [tied[0] && j == 0, tied[1] && j + 1 == n];
         for side in 0..2 {
             if let Tie::Loose(force) = strand.ties[side] {
                 c.ends.t[side] = if free[side] { course.pull(c, side, force) } else { c.ends.t[side] };
@@ -371,7 +387,7 @@ pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
         c.history = lay_down(&track, &c.ends, [free, held]);
         // A free end lies where the material ends.
         for side in (0..2).filter(|&side| free[side]) {
-            for _ in 0..course.settings.initial.end_fit_rounds {
+            for _ in 0..END_FIT_ROUNDS {
                 // Laid from a free end it is the other end that does not fit.
                 let other = if free[1 - side] { side } else { 1 - side };
                 let (tension, s) = c.history.at(&track, c.ends.p[other]);
@@ -387,7 +403,7 @@ pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
 /// its material is; else from its middle. With two free ends it is laid with the tension of the one
 /// that draws less.
 fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> TensionProfile {
-    let end = |side: usize| Knot { p: e.p[side], s: e.s[side], tension: e.t[side], m: 0.0 };
+    let end = |side: usize| Knot { coordinate: e.p[side], arc_length: e.s[side], tension: e.t[side], mobilised: 0.0 };
     let start = match (free, held) {
         ([true, false], _) | ([false, false], [true, false]) => end(0),
         ([false, true], _) | ([false, false], [false, true]) => end(1),
@@ -398,7 +414,7 @@ fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> Tensio
 }
 
 fn contact(course: &Course, curve: usize, chain_range: ChainRange, p: [f64; 2], s: [f64; 2], tension: f64) -> Contact {
-    let knot = |k: usize| Knot { p: p[k], s: s[k], tension, m: 0.0 };
+    let knot = |k: usize| Knot { coordinate: p[k], arc_length: s[k], tension, mobilised: 0.0 };
     Contact {
         curve,
         chain_range,
@@ -418,7 +434,7 @@ fn contact(course: &Course, curve: usize, chain_range: ChainRange, p: [f64; 2], 
 struct Head {
     curve: usize,
     chain_range: ChainRange,
-    p: [f64; 2],
+    coordinates: [f64; 2],
     /// Points of the route that lie, the end included.
     count: usize,
 }
@@ -440,21 +456,21 @@ fn lying(course: &Course, world: &World, near: [f64; 2], points: &[Vec2], side: 
     let on: Vec<f64> = (0..n).map_while(|k| curve.on_chain(chain_range, point(k), near[k.min(1)])).collect();
     let (first, last) = (*on.first()?, *on.last()?);
     let p = if side == 0 { [first, last] } else { [last, first] };
-    (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, chain_range, p, count: on.len() })
+    (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, chain_range, coordinates: p, count: on.len() })
 }
 
 /// The bodies that the string bends round, pulleys among them; posts are seen as rings of points.
-fn seats(
+fn wraps(
     layout: &Layout,
     part: &Part,
     course: &Course,
     instant: &BoundaryConditions,
     string: &TautString<'_>,
-) -> Option<Vec<Seat>> {
+) -> Option<Vec<Wrap>> {
     let TautString { way, first, last, ring } = *string;
     let world = &layout.problem.world;
     let corners = shortest_path::corners(world, ring);
-    let mut out: Vec<Seat> = Vec::new();
+    let mut out: Vec<Wrap> = Vec::new();
     let mut reached = way.along[first];
     let mut begin = (way.points[first], first);
     for k in 0..=part.pulleys.len() {
@@ -491,15 +507,15 @@ fn seats(
             let radius = course.curves[curve].place(0.0, chain_range).stretch;
             let near = way.distance(stop, w) + course.settings.initial.wheel_route_radii * radius;
             let round = way.beside(stop, w, near);
-            out.push(Seat { curve, chain_range, pieces: [0, 0], wheel: Some(q.support), way: round, turn });
+            out.push(Wrap { curve, chain_range, pieces: [0, 0], wheel: Some(q.support), way: round, turn });
             (begin, reached) = ((stop, leg), w);
         }
     }
     Some(out)
 }
 
-/// Adds a bend to what there is, or to the last seat where it goes on there.
-fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, w: f64, turn: f64) -> Option<()> {
+/// Adds a bend to what there is, or to the last wrap where it goes on there.
+fn push(out: &mut Vec<Wrap>, course: &Course, b: &Bend, w: f64, turn: f64) -> Option<()> {
     let curve_index = 2 * b.corner.body + usize::from(b.sense < 0.0);
     let curve = course.curves.get(curve_index)?;
     let i = curve.piece_of(b.corner.feature, b.corner.at)?;
@@ -513,37 +529,38 @@ fn push(out: &mut Vec<Seat>, course: &Course, b: &Bend, w: f64, turn: f64) -> Op
         last.turn += turn;
         return Some(());
     }
-    out.push(Seat { curve: curve_index, chain_range, pieces: [i, i], wheel: None, way: [w, w], turn });
+    out.push(Wrap { curve: curve_index, chain_range, pieces: [i, i], wheel: None, way: [w, w], turn });
     Some(())
 }
 
-/// Lets each seat go on to the corner beside it where the string comes up to its corner, or leaves
+/// Lets each wrap go on to the corner beside it where the string comes up to its corner, or leaves
 /// it, through the edge between the two; the rounds of all.
 ///
 /// The string of points passes just by such a corner, that of the cable's radius bends round it:
 /// along the edge nothing turns, and Newton's method does not find across it.
-fn stretched(course: &Course, seats: &mut [Seat], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
-    let mut found = rounds(course, seats, ends[0], ends[1]);
-    for _ in 0..course.settings.initial.max_extended_corners {
+fn stretched(course: &Course, wraps: &mut [Wrap], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
+    let mut found = rounds(course, wraps, ends[0], ends[1]);
+    // It ends by itself: every round but the last extends a wrap, within its chain.
+    loop {
         let mut changed = false;
-        for (k, seat) in seats.iter_mut().enumerate() {
-            let curve = &course.curves[seat.curve];
+        for (k, wrap) in wraps.iter_mut().enumerate() {
+            let curve = &course.curves[wrap.curve];
             let arrive = tangent(found[k][1], found[k + 1][0]);
             let leave = tangent(found[k + 1][1], found[k + 2][0]);
-            let (first, last) = (seat.pieces[0] - 2, seat.pieces[1] + 2);
-            if curve.beyond_arc(seat.pieces[0], arrive) < 0 && first >= seat.chain_range.first && curve.is_arc(first) {
-                seat.pieces[0] = first;
+            let (first, last) = (wrap.pieces[0] - 2, wrap.pieces[1] + 2);
+            if curve.beyond_arc(wrap.pieces[0], arrive) < 0 && first >= wrap.chain_range.first && curve.is_arc(first) {
+                wrap.pieces[0] = first;
                 changed = true;
             }
-            if curve.beyond_arc(seat.pieces[1], leave) > 0 && last <= seat.chain_range.last && curve.is_arc(last) {
-                seat.pieces[1] = last;
+            if curve.beyond_arc(wrap.pieces[1], leave) > 0 && last <= wrap.chain_range.last && curve.is_arc(last) {
+                wrap.pieces[1] = last;
                 changed = true;
             }
         }
         if !changed {
             break;
         }
-        found = rounds(course, seats, ends[0], ends[1]);
+        found = rounds(course, wraps, ends[0], ends[1]);
     }
     found
 }
@@ -551,10 +568,10 @@ fn stretched(course: &Course, seats: &mut [Seat], ends: [Vec2; 2]) -> Vec<[Round
 /// A circle: centre, radius, sense.
 type Round = (Vec2, f64, f64);
 
-/// The circles on which the string arrives at each seat and leaves it; points at both ends.
-fn rounds(course: &Course, seats: &[Seat], start: Vec2, end: Vec2) -> Vec<[Round; 2]> {
+/// The circles on which the string arrives at each wrap and leaves it; points at both ends.
+fn rounds(course: &Course, wraps: &[Wrap], start: Vec2, end: Vec2) -> Vec<[Round; 2]> {
     let mut out = vec![[(start, 0.0, 1.0); 2]];
-    for s in seats {
+    for s in wraps {
         let curve = &course.curves[s.curve];
         out.push(s.pieces.map(|i| {
             let place = curve.place_on(i, 0.0);

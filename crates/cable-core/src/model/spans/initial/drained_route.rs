@@ -280,11 +280,11 @@ impl Drained {
             let down = draining.legs.clone();
             draining.hang(last.x, last.y);
             // Up again over what it came down on.
-            let lies = down.iter().rposition(|leg| matches!(leg, Leg::Lies { .. })).unwrap_or(0);
+            let last_lying = down.iter().rposition(|leg| matches!(leg, Leg::Lies { .. })).unwrap_or(0);
             let from = down.iter().position(|leg| matches!(leg, Leg::Lies { .. })).unwrap_or(0);
-            if lies > from {
+            if last_lying > from {
                 draining.legs.truncate(down.len());
-                draining.legs.extend(down[from..lies].iter().rev().map(|leg| leg.back()));
+                draining.legs.extend(down[from..last_lying].iter().rev().map(|leg| leg.back()));
                 draining.height = draining.start_of(&down[from]);
                 draining.rise(last.x, last.y);
             }

@@ -22,11 +22,11 @@ const CONTACT_SPACING_FRACTION: f64 = 1e-6;
 /// A point of the cable, with the tensions before and after it.
 #[derive(Clone, Copy, Debug)]
 struct Station {
-    s: f64,
+    arc_length: f64,
     at: Vec2,
     tension: [f64; 2],
     /// Boundary, chain and p, where it lies on one.
-    lies: Option<(usize, ChainRange, f64)>,
+    boundary_point: Option<(usize, ChainRange, f64)>,
     wheel: Option<usize>,
 }
 
@@ -51,7 +51,7 @@ pub(in crate::model::spans) fn take(
             return None;
         }
         pulleys(part, course, instant, &mut stations);
-        seat(layout, course, &mut stations);
+        place_on_boundaries(layout, course, &mut stations);
         laid(layout, part, course, instant, &stations, within)
     };
     layout.strands.iter().map(strand).collect()
@@ -63,10 +63,14 @@ fn stations(nodes: &[Node], [from, to]: [f64; 2]) -> Vec<Station> {
     let rounding = 1e-9 * (to - from);
     for n in nodes.iter().filter(|n| n.arc_length_m >= from - rounding && n.arc_length_m <= to + rounding) {
         match out.last_mut() {
-            Some(last) if n.arc_length_m <= last.s + rounding => last.tension[1] = n.tension_n,
-            _ => {
-                out.push(Station { s: n.arc_length_m, at: n.at(), tension: [n.tension_n; 2], lies: None, wheel: None })
-            }
+            Some(last) if n.arc_length_m <= last.arc_length + rounding => last.tension[1] = n.tension_n,
+            _ => out.push(Station {
+                arc_length: n.arc_length_m,
+                at: n.at(),
+                tension: [n.tension_n; 2],
+                boundary_point: None,
+                wheel: None,
+            }),
         }
     }
     out
@@ -86,13 +90,13 @@ fn pulleys(part: &Part, course: &Course, instant: &BoundaryConditions, stations:
         let chain_range = ChainRange { first: 0, last: 0 };
         let middle = before.normalize() + after.normalize();
         let p = course.curves.get(curve).map_or(0.0, |c| c.with_tangent(0, middle));
-        stations[k].lies = Some((curve, chain_range, p));
+        stations[k].boundary_point = Some((curve, chain_range, p));
         stations[k].wheel = Some(q.support);
     }
 }
 
 /// Finds the boundary that each station lies on.
-fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
+fn place_on_boundaries(layout: &Layout, course: &Course, stations: &mut [Station]) {
     let near = layout.settings.initial.adopted_contact_distance_m;
     let world = &layout.problem.world;
     let n = stations.len();
@@ -104,7 +108,7 @@ fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
             before = None;
             continue;
         }
-        station.lies = world.signed_gap(station.at, near).filter(|g| g.gap_m.abs() <= near).and_then(|gap| {
+        station.boundary_point = world.signed_gap(station.at, near).filter(|g| g.gap_m.abs() <= near).and_then(|gap| {
             let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
             let back = cross(along, gap.normal) < 0.0;
             let index = 2 * body + usize::from(back);
@@ -116,7 +120,7 @@ fn seat(layout: &Layout, course: &Course, stations: &mut [Station]) {
             }
             Some((index, chain_range, p))
         });
-        before = station.lies;
+        before = station.boundary_point;
     }
 }
 
@@ -138,13 +142,13 @@ fn laid(
     let last = stations.len() - 1;
     let mut k = 0;
     while k <= last {
-        let Some((index, chain_range, p)) = stations[k].lies else {
+        let Some((index, chain_range, p)) = stations[k].boundary_point else {
             k += 1;
             continue;
         };
         let (first, mut reached) = (k, p);
         while stations[k].wheel.is_none()
-            && let Some((i, h, p)) = stations.get(k + 1).filter(|s| s.wheel.is_none()).and_then(|s| s.lies)
+            && let Some((i, h, p)) = stations.get(k + 1).filter(|s| s.wheel.is_none()).and_then(|s| s.boundary_point)
             && (i, h) == (index, chain_range)
             && p >= reached
         {
@@ -221,31 +225,36 @@ impl Run<'_> {
             contact.ends.p = [middle; 2];
         }
         let knot = |side: usize| Knot {
-            p: contact.ends.p[side],
-            s: contact.ends.s[side],
+            coordinate: contact.ends.p[side],
+            arc_length: contact.ends.s[side],
             tension: contact.ends.t[side],
-            m: 0.0,
+            mobilised: 0.0,
         };
         let mut knots = vec![knot(0)];
         for pair in stations[self.first..=self.last].windows(2) {
             let [a, b] = [&pair[0], &pair[1]];
-            let (Some((_, _, p)), Some((_, _, q))) = (a.lies, b.lies) else { continue };
+            let (Some((_, _, p)), Some((_, _, q))) = (a.boundary_point, b.boundary_point) else { continue };
             if a.jumps() || b.jumps() {
                 let tension = 0.5 * (a.tension[1] + b.tension[0]);
-                knots.push(Knot { p: 0.5 * (p + q), s: 0.5 * (a.s + b.s), tension, m: 0.0 });
+                knots.push(Knot {
+                    coordinate: 0.5 * (p + q),
+                    arc_length: 0.5 * (a.arc_length + b.arc_length),
+                    tension,
+                    mobilised: 0.0,
+                });
             }
             if !b.jumps() && q < contact.ends.p[1] {
-                knots.push(Knot { p: q, s: b.s, tension: b.tension[0], m: 0.0 });
+                knots.push(Knot { coordinate: q, arc_length: b.arc_length, tension: b.tension[0], mobilised: 0.0 });
             }
         }
         knots.push(knot(1));
         let track = course.track(&contact);
         // A difference beyond the cone goes to where the tension is known without friction: away
         // from an end that lies, to one that is not held.
-        let lies = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
+        let tied = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
         let at_end = [self.first == 0, self.last + 1 == stations.len()];
         let free = strand.ties.map(|t| matches!(t, Tie::Hangs(_) | Tie::Loose(_)));
-        let back = lies[1] && at_end[1] && !(lies[0] && at_end[0]) || free[0] && !free[1];
+        let back = tied[1] && at_end[1] && !(tied[0] && at_end[0]) || free[0] && !free[1];
         contact.history = if back {
             TensionProfile::through_back(&track, &knots, self.within)
         } else {
@@ -256,7 +265,7 @@ impl Run<'_> {
         if !at_end[usize::from(!back)] {
             contact.history.measure(&track, if back { Going::Left } else { Going::Right });
             if let [first, .., last] = contact.history.knots() {
-                contact.ends.s = [first.s, last.s];
+                contact.ends.s = [first.arc_length, last.arc_length];
             }
         }
         // The cone changes only the tension at an end that lies.
@@ -276,7 +285,7 @@ impl Run<'_> {
     ) -> Option<(f64, f64, f64)> {
         let k = if side == 0 { self.first } else { self.last };
         let station = &stations[k];
-        let (_, _, p) = station.lies?;
+        let (_, _, p) = station.boundary_point?;
         let tension = station.tension[side];
         let tip = if side == 0 { k == 0 } else { k + 1 == stations.len() };
         if tip {
@@ -290,7 +299,7 @@ impl Run<'_> {
                     // Held just above: the next node is the first that lies.
                     None if self.first < self.last => {
                         let next = &stations[if side == 0 { k + 1 } else { k - 1 }];
-                        return Some((next.lies?.2, next.s, next.tension[side]));
+                        return Some((next.boundary_point?.2, next.arc_length, next.tension[side]));
                     }
                     None => return None,
                 },
@@ -317,7 +326,7 @@ impl Run<'_> {
         }
         let i = self.curve.locate(p, self.chain_range);
         if self.curve.place(p, self.chain_range).turn == 0.0 {
-            return Some((p, station.s, tension));
+            return Some((p, station.arc_length, tension));
         }
         let beside = if side == 0 { stations[k - 1].at } else { stations[k + 1].at };
         let tangent = self.tangent_from(beside, p, side)?;
@@ -327,10 +336,10 @@ impl Run<'_> {
         }
         let beyond = if side == 0 { q < p } else { q > p };
         if !beyond {
-            return Some((p, station.s, tension));
+            return Some((p, station.arc_length, tension));
         }
         let way = self.curve.length(p, q, self.chain_range) / course.law.stretch(tension);
-        Some((q, station.s + way, tension))
+        Some((q, station.arc_length + way, tension))
     }
 
     /// Direction of travel of the line that touches the arc at p and goes through a point beside

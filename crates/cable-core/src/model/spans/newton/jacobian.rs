@@ -27,14 +27,14 @@ pub(super) fn gather(strand: &CableRun, out: &mut Vec<f64>) {
 }
 
 /// True if the tension of that side of contact j is an unknown of its own.
-pub(super) fn lies(strand: &CableRun, j: usize, side: usize) -> bool {
+pub(super) fn has_tension_unknown(strand: &CableRun, j: usize, side: usize) -> bool {
     let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
     outer && matches!(strand.ties[side], Tie::Lies(_))
 }
 
 /// True for the ends of contact j that are held on the boundary.
 pub(super) fn pinned(strand: &CableRun, j: usize) -> [bool; 2] {
-    [0, 1].map(|side| lies(strand, j, side) || strand.is_pinned(j, side))
+    [0, 1].map(|side| has_tension_unknown(strand, j, side) || strand.is_pinned(j, side))
 }
 
 /// True if that side of contact j is an end of the strand that lies.
@@ -45,7 +45,7 @@ fn is_end(strand: &CableRun, j: usize, side: usize) -> bool {
 
 fn slot(strand: &CableRun, j: usize, side: usize) -> f64 {
     let e = &strand.contacts[j].ends;
-    if lies(strand, j, side) { e.t[side] } else { e.p[side] }
+    if has_tension_unknown(strand, j, side) { e.t[side] } else { e.p[side] }
 }
 
 pub(super) fn scatter(strand: &mut CableRun, course: &Course, x: &[f64]) {
@@ -55,7 +55,7 @@ pub(super) fn scatter(strand: &mut CableRun, course: &Course, x: &[f64]) {
         if k < strand.contacts.len() {
             for side in 0..2 {
                 let (slot, s) = (x[2 + 2 * side], x[3 + 2 * side]);
-                let (own, marked) = (lies(strand, k, side), strand.is_marked(k, side));
+                let (own, marked) = (has_tension_unknown(strand, k, side), strand.is_marked(k, side));
                 let c = &mut strand.contacts[k];
                 let e = &mut c.ends;
                 // The material of a load is what it is, to the last digit.
@@ -172,7 +172,7 @@ fn span_rows(strand: &CableRun, course: &Course, k: usize, system: &mut System) 
         band.add(row + 1, column, v.y * scale);
     };
     if let Some(place) = before {
-        if !lies(strand, k - 1, 1) {
+        if !has_tension_unknown(strand, k - 1, 1) {
             add(row - 2, place.tangent * place.stretch);
         }
         add(row - 1, -course.rate(start));
@@ -261,7 +261,7 @@ fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, system: &mut S
             b.add(tangency, s_column, scale);
             // A free end has no tension and finds its place; a held one has a place and finds its
             // tension.
-            let of = if lies(strand, j, side) { 2 } else { 0 };
+            let of = if has_tension_unknown(strand, j, side) { 2 } else { 0 };
             for i in 0..2 {
                 b.add(row + 1 + i, p_column, by(i, of));
                 b.add(row + 1 + i, s_column, by(i, 1));

@@ -26,7 +26,7 @@ use crate::model::spans::boundary::friction_memory::{Held, Mode, TensionProfile}
 use crate::model::spans::boundary_conditions::BoundaryConditions;
 use crate::model::spans::contact::equations;
 use crate::model::spans::contact::point_load;
-use crate::model::spans::newton::jacobian::{System, assemble, gather, lies, pinned, renew, scatter};
+use crate::model::spans::newton::jacobian::{System, assemble, gather, has_tension_unknown, pinned, renew, scatter};
 use crate::model::spans::newton::slip_predictor::SlipPredictor;
 pub(super) use crate::model::spans::newton::stability::stable;
 use crate::model::spans::run::{CableRun, Course};
@@ -162,7 +162,7 @@ fn max_step(strand: &CableRun, course: &Course, x: &[f64], d: &[f64]) -> f64 {
         let Some(c) = strand.contacts.get(k) else { continue };
         let track = course.track(c);
         for side in 0..2 {
-            if lies(strand, k, side) {
+            if has_tension_unknown(strand, k, side) {
                 continue;
             }
             let (p, dp) = (x[6 * k + 2 + 2 * side], d[6 * k + 2 + 2 * side]);
@@ -185,7 +185,7 @@ fn borders(strand: &CableRun, course: &Course, x: &[f64], d: &[f64], mut each: i
         for side in 0..2 {
             let index = 6 * k + 2 + 2 * side;
             let (p, dp) = (x[index], d[index]);
-            if lies(strand, k, side) || dp == 0.0 {
+            if has_tension_unknown(strand, k, side) || dp == 0.0 {
                 continue;
             }
             let i = track.curve.locate(p, c.chain_range);

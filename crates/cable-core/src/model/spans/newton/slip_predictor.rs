@@ -165,11 +165,11 @@ fn link(strand: &CableRun, course: &Course, spots: &[ContactPlaces], j: usize) -
     let c = &strand.contacts[j];
     let e = &c.ends;
     let ties = [(j == 0).then(|| strand.ties[0]), (j + 1 == strand.contacts.len()).then(|| strand.ties[1])];
-    let lies = ties.iter().flatten().any(|t| matches!(t, Tie::Lies(_) | Tie::Loose(_)));
+    let is_tied = ties.iter().flatten().any(|t| matches!(t, Tie::Lies(_) | Tie::Loose(_)));
     let mut out = LinearContact { ends: c.ends, reach: None, side: 0, sigma: 0.0, slid: 0.0 };
     let beside_slack = strand.in_pocket(j, 0) || strand.in_pocket(j, 1);
     let beside_load = strand.is_marked(j, 0) || strand.is_marked(j, 1);
-    if lies || beside_slack || beside_load || !(e.p[1] > e.p[0] && e.t[0] > 0.0) {
+    if is_tied || beside_slack || beside_load || !(e.p[1] > e.p[0] && e.t[0] > 0.0) {
         return out;
     }
     let friction = course.friction(c);

@@ -1,7 +1,7 @@
 //! This check finds whether an equilibrium is stable.
 
 use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::newton::{Work, assemble, lies};
+use crate::model::spans::newton::{Work, assemble, has_tension_unknown};
 use crate::model::spans::run::{CableRun, Course, Next, Tie};
 
 /// True if a balance without friction is stable: it returns after a disturbance.
@@ -36,7 +36,7 @@ pub(in crate::model::spans) fn stable(strand: &CableRun, course: &Course, work: 
     let Some(mut before) = is_negative(&mut stuck) else { return false };
     (0..strand.contacts.len()).all(|j| {
         stuck.contacts[j].clone_from(&strand.contacts[j]);
-        let turns = !lies(strand, j, 0);
+        let turns = !has_tension_unknown(strand, j, 0);
         let Some(after) = is_negative(&mut stuck) else { return false };
         let right = (after != before) == turns;
         before = after;

@@ -16,6 +16,7 @@ use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::loose::{Line, Part};
 use crate::model::spans::slack::joint::Profile;
 use crate::model::spans::slack::{Drape, HALVINGS};
+use crate::numerics::bisect;
 
 /// Greatest distance from its support at which a span may end, of its length and the size of
 /// coordinates: next to plumb rounding of where it touches moves its end a thousand times as much.
@@ -28,7 +29,7 @@ const ROUNDS: usize = 8;
 pub(super) struct Bridge {
     /// Number of the stretch, and p on it.
     pub line: usize,
-    pub p: f64,
+    pub coordinate: f64,
     pub part: Part,
 }
 
@@ -48,24 +49,22 @@ impl Drape<'_> {
     /// The span to a support at the start (side 0) or the end, from tensions that come from the
     /// other one.
     pub(super) fn bridge(&self, profile: &Profile, support: Vec2, side: usize) -> Option<Bridge> {
-        let (course, other, lies, tensions) = (self.course, 1 - side, &profile.lies, &profile.enters);
+        let (course, other, stretches, tensions) = (self.course, 1 - side, &profile.stretches, &profile.enters);
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let seen = |k: usize, p: f64| {
-            let s = &lies[k];
-            let t = s.slide(course, s.p[other], p, tensions[k], sign * s.friction(course)).tension;
+            let s = &stretches[k];
+            let t = s.slide(course, s.coordinates[other], p, tensions[k], sign * s.friction(course)).tension;
             let place = s.place(course, p);
             self.seen(place.at, -place.tangent * sign, t, support)
         };
-        let order: Vec<usize> = if side == 0 { (0..lies.len()).collect() } else { (0..lies.len()).rev().collect() };
+        let order: Vec<usize> =
+            if side == 0 { (0..stretches.len()).collect() } else { (0..stretches.len()).rev().collect() };
         for k in order {
-            let (mut low, mut high) = (lies[k].p[side], lies[k].p[other]);
+            let [low, high] = [stretches[k].coordinates[side], stretches[k].coordinates[other]];
             if seen(k, high).is_some_and(|s| !(s.over > 0.0)) {
                 continue;
             }
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                if seen(k, middle).is_none_or(|s| s.over > 0.0) { high = middle } else { low = middle }
-            }
+            let [low, _] = bisect([low, high], HALVINGS, |p| !seen(k, p).is_none_or(|s| s.over > 0.0));
             let found =
                 seen(k, low).filter(|s| s.over.abs() <= ENDS * (s.length + support.norm()) && s.tension > 0.0)?;
             let weight = course.law.load * found.length;
@@ -78,8 +77,8 @@ impl Drape<'_> {
                 let force = found.towards * found.tension;
                 ([found.tension, (force - weight).norm()], Line::Spans { from: found.at, force })
             };
-            let part = Part { s: [0.0, found.length], tension, form };
-            return Some(Bridge { line: k, p: low, part });
+            let part = Part { arc_lengths: [0.0, found.length], tension, form };
+            return Some(Bridge { line: k, coordinate: low, part });
         }
         None
     }

@@ -14,7 +14,7 @@ use crate::model::spans::slack::CREST_CONE_ROUNDING;
 /// The lowest place that holds a heap drawn by a force (N), and before which part that is.
 pub(super) fn heap(parts: &[Part], course: &Course, frame: Frame, force: Vec2) -> Option<(usize, Heap)> {
     let side = |part: Option<&Part>, end: usize| match part.map(|p| (p.form, p.tension[end])) {
-        Some((Line::Lies(s), 0.0)) => Some((s, s.place(course, s.p[end]))),
+        Some((Line::Lies(s), 0.0)) => Some((s, s.place(course, s.coordinates[end]))),
         _ => None,
     };
     let slack = |part: Option<&Part>, end: usize| part.is_none_or(|p| p.tension[end] == 0.0);

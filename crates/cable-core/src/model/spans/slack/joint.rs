@@ -20,6 +20,7 @@
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::loose::{Line, Part, Stretch};
 use crate::model::spans::slack::{Drape, HALVINGS, STRAIGHT_TURN, Sought};
+use crate::numerics::bisect;
 
 /// Doublings of the force across the load in the search for one that is too large.
 const MOST_DOUBLED: usize = 60;
@@ -33,7 +34,7 @@ const TANGENCY_FRACTION: f64 = 1e-3;
 #[derive(Clone, Copy, Debug)]
 struct Over {
     /// Places at which it leaves the one and meets the other.
-    p: [f64; 2],
+    coordinates: [f64; 2],
     /// Tensions where it leaves and where it meets, N.
     tension: [f64; 2],
     material: f64,
@@ -42,7 +43,7 @@ struct Over {
 /// The tensions along stretches as they come from one end.
 pub(super) struct Profile {
     /// Stretches as the spans over kinks leave them.
-    pub lies: Vec<Stretch>,
+    pub stretches: Vec<Stretch>,
     /// Tension where each is entered, N.
     pub enters: Vec<f64>,
     /// The span that begins behind each, as the cable goes, and the stretch at which it ends.
@@ -55,19 +56,27 @@ impl Drape<'_> {
     /// Tensions along stretches from their start (side 0) or end, as little as friction lets them
     /// have, from a tension there (N); `walls`: material up what hangs behind each, as the cable
     /// goes, m. None where a kink cannot be bridged.
-    pub(super) fn profile(&self, lies: &[Stretch], walls: &[Option<f64>], side: usize, begins: f64) -> Option<Profile> {
-        let n = lies.len();
-        let mut out = Profile { lies: lies.to_vec(), enters: vec![0.0; n], spans: vec![None; n], leaves: begins };
+    pub(super) fn profile(
+        &self,
+        stretches: &[Stretch],
+        walls: &[Option<f64>],
+        side: usize,
+        begins: f64,
+    ) -> Option<Profile> {
+        let n = stretches.len();
+        let mut out =
+            Profile { stretches: stretches.to_vec(), enters: vec![0.0; n], spans: vec![None; n], leaves: begins };
         for i in 0..n {
             let k = if side == 0 { i } else { n - 1 - i };
-            let (s, enters) = (out.lies[k], out.leaves);
+            let (s, enters) = (out.stretches[k], out.leaves);
             out.enters[k] = enters;
-            out.leaves = self.least(&s, side, enters, s.p[1 - side]);
+            out.leaves = self.least(&s, side, enters, s.coordinates[1 - side]);
             if self.sought == Sought::NoTension && out.leaves > self.most {
                 return None;
             }
             let first = if side == 0 { k } else { k.wrapping_sub(1) };
-            let (Some(a), Some(b)) = (out.lies.get(first).copied(), out.lies.get(first.wrapping_add(1)).copied())
+            let (Some(a), Some(b)) =
+                (out.stretches.get(first).copied(), out.stretches.get(first.wrapping_add(1)).copied())
             else {
                 continue;
             };
@@ -75,8 +84,14 @@ impl Drape<'_> {
             let mut left = k;
             let over = match walls.get(first).copied().flatten() {
                 Some(height) if out.leaves > self.most && height * way > 0.0 => loop {
-                    let from =
-                        Stretch { p: bounds(side, out.lies[left].p[side], lies[left].p[1 - side]), ..lies[left] };
+                    let from = Stretch {
+                        coordinates: bounds(
+                            side,
+                            out.stretches[left].coordinates[side],
+                            stretches[left].coordinates[1 - side],
+                        ),
+                        ..stretches[left]
+                    };
                     let enters = out.enters[left];
                     if let Some(over) = self.climb([&from, to], way, &|p| self.least(&from, side, enters, p))? {
                         break over;
@@ -104,11 +119,11 @@ impl Drape<'_> {
                 None => continue,
             };
             let (before, after) = if side == 0 { (left, first + 1) } else { (first, left) };
-            let [p, ends] = [over.p, over.tension].map(|[x, y]| if side == 0 { [x, y] } else { [y, x] });
-            (out.lies[before].p[1], out.lies[after].p[0]) = (p[0], p[1]);
-            let place = out.lies[before].place(self.course, p[0]);
+            let [p, ends] = [over.coordinates, over.tension].map(|[x, y]| if side == 0 { [x, y] } else { [y, x] });
+            (out.stretches[before].coordinates[1], out.stretches[after].coordinates[0]) = (p[0], p[1]);
+            let place = out.stretches[before].place(self.course, p[0]);
             let form = Line::Spans { from: place.at, force: place.tangent * ends[0] };
-            out.spans[before] = Some((Part { s: [0.0, over.material], tension: ends, form }, after));
+            out.spans[before] = Some((Part { arc_lengths: [0.0, over.material], tension: ends, form }, after));
             out.leaves = over.tension[1];
         }
         Some(out)
@@ -119,12 +134,12 @@ impl Drape<'_> {
     fn least(&self, s: &Stretch, side: usize, enters: f64, p: f64) -> f64 {
         let friction = s.friction(self.course);
         let against = if side == 0 { -friction } else { friction };
-        larger(s.slide(self.course, s.p[side], p, enters, against).tension, 0.0)
+        larger(s.slide(self.course, s.coordinates[side], p, enters, against).tension, 0.0)
     }
 
     /// True if a cable under tension would bridge the gap between two stretches.
     pub(super) fn bends_in(&self, a: &Stretch, b: &Stretch) -> bool {
-        let [before, after] = [a.place(self.course, a.p[1]), b.place(self.course, b.p[0])];
+        let [before, after] = [a.place(self.course, a.coordinates[1]), b.place(self.course, b.coordinates[0])];
         cross(before.tangent, after.tangent) * self.course.curves[a.curve].sense > STRAIGHT_TURN
     }
 
@@ -133,7 +148,8 @@ impl Drape<'_> {
     /// meet them.
     fn over(&self, [from, to]: [&Stretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<Over> {
         let end = usize::from(way > 0.0);
-        let (kink, next) = (from.place(self.course, from.p[end]), to.place(self.course, to.p[1 - end]));
+        let (kink, next) =
+            (from.place(self.course, from.coordinates[end]), to.place(self.course, to.coordinates[1 - end]));
         if kink.turn != 0.0 || next.turn != 0.0 {
             return None;
         }
@@ -148,38 +164,35 @@ impl Drape<'_> {
             let (material, d) = sight.catenary(h, m1, m2);
             ([(d.x * t[1].y - d.y * t[1].x) / det, (t[0].x * d.y - t[0].y * d.x) / det], material)
         };
-        let room = |s: &Stretch| s.p[1] - s.p[0];
+        let room = |s: &Stretch| s.coordinates[1] - s.coordinates[0];
         // Beyond the edge the tension is what it is at its start.
-        let comes = |x: f64| tension(from.p[end] - way * if x < room(from) { x } else { room(from) });
+        let comes = |x: f64| tension(from.coordinates[end] - way * if x < room(from) { x } else { room(from) });
         let lacks = |h: f64| h * 1.0f64.hypot(m1) < comes(aside(h).0[0]);
-        let (mut low, mut high) = (0.0, tension(from.p[end]));
+        let (mut low, mut high) = (0.0, tension(from.coordinates[end]));
         for _ in 0..MOST_DOUBLED {
             if !lacks(high) {
                 break;
             }
             (low, high) = (high, 2.0 * high);
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if lacks(middle) { low = middle } else { high = middle }
-        }
+        let [low, high] = bisect([low, high], HALVINGS, lacks);
         let h = 0.5 * (low + high);
         let ([x1, x2], material) = aside(h);
-        let p = [from.p[end] - way * x1, to.p[1 - end] + way * x2];
+        let p = [from.coordinates[end] - way * x1, to.coordinates[1 - end] + way * x2];
         let tension = [m1, m2].map(|m| h * 1.0f64.hypot(m));
-        (x1 < room(from) && x2 < room(to)).then_some(Over { p, tension, material })
+        (x1 < room(from) && x2 < room(to)).then_some(Over { coordinates: p, tension, material })
     }
 
     /// The span from a stretch at the foot of a wall up to the round above it; from the tension at
     /// each p of the first. Some(None) where it leaves from before that.
     fn climb(&self, [from, to]: [&Stretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<Option<Over>> {
         let end = usize::from(way > 0.0);
-        let above = to.place(self.course, to.p[1 - end]);
+        let above = to.place(self.course, to.coordinates[1 - end]);
         if above.turn == 0.0 {
             return None;
         }
         let radius = above.stretch;
-        let foot = from.place(self.course, from.p[end]);
+        let foot = from.place(self.course, from.coordinates[end]);
         let sight = Sight::new(self, foot.tangent * way)?;
         let center = sight.seen(above.at - above.normal * radius);
         // The catenary from p: its tension across the load, its slopes at both ends, the material,
@@ -189,24 +202,20 @@ impl Drape<'_> {
             let t = sight.seen(place.tangent * way);
             let begins = sight.seen(place.at);
             let (h, m1) = (tension(p) * t.x, t.y / t.x);
-            let (mut low, mut high) = (m1.atan(), std::f64::consts::FRAC_PI_2);
             let at = |angle: f64| begins + sight.catenary(h, m1, angle.tan()).1 - center;
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (low + high);
-                let (sin, cos) = middle.sin_cos();
-                if at(middle).dot(&Vec2::new(cos, sin)) < 0.0 { low = middle } else { high = middle }
-            }
+            let [low, _] = bisect([m1.atan(), std::f64::consts::FRAC_PI_2], HALVINGS, |angle| {
+                let (sin, cos) = angle.sin_cos();
+                at(angle).dot(&Vec2::new(cos, sin)) < 0.0
+            });
             // With the centre on its right: beyond it the span would be in the wall.
             let (sin, cos) = low.sin_cos();
             (h, [m1, low.tan()], cross(Vec2::new(cos, sin), at(low)) - radius)
         };
         // From the foot it leads into the wall, from where there is no tension plumb up beside it.
-        let (mut far, mut near) = (from.p[1 - end], from.p[end]);
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (far + near);
-            if !(tension(middle) > 0.0) || seen(middle).2 > 0.0 { far = middle } else { near = middle }
-        }
-        if tension(from.p[1 - end]) > 0.0 && !(seen(from.p[1 - end]).2 > 0.0) {
+        let [_, near] = bisect([from.coordinates[1 - end], from.coordinates[end]], HALVINGS, |p| {
+            !(tension(p) > 0.0) || seen(p).2 > 0.0
+        });
+        if tension(from.coordinates[1 - end]) > 0.0 && !(seen(from.coordinates[1 - end]).2 > 0.0) {
             return Some(None);
         }
         let (h, [m1, m2], off) = seen(near);
@@ -217,9 +226,13 @@ impl Drape<'_> {
         // The direction in which it meets the round, as the cable goes.
         let meets = sight.back(Vec2::new(1.0, m2).normalize()) * way;
         let turned = cross(above.tangent, meets).atan2(above.tangent.dot(&meets));
-        let p = to.p[1 - end] + turned / above.turn;
-        let inside = p >= to.p[0] && p <= to.p[1];
-        inside.then_some(Some(Over { p: [near, p], tension: [m1, m2].map(|m| h * 1.0f64.hypot(m)), material }))
+        let p = to.coordinates[1 - end] + turned / above.turn;
+        let inside = p >= to.coordinates[0] && p <= to.coordinates[1];
+        inside.then_some(Some(Over {
+            coordinates: [near, p],
+            tension: [m1, m2].map(|m| h * 1.0f64.hypot(m)),
+            material,
+        }))
     }
 }
 

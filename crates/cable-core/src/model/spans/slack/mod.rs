@@ -37,6 +37,7 @@ use crate::model::spans::initial::drained_route::{Drained, Frame, Leg, NONE_M, R
 use crate::model::spans::initial::route::way;
 use crate::model::spans::run::{CableRun, Course, Tie};
 use crate::model::spans::slack::heap::heap;
+use crate::numerics::bisect;
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
 const CREST_CONE_ROUNDING: f64 = 1e-9;
@@ -140,7 +141,7 @@ fn pay_out(
     drawn: Vec2,
     held: [bool; 2],
 ) -> Option<Vec<Part>> {
-    let own = |p: &Part| p.s[1] - p.s[0];
+    let own = |p: &Part| p.arc_lengths[1] - p.arc_lengths[0];
     let mut over = to - from - parts.iter().map(own).sum::<f64>();
     if !(over > EXCESS_CABLE_FRACTION * (to - from)) {
         cut(&mut parts, held.iter().position(|h| !h)?, -over)?;
@@ -149,15 +150,15 @@ fn pay_out(
     let free: f64 = parts.iter().filter(|p| p.is_loose()).map(own).sum();
     if over > 0.0 && (free <= NONE_M || drawn.norm() > 0.0) {
         let (at, found) = heap(&parts, course, frame, course.law.load * over + drawn)?;
-        parts.insert(at, Part { s: [0.0, over], tension: [0.0; 2], form: Line::Heap(found) });
+        parts.insert(at, Part { arc_lengths: [0.0, over], tension: [0.0; 2], form: Line::Heap(found) });
     }
     let heaped = over == 0.0 || parts.iter().any(|p| matches!(p.form, Line::Heap(_)));
     let spread = if heaped { 0.0 } else { over / free };
     let mut s = from;
     for part in &mut parts {
         let more = if part.is_loose() { own(part) * spread } else { 0.0 };
-        part.s = [s, s + own(part) + more];
-        s = part.s[1];
+        part.arc_lengths = [s, s + own(part) + more];
+        s = part.arc_lengths[1];
     }
     Some(parts)
 }
@@ -172,12 +173,12 @@ fn cut(parts: &mut Vec<Part>, end: usize, mut off: f64) -> Option<()> {
         if part.tension != [0.0; 2] {
             return None;
         }
-        let own = part.s[1] - part.s[0];
+        let own = part.arc_lengths[1] - part.arc_lengths[0];
         if own > off {
             let left = 1.0 - off / own;
-            let [kept, cut] = [stretch.p[1 - end], stretch.p[end]];
-            stretch.p[end] = kept + (cut - kept) * left;
-            part.s = [0.0, own * left];
+            let [kept, cut] = [stretch.coordinates[1 - end], stretch.coordinates[end]];
+            stretch.coordinates[end] = kept + (cut - kept) * left;
+            part.arc_lengths = [0.0, own * left];
             return Some(());
         }
         off -= own;
@@ -207,7 +208,7 @@ impl Drape<'_> {
             Leg::Hangs { u, v } => Line::Hangs(v.map(|v| self.frame.point(u, v))),
             Leg::Lies { roof, u } => {
                 let (curve, piece, p) = roofs.all[roof].stretch(&self.course.curves, u);
-                Line::Lies(Stretch { curve, piece, p, m: 0.0 })
+                Line::Lies(Stretch { curve, piece, coordinates: p, mobilised: 0.0 })
             }
         };
         legs.iter().map(line).collect()
@@ -275,14 +276,15 @@ impl Drape<'_> {
         match (a, b) {
             (Line::Hangs(h), Line::Lies(s)) => match self.rise(*h) < 0.0 {
                 true => Some(true),
-                false => plumb(s, s.p[0]).then_some(false),
+                false => plumb(s, s.coordinates[0]).then_some(false),
             },
             (Line::Lies(s), Line::Hangs(h)) => match self.rise(*h) > 0.0 {
                 true => Some(true),
-                false => plumb(s, s.p[1]).then_some(false),
+                false => plumb(s, s.coordinates[1]).then_some(false),
             },
             (Line::Lies(s), Line::Lies(next)) => {
-                let [before, after] = [s.place(self.course, s.p[1]), next.place(self.course, next.p[0])];
+                let [before, after] =
+                    [s.place(self.course, s.coordinates[1]), next.place(self.course, next.coordinates[0])];
                 let sense = self.course.curves[s.curve].sense;
                 let turns = self.course.curves[next.curve].sense != sense;
                 Some(turns || cross(before.tangent, after.tangent) * sense > STRAIGHT_TURN)
@@ -309,7 +311,7 @@ impl Drape<'_> {
         let hung = |(ends, s): ([Vec2; 2], f64)| {
             let t = weight * s;
             let tension = if self.rise(ends) > 0.0 { [0.0, t] } else { [t, 0.0] };
-            Part { s: [0.0, s], tension, form: Line::Hangs(ends) }
+            Part { arc_lengths: [0.0, s], tension, form: Line::Hangs(ends) }
         };
         let (first, last) = (hangs(lines.first()), hangs(lines.last()));
         if let ([_], Some(alone)) = (lines, first) {
@@ -323,10 +325,10 @@ impl Drape<'_> {
             return Err(None);
         }
         let ends = [first, last].map(|h| h.map_or(0.0, |(_, s)| weight * s));
-        let (mut lies, mut walls): (Vec<Stretch>, Vec<Option<f64>>) = (Vec::new(), Vec::new());
+        let (mut stretches, mut walls): (Vec<Stretch>, Vec<Option<f64>>) = (Vec::new(), Vec::new());
         for (k, line) in lines.iter().enumerate() {
             match line {
-                Line::Lies(s) => (lies.push(*s), walls.push(None)).0,
+                Line::Lies(s) => (stretches.push(*s), walls.push(None)).0,
                 Line::Hangs(ends) if k > 0 => {
                     let rise = self.rise(*ends);
                     if let Some(wall) = walls.last_mut() {
@@ -336,8 +338,8 @@ impl Drape<'_> {
                 _ => {}
             }
         }
-        let forth = self.profile(&lies, &walls, 0, ends[0]).ok_or(None)?;
-        let back = self.profile(&lies, &walls, 1, ends[1]).ok_or(None)?;
+        let forth = self.profile(&stretches, &walls, 0, ends[0]).ok_or(None)?;
+        let back = self.profile(&stretches, &walls, 1, ends[1]).ok_or(None)?;
         let begins_tight = !held[0] && back.leaves > ends[0] + self.most;
         let ends_tight = !held[1] && forth.leaves > ends[1] + self.most;
         let bridge = match (begins_tight, ends_tight) {
@@ -347,9 +349,9 @@ impl Drape<'_> {
             (true, true) => return Err(None),
         };
         let range = match &bridge {
-            Some(found) if begins_tight => found.line..lies.len(),
+            Some(found) if begins_tight => found.line..stretches.len(),
             Some(found) => 0..found.line + 1,
-            None => 0..lies.len(),
+            None => 0..stretches.len(),
         };
         if let Some(found) = bridge.as_ref().filter(|_| begins_tight) {
             // In the place of what hung.
@@ -362,23 +364,25 @@ impl Drape<'_> {
             let [f, b] = [&forth, &back].map(|side| side.spans[k].as_ref().map_or(0.0, |(span, _)| span.tension[0]));
             let by_start = if begins_tight || ends_tight { ends_tight } else { f >= b };
             let side = if by_start { &forth } else { &back };
-            side.spans[k].as_ref().map(|(part, next)| (part, *next, side.lies[k].p[1], side.lies[*next].p[0], by_start))
+            side.spans[k].as_ref().map(|(part, next)| {
+                (part, *next, side.stretches[k].coordinates[1], side.stretches[*next].coordinates[0], by_start)
+            })
         };
         let (mut k, mut entry) = (range.start, None);
         while k < range.end {
-            let mut s = lies[k];
+            let mut s = stretches[k];
             let [mut f, mut b] = [forth.enters[k], back.enters[k]];
             if let Some((p, by_start)) = entry {
-                s.p[0] = p;
+                s.coordinates[0] = p;
                 f = if by_start { f } else { 0.0 };
             }
             let beyond = if k + 1 < range.end { span(k) } else { None };
             if let Some((_, _, p, _, by_start)) = beyond {
-                s.p[1] = p;
+                s.coordinates[1] = p;
                 b = if by_start { 0.0 } else { b };
             }
             if let Some(found) = bridge.as_ref().filter(|found| found.line == k) {
-                s.p[usize::from(ends_tight)] = found.p;
+                s.coordinates[usize::from(ends_tight)] = found.coordinate;
             }
             if begins_tight {
                 f = 0.0;
@@ -406,20 +410,13 @@ impl Drape<'_> {
     /// A stretch in its parts: where the tension from its start holds, where there is none, where
     /// that from its end does.
     fn stretch(&self, s: &Stretch, [forth, back]: [f64; 2], out: &mut Vec<Part>) {
-        let (course, friction, [p0, p1]) = (self.course, s.friction(self.course), s.p);
+        let (course, friction, [p0, p1]) = (self.course, s.friction(self.course), s.coordinates);
         let forth_at = |p: f64| if p == p0 { forth } else { s.slide(course, p0, p, forth, -friction).tension };
         let back_at = |p: f64| if p == p1 { back } else { s.slide(course, p1, p, back, friction).tension };
         // Each ends at once or rises and falls again; from where it has fallen to nothing there is
         // none.
-        let seek = |mut has: f64, mut not: f64, holds: &dyn Fn(f64) -> bool| {
-            if holds(not) {
-                return not;
-            }
-            for _ in 0..HALVINGS {
-                let middle = 0.5 * (has + not);
-                if holds(middle) { has = middle } else { not = middle }
-            }
-            has
+        let seek = |has: f64, not: f64, holds: &dyn Fn(f64) -> bool| {
+            if holds(not) { not } else { bisect([has, not], HALVINGS, holds)[0] }
         };
         let little = 1e-3 * (p1 - p0);
         let goes = |t: f64, from: f64, to: f64, holds: &dyn Fn(f64) -> bool| match (t > 0.0, holds(from)) {
@@ -447,8 +444,8 @@ impl Drape<'_> {
             (ends, begins) = (meet, meet);
         }
         let mut push = |p: [f64; 2], m: f64, way: Step, tension: [f64; 2]| {
-            let form = Line::Lies(Stretch { p, m, ..*s });
-            out.push(Part { s: [0.0, way.material.abs()], tension, form });
+            let form = Line::Lies(Stretch { coordinates: p, mobilised: m, ..*s });
+            out.push(Part { arc_lengths: [0.0, way.material.abs()], tension, form });
         };
         if ends > p0 {
             let way = s.slide(course, p0, ends, forth, -friction);
@@ -465,7 +462,7 @@ impl Drape<'_> {
 
     /// Material without tension on a stretch of p, m.
     fn rest_of(&self, s: &Stretch, p: f64) -> f64 {
-        p * s.place(self.course, s.p[0]).stretch / self.course.law.stretch(0.0)
+        p * s.place(self.course, s.coordinates[0]).stretch / self.course.law.stretch(0.0)
     }
 }
 
@@ -479,7 +476,7 @@ impl Loose {
     /// Force with which obstacles carry it, N.
     pub fn held(&self, course: &Course) -> Vec2 {
         let ends = [0, 1].map(|side| self.end_force(course, side));
-        let s = self.parts.first().zip(self.parts.last()).map_or(0.0, |(a, b)| b.s[1] - a.s[0]);
+        let s = self.parts.first().zip(self.parts.last()).map_or(0.0, |(a, b)| b.arc_lengths[1] - a.arc_lengths[0]);
         ends[0] - ends[1] - course.law.load * s - self.drawn
     }
 
@@ -493,22 +490,30 @@ impl Loose {
     /// over is a heap in a kink, a strand under hardly any tension is much the same, and can be
     /// followed as it moves.
     pub fn spreads(&self) -> bool {
-        let lies = |p: &Part| matches!(p.form, Line::Hangs(_)) || p.is_loose();
-        self.parts.iter().all(lies) && self.parts.iter().any(|p| p.is_loose() && p.s[1] - p.s[0] > NONE_M)
+        let is_slack = |p: &Part| matches!(p.form, Line::Hangs(_)) || p.is_loose();
+        self.parts.iter().all(is_slack)
+            && self.parts.iter().any(|p| p.is_loose() && p.arc_lengths[1] - p.arc_lengths[0] > NONE_M)
     }
 
     /// Material that hangs, m.
     fn hangs(&self) -> f64 {
-        self.parts.iter().filter(|p| matches!(p.form, Line::Hangs(_))).map(|p| p.s[1] - p.s[0]).sum()
+        self.parts
+            .iter()
+            .filter(|p| matches!(p.form, Line::Hangs(_)))
+            .map(|p| p.arc_lengths[1] - p.arc_lengths[0])
+            .sum()
     }
 
     /// Material that lies, and the length of ground it lies on, m.
-    pub fn lies(&self, course: &Course) -> [f64; 2] {
-        let lies = self.parts.iter().filter(|p| p.is_loose() || matches!(p.form, Line::Heap(_)));
-        lies.fold([0.0; 2], |[material, ground], p| {
-            let way =
-                if let Line::Lies(s) = &p.form { (s.p[1] - s.p[0]) * s.place(course, s.p[0]).stretch } else { 0.0 };
-            [material + p.s[1] - p.s[0], ground + way]
+    pub fn lying_lengths(&self, course: &Course) -> [f64; 2] {
+        let lying = self.parts.iter().filter(|p| p.is_loose() || matches!(p.form, Line::Heap(_)));
+        lying.fold([0.0; 2], |[material, ground], p| {
+            let way = if let Line::Lies(s) = &p.form {
+                (s.coordinates[1] - s.coordinates[0]) * s.place(course, s.coordinates[0]).stretch
+            } else {
+                0.0
+            };
+            [material + p.arc_lengths[1] - p.arc_lengths[0], ground + way]
         })
     }
 }

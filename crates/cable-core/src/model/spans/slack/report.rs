@@ -35,7 +35,7 @@ impl Loose {
             match &part.form {
                 Line::Hangs(ends) => hang(course, part, *ends, nodes),
                 Line::Spans { from, force } => {
-                    let chain = course.chain(part.s[0], part.s[1]);
+                    let chain = course.chain(part.arc_lengths[0], part.arc_lengths[1]);
                     chain.spans(*force, *from).for_each(|(s, at, shape)| nodes.catenary(s, at, &shape));
                 }
                 Line::Lies(s) => {
@@ -47,8 +47,8 @@ impl Loose {
                     }
                 }
                 Line::Heap(heap) => {
-                    for s in part.s {
-                        nodes.push(Point { s, at: heap.at, force: Vec2::zeros(), curvature: 0.0 });
+                    for s in part.arc_lengths {
+                        nodes.push(Point { arc_length: s, at: heap.at, force: Vec2::zeros(), curvature: 0.0 });
                     }
                     runs.extend(Run::of_heap(part, heap));
                 }
@@ -60,7 +60,7 @@ impl Loose {
 }
 
 fn hang(course: &Course, part: &Part, [from, to]: [Vec2; 2], nodes: &mut Nodes<'_>) {
-    let (law, whole) = (&course.law, part.s[1] - part.s[0]);
+    let (law, whole) = (&course.law, part.arc_lengths[1] - part.arc_lengths[0]);
     let weight = law.load.norm();
     let along = (to - from).normalize();
     // u counts from the foot up: h = λ (s + b s²/2EA).
@@ -70,7 +70,7 @@ fn hang(course: &Course, part: &Part, [from, to]: [Vec2; 2], nodes: &mut Nodes<'
         let below = if falls { whole - s } else { s };
         let risen = law.thermal * below * (1.0 + 0.5 * weight * below / law.stiffness);
         let at = if falls { to - along * risen } else { from + along * risen };
-        nodes.push(Point { s: part.s[0] + s, at, force: along * (weight * below), curvature: 0.0 });
+        nodes.push(Point { arc_length: part.arc_lengths[0] + s, at, force: along * (weight * below), curvature: 0.0 });
     }
 }
 
@@ -79,9 +79,11 @@ impl Part {
     pub(super) fn force(&self, course: &Course, end: usize) -> Vec2 {
         match &self.form {
             Line::Hangs([from, to]) => (to - from).normalize() * self.tension[end],
-            Line::Lies(s) => s.place(course, s.p[end]).tangent * self.tension[end],
+            Line::Lies(s) => s.place(course, s.coordinates[end]).tangent * self.tension[end],
             Line::Heap(_) => Vec2::zeros(),
-            Line::Spans { force, .. } => force - course.law.load * if end == 0 { 0.0 } else { self.s[1] - self.s[0] },
+            Line::Spans { force, .. } => {
+                force - course.law.load * if end == 0 { 0.0 } else { self.arc_lengths[1] - self.arc_lengths[0] }
+            }
         }
     }
 
@@ -89,7 +91,11 @@ impl Part {
     pub(super) fn held(&self, course: &Course) -> Vec2 {
         match &self.form {
             Line::Hangs(_) | Line::Spans { .. } => Vec2::zeros(),
-            Line::Lies(_) => self.force(course, 0) - self.force(course, 1) - course.law.load * (self.s[1] - self.s[0]),
+            Line::Lies(_) => {
+                self.force(course, 0)
+                    - self.force(course, 1)
+                    - course.law.load * (self.arc_lengths[1] - self.arc_lengths[0])
+            }
             Line::Heap(heap) => {
                 heap.edges.iter().flatten().map(crate::model::spans::boundary::loose::Borne::force).sum()
             }
@@ -111,12 +117,12 @@ impl Line {
 
 impl Run {
     fn new(curve: usize, part: &Part) -> Self {
-        Self { curve, ends: part.s, tension: part.tension, ..Self::default() }
+        Self { curve, ends: part.arc_lengths, tension: part.tension, ..Self::default() }
     }
 
     fn of_heap<'a>(part: &'a Part, heap: &'a Heap) -> impl Iterator<Item = Self> + 'a {
         heap.edges.iter().flatten().map(|b| {
-            let middle = 0.5 * (part.s[0] + part.s[1]);
+            let middle = 0.5 * (part.arc_lengths[0] + part.arc_lengths[1]);
             Self {
                 at: vec![(middle, heap.at)],
                 samples: vec![ContactSample::new(middle, b.force())],
@@ -130,28 +136,28 @@ impl Run {
 
     fn lie(&mut self, course: &Course, part: &Part, s: &Stretch, nodes: &mut Nodes<'_>, cable_radius: f64) {
         let law = &course.law;
-        let [p0, p1] = s.p;
+        let [p0, p1] = s.coordinates;
         let start = s.place(course, p0);
         let turns = start.turn != 0.0;
         let count = match turns {
             true => arc_nodes::parts(start.stretch, p1 - p0, cable_radius),
             false => NODES,
         };
-        (self.ends[1], self.tension[1]) = (part.s[1], part.tension[1]);
+        (self.ends[1], self.tension[1]) = (part.arc_lengths[1], part.tension[1]);
         self.turned += start.turn * (p1 - p0);
         // With more material than its way it is in folds, evenly.
-        let material = part.s[1] - part.s[0];
+        let material = part.arc_lengths[1] - part.arc_lengths[0];
         let at = |k: usize| {
             let f = k as f64 / count as f64;
             let place = s.place(course, p0 + (p1 - p0) * f);
             if part.is_loose() {
-                return (place, part.s[0] + material * f, 0.0);
+                return (place, part.arc_lengths[0] + material * f, 0.0);
             }
-            let way = s.slide(course, p0, p0 + (p1 - p0) * f, part.tension[0], s.m);
+            let way = s.slide(course, p0, p0 + (p1 - p0) * f, part.tension[0], s.mobilised);
             match k {
-                0 => (place, part.s[0], part.tension[0]),
-                k if k == count => (place, part.s[1], part.tension[1]),
-                _ => (place, part.s[0] + way.material, way.tension),
+                0 => (place, part.arc_lengths[0], part.tension[0]),
+                k if k == count => (place, part.arc_lengths[1], part.tension[1]),
+                _ => (place, part.arc_lengths[0] + way.material, way.tension),
             }
         };
         let mut before = at(0);
@@ -159,7 +165,7 @@ impl Run {
             let here = at(k);
             let (place, arc_length, tension) = here;
             let curvature = if turns { place.turn * law.stretch(tension) / place.stretch } else { 0.0 };
-            nodes.push(Point { s: arc_length, at: place.at, force: place.tangent * tension, curvature });
+            nodes.push(Point { arc_length, at: place.at, force: place.tangent * tension, curvature });
             if k > 0 {
                 let own = law.load * (arc_length - before.1);
                 let held = before.0.tangent * before.2 - place.tangent * tension - own;

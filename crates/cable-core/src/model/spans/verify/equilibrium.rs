@@ -192,21 +192,23 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(
     let room = BALANCE_TOLERANCE * (greatest + 1e-9);
     let lost = |found: f64, kept: f64| !((found - kept).abs() <= LOST_MATERIAL_FRACTION * length);
     if let (0.0, [first, .., last]) = (track.drag, c.history.knots())
-        && (lost(first.s, c.ends.s[0]) || lost(last.s, c.ends.s[1]))
+        && (lost(first.arc_length, c.ends.s[0]) || lost(last.arc_length, c.ends.s[1]))
     {
         return Err(Failure::Unsound {
             what: EquilibriumFault::MaterialAtContactEnd,
-            s: first.s,
-            at: track.place(first.p).at,
+            s: first.arc_length,
+            at: track.place(first.coordinate).at,
         });
     }
     for pair in c.history.knots().windows(2) {
         let (knot, next) = (&pair[0], &pair[1]);
-        let (mut p, mut t, mut s) = (knot.p, knot.tension, knot.s);
-        let unsound = |what: EquilibriumFault| Err(Failure::Unsound { what, s: knot.s, at: track.place(knot.p).at });
-        while p < next.p {
-            let q = track.next_border(p, next.p);
-            let whole = track.slide(p, q, t, knot.m);
+        let (mut p, mut t, mut s) = (knot.coordinate, knot.tension, knot.arc_length);
+        let unsound = |what: EquilibriumFault| {
+            Err(Failure::Unsound { what, s: knot.arc_length, at: track.place(knot.coordinate).at })
+        };
+        while p < next.coordinate {
+            let q = track.next_border(p, next.coordinate);
+            let whole = track.slide(p, q, t, knot.mobilised);
             let look = |x: f64, way: Step| {
                 let place = track.place(x);
                 if !(way.tension >= -COMPRESSION_ROUNDING * greatest - 1e-9) {
@@ -217,10 +219,10 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(
                 }
                 Ok(())
             };
-            if !firm(track, p, q, t, knot.m) {
+            if !firm(track, p, q, t, knot.mobilised) {
                 let mut found = look(q, whole);
-                track.loosest(p, q, knot.m, |x| {
-                    found = found.clone().and_then(|()| look(x, track.slide(p, x, t, knot.m)))
+                track.loosest(p, q, knot.mobilised, |x| {
+                    found = found.clone().and_then(|()| look(x, track.slide(p, x, t, knot.mobilised)))
                 });
                 found?;
             }
@@ -230,10 +232,10 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(
         if track.drag > 0.0 {
             continue;
         }
-        if !(knot.m.abs() <= friction * (1.0 + BALANCE_TOLERANCE)) {
+        if !(knot.mobilised.abs() <= friction * (1.0 + BALANCE_TOLERANCE)) {
             return unsound(EquilibriumFault::FrictionBeyondCone);
         }
-        if lost(s, next.s) {
+        if lost(s, next.arc_length) {
             return unsound(EquilibriumFault::MaterialAlongContact);
         }
         if !((t - next.tension).abs() <= room) {

@@ -28,7 +28,7 @@ const HANGING_ANGLE: f64 = 1e-6;
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct Penetration {
     /// Material point, m.
-    pub s: f64,
+    pub arc_length: f64,
     pub at: Vec2,
     /// Direction of the cable there.
     pub tangent: Vec2,
@@ -168,7 +168,7 @@ pub(in crate::model::spans) fn deepest(
                 {
                     let force = arc.shape.force_at(s);
                     let tangent = force / force.norm();
-                    best = Some(Penetration { s: arc.s0 + s, at, tangent, gap, body: index });
+                    best = Some(Penetration { arc_length: arc.s0 + s, at, tangent, gap, body: index });
                 }
             });
         }

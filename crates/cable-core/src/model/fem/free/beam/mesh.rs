@@ -7,6 +7,8 @@
 //! ```
 //! node i of n where ∫ρ ds = i/n. Where λ is not small against L this is nearly even.
 
+use crate::numerics::bisect;
+
 /// Reach of the density in layers. Smaller: the bars grow faster than the layer fades; larger: too
 /// few lie in it. Tuned on clamped spans of 50 to 400 bars with layers of 3e-4 to 0.1 of their
 /// length.
@@ -36,11 +38,7 @@ pub fn places(layers: [f64; 2], length: f64, count: usize) -> Vec<f64> {
     out.push(0.0);
     for k in 1..count {
         let wanted = k as f64 / count as f64;
-        let (mut low, mut high) = (0.0, length);
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (low + high);
-            if part(middle) < wanted { low = middle } else { high = middle }
-        }
+        let [low, high] = bisect([0.0, length], BISECTIONS, |s| part(s) < wanted);
         out.push(0.5 * (low + high));
     }
     out.push(length);

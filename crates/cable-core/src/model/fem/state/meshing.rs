@@ -1,0 +1,63 @@
+//! The division of a cable into bars, and the nodes of its supports and loads.
+
+use crate::model::fem::system::friction_state::ContactPair;
+use crate::model::fem::system::mesh::Mesh;
+use crate::problem::Series;
+
+/// The division of the cable into bars, and the nodes of supports and loads.
+#[derive(Clone, Debug)]
+pub(in crate::model::fem) struct Meshing {
+    /// True if corners and posts get sliding nodes.
+    pub(in crate::model::fem) slides: bool,
+    /// True if there is no obstacle and no pulley that nodes could slide over.
+    pub(in crate::model::fem) never_slides: bool,
+    /// Number of bars of the even mesh.
+    pub(in crate::model::fem) even_bars: usize,
+    /// Normal force of an even bar on flat ground, N.
+    pub(in crate::model::fem) bar_weight: f64,
+    /// Node of each support; None for one that slides.
+    pub(in crate::model::fem) support_node: Vec<Option<usize>>,
+    /// Node of each point load, and its force.
+    pub(in crate::model::fem) loads: Vec<(usize, Series)>,
+    /// True if the last step was found to touch nothing but its supports.
+    pub(in crate::model::fem) freely: bool,
+    /// Room for the contacts among which corners are looked for.
+    pub(in crate::model::fem) found: Vec<ContactPair>,
+}
+
+impl Meshing {
+    /// Weight of an element over a tenth of a metre: enough to keep slack nodes from wandering.
+    pub(in crate::model::fem) fn soft_shift(&self) -> f64 {
+        self.bar_weight / 0.1
+    }
+
+    /// True if a node is there for nothing but the mesh.
+    pub(in crate::model::fem) fn removable(&self, mesh: &Mesh, k: usize) -> bool {
+        k > 0
+            && k + 1 < mesh.nodes()
+            && mesh.is_free(k)
+            && !self.support_node.contains(&Some(k))
+            && self.loads.iter().all(|l| l.0 != k)
+    }
+
+    /// Gives the nodes of supports and loads their new numbers: None is one that is gone.
+    pub(in crate::model::fem) fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
+        for node in &mut self.support_node {
+            *node = node.and_then(&change);
+        }
+        for (node, _) in &mut self.loads {
+            *node = change(*node).unwrap_or(*node);
+        }
+    }
+
+    /// True if the bend of a cable of a length (m) under a tension (N) is longer than bars are:
+    /// then nodes that move with their material show it, and a sliding node, which carries no
+    /// moment, would leave it out.
+    pub(in crate::model::fem) fn bends_visibly(&self, mesh: &Mesh, length: f64, tension: f64) -> bool {
+        let (stiffness, even) = (mesh.bending_stiffness, length / self.even_bars as f64);
+        let least = self.bar_weight + stiffness / (length * length);
+        stiffness > 0.0
+            && (stiffness / if tension > least { tension } else { least }).sqrt()
+                > mesh.tuning.remesh.resolved_bend * even
+    }
+}

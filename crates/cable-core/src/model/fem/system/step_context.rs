@@ -1,0 +1,81 @@
+//! The step context is what every part of the solve of one step reads.
+
+use crate::contact::friction;
+use crate::math::{Vec2, larger};
+use crate::model::fem::mesh::sliding_node::Load;
+use crate::model::fem::system::bar_weight::Weight;
+use crate::model::fem::system::friction_state::ContactSet;
+use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::system::step_input::StepInput;
+use crate::model::fem::system::{bar_energy, floor_friction};
+use crate::problem::Problem;
+
+/// The input of the solve of a step: cable, mesh, contacts, and the input of the step.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::fem) struct StepContext<'a> {
+    /// The cable and its obstacles.
+    pub problem: &'a Problem,
+    /// Its nodes and bars.
+    pub mesh: &'a Mesh,
+    /// The barrier, and friction as it is frozen for the step.
+    pub contacts: &'a ContactSet,
+    /// Forces, inertia and targets of the step.
+    pub input: &'a StepInput,
+}
+
+impl StepContext<'_> {
+    /// True if the cable is flexible and nothing but its supports can touch it on the way to places
+    /// `to` (m).
+    pub(in crate::model::fem) fn moves_freely(&self, to: &[Vec2]) -> bool {
+        !self.mesh.slides_anywhere()
+            && self.problem.floor_friction.is_none()
+            && self.mesh.bending_stiffness == 0.0
+            && self.is_out_of_reach(to)
+    }
+
+    /// True if nothing but supports can touch the cable on its way to places `to` (m).
+    pub(in crate::model::fem) fn is_out_of_reach(&self, to: &[Vec2]) -> bool {
+        self.contacts.meets_nothing(self.problem)
+            || (!self.contacts.own.shape.is_on() && self.contacts.out_of_reach(self.mesh, [&self.input.start, to]))
+    }
+
+    /// The load of a sliding node at positions `x` (m) and slides (m), if there are such.
+    pub(in crate::model::fem) fn load_at(&self, k: usize, x: &[Vec2], slide: Option<&[f64]>) -> Option<Load> {
+        let (mesh, node) = (self.mesh, self.mesh.sliding.get(k)?.as_ref()?);
+        if k == 0 || k + 1 >= mesh.nodes() {
+            return None;
+        }
+        let path = [mesh.path(k - 1, x), mesh.path(k, x)];
+        let rest = [k - 1, k].map(|e| slide.map_or(mesh.rest_length[e], |s| bar_energy::rest_length(mesh, e, s)));
+        // A step balances the pull with its loss.
+        let tension = [0, 1].map(|j| {
+            if slide.is_some() && self.input.moves {
+                return bar_energy::pull_on(mesh, self.input, k - 1 + j, x, rest[j]);
+            }
+            let elastic = mesh.axial_stiffness * (path[j].length / rest[j] - 1.0);
+            if elastic < 0.0 { 0.0 } else { elastic }
+        });
+        let body = self.input.body;
+        let weight = [0, 1].map(|j| Weight::of(mesh, k - 1 + j, &path[j], body));
+        let material = rest.map(|l| l / mesh.thermal_stretch);
+        let share = [0, 1].map(|j| weight[j].carried(material[j])[1 - j]);
+        let straight = [0, 1].map(|j| weight[j].in_the_middle(tension[j], material[j], true));
+        let floor = self.problem.floor_friction.map_or([0.0; 3], |(rough, normal)| {
+            let slid = self.contacts.floor_slid[k].x + slide.map_or(0.0, |s| s[k]);
+            let per_m = friction::at(slid, rough * normal, self.contacts.slip).1;
+            floor_friction::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
+        });
+        let load = Load::new(node, straight, [&path[0], &path[1]], body, share);
+        // Between steps the input may be of another mesh, and nothing is balanced.
+        let at_material = slide.map_or(load.pull, |slide| {
+            [k - 1, k].map(|e| bar_energy::pull_at_slide(mesh, self.input, e, k - e, x, slide))
+        });
+        let lifted = [0, 1].map(|j| tension[j] + body.dot(&(weight[j].center - x[k])));
+        Some(Load { floor, lifted, at_material, ..load })
+    }
+}
+
+/// Longest move of a node in a step, m.
+pub(in crate::model::fem) fn longest(step: &[f64]) -> f64 {
+    step.chunks_exact(2).map(|d| d[0] * d[0] + d[1] * d[1]).fold(0.0, larger).sqrt()
+}

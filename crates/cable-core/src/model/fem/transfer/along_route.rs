@@ -1,0 +1,131 @@
+//! The first state of a cable: along its route, at rest, clear of obstacles.
+
+use std::sync::Arc;
+
+use crate::contact::barrier::Barrier;
+use crate::math::Vec2;
+use crate::model::Settings;
+use crate::model::fem::newton::initial_guess::{depenetrate, place_nodes, route};
+use crate::model::fem::settings::{StartTuning, Tuning};
+use crate::model::fem::state::cable::{CableState, Gauged, StepAnswers};
+use crate::model::fem::state::history::Motion;
+use crate::model::fem::state::meshing::Meshing;
+use crate::model::fem::state::moving_outline::MovingOutline;
+use crate::model::fem::state::step_setup::prepare_input;
+use crate::model::fem::system::friction_state::ContactSet;
+use crate::model::fem::system::loss::Loss;
+use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::system::step_input::{StepInput, load_scale, tolerance};
+use crate::model::fem::touches_nothing;
+use crate::model::fem::transfer::from_state::thread_pulleys;
+use crate::problem::Problem;
+use crate::scene::SupportKind;
+
+/// The cable along its route.
+pub(in crate::model::fem) fn cable_along_route(
+    problem: Arc<Problem>,
+    settings: Settings,
+    tuning: Arc<Tuning>,
+) -> CableState {
+    let Tuning { contact, start, .. } = *tuning;
+    let (outline, problem) = MovingOutline::of(problem);
+    let route = route(&problem);
+    let segments = segments(&problem, settings, &start);
+    let even = problem.length / segments as f64;
+    let mut breaks = vec![0.0, problem.length];
+    breaks.extend(problem.supports.iter().filter_map(|s| s.arc_length));
+    breaks.extend(problem.loads.iter().map(|l| l.arc_length));
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup_by(|a, b| *a - *b < 1e-9 * problem.length);
+    if !problem.world.is_empty() || problem.cable.self_contact {
+        for (s, _) in &route {
+            if breaks.iter().all(|b| (b - s).abs() > start.route_node_bars * even) {
+                breaks.push(*s);
+            }
+        }
+        breaks.sort_by(f64::total_cmp);
+    }
+    let mesh = Mesh::new(&problem, tuning, &breaks, segments, spreads_mass(&problem));
+    let n = mesh.nodes();
+    let support_node: Vec<Option<usize>> =
+        problem.supports.iter().map(|s| s.arc_length.and_then(|a| mesh.node_at(a))).collect();
+    let loads = problem.loads.iter().filter_map(|l| Some((mesh.node_at(l.arc_length)?, l.force.clone()))).collect();
+    let (normal_per_m, whole) = load_scale(&problem);
+    let barrier = Barrier { reach: contact.reach_m, stiffness: contact.stiffness_weights * normal_per_m * even };
+    let input = StepInput { tolerance: tolerance(&problem, whole), ..StepInput::default() };
+    let mut cable = CableState {
+        contacts: ContactSet::new(barrier, contact, n),
+        motion: Motion {
+            positions: place_nodes(&mesh, &route),
+            velocities: vec![Vec2::zeros(); n],
+            previous_positions: vec![Vec2::zeros(); n],
+            previous_velocities: vec![Vec2::zeros(); n],
+            older_positions: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
+            older_velocities: vec![Vec2::zeros(); if mesh.spread.is_lumped() { 0 } else { n }],
+            previous_arc_length: mesh.arc_length.clone(),
+            slide_rates: vec![0.0; n],
+            previous_slide_rates: vec![0.0; n],
+            followers: vec![None; problem.supports.len()],
+            hands: vec![None; problem.supports.len()],
+            placement: problem.outline.as_ref().map(|o| o.placement),
+            ..Motion::default()
+        },
+        meshing: Meshing {
+            // A sliding node scales the forces of all that lies beyond it; what touches itself
+            // has one scale.
+            slides: !problem.cable.self_contact,
+            never_slides: problem.world.is_empty() && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley),
+            even_bars: segments,
+            bar_weight: normal_per_m * even,
+            support_node,
+            loads,
+            freely: false,
+            found: Vec::with_capacity(n),
+        },
+        loss: if mesh.spread.is_lumped() { Loss::default() } else { Loss::of(&problem, even) },
+        answers: StepAnswers {
+            reaction: vec![Vec2::zeros(); n],
+            held_back: Vec::new(),
+            stepped: None,
+            keeps: false,
+            kept: None,
+            gauged: Gauged::default(),
+        },
+        outline,
+        mesh,
+        input,
+        problem,
+    };
+    if cable.problem.cable.self_contact {
+        cable.contacts.own.shape.diameter = cable.problem.cable.diameter_m;
+        cable.contacts.own.friction = cable.problem.cable.friction;
+    }
+    cable.forget_history();
+    prepare_input(&mut cable, 0.0, None);
+    for k in 0..n {
+        if cable.mesh.held[k] {
+            cable.motion.positions[k] = cable.input.target[k];
+        }
+    }
+    thread_pulleys(&mut cable, None);
+    let mut x = std::mem::take(&mut cable.motion.positions);
+    depenetrate(&cable.problem, &cable.mesh, &mut x, 0.9 * contact.reach_m);
+    cable.motion.positions = x;
+    cable.forget_history();
+    cable
+}
+
+/// True if the mass is spread over the bars. Where the cable can touch something it is lumped all
+/// the time: contacts take momentum of one node, nodes come and go with corners and pulleys, and a
+/// mass that changed as contact begins would change the energy.
+fn spreads_mass(problem: &Problem) -> bool {
+    touches_nothing(problem) && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley)
+}
+
+/// Elements of a cable where neither the scene nor the settings give a number: finer where it can
+/// touch an obstacle.
+fn segments(problem: &Problem, settings: Settings, tuning: &StartTuning) -> usize {
+    let element = if problem.world.is_empty() { tuning.free_bar_m } else { tuning.bar_m };
+    let automatic = (problem.length / element).ceil().max(tuning.min_bars).min(tuning.max_bars) as usize;
+    settings.segments.or(problem.cable.segments).unwrap_or(automatic).max(2)
+}
