@@ -9,6 +9,7 @@ mod defects;
 mod editing;
 mod first_minute;
 mod gallery;
+mod gpu;
 mod graphs;
 mod hands;
 mod help;

@@ -10,11 +10,12 @@ use cable_core::scene::{Obstacle, Shape, catalog};
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::render::offscreen::render_state;
 use cable_viewer::render::software::Software;
 use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, wgpu};
 use egui::Vec2;
 use egui_kittest::{Harness, TestRenderer};
+
+use crate::gpu::render_state;
 
 /// Frames that are measured.
 const FRAMES: usize = 20;

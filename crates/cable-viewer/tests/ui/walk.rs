@@ -9,13 +9,13 @@ use cable_core::Scene;
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::render::offscreen::renderer;
 use cable_viewer::state::dialog::{Dialog, Replacement};
 use cable_viewer::state::{Item, TensionMarker};
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
+use crate::gpu::renderer;
 use crate::{apply, drag, support};
 
 struct Walk {
