@@ -94,7 +94,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
             ui.set_min_height(ui.available_height());
             panels::plots::ui(ui, state, commands);
         });
-    } else if past || (graphs && state.live.before_reset.is_some()) {
+    } else if past || (graphs && state.live.earlier_run.is_some()) {
         Panel::bottom("timeline").show(ui, |ui| panels::timeline::ui(ui, state, commands));
     }
     if wide && open.edit {

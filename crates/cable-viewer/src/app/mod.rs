@@ -362,6 +362,17 @@ impl ViewerApp {
         let state = &mut self.state;
         if report.history_restarts {
             state.live.restart_history();
+        } else if report.answers.first().is_some_and(|a| a.time_s <= 0.0)
+            && state.live.has_run()
+            && report.snapshot.scene != state.live.latest.scene
+        {
+            // An edit after which nothing goes on from where the cable was: another run begins.
+            // Moves of a drag that were answered before belong to the same entry to undo.
+            let of = state.live.latest.scene.as_deref();
+            let [back, forward] = state.document.undo.neighbours();
+            let scene = if forward == of { of } else { back.or(of) };
+            let scene = scene.cloned();
+            state.live.end_run(scene);
         }
         for answer in report.answers {
             state.live.record(answer);

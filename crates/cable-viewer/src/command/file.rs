@@ -218,7 +218,7 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     state.live.playback.paused = true;
     state.live.robot_order = None;
     state.live.reopened_run = Vec::new();
-    (state.live.before_reset, state.live.reset_is_last, state.live.resets) = (None, false, false);
+    (state.live.earlier_run, state.live.reset_is_last, state.live.resets) = (None, false, false);
     state.ui.tutorial = None;
     state.analysis.safe_reach = crate::jobs::safe_reach::SafeReachState::default();
     effects.reach = Some(None);

@@ -60,10 +60,13 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             push(PlaybackCommand::GoOn);
         }
     });
-    if state.live.before_reset.is_some() {
-        let help = "Brings back what was recorded before the last reset, and goes on from its end (Ctrl+Z)";
-        if ui.button("Undo reset").on_hover_text(help).clicked() {
-            push(PlaybackCommand::UndoReset);
+    if let Some(run) = &state.live.earlier_run {
+        let help = match &run.scene {
+            None => "Brings back what was recorded before the last reset, and goes on from its end (Ctrl+Z)",
+            Some(_) => "An edit began the run anew: takes it back, and brings back what was recorded before (Ctrl+Z)",
+        };
+        if ui.button("Undo restart").on_hover_text(help).clicked() {
+            push(PlaybackCommand::UndoRestart);
         }
     }
     let [first, last] = span.unwrap_or([0.0, 1.0]);
