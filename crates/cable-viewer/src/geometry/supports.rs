@@ -46,6 +46,11 @@ pub fn hand_spring(state: &AppState, cable: usize, support: usize) -> Option<[Po
         return ((ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]) > COINCIDENCE_M).then_some(ends);
     }
     let s = state.document.scene.cables.get(cable)?.supports.get(support)?;
+    // Torn off, nothing draws it any more: it stays where the cable last reached it.
+    let torn_off = reaction(state, cable, support).is_some_and(|r| r.reaction_x_n == 0.0 && r.reaction_y_n == 0.0);
+    if torn_off && state.live.snapshot.solution.as_ref()?.cables.get(cable).is_some_and(|c| !c.breaks.is_empty()) {
+        return None;
+    }
     let held = matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
     let solution = state.live.snapshot.solution.as_ref()?;
     let solved = solution.cables.get(cable)?;

@@ -128,11 +128,12 @@ impl Drawing {
         for v in ticks(left, right) {
             marks.push(Mark::Line([[x(v), frame[1]], [x(v), frame[3]]], (GRID, 1.0, None)));
             let at = [x(v), frame[3] + 16.0];
-            marks.push(Mark::Text(Words::new(at, Anchor::Middle, significant(v, 4))));
+            marks.push(Mark::Text(Words::new(at, Anchor::Middle, tick_text(v, [left, right]))));
         }
         for v in ticks(bottom, top) {
             marks.push(Mark::Line([[frame[0], y(v)], [frame[2], y(v)]], (GRID, 1.0, None)));
-            marks.push(Mark::Text(Words::new([frame[0] - 6.0, y(v) + 4.0], Anchor::End, significant(v, 4))));
+            let text = tick_text(v, [bottom, top]);
+            marks.push(Mark::Text(Words::new([frame[0] - 6.0, y(v) + 4.0], Anchor::End, text)));
         }
         for (k, line) in sheet.lines.iter().enumerate() {
             let [r, g, b, _] = LINES[line.reference.unwrap_or(k) % LINES.len()].to_array();
@@ -152,7 +153,9 @@ impl Drawing {
             // A limit at the top has its name below it: beside the names above the graph it would
             // be taken for one.
             let low = if at - 18.0 < under { at + 14.0 } else { at - 5.0 };
-            let words = Words::new([frame[2] - 6.0, low], Anchor::End, format!("{name} {}", significant(limit, 4)));
+            let unit = sheet.up[0].rsplit_once(", ").map_or("", |(_, unit)| unit);
+            let text = format!("{name} {} {unit}", significant(limit, 4));
+            let words = Words::new([frame[2] - 6.0, low], Anchor::End, text.trim_end());
             marks.push(Mark::Text(Words { colour, ..words }));
         }
         let middle = [(frame[0] + frame[2]) / 2.0, (frame[1] + frame[3]) / 2.0];
@@ -296,6 +299,18 @@ fn ticks(low: f64, high: f64) -> impl Iterator<Item = f64> {
     (0..=count).map(move |k| (first + f64::from(k)) * step)
 }
 
+/// A number at a line of the grid, with as many decimals as tell it from the next.
+fn tick_text(value: f64, [low, high]: [f64; 2]) -> String {
+    let step = round_step(high - low, 6.0);
+    let decimals = (-(step.log10() + 1e-9).floor()).max(0.0);
+    if !(decimals <= 4.0 && low.abs().max(high.abs()) < 1e5) {
+        return significant(value, 4);
+    }
+    // A zero that rounding left below nothing has no sign.
+    let text = format!("{:.*}", decimals as usize, value + 0.0);
+    if text.trim_matches(['-', '0', '.']).is_empty() { text.replace('-', "") } else { text.replace('-', "−") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -327,7 +342,16 @@ mod tests {
         for y in text.split(" y=\"").skip(1).filter_map(|t| t.split('"').next()) {
             assert!((0.0..height).contains(&y.parse::<f64>().unwrap()), "{y} of {height}");
         }
-        assert!(text.contains("service limit 0.8000"));
+        assert!(text.contains("service limit 0.8000 kN"));
+    }
+
+    #[test]
+    fn numbers_of_a_grid_have_as_many_decimals_as_they_need() {
+        let texts = |low: f64, high: f64| ticks(low, high).map(|v| tick_text(v, [low, high])).collect::<Vec<_>>();
+        assert_eq!(texts(2.4, 12.4), ["4", "6", "8", "10", "12"]);
+        assert_eq!(texts(-0.2, 0.4)[..3], ["−0.2", "−0.1", "0.0"]);
+        assert_eq!(texts(0.0, 3e6).last().map(String::as_str), Some("3000000"));
+        assert!(texts(0.0, 1e-9).iter().all(|t| t.len() < 10));
     }
 
     /// A sheet with both limits in view and long names, as a run of hours has it.

@@ -232,7 +232,6 @@ fn a_picture_that_is_older_than_the_scene_is_said_to_be_while_a_beam_is_dragged_
     let harness = Harness::builder()
         .with_size(Vec2::new(1280.0, 800.0))
         .with_step_dt(1.0 / 60.0)
-        .allow_missing_glyphs()
         .build_eframe(|cc| ViewerApp::new(&cc.egui_ctx, catalog::tank(), None));
     let mut watch = Watch { harness, sent: Vec::new(), late_frames: 0 };
     watch.settle();

@@ -132,7 +132,6 @@ fn window(renderer: Screen, software: Option<Software>, scene: Scene) -> Harness
         .with_step_dt(1.0 / 60.0)
         .with_render_cursor(false)
         .with_accessibility_check(false)
-        .allow_missing_glyphs()
         .renderer(renderer)
         .build_eframe(|cc| {
             software.into_iter().for_each(|s| cc.egui_ctx.add_plugin(s));
@@ -251,7 +250,6 @@ fn software_drawing_looks_the_same_at(scale: f32) {
             .with_pixels_per_point(scale)
             .with_render_cursor(false)
             .with_accessibility_check(false)
-            .allow_missing_glyphs()
             .renderer(egui_kittest::wgpu::WgpuTestRenderer::from_render_state(state))
             .build_eframe(|cc| {
                 software.into_iter().for_each(|s| cc.egui_ctx.add_plugin(s));

@@ -28,11 +28,8 @@ fn answer(harness: &Harness<'_, ViewerApp>) -> Solution {
 
 /// The window with its worker on its own thread.
 fn threaded(scene: Scene, model: Model) -> Harness<'static, ViewerApp> {
-    let mut harness = Harness::builder()
-        .with_size(Vec2::new(1280.0, 800.0))
-        .with_step_dt(1.0 / 60.0)
-        .allow_missing_glyphs()
-        .build_eframe(|cc| {
+    let mut harness =
+        Harness::builder().with_size(Vec2::new(1280.0, 800.0)).with_step_dt(1.0 / 60.0).build_eframe(|cc| {
             let mut app = ViewerApp::new(&cc.egui_ctx, scene, None);
             app.apply(&cc.egui_ctx, vec![Command::SetModel(model)]);
             app

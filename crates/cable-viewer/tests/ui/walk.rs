@@ -32,7 +32,6 @@ impl Walk {
             .with_step_dt(1.0 / 60.0)
             .with_render_cursor(false)
             .with_accessibility_check(false)
-            .allow_missing_glyphs()
             .renderer(renderer().unwrap())
             .build_eframe(|cc| ViewerApp::inline(&cc.egui_ctx, scene, None));
         let mut walk = Self { harness, folder };
