@@ -57,7 +57,8 @@ pub fn hand_spring(state: &AppState, cable: usize, support: usize) -> Option<[Po
         return ((ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]) > COINCIDENCE_M).then_some(ends);
     }
     let s = state.document.scene.cables.get(cable)?.supports.get(support)?;
-    // Of a broken cable a hand takes pieces farther than a whole one reaches: nothing draws them back.
+    // Of a broken cable a hand takes pieces farther than a whole one reaches: nothing draws them
+    // back.
     if is_broken(state, cable) {
         return None;
     }

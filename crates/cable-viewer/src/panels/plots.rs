@@ -13,6 +13,7 @@ use crate::state::AppState;
 use crate::state::dialog::Dialog;
 use crate::state::questions::friction_answer;
 use crate::widgets::field;
+use crate::widgets::tick::tick;
 
 /// From this width on the timeline stands beside the choice of graphs, points. Less: its rail is
 /// too short to aim at.
@@ -95,7 +96,7 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
         }
     }
     ui.separator();
-    ui.checkbox(&mut view.follow, "Follow").on_hover_text(
+    tick(ui, &mut view.follow, "Follow").on_hover_text(
         "The graphs keep up with the data. The wheel zooms at the pointer and turns this off; then drag to move, double-click \
          to fit. Click for a cursor, again for a second and their difference, again for none",
     );

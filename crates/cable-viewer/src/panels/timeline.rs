@@ -8,6 +8,7 @@ use crate::state::AppState;
 use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::widgets::icon::{self, Icon};
+use crate::widgets::tick::tick;
 use crate::widgets::{field, highlight};
 
 /// Shortest rail that can be aimed at, points.
@@ -39,7 +40,7 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         let mut looped = state.live.recording.looped;
         let help = "Playback starts again at the end of the recording; off, the simulation goes on from there";
-        if ui.checkbox(&mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NOTHING).changed() {
+        if tick(ui, &mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NOTHING).changed() {
             push(PlaybackCommand::SetLoop(looped));
             // A loop of what is not shown begins at its start.
             if let (true, None, Some([first, _])) = (looped, state.live.recording.shown_s, span) {

@@ -13,6 +13,7 @@ use crate::state::AppState;
 use crate::state::questions::reach_target;
 use crate::units::format;
 use crate::units::unit::Unit;
+use crate::widgets::tick::ring;
 use crate::widgets::{field, highlight};
 
 /// Width of a slider's value beside it, points.
@@ -132,7 +133,7 @@ fn both_ways(ui: &mut Ui, choice: Choice, commands: &mut Vec<Command>) {
         let there = "The largest tension with the end at each place";
         let back = "The largest tension on the way there and back, snags included";
         for (back, text, help) in [(false, "There", there), (true, "There and back", back)] {
-            if ui.radio(choice.back == back, text).on_hover_text(help).clicked() {
+            if ring(ui, choice.back == back, text).on_hover_text(help).clicked() {
                 commands.push(set(Choice { back, ..choice }));
             }
         }
