@@ -243,3 +243,15 @@ fn reaches(graph: &BTreeMap<String, BTreeSet<String>>, from: &str) -> bool {
     }
     false
 }
+
+/// Pictures were drawn by the harness of the interface tests, which every build then carried.
+#[test]
+fn the_window_ships_without_the_harness_of_its_tests() {
+    let manifest = read("crates/cable-viewer/Cargo.toml");
+    let shipped = manifest.split("[dev-dependencies]").next().expect("what is before them");
+    assert!(shipped.contains("[dependencies]") && !shipped.contains("kittest"), "a test tool is a dependency");
+    for file in files_below(&root().join("crates/cable-viewer/src")) {
+        let code = std::fs::read_to_string(&file).expect("a source file");
+        assert!(!code.contains("egui_kittest"), "{} uses it", file.display());
+    }
+}

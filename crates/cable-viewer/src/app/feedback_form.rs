@@ -5,6 +5,7 @@ use egui::{TextEdit, Ui};
 use crate::command::{Command, FileCommand};
 use crate::io::feedback::{Answers, MAX_MARK, MIN_GOOD_MARK, QUESTIONS};
 use crate::widgets::field;
+use crate::widgets::tick::ring;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut Vec<Command>) {
@@ -16,7 +17,7 @@ pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut 
             ui.label(*question);
             ui.horizontal(|ui| {
                 for k in 1..=MAX_MARK {
-                    let button = ui.radio(*mark == Some(k), k.to_string());
+                    let button = ring(ui, *mark == Some(k), k.to_string());
                     field::name(&button, &format!("{question}: {k}"));
                     if button.clicked() {
                         *mark = Some(k);

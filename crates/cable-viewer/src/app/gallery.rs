@@ -6,6 +6,7 @@ use cable_core::analysis::tension_budget::StartEnd;
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene};
 use egui::{Context, ThemePreference};
+use image::RgbaImage;
 
 use crate::ViewerApp;
 use crate::app::screenshot;
@@ -16,6 +17,8 @@ use crate::units::system::System;
 
 /// Size of the pictures, points.
 const SIZE: [u32; 2] = [1280, 800];
+/// Frames of a state in which nothing moves: enough to lay out, to fit and to solve.
+const STILL_FRAMES: usize = 6;
 /// Frames in a second.
 const RATE: usize = 60;
 
@@ -31,15 +34,31 @@ pub struct State {
 
 /// All of them, in the order of the page.
 pub const STATES: [State; 8] = [
-    State { name: "first-minute", scene: catalog::tank_robot, prepare: first_minute, frames: 6 },
-    State { name: "selection", scene: catalog::pulley_waypoints, prepare: selection, frames: 6 },
-    State { name: "tension-budget", scene: catalog::draped_slipping, prepare: tension_budget, frames: 6 },
+    State { name: "first-minute", scene: catalog::tank_robot, prepare: first_minute, frames: STILL_FRAMES },
+    State { name: "selection", scene: catalog::pulley_waypoints, prepare: selection, frames: STILL_FRAMES },
+    State { name: "tension-budget", scene: catalog::draped_slipping, prepare: tension_budget, frames: STILL_FRAMES },
     State { name: "motion", scene: catalog::tank, prepare: motion, frames: 8 * RATE },
     State { name: "robot", scene: catalog::robot_drive, prepare: robot, frames: 5 * RATE },
     State { name: "break", scene: weak, prepare: motion, frames: 2 * RATE / 3 },
-    State { name: "safe-reach", scene: catalog::over_beam, prepare: safe_reach, frames: 6 },
-    State { name: "compare", scene: catalog::hanging_span, prepare: compare, frames: 6 },
+    State { name: "safe-reach", scene: catalog::over_beam, prepare: safe_reach, frames: STILL_FRAMES },
+    State { name: "compare", scene: catalog::hanging_span, prepare: compare, frames: STILL_FRAMES },
 ];
+
+impl State {
+    /// Whether nothing moves in it and nothing is computed beside the window: it is drawn at once.
+    #[must_use]
+    pub fn rests(&self) -> bool {
+        self.frames <= STILL_FRAMES && self.name != "safe-reach"
+    }
+
+    /// Draws it.
+    ///
+    /// # Errors
+    /// In words: a computation takes too long.
+    pub fn draw(&self) -> Result<RgbaImage, String> {
+        screenshot::draw_after((self.scene)(), SIZE, self.frames, self.prepare)
+    }
+}
 
 /// Draws all of them into a folder.
 ///
@@ -48,7 +67,7 @@ pub const STATES: [State; 8] = [
 pub fn save(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     for state in &STATES {
-        let picture = screenshot::draw_after((state.scene)(), SIZE, state.frames, state.prepare)?;
+        let picture = state.draw()?;
         let path = folder.join(state.name).with_extension("png");
         picture.save(&path).map_err(|e| format!("{} could not be written: {e}", path.display()))?;
     }

@@ -94,7 +94,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
             ui.set_min_height(ui.available_height());
             panels::plots::ui(ui, state, commands);
         });
-    } else if past || (graphs && state.live.before_reset.is_some()) {
+    } else if past || (graphs && state.live.earlier_run.is_some()) {
         Panel::bottom("timeline").show(ui, |ui| panels::timeline::ui(ui, state, commands));
     }
     if wide && open.edit {
@@ -154,7 +154,35 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
     });
 }
 
+/// The section to scroll to, since something else is marked or selected than in the frame before:
+/// where a tension comes from, or the form of the selected thing. Warnings stay in sight above it.
+fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -> Option<&'static str> {
+    let marked = is_new(ui, (id, "marked"), state.analysis.tension_marker) && state.analysis.tension_marker.is_some();
+    let selected = is_new(ui, (id, "selected"), state.selection.selected) && state.selection.selected.is_some();
+    let holds = |title: &str| sections.iter().any(|(t, _)| *t == title);
+    // What is changed within the panel stays under the pointer.
+    let from_elsewhere = !ui.ctx().pointer_latest_pos().is_some_and(|at| ui.max_rect().contains(at));
+    if marked && from_elsewhere && holds(MARKED) {
+        return Some(MARKED);
+    }
+    // The form stands on the right where there is such a panel, else below the outline.
+    match (selected, id == "read", state.ui.legend_beside) {
+        (true, true, true) => sections.first().map(|(title, _)| *title),
+        (true, false, false) => Some(SELECTED),
+        _ => None,
+    }
+}
+
+/// Whether a value is another than in the frame before.
+fn is_new<T: Copy + PartialEq + Send + Sync + 'static>(ui: &Ui, key: (&str, &str), now: T) -> bool {
+    let id = Id::unique(key);
+    let before = ui.data(|d| d.get_temp::<T>(id));
+    ui.data_mut(|d| d.insert_temp(id, now));
+    before != Some(now)
+}
+
 fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, commands: &mut Vec<Command>) {
+    let shown = newly_wanted(ui, (id, sections), state);
     // The bar stands beside figures, not over their last letters.
     ui.spacing_mut().scroll.floating_allocated_width = BAR;
     // What is too wide scrolls: it must not push the canvas aside.
@@ -178,6 +206,9 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
                 ui.set_max_width(width);
                 panel(ui, state, commands);
             });
+            if shown == Some(*title) {
+                section.header_response.scroll_to_me(Some(egui::Align::TOP));
+            }
             highlight::offer(&section.header_response, &format!("{title} section"));
         }
     });

@@ -15,6 +15,7 @@ use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::units::system::System;
 use crate::widgets::highlight;
+use crate::widgets::tick::{choose, tick};
 
 /// The menu bar.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -233,24 +234,24 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     ui.separator();
     let mut panels = state.ui.panels;
-    ui.checkbox(&mut panels.edit, "Edit panel ([)").on_hover_text("Outline, scene, robot, cable, environment, solver");
-    ui.checkbox(&mut panels.results, "Results panel (])").on_hover_text("Warnings, readouts, safe reach, compare");
-    ui.checkbox(&mut panels.graphs, "Graphs and timeline (G)").on_hover_text("The drawer below the canvas");
+    tick(ui, &mut panels.edit, "Edit panel ([)").on_hover_text("Outline, scene, robot, cable, environment, solver");
+    tick(ui, &mut panels.results, "Results panel (])").on_hover_text("Warnings, readouts, safe reach, compare");
+    tick(ui, &mut panels.graphs, "Graphs and timeline (G)").on_hover_text("The drawer below the canvas");
     if panels != state.ui.panels {
         commands.push(Command::View(ViewCommand::ShowPanels(panels)));
     }
     ui.separator();
     let mut layers = state.view.layers;
-    ui.checkbox(&mut layers.grid, "Grid").on_hover_text("Lines and numbered axes");
-    ui.checkbox(&mut layers.labels, "Labels").on_hover_text("Names, coordinates and figures");
-    ui.checkbox(&mut layers.contacts, "Contacts").on_hover_text(
+    tick(ui, &mut layers.grid, "Grid").on_hover_text("Lines and numbered axes");
+    tick(ui, &mut layers.labels, "Labels").on_hover_text("Names, coordinates and figures");
+    tick(ui, &mut layers.contacts, "Contacts").on_hover_text(
         "Where the cable touches: normal force and friction; filled and blue where it holds, hollow and orange where it slides",
     );
-    ui.checkbox(&mut layers.forces, "Forces").on_hover_text("Loads, and what the cable does to its supports");
-    ui.checkbox(&mut layers.components, "Force components").on_hover_text("Horizontal and vertical part of each force");
-    ui.checkbox(&mut layers.nodes, "Nodes").on_hover_text("The points the model works with");
+    tick(ui, &mut layers.forces, "Forces").on_hover_text("Loads, and what the cable does to its supports");
+    tick(ui, &mut layers.components, "Force components").on_hover_text("Horizontal and vertical part of each force");
+    tick(ui, &mut layers.nodes, "Nodes").on_hover_text("The points the model works with");
     ui.separator();
-    ui.checkbox(&mut layers.snap, "Snap to grid").on_hover_text("Dragged points land on the finest grid lines shown");
+    tick(ui, &mut layers.snap, "Snap to grid").on_hover_text("Dragged points land on the finest grid lines shown");
     if layers != state.view.layers {
         commands.push(Command::View(ViewCommand::SetLayers(layers)));
     }
@@ -258,17 +259,17 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     colours(ui, state, commands);
     ui.separator();
     let mut units = state.view.units;
-    ui.radio_value(&mut units, System::Si, "SI units").on_hover_text("Metres, newtons, kilograms");
-    ui.radio_value(&mut units, System::Us, "US units").on_hover_text("Feet, pounds-force, pounds; files stay SI");
+    choose(ui, &mut units, System::Si, "SI units").on_hover_text("Metres, newtons, kilograms");
+    choose(ui, &mut units, System::Us, "US units").on_hover_text("Feet, pounds-force, pounds; files stay SI");
     if units != state.view.units {
         commands.push(Command::View(ViewCommand::SetUnits(units)));
     }
     ui.separator();
     let mut theme = state.view.theme;
-    ui.radio_value(&mut theme, egui::ThemePreference::System, "Match system theme")
+    choose(ui, &mut theme, egui::ThemePreference::System, "Match system theme")
         .on_hover_text("Dark where it does not say");
-    ui.radio_value(&mut theme, egui::ThemePreference::Light, "Light theme").on_hover_text("Dark on light");
-    ui.radio_value(&mut theme, egui::ThemePreference::Dark, "Dark theme").on_hover_text("Light on dark");
+    choose(ui, &mut theme, egui::ThemePreference::Light, "Light theme").on_hover_text("Dark on light");
+    choose(ui, &mut theme, egui::ThemePreference::Dark, "Dark theme").on_hover_text("Light on dark");
     if theme != state.view.theme {
         commands.push(Command::View(ViewCommand::SetTheme(theme)));
     }
@@ -279,8 +280,7 @@ fn colours(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut colour = state.view.colour;
     for quantity in Quantity::ALL {
         let text = format!("Colour by {}", quantity.name().to_lowercase());
-        if ui
-            .radio_value(&mut colour.quantity, quantity, text)
+        if choose(ui, &mut colour.quantity, quantity, text)
             .on_hover_text("What the colours of the cable show")
             .changed()
         {
@@ -291,13 +291,13 @@ fn colours(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.menu_button("Colours", |ui| {
         for map in ColourMap::ALL {
             let help = "Even steps to every eye, also in grey and to colour-blind eyes";
-            ui.radio_value(&mut colour.map, map, map.name()).on_hover_text(help);
+            choose(ui, &mut colour.map, map, map.name()).on_hover_text(help);
         }
         let mut fixed = colour.fixed.is_some();
         let help =
             "On: the colours keep the values they have now; off: they follow the least and greatest of each answer";
         let present = state.live.snapshot.solution.as_deref().map(|s| state.view.colour.range(s));
-        if ui.checkbox(&mut fixed, "Lock colour range").on_hover_text(help).changed() {
+        if tick(ui, &mut fixed, "Lock colour range").on_hover_text(help).changed() {
             colour.fixed = present.filter(|_| fixed);
         }
     });

@@ -323,10 +323,56 @@ impl ViewerApp {
         }
     }
 
+    /// Draws a frame of the window and does what its panels push.
+    pub fn frame(&mut self, ui: &mut egui::Ui) {
+        let ctx = ui.ctx().clone();
+        system::set_current(self.state.view.units);
+        self.take_answers(&ctx);
+        self.replay(&ctx);
+        ctx.set_theme(self.state.view.theme);
+        let mut commands = Vec::new();
+        keys::read(&ctx, &self.state, &mut commands);
+        layout::ui(ui, &mut self.state, &mut commands);
+        dialogs::ui(&ctx, &mut self.state, &mut commands);
+        if ctx.input(|i| i.viewport().close_requested()) && self.state.document.unsaved() && !self.state.ui.closing {
+            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
+            commands.push(Command::File(command::FileCommand::Quit));
+        }
+        self.apply(&ctx, commands);
+        self.update_autosave(&ctx);
+        if let Some((list, written)) = &mut self.recent_list
+            && *written != self.state.ui.recent
+        {
+            written.clone_from(&self.state.ui.recent);
+            recent_files::save(list, written);
+        }
+        if self.state.ui.first_steps.open().is_empty()
+            && let Some(mark) = self.first_steps_mark.take()
+        {
+            first_steps_file::remember(&mark);
+        }
+        let title = format!("{} – Cable simulator", menu::title(&self.state));
+        if title != self.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+
     fn show(&mut self, report: Report) {
         let state = &mut self.state;
         if report.history_restarts {
             state.live.restart_history();
+        } else if report.answers.first().is_some_and(|a| a.time_s <= 0.0)
+            && state.live.has_run()
+            && report.snapshot.scene != state.live.latest.scene
+        {
+            // An edit after which nothing goes on from where the cable was: another run begins.
+            // Moves of a drag that were answered before belong to the same entry to undo.
+            let of = state.live.latest.scene.as_deref();
+            let [back, forward] = state.document.undo.neighbours();
+            let scene = if forward == of { of } else { back.or(of) };
+            let scene = scene.cloned();
+            state.live.end_run(scene);
         }
         for answer in report.answers {
             state.live.record(answer);
@@ -374,37 +420,7 @@ fn new_worker(ctx: &egui::Context, threaded: bool) -> Worker {
 
 impl eframe::App for ViewerApp {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        let ctx = ui.ctx().clone();
-        system::set_current(self.state.view.units);
-        self.take_answers(&ctx);
-        self.replay(&ctx);
-        ctx.set_theme(self.state.view.theme);
-        let mut commands = Vec::new();
-        keys::read(&ctx, &self.state, &mut commands);
-        layout::ui(ui, &mut self.state, &mut commands);
-        dialogs::ui(&ctx, &mut self.state, &mut commands);
-        if ctx.input(|i| i.viewport().close_requested()) && self.state.document.unsaved() && !self.state.ui.closing {
-            ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
-            commands.push(Command::File(command::FileCommand::Quit));
-        }
-        self.apply(&ctx, commands);
-        self.update_autosave(&ctx);
-        if let Some((list, written)) = &mut self.recent_list
-            && *written != self.state.ui.recent
-        {
-            written.clone_from(&self.state.ui.recent);
-            recent_files::save(list, written);
-        }
-        if self.state.ui.first_steps.open().is_empty()
-            && let Some(mark) = self.first_steps_mark.take()
-        {
-            first_steps_file::remember(&mark);
-        }
-        let title = format!("{} – Cable simulator", menu::title(&self.state));
-        if title != self.title {
-            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
-            self.title = title;
-        }
+        self.frame(ui);
     }
 
     fn on_exit(&mut self) {

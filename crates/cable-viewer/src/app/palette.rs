@@ -91,7 +91,7 @@ fn entries(panels: OpenPanels) -> Vec<(String, Command)> {
         ("Give feedback…", Command::File(crate::app::menu::feedback())),
         ("About: what was checked", file(Dialog::About)),
         ("Quit", Command::File(FileCommand::Quit)),
-        ("Undo reset", Command::Playback(PlaybackCommand::UndoReset)),
+        ("Undo restart", Command::Playback(PlaybackCommand::UndoRestart)),
         ("Cancel solving", Command::Playback(PlaybackCommand::CancelSolve)),
         ("Pull past the length while time runs", Command::Playback(PlaybackCommand::PullPastLength(true))),
         ("Refuse pulls past the length", Command::Playback(PlaybackCommand::PullPastLength(false))),

@@ -4,12 +4,11 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use cable_core::Scene;
-use egui_kittest::Harness;
 use image::RgbaImage;
 
 use crate::ViewerApp;
 use crate::jobs::safe_reach::Progress;
-use crate::render::offscreen::renderer;
+use crate::render::offscreen::Offscreen;
 
 /// Frames after which a picture is taken: the first lays out, the second fits and solves, the
 /// others settle scroll bars.
@@ -54,28 +53,22 @@ pub fn draw_after(
     frames: usize,
     prepare: impl FnOnce(&mut ViewerApp, &egui::Context),
 ) -> Result<RgbaImage, String> {
-    let mut harness = Harness::builder()
-        .with_size([size[0] as f32, size[1] as f32])
-        .with_step_dt(1.0 / 60.0)
-        .with_render_cursor(false)
-        .allow_missing_glyphs()
-        .with_accessibility_check(false)
-        .renderer(renderer()?)
-        .build_eframe(|cc| {
-            let mut app = ViewerApp::inline(&cc.egui_ctx, scene, None);
-            // A picture is of the scene, not of hints for a hand.
-            app.state.ui.first_steps.hide();
-            prepare(&mut app, &cc.egui_ctx);
-            app
-        });
-    harness.run_steps(frames);
+    let mut offscreen = Offscreen::new(size, 1.0);
+    let ctx = offscreen.ctx().clone();
+    let mut app = ViewerApp::inline(&ctx, scene, None);
+    // A picture is of the scene, not of hints for a hand.
+    app.state.ui.first_steps.hide();
+    prepare(&mut app, &ctx);
+    for _ in 0..frames {
+        offscreen.frame(|ui| app.frame(ui));
+    }
     let began = Instant::now();
-    while matches!(harness.state().state.analysis.safe_reach.progress, Progress::Running(..)) {
+    while matches!(app.state.analysis.safe_reach.progress, Progress::Running(..)) {
         if began.elapsed() > LONGEST_WAIT {
             return Err("the map of the safe reach takes too long on this machine".to_owned());
         }
         std::thread::sleep(Duration::from_millis(50));
-        harness.step();
+        offscreen.frame(|ui| app.frame(ui));
     }
-    harness.render()
+    Ok(offscreen.picture(ctx.global_style().visuals.panel_fill))
 }

@@ -12,7 +12,8 @@ use crate::command::effects::{Effects, submit_new_scene};
 use crate::command::import;
 use crate::command::scene::{self, SceneCommand};
 use crate::io::feedback::{self, Answers};
-use crate::io::graph_file::{self, Sheet};
+use crate::io::graph_file;
+use crate::io::graph_sheet::Sheet;
 use crate::io::saved_run::{SavedRun, read_run};
 use crate::io::scene_file;
 use crate::record::run::Run;
@@ -217,7 +218,7 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
     state.live.playback.paused = true;
     state.live.robot_order = None;
     state.live.reopened_run = Vec::new();
-    (state.live.before_reset, state.live.reset_is_last, state.live.resets) = (None, false, false);
+    (state.live.earlier_run, state.live.reset_is_last, state.live.resets) = (None, false, false);
     state.ui.tutorial = None;
     state.analysis.safe_reach = crate::jobs::safe_reach::SafeReachState::default();
     effects.reach = Some(None);

@@ -2,15 +2,12 @@
 
 use cable_core::scene::SupportKind;
 
-use crate::command::effects::{Effects, next_number, submit_edit};
+use crate::command::effects::{Effects, next_number, submit_edit, submit_undone};
 use crate::state::dialog::Dialog;
+use crate::state::live::MIN_MOVE_M;
 use crate::state::undo::EditKind;
 use crate::state::{AppState, Playback};
 use crate::worker::request::{Edit, Request, Resume};
-
-/// A support that is farther than this from where it was has been moved since, m. Less: rounding
-/// counts as moving.
-const MIN_MOVE_M: f64 = 1e-6;
 
 /// Time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,9 +30,9 @@ pub enum PlaybackCommand {
     SetLoop(bool),
     /// Back to the start, bit for bit; pauses, and the robot's task starts again.
     Reset,
-    /// Takes the last reset back: what was recorded before it is there again, and time goes on from
-    /// its end.
-    UndoReset,
+    /// Takes the last restart back, and the edits since it if an edit was its cause: what was
+    /// recorded before is there again, and time goes on from its end.
+    UndoRestart,
     /// Gives up what is being solved.
     CancelSolve,
     /// Solves what was given up.
@@ -88,11 +85,7 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
             let number = next_number(state);
             effects.request.merge(Request { reset: true, robot: Some(None), number, ..Request::default() });
         }
-        PlaybackCommand::UndoReset => {
-            if state.live.undo_reset() {
-                go_on(state, effects);
-            }
-        }
+        PlaybackCommand::UndoRestart => undo_restart(state, effects),
         PlaybackCommand::CancelSolve => {
             state.live.playback.paused = true;
             effects.request.merge(Request { cancel: true, number: next_number(state), ..Request::default() });
@@ -123,6 +116,20 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
         }
     }
     send(state, effects);
+}
+
+/// Takes the last restart back.
+fn undo_restart(state: &mut AppState, effects: &mut Effects) {
+    let scene = state.live.earlier_run.as_ref().and_then(|run| run.scene.clone());
+    if let Some(scene) = scene {
+        let present = state.document.scene.clone();
+        state.document.scene = state.document.undo.go_to(present, &scene);
+        state.document.validate();
+        submit_undone(state, effects);
+    }
+    if state.live.undo_restart() {
+        go_on(state, effects);
+    }
 }
 
 /// Takes the answer shown as the present one: supports stand where they stood then.

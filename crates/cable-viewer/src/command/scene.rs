@@ -133,7 +133,11 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         SceneCommand::Copy => return clipboard::copy(state, effects),
         SceneCommand::Cut => clipboard::copy(state, effects),
         SceneCommand::Undo if state.live.reset_is_last => {
-            return playback::apply(state, PlaybackCommand::UndoReset, effects);
+            return playback::apply(state, PlaybackCommand::UndoRestart, effects);
+        }
+        SceneCommand::Undo | SceneCommand::Redo if ends_at_earlier_run(state, &command) => {
+            playback::apply(state, PlaybackCommand::UndoRestart, effects);
+            return drop_lost_selection(state);
         }
         SceneCommand::Undo | SceneCommand::Redo => {
             let other = match command {
@@ -182,6 +186,15 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         return;
     }
     after_edit(state, dragged, effects);
+}
+
+/// Whether an undo or redo leads to the scene of the run that an edit ended, with nothing run
+/// since.
+fn ends_at_earlier_run(state: &AppState, command: &SceneCommand) -> bool {
+    let scene = state.live.earlier_run.as_ref().and_then(|run| run.scene.as_ref());
+    let [back, forward] = state.document.undo.neighbours();
+    let to = if *command == SceneCommand::Undo { back } else { forward };
+    scene.is_some() && to == scene && !state.live.has_run()
 }
 
 /// Whether the pointer pulls a support, while masses move, to where the cable does not reach, and

@@ -15,6 +15,11 @@ pub fn reaction(state: &AppState, cable: usize, support: usize) -> Option<&Suppo
     state.live.snapshot.solution.as_ref()?.cables.get(cable)?.supports.get(support)
 }
 
+fn is_broken(state: &AppState, cable: usize) -> bool {
+    let solution = state.live.snapshot.solution.as_ref();
+    solution.and_then(|s| s.cables.get(cable)).is_some_and(|c| !c.breaks.is_empty())
+}
+
 /// Where a support is on screen now: where the scene puts it, or where the cable took it.
 #[must_use]
 pub fn support_position(state: &AppState, cable: usize, support: usize) -> Option<Point> {
@@ -23,6 +28,12 @@ pub fn support_position(state: &AppState, cable: usize, support: usize) -> Optio
         return Some(behind);
     }
     if let Some(now) = reaction(state, cable, support).filter(|now| now.hand.is_some()) {
+        return Some([now.x_m, now.y_m]);
+    }
+    // One that a piece hangs on is where that is, and one that is torn off where the cable last
+    // reached it.
+    let holds = |now: &&SupportReaction| now.reaction_x_n != 0.0 || now.reaction_y_n != 0.0;
+    if let Some(now) = reaction(state, cable, support).filter(|now| is_broken(state, cable) && holds(now)) {
         return Some([now.x_m, now.y_m]);
     }
     let solved = state.live.snapshot.solution.as_ref().and_then(|x| x.cables.get(cable));
@@ -46,6 +57,11 @@ pub fn hand_spring(state: &AppState, cable: usize, support: usize) -> Option<[Po
         return ((ends[0][0] - ends[1][0]).hypot(ends[0][1] - ends[1][1]) > COINCIDENCE_M).then_some(ends);
     }
     let s = state.document.scene.cables.get(cable)?.supports.get(support)?;
+    // Of a broken cable a hand takes pieces farther than a whole one reaches: nothing draws them
+    // back.
+    if is_broken(state, cable) {
+        return None;
+    }
     let held = matches!(s.kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Pulley);
     let solution = state.live.snapshot.solution.as_ref()?;
     let solved = solution.cables.get(cable)?;

@@ -173,7 +173,7 @@ fn find(order: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<
     let maps = match order.moved {
         ReachSubject::Robot => {
             let ends_m = order.corners_m.map(|p| p[0]);
-            let told = |map: &ReachMap, share: f64| tell(share, &|| Maps::Line(Arc::new(map.clone())));
+            let told = |map: &ReachMap, _: f64| tell(known_share(map), &|| Maps::Line(Arc::new(map.clone())));
             let map = line::robot_reach(&scene, order.now.as_deref(), order.settings, ends_m, PLACES, told)
                 .map_err(|e| e.to_string())?;
             Maps::Line(Arc::new(map))
@@ -203,6 +203,13 @@ fn find(order: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<
         }
     };
     Ok((maps, scene))
+}
+
+/// The share of a robot's places that is known, 0 to 1: the way there is one half, the way back the
+/// other. Lengths of ways say less, because most ways back are not gone.
+fn known_share(map: &ReachMap) -> f64 {
+    let back = map.places.iter().filter(|p| !p.there_and_back_n.is_nan()).count();
+    0.5 * (map.places.len() + back) as f64 / PLACES as f64
 }
 
 /// All that can be taken somewhere.

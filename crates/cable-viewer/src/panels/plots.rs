@@ -13,12 +13,13 @@ use crate::state::AppState;
 use crate::state::dialog::Dialog;
 use crate::state::questions::friction_answer;
 use crate::widgets::field;
+use crate::widgets::tick::tick;
 
 /// From this width on the timeline stands beside the choice of graphs, points. Less: its rail is
 /// too short to aim at.
 const ONE_ROW: f32 = 960.0;
-/// Room for the button that brings back what a reset put away, points.
-const UNDO_RESET: f32 = 90.0;
+/// Room for the button that brings back what a restart put away, points.
+const UNDO_RESTART: f32 = 98.0;
 /// Below this width the graphs stand one under the other, points.
 const SIDE_BY_SIDE: f32 = 480.0;
 /// Lowest graph that can still be read, points.
@@ -32,8 +33,8 @@ const WINDOWS: [(Option<f64>, &str); 4] =
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let id = Id::unique("plot view");
     let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
-    let reset = if state.live.before_reset.is_some() { UNDO_RESET } else { 0.0 };
-    if ui.available_width() >= ONE_ROW + reset {
+    let restart = if state.live.earlier_run.is_some() { UNDO_RESTART } else { 0.0 };
+    if ui.available_width() >= ONE_ROW + restart {
         ui.horizontal(|ui| {
             controls(ui, state, &mut view);
             ui.separator();
@@ -95,7 +96,7 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
         }
     }
     ui.separator();
-    ui.checkbox(&mut view.follow, "Follow").on_hover_text(
+    tick(ui, &mut view.follow, "Follow").on_hover_text(
         "The graphs keep up with the data. The wheel zooms at the pointer and turns this off; then drag to move, double-click \
          to fit. Click for a cursor, again for a second and their difference, again for none",
     );

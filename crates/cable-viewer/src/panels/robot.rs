@@ -14,6 +14,7 @@ use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
+use crate::widgets::tick::tick;
 use crate::widgets::{field, readout};
 
 /// Width of a number, points: “12.34 m/s” fits.
@@ -177,7 +178,7 @@ fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
             add(RobotTask::Wait { wait_s: FIRST_LEG.1 });
         }
         let mut repeat = robot.repeat;
-        if ui.checkbox(&mut repeat, "Repeat").on_hover_text("Begins anew after the last leg").changed() {
+        if tick(ui, &mut repeat, "Repeat").on_hover_text("Begins anew after the last leg").changed() {
             set(Robot { repeat, ..robot.clone() }, commands);
         }
     });

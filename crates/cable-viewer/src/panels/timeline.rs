@@ -8,6 +8,7 @@ use crate::state::AppState;
 use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::widgets::icon::{self, Icon};
+use crate::widgets::tick::tick;
 use crate::widgets::{field, highlight};
 
 /// Shortest rail that can be aimed at, points.
@@ -39,7 +40,7 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         let mut looped = state.live.recording.looped;
         let help = "Playback starts again at the end of the recording; off, the simulation goes on from there";
-        if ui.checkbox(&mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NOTHING).changed() {
+        if tick(ui, &mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NOTHING).changed() {
             push(PlaybackCommand::SetLoop(looped));
             // A loop of what is not shown begins at its start.
             if let (true, None, Some([first, _])) = (looped, state.live.recording.shown_s, span) {
@@ -60,10 +61,13 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             push(PlaybackCommand::GoOn);
         }
     });
-    if state.live.before_reset.is_some() {
-        let help = "Brings back what was recorded before the last reset, and goes on from its end (Ctrl+Z)";
-        if ui.button("Undo reset").on_hover_text(help).clicked() {
-            push(PlaybackCommand::UndoReset);
+    if let Some(run) = &state.live.earlier_run {
+        let help = match &run.scene {
+            None => "Brings back what was recorded before the last reset, and goes on from its end (Ctrl+Z)",
+            Some(_) => "An edit began the run anew: takes it back, and brings back what was recorded before (Ctrl+Z)",
+        };
+        if ui.button("Undo restart").on_hover_text(help).clicked() {
+            push(PlaybackCommand::UndoRestart);
         }
     }
     let [first, last] = span.unwrap_or([0.0, 1.0]);

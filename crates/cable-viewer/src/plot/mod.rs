@@ -13,7 +13,7 @@ use std::ops::RangeInclusive;
 use egui::{Align2, Color32, Id, RichText, Sense, Stroke, TextStyle, Ui, vec2};
 use egui_plot::{GridInput, GridMark, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
-use crate::io::graph_file::Sheet;
+use crate::io::graph_sheet::Sheet;
 use crate::plot::cursors::Cursors;
 use crate::record::measure::Measure;
 use crate::record::series::{Series, line_style, value_at};

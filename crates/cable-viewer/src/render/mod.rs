@@ -4,9 +4,10 @@
 //! - `colour`: a quantity along the cable as a colour
 //! - `theme`: the palettes of light and dark
 //! - `software`: egui's picture, drawn faster where there is no GPU
-//! - `offscreen`: a renderer without a window
+//! - `offscreen`, `raster`: frames without a window, and their pixels without a graphics adapter
 
 pub mod colour;
 pub mod offscreen;
+pub mod raster;
 pub mod software;
 pub mod theme;

@@ -1,46 +1,77 @@
-//! A renderer without a window draws pictures on whatever adapter there is.
+//! Frames of egui without a window or a graphics adapter, and their picture.
 
-use std::future::Future;
-use std::pin::pin;
-use std::task::{Context, Poll, Waker};
+use egui::{Color32, Context, FullOutput, Pos2, RawInput, Rect, Ui, Vec2, ViewportId};
+use image::RgbaImage;
 
-use eframe::egui_wgpu;
-use egui_kittest::wgpu::{WgpuTestRenderer, default_wgpu_setup};
+use crate::render::raster::{self, Textures};
 
-/// A renderer on whatever adapter there is.
-///
-/// # Errors
-/// There is none.
-pub fn renderer() -> Result<WgpuTestRenderer, String> {
-    render_state(egui_wgpu::RendererOptions::PREDICTABLE).map(WgpuTestRenderer::from_render_state)
+/// Time between two frames, s.
+const FRAME_S: f32 = 1.0 / 60.0;
+
+/// A place to draw frames on.
+pub struct Offscreen {
+    ctx: Context,
+    input: RawInput,
+    textures: Textures,
+    last: Option<FullOutput>,
+    size: Vec2,
+    pixels_per_point: f32,
 }
 
-/// What draws on whatever adapter there is, without a window.
-///
-/// # Errors
-/// There is none.
-pub fn render_state(options: egui_wgpu::RendererOptions) -> Result<egui_wgpu::RenderState, String> {
-    let setup = default_wgpu_setup();
-    let configuration = egui_wgpu::WgpuConfiguration { wgpu_setup: setup.clone(), ..Default::default() };
-    let state = ready(async move {
-        let instance = setup.new_instance().await;
-        egui_wgpu::RenderState::create(&configuration, &instance, None, options).await
-    });
-    state.map_err(|e| {
-        format!(
-            "no graphics adapter was found ({e}); install a Vulkan driver (Debian: mesa-vulkan-drivers) or try WGPU_BACKEND=gl"
-        )
-    })
-}
-
-/// Waits for a future; the native ones of wgpu are ready at once, so that polling is enough.
-pub fn ready<T>(future: impl Future<Output = T>) -> T {
-    let mut future = pin!(future);
-    let mut context = Context::from_waker(Waker::noop());
-    loop {
-        if let Poll::Ready(value) = future.as_mut().poll(&mut context) {
-            return value;
+impl Offscreen {
+    /// One of a size in points; nothing on it is animated.
+    #[must_use]
+    pub fn new(size: [u32; 2], pixels_per_point: f32) -> Self {
+        let ctx = Context::default();
+        ctx.all_styles_mut(|style| {
+            style.visuals.text_cursor.blink = false;
+            style.scroll_animation = egui::style::ScrollAnimation::none();
+            style.animation_time = 0.0;
+        });
+        let size = Vec2::new(size[0] as f32, size[1] as f32);
+        let mut input = RawInput {
+            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
+            time: Some(0.0),
+            predicted_dt: FRAME_S,
+            ..RawInput::default()
+        };
+        if let Some(viewport) = input.viewports.get_mut(&ViewportId::ROOT) {
+            viewport.native_pixels_per_point = Some(pixels_per_point);
         }
-        std::thread::yield_now();
+        Self { ctx, input, textures: Textures::default(), last: None, size, pixels_per_point }
+    }
+
+    /// The context of its frames.
+    #[must_use]
+    pub fn ctx(&self) -> &Context {
+        &self.ctx
+    }
+
+    /// Runs a frame, 1/60 s after the one before.
+    pub fn frame(&mut self, ui: impl FnMut(&mut Ui)) {
+        let mut output = self.ctx.run_ui(self.input.clone(), ui);
+        self.input.time = self.input.time.map(|t| t + f64::from(FRAME_S));
+        if let Some(mut before) = self.last.take() {
+            self.textures.free(&mut before.textures_delta);
+        }
+        self.textures.set(&mut output.textures_delta);
+        self.last = Some(output);
+    }
+
+    /// The last frame as a picture, on a ground of one colour.
+    #[must_use]
+    pub fn picture(&self, ground: Color32) -> RgbaImage {
+        let size = [self.size.x, self.size.y].map(|s| (s * self.pixels_per_point).round() as u32);
+        let shapes = self.last.as_ref().map_or_else(Vec::new, |output| output.shapes.clone());
+        let primitives = self.ctx.tessellate(shapes, self.pixels_per_point);
+        raster::draw(&primitives, &self.textures, (size, self.pixels_per_point, ground))
+    }
+}
+
+impl Drop for Offscreen {
+    fn drop(&mut self) {
+        if let Some(last) = self.last.take() {
+            last.drop_without_applying_deltas();
+        }
     }
 }

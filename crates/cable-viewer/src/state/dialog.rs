@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use cable_core::Scene;
 
 use crate::io::feedback::Answers;
-use crate::io::graph_file::Sheet;
+use crate::io::graph_sheet::Sheet;
 
 /// An action that takes the place of the present scene, and so asks first if it is not saved.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,12 +2,17 @@
 
 use std::sync::Arc;
 
+use cable_core::scene::SupportKind;
 use cable_core::timeline::RunPeaks;
 use cable_core::wording::Sentence;
 use cable_core::{Error, Scene, Solution, UnitSystem};
 
 use crate::record::recording::Recording;
 use crate::record::samples::{History, Sample};
+
+/// A support that is farther than this from where it was has been moved since, m. Less: rounding
+/// counts as moving.
+pub const MIN_MOVE_M: f64 = 1e-6;
 
 /// What the worker answered, and how time runs.
 #[derive(Debug)]
@@ -24,8 +29,8 @@ pub struct Live {
     pub history: History,
     /// Instants of a run that was opened, to be recorded once its scene is solved.
     pub reopened_run: Vec<Solution>,
-    /// What was recorded before the last reset, until the next one or another scene.
-    pub before_reset: Option<Box<BeforeReset>>,
+    /// The run that the last restart ended, until the next one or another scene.
+    pub earlier_run: Option<Box<EarlierRun>>,
     /// The reset is the last thing that was done: undo takes it back.
     pub reset_is_last: bool,
     /// The next history that restarts is that of a reset.
@@ -45,7 +50,7 @@ impl Default for Live {
             recording: Recording::default(),
             history: History::default(),
             reopened_run: Vec::new(),
-            before_reset: None,
+            earlier_run: None,
             reset_is_last: false,
             resets: false,
             robot_order: None,
@@ -61,25 +66,45 @@ impl Live {
         self.refresh();
     }
 
-    /// Begins recording anew; what a reset ends is kept.
+    /// Begins recording anew, for another scene or after a reset; what a reset ends is kept.
     pub fn restart_history(&mut self) {
-        let (recording, history) = (std::mem::take(&mut self.recording), std::mem::take(&mut self.history));
-        self.recording.looped = recording.looped;
-        let moved = recording.span_s().is_some_and(|[first, last]| last > first);
-        if !std::mem::take(&mut self.resets) {
-            self.before_reset = None;
-        } else if moved {
-            self.before_reset = Some(Box::new(BeforeReset { recording, history }));
-            self.reset_is_last = true;
+        if std::mem::take(&mut self.resets) {
+            self.reset_is_last = self.end_run(None);
+        } else {
+            self.end_run(None);
+            self.earlier_run = None;
         }
     }
 
-    /// Puts back what was recorded before the last reset and shows its end; whether there was any.
-    pub fn undo_reset(&mut self) -> bool {
+    /// Puts the run so far away, if there is one, and begins recording anew; whether there was one.
+    /// `scene`: the scene that it was of, where an edit ends it.
+    pub fn end_run(&mut self, scene: Option<Scene>) -> bool {
+        let (recording, history) = (std::mem::take(&mut self.recording), std::mem::take(&mut self.history));
+        self.recording.looped = recording.looped;
+        let moved = recording.span_s().is_some_and(|[first, last]| last > first);
+        if moved {
+            self.earlier_run = Some(Box::new(EarlierRun { recording, history, scene }));
+        }
+        moved
+    }
+
+    /// Whether time has run since the last start.
+    #[must_use]
+    pub fn has_run(&self) -> bool {
+        self.recording.span_s().is_some_and(|[first, last]| last > first)
+    }
+
+    /// Puts back what was recorded before the last restart and shows its end; whether there was
+    /// any. After an edit the end is that of the scene before it, while the cable was whole.
+    pub fn undo_restart(&mut self) -> bool {
         self.reset_is_last = false;
-        let Some(before) = self.before_reset.take() else { return false };
+        let Some(before) = self.earlier_run.take() else { return false };
         (self.recording, self.history) = (before.recording, before.history);
-        let last_s = self.recording.span_s().map(|[_, last]| last);
+        let mut last_s = self.recording.span_s().map(|[_, last]| last);
+        if let Some(scene) = &before.scene {
+            let of_scene = |a: &&Solution| a.cables.iter().all(|c| c.breaks.is_empty()) && supports_as_in(a, scene);
+            last_s = self.recording.answers().iter().rev().find(of_scene).map(|a| a.time_s).or(last_s);
+        }
         self.show_time(last_s);
         last_s.is_some()
     }
@@ -114,11 +139,25 @@ impl Live {
     }
 }
 
-/// What was recorded before a reset.
+/// A run that a restart ended.
 #[derive(Debug)]
-pub struct BeforeReset {
+pub struct EarlierRun {
     recording: Recording,
     history: History,
+    /// The scene that it was of, where an edit ended it; None: a reset did.
+    pub scene: Option<Scene>,
+}
+
+/// Supports that stay where they are stand in an answer where the scene has them: the answer to the
+/// first move of a drag has another place.
+fn supports_as_in(answer: &Solution, scene: &Scene) -> bool {
+    let near = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) < MIN_MOVE_M;
+    answer.cables.iter().zip(&scene.cables).all(|(then, cable)| {
+        then.supports.iter().zip(&cable.supports).all(|(then, s)| {
+            let fixed = s.kind == SupportKind::Fixed && s.motion.is_none();
+            !fixed || s.at_m.is_none_or(|at| near(at, [then.x_m, then.y_m]))
+        })
+    })
 }
 
 /// Whether and how fast time runs.

@@ -45,6 +45,30 @@ impl Undo {
         Some(scene)
     }
 
+    /// The scenes that an undo and a redo lead to.
+    #[must_use]
+    pub fn neighbours(&self) -> [Option<&Scene>; 2] {
+        [self.before.last(), self.after.last()]
+    }
+
+    /// Goes from `present` back or forward to a scene, or makes it the next entry if it is in
+    /// neither direction.
+    pub fn go_to(&mut self, mut present: Scene, scene: &Scene) -> Scene {
+        let forward = self.after.contains(scene);
+        if !forward && !self.before.contains(scene) {
+            self.close_entry();
+            self.record(&present, EditKind("restart".to_owned()));
+            self.close_entry();
+            return scene.clone();
+        }
+        while present != *scene {
+            let next = if forward { self.forward(&present) } else { self.back(&present) };
+            let Some(next) = next else { break };
+            present = next;
+        }
+        present
+    }
+
     /// The scene undone last.
     pub fn forward(&mut self, present: &Scene) -> Option<Scene> {
         let scene = self.after.pop()?;

@@ -60,10 +60,20 @@ pub fn length(value_m: f64) -> String {
 /// A duration in s, ms or µs, s.
 #[must_use]
 pub fn duration(value_s: f64) -> String {
+    duration_with(value_s, DIGITS)
+}
+
+/// A duration with three digits: a wall time is never the same twice.
+#[must_use]
+pub fn rough_duration(value_s: f64) -> String {
+    duration_with(value_s, 3)
+}
+
+fn duration_with(value_s: f64, digits: usize) -> String {
     let size = value_s.abs();
     let found = TIMES.iter().find(|(_, si)| size >= *si).or(TIMES.last());
     let (symbol, si) = found.filter(|_| size > 0.0 && size.is_finite()).copied().unwrap_or(("s", 1.0));
-    with_symbol(significant(value_s / si, DIGITS), symbol)
+    with_symbol(significant(value_s / si, digits), symbol)
 }
 
 /// Smaller ratios are not written with their power of ten: nobody reads more into it than that it

@@ -2,6 +2,7 @@
 //!
 //! - `field`: number and text fields that keep what is typed until it can be read
 //! - `property`: one quantity in a row with name, slider, value and reset
+//! - `tick`: boxes to tick and rings to choose by
 //! - `time_table`: a vector that changes with time, as a table
 //! - `icon`: painted signs
 //! - `highlight`: a frame round the control that a guide speaks of
@@ -11,4 +12,5 @@ pub mod highlight;
 pub mod icon;
 pub mod property;
 pub mod readout;
+pub mod tick;
 pub mod time_table;

@@ -362,7 +362,12 @@ impl Engine {
 
     fn solve_draft(&mut self) -> Result<(), Error> {
         let (Phase::Draft { .. }, Some(edit)) = (&self.phase, self.edit.clone()) else { return Ok(()) };
-        self.take_edit(edit)
+        // The answer is one at rest even where time is to run next: what runs on from the draft
+        // itself is still falling, and strikes what it falls on.
+        let paused = std::mem::replace(&mut self.playback.paused, true);
+        let result = self.take_edit(edit);
+        self.playback.paused = paused || result.is_err();
+        result
     }
 
     fn take_edit(&mut self, edit: Edit) -> Result<(), Error> {
@@ -381,7 +386,8 @@ impl Engine {
         // model left the cable.
         let same_model = self.edit.as_ref().is_some_and(|e| e.model == edit.model && e.settings == edit.settings);
         let from = old.as_ref().filter(|o| same_model || o.time_s() > 0.0);
-        let at_rest = self.playback.paused && from.is_none_or(|o| o.time_s() <= 0.0);
+        // Before time has run there is nothing to go on from, whether or not it is to run next.
+        let at_rest = from.is_none_or(|o| o.time_s() <= 0.0);
         self.routes.clear();
         let mut edit = edit;
         let rebuilt = if at_rest { self.lay(&mut edit, from).map(|s| (s, true)) } else { self.rebuild(&edit, from) };

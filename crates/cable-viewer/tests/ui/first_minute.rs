@@ -50,12 +50,11 @@ fn hints_are_hidden_for_good() {
     let kept = folder.path().join("recovery.toml");
     let window = |kept: &std::path::Path| {
         let kept = kept.to_owned();
-        let mut harness =
-            Harness::builder().with_size(Vec2::new(1280.0, 800.0)).allow_missing_glyphs().build_eframe(move |cc| {
-                let mut app = ViewerApp::inline(&cc.egui_ctx, catalog::hanging_span(), None);
-                app.keep_changes_in(kept);
-                app
-            });
+        let mut harness = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).build_eframe(move |cc| {
+            let mut app = ViewerApp::inline(&cc.egui_ctx, catalog::hanging_span(), None);
+            app.keep_changes_in(kept);
+            app
+        });
         harness.run_steps(5);
         harness
     };

@@ -1,10 +1,11 @@
 //! Room for the picture: how much of the window the canvas has, and that nothing but the user
 //! changes that.
 
+use cable_core::analysis::tension_budget::StartEnd;
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::state::{FirstSteps, Item, OpenPanels};
+use cable_viewer::state::{FirstSteps, Item, OpenPanels, TensionMarker};
 use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -22,7 +23,6 @@ fn the_canvas_has_most_of_the_window() {
     for (size, folded, with_graphs) in [([1280.0, 800.0], 0.60, 0.48), ([1024.0, 640.0], 0.50, 0.40)] {
         let mut harness = Harness::builder()
             .with_size(Vec2::from(size))
-            .allow_missing_glyphs()
             .build_eframe(|cc| ViewerApp::inline(&cc.egui_ctx, catalog::tank(), None));
         harness.run_steps(6);
         let share_with_graphs = share(&harness, size);
@@ -238,4 +238,48 @@ fn hints_do_not_lie_over_the_cable() {
         state.live.snapshot.solution.as_ref().unwrap().cables[0].nodes.iter().map(|n| n.y_m).fold(9.0, f64::min);
     let foot = state.view.camera.to_screen(canvas, [0.0, lowest]).y;
     assert!(foot < hints.top(), "the cable ends at {foot}, hints begin at {}", hints.top());
+}
+
+/// The form of what was picked in the outline opened where the panel had been scrolled to, in its
+/// middle.
+#[test]
+fn the_form_of_what_is_picked_begins_at_its_top() {
+    let mut harness = open(catalog::tank_robot());
+    harness.get_by_label_contains("Show less and more friction").scroll_to_me();
+    harness.run_steps(3);
+    let lowest = harness.get_by_label_contains("Show less and more friction").rect();
+    assert!(lowest.bottom() < 780.0, "the panel is scrolled to its end: {lowest:?}");
+    harness.get_by_label("Select umbilical").click();
+    harness.run_steps(4);
+    let name = harness.get_by_label("Deselect").rect();
+    assert!(name.top() > 170.0 && name.bottom() < 400.0, "{name:?}");
+    // It stays where the user scrolls it to.
+    harness.get_by_label_contains("Show less and more friction").scroll_to_me();
+    harness.run_steps(4);
+    assert!(harness.get_by_label_contains("Show less and more friction").rect().bottom() < 780.0);
+    // A click on the cable asks where its tension comes from: the answer stood below the form.
+    let marker = TensionMarker { cable: 0, arc_length_m: 6.0, from: StartEnd::Slacker };
+    apply(&mut harness, Command::View(ViewCommand::MarkTension(Some(marker))));
+    harness.run_steps(4);
+    let budget = harness.get_by_label("Tension at the marked place").rect();
+    assert!(budget.top() > 170.0 && budget.bottom() < 400.0, "{budget:?}");
+}
+
+/// The unit of the last column of the pinned results was cut.
+#[test]
+fn the_table_of_pinned_results_is_as_wide_as_its_panel() {
+    let mut harness = open(catalog::tank_robot());
+    apply(&mut harness, Command::View(ViewCommand::Hold));
+    let mut cable = harness.state().state.document.scene.cables[0].clone();
+    cable.length_m = 15.2;
+    apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+    let state = &mut harness.state_mut().state;
+    // As long as a time can be.
+    (state.live.snapshot.solve_wall_s, state.live.latest.solve_wall_s) = (0.888_88, 0.888_88);
+    harness.run_steps(3);
+    harness.get_by_label("Cost").scroll_to_me();
+    harness.run_steps(3);
+    let cost = harness.get_by_label("889 ms").rect();
+    assert!(cost.right() <= 1272.0, "{cost:?}");
+    harness.get_by_label("Length: 14.20 m, now 15.20 m");
 }

@@ -9,6 +9,7 @@ mod defects;
 mod editing;
 mod first_minute;
 mod gallery;
+mod gpu;
 mod graphs;
 mod hands;
 mod help;
@@ -48,7 +49,6 @@ fn open(scene: cable_core::Scene) -> Harness<'static, ViewerApp> {
     let mut harness = Harness::builder()
         .with_size(Vec2::new(1280.0, 800.0))
         .with_step_dt(1.0 / 60.0)
-        .allow_missing_glyphs()
         .build_eframe(|cc| ViewerApp::inline(&cc.egui_ctx, scene, None));
     harness.run_steps(5);
     harness

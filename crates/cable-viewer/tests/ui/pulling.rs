@@ -4,6 +4,7 @@
 use cable_core::Settings;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, PlaybackCommand, ViewCommand};
+use cable_viewer::geometry;
 use egui::{Pos2, Vec2};
 use egui_kittest::Harness;
 
@@ -76,6 +77,17 @@ fn s15_a_pull_past_the_length_pulls_harder_and_harder_until_the_cable_breaks() {
     harness.run_steps(10);
     assert!(harness.state().state.document.fault.is_none());
     assert_eq!(harness.state().state.live.latest.error, None);
+    // Each support stands where its piece hangs, or where the cable last reached it, with no spring
+    // beside it.
+    let state = &harness.state().state;
+    let solution = state.live.snapshot.solution.as_ref().unwrap();
+    for (k, now) in solution.cables[0].supports.iter().enumerate() {
+        let holds = now.reaction_x_n != 0.0 || now.reaction_y_n != 0.0;
+        let last = state.document.scene.cables[0].supports[k].at_m;
+        let stands = if holds { Some([now.x_m, now.y_m]) } else { last };
+        assert_eq!(geometry::supports::support_position(state, 0, k), stands, "{}", now.name);
+        assert_eq!(geometry::supports::hand_spring(state, 0, k), None, "{}", now.name);
+    }
     apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
     harness.run_steps(3);
     assert!(!broken(&harness) && tension_n(&harness) < 1e4, "{} N", tension_n(&harness));

@@ -229,3 +229,43 @@ fn a_cancelled_search_keeps_what_it_found_and_none_of_it_lies_outside_the_tank()
     click(&mut harness, "Clear");
     assert!(reach(&harness).found().is_none() && reach(&harness).stopped.is_none());
 }
+
+/// The bar stood at 3 % while half of the places were known, because ways back that are never gone
+/// counted by their length, and what was found so far read like the answer.
+#[test]
+fn progress_of_a_robots_reach_counts_places_and_what_is_found_so_far_is_said_to_be() {
+    let ask = ReachQuery {
+        scene: catalog::tank_robot(),
+        now: None,
+        settings: cable_core::Settings::default(),
+        moved: ReachSubject::Robot,
+        corners_m: [[4.0, 0.0], [7.0, 0.0]],
+        across: 8,
+    };
+    let told = std::sync::Mutex::new(Vec::new());
+    let job = start(ask, || ());
+    patiently("a short reach", || {
+        let progress = job.progress();
+        if let Progress::Running(share, Some((Maps::Line(map), _))) = &progress {
+            told.lock().unwrap().push((*share, map.places.len()));
+        }
+        matches!(progress, Progress::Done(_))
+    });
+    let told = told.into_inner().unwrap();
+    assert!(told.windows(2).all(|t| t[0].0 <= t[1].0), "{told:?}");
+    let there = told.iter().filter(|(_, places)| *places < PLACES);
+    for (share, places) in there {
+        let expected = 0.5 * *places as f64 / PLACES as f64;
+        assert!((share - expected).abs() < 0.03, "{share} with {places} of {PLACES} places");
+    }
+    let mut harness = tall(catalog::tank_robot());
+    click(&mut harness, "Find safe reach");
+    patiently("the first places", || {
+        harness.step();
+        reach(&harness).found().is_some_and(|(maps, _)| matches!(maps, Maps::Line(map) if map.places.len() > 2))
+    });
+    if matches!(reach(&harness).progress, Progress::Running(..)) {
+        assert!(harness.query_all_by_label_contains("So far: safe from").next().is_some());
+    }
+    click(&mut harness, "Cancel safe reach");
+}

@@ -10,11 +10,12 @@ use cable_core::scene::{Obstacle, Shape, catalog};
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::render::offscreen::render_state;
 use cable_viewer::render::software::Software;
 use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, wgpu};
 use egui::Vec2;
 use egui_kittest::{Harness, TestRenderer};
+
+use crate::gpu::render_state;
 
 /// Frames that are measured.
 const FRAMES: usize = 20;
@@ -131,7 +132,6 @@ fn window(renderer: Screen, software: Option<Software>, scene: Scene) -> Harness
         .with_step_dt(1.0 / 60.0)
         .with_render_cursor(false)
         .with_accessibility_check(false)
-        .allow_missing_glyphs()
         .renderer(renderer)
         .build_eframe(|cc| {
             software.into_iter().for_each(|s| cc.egui_ctx.add_plugin(s));
@@ -250,7 +250,6 @@ fn software_drawing_looks_the_same_at(scale: f32) {
             .with_pixels_per_point(scale)
             .with_render_cursor(false)
             .with_accessibility_check(false)
-            .allow_missing_glyphs()
             .renderer(egui_kittest::wgpu::WgpuTestRenderer::from_render_state(state))
             .build_eframe(|cc| {
                 software.into_iter().for_each(|s| cc.egui_ctx.add_plugin(s));

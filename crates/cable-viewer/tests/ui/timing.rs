@@ -21,11 +21,8 @@ const EDITS: usize = 100;
 
 fn threaded(mut scene: Scene, segments: usize) -> Harness<'static, ViewerApp> {
     scene.cables[0].segments = Some(segments);
-    let mut harness = Harness::builder()
-        .with_size(Vec2::new(1280.0, 800.0))
-        .with_step_dt(1.0 / 60.0)
-        .allow_missing_glyphs()
-        .build_eframe(|cc| {
+    let mut harness =
+        Harness::builder().with_size(Vec2::new(1280.0, 800.0)).with_step_dt(1.0 / 60.0).build_eframe(|cc| {
             let mut app = ViewerApp::new(&cc.egui_ctx, scene, None);
             app.apply(&cc.egui_ctx, vec![Command::SetModel(Model::Fem)]);
             app
@@ -214,7 +211,6 @@ fn undimmed(what: &str, scene: Scene, item: Item, at: Point) {
     let mut harness = Harness::builder()
         .with_size(Vec2::new(1280.0, 800.0))
         .with_step_dt(1.0 / 60.0)
-        .allow_missing_glyphs()
         .build_eframe(|cc| ViewerApp::new(&cc.egui_ctx, scene, None));
     wait(&mut harness);
     let (mut times, mut solves) = (Vec::new(), Vec::new());

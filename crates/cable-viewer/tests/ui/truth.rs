@@ -28,11 +28,8 @@ fn answer(harness: &Harness<'_, ViewerApp>) -> Solution {
 
 /// The window with its worker on its own thread.
 fn threaded(scene: Scene, model: Model) -> Harness<'static, ViewerApp> {
-    let mut harness = Harness::builder()
-        .with_size(Vec2::new(1280.0, 800.0))
-        .with_step_dt(1.0 / 60.0)
-        .allow_missing_glyphs()
-        .build_eframe(|cc| {
+    let mut harness =
+        Harness::builder().with_size(Vec2::new(1280.0, 800.0)).with_step_dt(1.0 / 60.0).build_eframe(|cc| {
             let mut app = ViewerApp::new(&cc.egui_ctx, scene, None);
             app.apply(&cc.egui_ctx, vec![Command::SetModel(model)]);
             app
@@ -300,6 +297,74 @@ fn a_reset_can_be_undone_and_starts_the_robots_task_again() {
     harness.key_press(Key::Space);
     harness.run_steps(60);
     assert!(answer(&harness).robot.unwrap().x_m > from + 0.05);
+}
+
+/// A robot or a support that was moved after a pause began the run anew, and what had been recorded
+/// was gone without a word.
+#[test]
+fn an_edit_that_begins_the_run_anew_keeps_what_was_recorded() {
+    let robot = catalog::tank_robot();
+    let start = robot.robot.as_ref().unwrap().at_m;
+    let riser = catalog::tank().cables[0].supports[0].at_m.unwrap();
+    let support = Item::Support { cable: 0, support: 0 };
+    for (scene, item, at) in [(robot, Item::Robot, start), (catalog::tank(), support, riser)] {
+        let mut harness = open(scene.clone());
+        harness.key_press(Key::Space);
+        harness.run_steps(60);
+        harness.key_press(Key::Space);
+        harness.run_steps(2);
+        let (recorded, end) = (state(&harness).live.recording.span_s().unwrap(), answer(&harness));
+        assert!(recorded[1] > 0.9);
+        // A drag: many moves, one entry to undo.
+        for k in 1..=5 {
+            let to_m = [at[0] - 0.04 * f64::from(k), at[1]];
+            apply(&mut harness, Command::Scene(SceneCommand::Move { item, to_m }));
+        }
+        apply(&mut harness, Command::Scene(SceneCommand::EditDone));
+        assert_eq!(answer(&harness).time_s, 0.0, "{item:?}: another start is another run");
+        harness.get_by_label("Undo restart");
+        // The wheel of the mouse and pins are no edits.
+        harness.key_press(Key::F);
+        harness.run_steps(2);
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.run_steps(3);
+        assert_eq!(state(&harness).document.scene, scene);
+        let span = state(&harness).live.recording.span_s().expect("the run is there again");
+        assert!(span[0] == recorded[0] && recorded[1] - span[1] < 0.02, "{span:?} of {recorded:?}");
+        assert!((answer(&harness).time_s - end.time_s).abs() < 0.02 && state(&harness).live.playback.paused);
+        assert!(harness.query_by_label("Undo restart").is_none());
+        // Any of it can be looked at, and time goes on from its end.
+        apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.5))));
+        assert!((answer(&harness).time_s - 0.5).abs() < 0.02);
+        apply(&mut harness, Command::Playback(PlaybackCommand::Show(None)));
+        harness.key_press(Key::Space);
+        harness.run_steps(10);
+        assert!(answer(&harness).time_s > end.time_s, "{} s", answer(&harness).time_s);
+    }
+}
+
+/// The button does the same, also after further edits; a new run takes the place of the old one.
+#[test]
+fn a_restart_is_undone_by_its_button_whatever_was_edited_since() {
+    let scene = catalog::tank_robot();
+    let mut harness = open(scene.clone());
+    harness.key_press(Key::Space);
+    harness.run_steps(60);
+    harness.key_press(Key::Space);
+    harness.run_steps(2);
+    let end_s = answer(&harness).time_s;
+    for dx in [0.1, 0.2] {
+        let start = scene.robot.as_ref().unwrap().at_m;
+        let to_m = [start[0] + dx, start[1]];
+        apply(&mut harness, Command::Scene(SceneCommand::Move { item: Item::Robot, to_m }));
+        apply(&mut harness, Command::Scene(SceneCommand::EditDone));
+    }
+    harness.get_by_label("Undo restart").click();
+    harness.run_steps(4);
+    assert_eq!(state(&harness).document.scene, scene);
+    assert_eq!(answer(&harness).time_s, end_s);
+    apply(&mut harness, Command::File(FileCommand::OpenCatalogue("over-beam".to_owned())));
+    assert!(harness.query_by_label("Undo restart").is_none());
 }
 
 /// D10.1: what held the cable was gone after going on from an earlier time.

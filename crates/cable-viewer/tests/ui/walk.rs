@@ -9,13 +9,13 @@ use cable_core::Scene;
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
-use cable_viewer::render::offscreen::renderer;
 use cable_viewer::state::dialog::{Dialog, Replacement};
 use cable_viewer::state::{Item, TensionMarker};
 use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
+use crate::gpu::renderer;
 use crate::{apply, drag, support};
 
 struct Walk {
@@ -32,7 +32,6 @@ impl Walk {
             .with_step_dt(1.0 / 60.0)
             .with_render_cursor(false)
             .with_accessibility_check(false)
-            .allow_missing_glyphs()
             .renderer(renderer().unwrap())
             .build_eframe(|cc| ViewerApp::inline(&cc.egui_ctx, scene, None));
         let mut walk = Self { harness, folder };

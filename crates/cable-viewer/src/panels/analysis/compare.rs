@@ -59,7 +59,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         .as_deref()
         .map(|s| Figures::of(s, &state.document.scene, state.live.snapshot.solve_wall_s));
     readout::wide(ui, "compare", |ui| {
-        Grid::new("compare").num_columns(5).spacing([7.0, 3.0]).striped(true).show(ui, |ui| {
+        Grid::new("compare").num_columns(5).spacing([4.0, 3.0]).striped(true).show(ui, |ui| {
             for title in ["", "Tension", "Sag", "Energy", "Cost"] {
                 ui.weak(title);
             }
@@ -206,7 +206,7 @@ fn row(ui: &mut Ui, f: &Figures, present: Option<&Figures>) {
     cell(ui, sag, f.sag_m, present.and_then(|p| p.sag_m));
     let energy = format::energy(f.energy_j);
     cell(ui, energy, Some(f.energy_j), present.map(|p| p.energy_j));
-    cell(ui, format::duration(f.wall_s), None, None);
+    cell(ui, format::rough_duration(f.wall_s), None, None);
 }
 
 /// A figure, and below it how much it is above the present one.
@@ -258,7 +258,7 @@ pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
     if let Some(present) = &state.live.snapshot.solution
         && present.model != held.solution.model
     {
-        out.push(format!("Model: {} → {}", labels::model(held.solution.model), labels::model(present.model)));
+        out.push(format!("Model: {}, now {}", labels::model(held.solution.model), labels::model(present.model)));
     }
     let (a, b) = (held.scene.to_toml(), state.document.scene.to_toml());
     let (a, b): (Vec<&str>, Vec<&str>) = (a.lines().collect(), b.lines().collect());
@@ -266,9 +266,9 @@ pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
         let pairs = a.iter().zip(&b).filter(|(x, y)| x != y);
         out.extend(pairs.map(|(x, y)| match (x.split_once(" = "), y.split_once(" = ")) {
             (Some((key, was)), Some((_, is))) => {
-                format!("{}: {} → {}", words::property(key.trim()), words::value(key, was), words::value(key, is))
+                format!("{}: {}, now {}", words::property(key.trim()), words::value(key, was), words::value(key, is))
             }
-            _ => format!("{} → {}", words::line(x), words::line(y)),
+            _ => format!("{}, now {}", words::line(x), words::line(y)),
         }));
     } else {
         let told = |line: &&&str| line.contains(" = ");

@@ -12,6 +12,7 @@ use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::property::{Provenance, Quantity, row};
+use crate::widgets::tick::tick;
 
 const LEAST_FRICTION: Quantity = Quantity {
     name: "Least friction",
@@ -34,7 +35,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut on = view.on;
     let help = "The same question with less and with more friction, as a ribbon in the graphs of tension; computed beside the \
                 window whenever time stands still. What was moved or driven by hand meanwhile is repeated";
-    if ui.checkbox(&mut on, "Show less and more friction").on_hover_text(help).changed() {
+    if tick(ui, &mut on, "Show less and more friction").on_hover_text(help).changed() {
         commands.push(Command::View(ViewCommand::Spread(on, view.factors)));
     }
     if !on {

@@ -1,6 +1,8 @@
 //! Where the robot or an end can be taken without passing the service tension, and where its cable
 //! would snag: asked for, and read off.
 
+use std::time::Duration;
+
 use cable_core::analysis::safe_reach::area::Area;
 use cable_core::analysis::safe_reach::line::{ReachMap, Trip};
 use egui::{ComboBox, ProgressBar, Slider, Ui};
@@ -11,10 +13,15 @@ use crate::state::AppState;
 use crate::state::questions::reach_target;
 use crate::units::format;
 use crate::units::unit::Unit;
+use crate::widgets::tick::ring;
 use crate::widgets::{field, highlight};
 
 /// Width of a slider's value beside it, points.
 const SPIN_WIDTH: f32 = 72.0;
+
+/// Between two frames while the time left is counted. Longer: it jumps; shorter: frames that say
+/// nothing new.
+const COUNTING_REPAINT: Duration = Duration::from_millis(500);
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -32,6 +39,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if let Some(share) = running {
         let bar = ui.add(ProgressBar::new(share as f32).show_percentage().desired_height(16.0));
         field::name(&bar, "Progress of the safe reach");
+        // A place may take a minute without a word: the time left goes on being counted meanwhile.
+        ui.ctx().request_repaint_after(COUNTING_REPAINT);
         ui.horizontal(|ui| {
             let help = "Stops the search; what was found stays";
             if ui.button("Cancel safe reach").on_hover_text(help).clicked() {
@@ -75,8 +84,15 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.colored_label(ui.visuals().warn_fg_color, text).on_hover_text("Places not reached yet are not shown");
     }
     for line in describe(maps, view.choice.back) {
-        ui.label(line);
+        ui.label(if running.is_some() { so_far(&line) } else { line });
     }
+}
+
+/// A line about places of which more are to come.
+fn so_far(line: &str) -> String {
+    let mut letters = line.chars();
+    let first = letters.next().map_or_else(String::new, |c| c.to_lowercase().collect());
+    format!("So far: {first}{}", letters.as_str())
 }
 
 fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Vec<Command>) {
@@ -117,7 +133,7 @@ fn both_ways(ui: &mut Ui, choice: Choice, commands: &mut Vec<Command>) {
         let there = "The largest tension with the end at each place";
         let back = "The largest tension on the way there and back, snags included";
         for (back, text, help) in [(false, "There", there), (true, "There and back", back)] {
-            if ui.radio(choice.back == back, text).on_hover_text(help).clicked() {
+            if ring(ui, choice.back == back, text).on_hover_text(help).clicked() {
                 commands.push(set(Choice { back, ..choice }));
             }
         }

@@ -390,6 +390,8 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
     let text = match solved.error_estimate {
         Some(e) if e < ROUNDED => "exact for this model".to_owned(),
         Some(e) if e < format::LEAST_RATIO => format::percent(e),
+        // Figures of such an answer say its order of magnitude at best: digits would say more.
+        Some(e) if e > 1.0 => "more than 100 %".to_owned(),
         Some(e) => format!("± {}", format::percent(e)),
         None => "not estimated".to_owned(),
     };

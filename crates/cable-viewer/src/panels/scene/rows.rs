@@ -34,8 +34,9 @@ pub fn row(ui: &mut Ui, state: &AppState, item: Item, name: &str, about: &str, c
     let colour = if selected { ui.visuals().text_color() } else { ui.visuals().weak_text_color() };
     let opacity = if state.is_current() { 1.0 } else { DIMMED };
     let about = egui::RichText::new(about).color(colour.gamma_multiply(opacity));
-    // The name gives way to the word about it, but the words "Scene" and "robot" to no name.
-    let about = about.atom_shrink(matches!(item, Item::Scene | Item::Robot));
+    // A name given by the user gives way to the word about it, but what is always called the same
+    // does not.
+    let about = about.atom_shrink(matches!(item, Item::Scene | Item::Robot | Item::Environment | Item::Solver));
     let button = Button::selectable(selected, (name, Atom::grow(), about)).truncate();
     let width = ui.available_width() - RIGHT_MARGIN;
     let row = ui.scope(|ui| {

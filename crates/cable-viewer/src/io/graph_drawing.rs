@@ -1,0 +1,404 @@
+//! A graph as a drawing: it is laid out once, and written as SVG or painted as PNG.
+
+use std::fmt::Write as _;
+
+use egui::epaint::TextShape;
+use egui::{Color32, FontId, Pos2, Shape, Stroke, Ui};
+
+use crate::io::graph_sheet::{Sheet, visible};
+use crate::render::colour::LINES;
+use crate::render::offscreen::Offscreen;
+use crate::units::format::{round_step, significant};
+
+/// What the limits are called, and their colours.
+const LIMITS: [(&str, [u8; 3]); 2] = [("service limit", [196, 122, 0]), ("breaking limit", [213, 60, 40])];
+
+/// The limits that are in view, in the unit shown.
+fn limits(sheet: &Sheet) -> impl Iterator<Item = (f64, &'static str, [u8; 3])> {
+    let [_, bottom, _, top] = sheet.bounds;
+    let shown = sheet.limits.map(|limit| limit / sheet.si[1]);
+    let named = shown.into_iter().zip(LIMITS).map(|(limit, (name, colour))| (limit, name, colour));
+    named.filter(move |(limit, ..)| limit.is_finite() && *limit > bottom && *limit < top)
+}
+
+/// Size of a drawing, points.
+const SIZE: [f64; 2] = [800.0, 420.0];
+/// Room for numbers and names round it: left, top, right, bottom; for each line of the legend more.
+const ROOM: [f64; 4] = [70.0, 28.0, 24.0, 52.0];
+/// Height of a line of the legend, points.
+const LEGEND_LINE: f64 = 16.0;
+/// Length of a line's sample in the legend, points.
+const SWATCH: f64 = 20.0;
+/// Width of a letter, points: fonts of a reader are wider or narrower, and must not overlap.
+const LETTER: f64 = 7.0;
+
+/// Where the entries of the legend stand, points from the left and lines from above, so that none
+/// leaves the picture or lies on another; longer names are cut. Last: how many lines there are.
+fn legend(sheet: &Sheet) -> (Vec<(String, f64, usize)>, usize) {
+    let widest = SIZE[0] - ROOM[0] - ROOM[2];
+    let most = ((widest - SWATCH - 6.0) / LETTER) as usize;
+    let (mut at, mut row, mut entries) = (ROOM[0], 0, Vec::new());
+    for line in &sheet.lines {
+        let cut = line.name.chars().count() > most;
+        let mut name: String = line.name.chars().take(if cut { most - 1 } else { most }).collect();
+        if cut {
+            name.push('…');
+        }
+        let width = SWATCH + 6.0 + LETTER * name.chars().count() as f64;
+        if at > ROOM[0] && at + width > SIZE[0] - ROOM[2] {
+            (at, row) = (ROOM[0], row + 1);
+        }
+        entries.push((name, at, row));
+        at += width + 16.0;
+    }
+    (entries, if sheet.lines.is_empty() { 0 } else { row + 1 })
+}
+
+/// Size of letters, points.
+const LETTERS: f64 = 12.0;
+/// Pixels of a PNG in a point: sharp on paper and on dense screens.
+const PNG_PIXELS_PER_POINT: f32 = 2.0;
+/// Colour of the grid; those of the frame and of text follow.
+const GRID: [u8; 3] = [221; 3];
+const FRAME: [u8; 3] = [68; 3];
+const INK: [u8; 3] = [0; 3];
+
+/// How a line is drawn: colour, width and lengths of dashes and gaps (points), if it has any.
+type Pen = ([u8; 3], f64, Option<[f64; 2]>);
+
+/// One mark of a drawing, in points from the left and from above.
+#[derive(Debug)]
+enum Mark {
+    /// Straight from one place to another.
+    Line([[f64; 2]; 2], Pen),
+    /// From place to place, as far as it lies in the frame.
+    Path(Vec<[f64; 2]>, Pen),
+    /// Words on a base line.
+    Text(Words),
+}
+
+/// Where words stand from their place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// Words on a base line.
+#[derive(Debug)]
+struct Words {
+    at: [f64; 2],
+    anchor: Anchor,
+    colour: [u8; 3],
+    text: String,
+    /// They read upwards.
+    upwards: bool,
+    /// They are the title.
+    title: bool,
+}
+
+impl Words {
+    fn new(at: [f64; 2], anchor: Anchor, text: impl Into<String>) -> Self {
+        Self { at, anchor, colour: INK, text: text.into(), upwards: false, title: false }
+    }
+}
+
+/// A graph, laid out.
+#[derive(Debug)]
+struct Drawing {
+    size: [f64; 2],
+    /// Left, top, right and bottom of what is plotted.
+    frame: [f64; 4],
+    marks: Vec<Mark>,
+}
+
+impl Drawing {
+    fn of(sheet: &Sheet) -> Self {
+        let [left, bottom, right, top] = sheet.bounds;
+        let (entries, rows) = legend(sheet);
+        let under = ROOM[1] + LEGEND_LINE * rows as f64;
+        let [width, height] = [SIZE[0] - ROOM[0] - ROOM[2], SIZE[1] - ROOM[1] - LEGEND_LINE - ROOM[3]];
+        let x = |v: f64| ROOM[0] + (v - left) / (right - left) * width;
+        let y = |v: f64| under + (top - v) / (top - bottom) * height;
+        let frame = [ROOM[0], under, ROOM[0] + width, under + height];
+        // The graph keeps its height however many lines are named above it.
+        let size = [SIZE[0], frame[3] + ROOM[3]];
+        let mut marks = Vec::new();
+        for v in ticks(left, right) {
+            marks.push(Mark::Line([[x(v), frame[1]], [x(v), frame[3]]], (GRID, 1.0, None)));
+            let at = [x(v), frame[3] + 16.0];
+            marks.push(Mark::Text(Words::new(at, Anchor::Middle, tick_text(v, [left, right]))));
+        }
+        for v in ticks(bottom, top) {
+            marks.push(Mark::Line([[frame[0], y(v)], [frame[2], y(v)]], (GRID, 1.0, None)));
+            let text = tick_text(v, [bottom, top]);
+            marks.push(Mark::Text(Words::new([frame[0] - 6.0, y(v) + 4.0], Anchor::End, text)));
+        }
+        for (k, line) in sheet.lines.iter().enumerate() {
+            let [r, g, b, _] = LINES[line.reference.unwrap_or(k) % LINES.len()].to_array();
+            let pen = |width: f64| ([r, g, b], width, line.reference.map(|_| [6.0, 4.0]));
+            let points = visible(line, sheet).iter().filter(|p| p[1].is_finite());
+            let path = points.map(|p| [x(p[0] / sheet.si[0]), y(p[1] / sheet.si[1])]).collect();
+            marks.push(Mark::Path(path, pen(1.8)));
+            if let Some((name, at, row)) = entries.get(k) {
+                let low = ROOM[1] + LEGEND_LINE * *row as f64 + 8.0;
+                marks.push(Mark::Line([[*at, low - 4.0], [at + SWATCH, low - 4.0]], pen(2.5)));
+                marks.push(Mark::Text(Words::new([at + SWATCH + 6.0, low], Anchor::Start, name)));
+            }
+        }
+        for (limit, name, colour) in limits(sheet) {
+            let at = y(limit);
+            marks.push(Mark::Line([[frame[0], at], [frame[2], at]], (colour, 1.0, Some([8.0, 4.0]))));
+            // A limit at the top has its name below it: beside the names above the graph it would
+            // be taken for one.
+            let low = if at - 18.0 < under { at + 14.0 } else { at - 5.0 };
+            let unit = sheet.up[0].rsplit_once(", ").map_or("", |(_, unit)| unit);
+            let text = format!("{name} {} {unit}", significant(limit, 4));
+            let words = Words::new([frame[2] - 6.0, low], Anchor::End, text.trim_end());
+            marks.push(Mark::Text(Words { colour, ..words }));
+        }
+        let middle = [(frame[0] + frame[2]) / 2.0, (frame[1] + frame[3]) / 2.0];
+        marks.push(Mark::Text(Words::new([middle[0], size[1] - 14.0], Anchor::Middle, &sheet.across[0])));
+        let up = Words::new([16.0, middle[1]], Anchor::Middle, &sheet.up[0]);
+        marks.push(Mark::Text(Words { upwards: true, ..up }));
+        marks.push(Mark::Text(Words { title: true, ..Words::new([ROOM[0], 18.0], Anchor::Start, &sheet.title) }));
+        Self { size, frame, marks }
+    }
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// The graph as SVG.
+#[must_use]
+pub fn svg(sheet: &Sheet) -> String {
+    let Drawing { size: [w, h], frame, marks } = Drawing::of(sheet);
+    let [left, top, width, height] = [frame[0], frame[1], frame[2] - frame[0], frame[3] - frame[1]];
+    let inside = format!("<rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\"");
+    let hex = |[r, g, b]: [u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
+    let stroke = |(colour, width, dashes): &Pen| {
+        let dashes = dashes.map_or_else(String::new, |[dash, gap]| format!(" stroke-dasharray=\"{dash} {gap}\""));
+        format!("stroke=\"{}\" stroke-width=\"{width}\"{dashes}", hex(*colour))
+    };
+    let mut out = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
+         font-family=\"sans-serif\" font-size=\"{LETTERS}\">\n<rect width=\"{w}\" height=\"{h}\" fill=\"white\"/>\n\
+         <clipPath id=\"c\">{inside}/></clipPath>\n"
+    );
+    for mark in &marks {
+        let _ = match mark {
+            Mark::Line([[x1, y1], [x2, y2]], pen) => {
+                let stroke = stroke(pen);
+                writeln!(out, "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" {stroke}/>")
+            }
+            Mark::Path(points, pen) => {
+                let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
+                let (points, stroke) = (points.join(" "), stroke(pen));
+                writeln!(out, "<polyline clip-path=\"url(#c)\" fill=\"none\" {stroke} points=\"{points}\"/>")
+            }
+            Mark::Text(words) => {
+                let [x, y] = words.at;
+                let anchor = match words.anchor {
+                    Anchor::Start => "start",
+                    Anchor::Middle => "middle",
+                    Anchor::End => "end",
+                };
+                let turn = if words.upwards { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
+                let weight = if words.title { " font-weight=\"bold\"" } else { "" };
+                let (fill, text) = (hex(words.colour), escaped(&words.text));
+                writeln!(
+                    out,
+                    "<text x=\"{x:.2}\" y=\"{y:.2}\" text-anchor=\"{anchor}\" fill=\"{fill}\"{turn}{weight}>{text}</text>"
+                )
+            }
+        };
+    }
+    let _ = writeln!(out, "{inside} fill=\"none\" stroke=\"{}\"/>\n</svg>", hex(FRAME));
+    out
+}
+
+/// The graph as PNG, drawn without a window or a graphics adapter.
+///
+/// # Errors
+/// In words: the picture cannot be encoded.
+pub fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
+    let drawing = Drawing::of(sheet);
+    let mut offscreen = Offscreen::new(drawing.size.map(|s| s.ceil() as u32), PNG_PIXELS_PER_POINT);
+    crate::render::theme::install(offscreen.ctx());
+    // The font knows its letters from the second frame on.
+    for _ in 0..2 {
+        offscreen.frame(|ui| {
+            paint(ui, &drawing);
+        });
+    }
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let picture = offscreen.picture(Color32::WHITE);
+    picture.write_to(&mut bytes, image::ImageFormat::Png).map_err(|e| e.to_string())?;
+    Ok(bytes.into_inner())
+}
+
+/// Paints a drawing; returns where its words stand.
+fn paint(ui: &Ui, drawing: &Drawing) -> Vec<egui::Rect> {
+    let place = |[x, y]: [f64; 2]| Pos2::new(x as f32, y as f32);
+    let paper = ui.painter().with_clip_rect(ui.ctx().content_rect());
+    let [left, top, right, bottom] = drawing.frame;
+    let frame = egui::Rect::from_min_max(place([left, top]), place([right, bottom]));
+    let plot = paper.with_clip_rect(frame);
+    let colour = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
+    let line = |painter: &egui::Painter, points: Vec<Pos2>, (ink, width, dashes): &Pen| {
+        let stroke = Stroke::new(*width as f32, colour(*ink));
+        match dashes {
+            Some([dash, gap]) => painter.extend(Shape::dashed_line(&points, stroke, *dash as f32, *gap as f32)),
+            None => drop(painter.add(Shape::line(points, stroke))),
+        }
+    };
+    let mut words = Vec::new();
+    for mark in &drawing.marks {
+        match mark {
+            Mark::Line(ends, pen) => line(&paper, ends.map(place).to_vec(), pen),
+            Mark::Path(points, pen) => line(&plot, points.iter().copied().map(place).collect(), pen),
+            Mark::Text(text) => words.push(write(&paper, text)),
+        }
+    }
+    paper.rect_stroke(frame, 0.0, Stroke::new(1.0, colour(FRAME)), egui::StrokeKind::Middle);
+    words
+}
+
+/// Paints words; returns where they stand.
+fn write(painter: &egui::Painter, words: &Words) -> egui::Rect {
+    let [r, g, b] = words.colour;
+    let size = LETTERS as f32 * if words.title { 1.15 } else { 1.0 };
+    let colour = Color32::from_rgb(r, g, b);
+    let galley = painter.layout_no_wrap(words.text.clone(), FontId::proportional(size), colour);
+    // Words of SVG stand on their base line: that is where the first row has it.
+    let ascent = galley.rows.first().and_then(|row| row.glyphs.first()).map_or(size, |g| g.pos.y);
+    let shift = match words.anchor {
+        Anchor::Start => 0.0,
+        Anchor::Middle => 0.5,
+        Anchor::End => 1.0,
+    } * galley.size().x;
+    let at = Pos2::new(words.at[0] as f32, words.at[1] as f32);
+    let (corner, angle) = if words.upwards {
+        (at + egui::vec2(-ascent, shift), -std::f32::consts::FRAC_PI_2)
+    } else {
+        (at - egui::vec2(shift, ascent), 0.0)
+    };
+    let text = TextShape::new(corner, galley, colour).with_angle(angle);
+    let rect = text.visual_bounding_rect();
+    painter.add(text);
+    rect
+}
+
+/// Round numbers between two, about six of them.
+fn ticks(low: f64, high: f64) -> impl Iterator<Item = f64> {
+    let step = round_step(high - low, 6.0);
+    let first = (low / step).ceil();
+    let count = ((high / step).floor() - first).clamp(0.0, 20.0) as u32;
+    (0..=count).map(move |k| (first + f64::from(k)) * step)
+}
+
+/// A number at a line of the grid, with as many decimals as tell it from the next.
+fn tick_text(value: f64, [low, high]: [f64; 2]) -> String {
+    let step = round_step(high - low, 6.0);
+    let decimals = (-(step.log10() + 1e-9).floor()).max(0.0);
+    if !(decimals <= 4.0 && low.abs().max(high.abs()) < 1e5) {
+        return significant(value, 4);
+    }
+    // A zero that rounding left below nothing has no sign.
+    let text = format!("{:.*}", decimals as usize, value + 0.0);
+    if text.trim_matches(['-', '0', '.']).is_empty() { text.replace('-', "") } else { text.replace('-', "−") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::io::graph_sheet::sample as sheet;
+    use crate::record::series::Series;
+
+    #[test]
+    fn the_drawing_is_well_formed_and_clipped() {
+        let text = svg(&sheet());
+        assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
+        assert!(text.contains("Over &lt;time&gt;") && text.matches("<polyline").count() == 2 && !text.contains("NaN"));
+        assert!(text.contains("service limit") && !text.contains("breaking limit"), "10 kN is not in view");
+        assert!(!svg(&Sheet { bounds: [0.0, 0.0, 1.0, 1.0], si: [1.0; 2], ..Sheet::default() }).contains("NaN"));
+    }
+
+    /// From the sixth line on names stood outside the picture, and long ones lay on the next.
+    #[test]
+    fn names_in_a_drawing_neither_leave_it_nor_lie_on_each_other() {
+        let name = |k: usize| format!("Maximum of pinned run number {k}, tank out and back");
+        let lines = (0..9).map(|k| Series { name: name(k), ..sheet().lines[0].clone() });
+        let mut many = Sheet { lines: lines.collect(), ..sheet() };
+        many.lines[3].name = "a name without end ".repeat(20);
+        let (entries, rows) = legend(&many);
+        let end = |(name, at, _): &(String, f64, usize)| at + SWATCH + 6.0 + LETTER * name.chars().count() as f64;
+        assert!(entries.iter().all(|e| end(e) <= SIZE[0] && e.2 < rows), "{entries:?}");
+        assert!(entries.windows(2).all(|e| e[0].2 < e[1].2 || end(&e[0]) < e[1].1), "{entries:?}");
+        let text = svg(&many);
+        let height: f64 = text.split("height=\"").nth(1).and_then(|t| t.split('"').next()).unwrap().parse().unwrap();
+        for y in text.split(" y=\"").skip(1).filter_map(|t| t.split('"').next()) {
+            assert!((0.0..height).contains(&y.parse::<f64>().unwrap()), "{y} of {height}");
+        }
+        assert!(text.contains("service limit 0.8000 kN"));
+    }
+
+    #[test]
+    fn numbers_of_a_grid_have_as_many_decimals_as_they_need() {
+        let texts = |low: f64, high: f64| ticks(low, high).map(|v| tick_text(v, [low, high])).collect::<Vec<_>>();
+        assert_eq!(texts(2.4, 12.4), ["4", "6", "8", "10", "12"]);
+        assert_eq!(texts(-0.2, 0.4)[..3], ["−0.2", "−0.1", "0.0"]);
+        assert_eq!(texts(0.0, 3e6).last().map(String::as_str), Some("3000000"));
+        assert!(texts(0.0, 1e-9).iter().all(|t| t.chars().count() < 10));
+    }
+
+    /// A sheet with both limits in view and long names, as a run of hours has it.
+    fn crowded() -> Sheet {
+        Sheet {
+            up: ["Tension, kN".to_owned(), "tension_n".to_owned()],
+            bounds: [0.0, -0.000_012_345, 9.9, 10.2],
+            ..sheet()
+        }
+    }
+
+    #[test]
+    fn words_of_a_picture_are_whole_and_stand_clear_of_each_other() {
+        let drawing = Drawing::of(&crowded());
+        let mut offscreen = Offscreen::new(drawing.size.map(|s| s.ceil() as u32), PNG_PIXELS_PER_POINT);
+        let mut words = Vec::new();
+        for _ in 0..2 {
+            offscreen.frame(|ui| words = paint(ui, &drawing));
+        }
+        assert!(words.len() > 15, "{}", words.len());
+        let paper = egui::Rect::from_min_size(Pos2::ZERO, egui::vec2(drawing.size[0] as f32, drawing.size[1] as f32));
+        for (k, rect) in words.iter().enumerate() {
+            assert!(paper.shrink(2.0).contains_rect(*rect), "{rect:?} leaves {paper:?}");
+            let other = words.iter().skip(k + 1).find(|o| o.shrink(1.0).intersects(rect.shrink(1.0)));
+            assert!(other.is_none(), "{rect:?} lies on {other:?}");
+        }
+    }
+
+    #[test]
+    fn a_picture_has_the_limits_from_side_to_side_and_nothing_on_its_edges() {
+        let sheet = crowded();
+        let picture = image::load_from_memory(&png(&sheet).unwrap()).unwrap().to_rgb8();
+        let drawing = Drawing::of(&sheet);
+        assert_eq!([picture.width(), picture.height()], drawing.size.map(|s| 2 * s as u32));
+        let edge = |x: u32, y: u32| x < 4 || y < 4 || x + 4 >= picture.width() || y + 4 >= picture.height();
+        assert!(picture.enumerate_pixels().all(|(x, y, p)| !edge(x, y) || p.0 == [255; 3]), "a mark is cut off");
+        let near = |p: [u8; 3], c: [u8; 3]| p.iter().zip(c).all(|(a, b)| a.abs_diff(b) < 40);
+        for (limit, name, colour) in limits(&sheet) {
+            let height = drawing.frame[3] - drawing.frame[1];
+            let y = drawing.frame[1] + (10.2 - limit) / (10.2 + 0.000_012_345) * height;
+            let rows = || (2.0 * y) as u32 - 1..=(2.0 * y) as u32 + 1;
+            let columns = (2.0 * drawing.frame[0]) as u32..(2.0 * drawing.frame[2]) as u32;
+            let drawn: Vec<u32> =
+                columns.clone().filter(|x| rows().any(|y| near(picture.get_pixel(*x, y).0, colour))).collect();
+            // Dashes of 8 points with gaps of 4.
+            assert!(drawn.len() > columns.len() / 2, "{name}: {} of {}", drawn.len(), columns.len());
+            assert!(drawn[0] < columns.start + 26 && drawn[drawn.len() - 1] + 26 > columns.end, "{name}");
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! A sheet is what is in view of a graph, as it goes to a file.
+
+use crate::record::series::Series;
+
+/// What is in view of a graph.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sheet {
+    /// Its title.
+    pub title: String,
+    /// What goes right: name with unit for people, and for a column.
+    pub across: [String; 2],
+    /// What goes up, the same, and how many SI units its unit holds.
+    pub up: [String; 2],
+    /// SI units in one unit shown, across and up.
+    pub si: [f64; 2],
+    /// Left, bottom, right, top in the units shown.
+    pub bounds: [f64; 4],
+    /// The lines, every sample, SI.
+    pub lines: Vec<Series>,
+    /// Service and breaking limit, SI; those that are not finite or not in view are left out.
+    pub limits: [f64; 2],
+}
+
+/// Points of a line in view.
+pub(crate) fn visible<'a>(line: &'a Series, sheet: &Sheet) -> &'a [[f64; 2]] {
+    let [left, right] = [sheet.bounds[0], sheet.bounds[2]].map(|x| x * sheet.si[0]);
+    let from = line.points.partition_point(|p| p[0] < left);
+    let to = line.points.partition_point(|p| p[0] <= right).max(from);
+    line.points.get(from..to).unwrap_or_default()
+}
+
+/// A sheet for tests: two lines, one of them with a pole.
+#[cfg(test)]
+pub(crate) fn sample() -> Sheet {
+    let line = |name: &str, f: fn(f64) -> f64| Series {
+        name: name.to_owned(),
+        points: (0..100).map(|k| f64::from(k) / 10.0).map(|x| [x, f(x)]).collect(),
+        ..Series::default()
+    };
+    Sheet {
+        title: "Over <time>".to_owned(),
+        across: ["Time, s".to_owned(), "time_s".to_owned()],
+        up: ["Tension, kN".to_owned(), "tension_n".to_owned()],
+        si: [1.0, 1e3],
+        bounds: [2.0, 0.0, 5.0, 1.0],
+        limits: [800.0, 10e3],
+        lines: vec![line("Maximum", |x| 100.0 * x.sin() + 0.1), line("At left, end", |x| 1.0 / (x - 3.0))],
+    }
+}
