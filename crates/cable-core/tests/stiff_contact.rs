@@ -771,3 +771,13 @@ fn what_a_sliding_node_leaves_out_of_a_stiff_bend_is_said_in_every_step() {
     assert!(said(&stiff) && estimate.is_some_and(|e| e > 1e-3), "{estimate:?} {:?}", stiff.warnings);
     assert!(!said(&flexible), "{:?}", flexible.warnings);
 }
+
+/// A free piece of one element between two contacts ran into the crest between its nodes, and was
+/// to be parted at a node that it does not have: a panic.
+#[test]
+fn issue_015_a_piece_of_one_element_has_no_node_to_part_at() {
+    let scene = Scene::from_toml(include_str!("data/rounded_crest.toml")).expect("a sound scene");
+    for model in [Model::Spans, Model::Auto, Model::Fem] {
+        Simulation::new(scene.clone(), model).expect("a model").settle().expect("a rest");
+    }
+}

@@ -369,11 +369,12 @@ fn descend(
         } else {
             run_off(slide, &s)?;
             let p = step(&r, &j, smooth).ok_or_else(|| lost(iterations))?;
-            search(slide, &sigma, &s, &r, &p, modes)
+            let (next, spent) = search(slide, &sigma, &s, &r, &p, modes);
+            iterations += spent;
+            next
         };
-        if let Some((there, found)) = next {
-            iterations += found.iterations;
-            (sigma, s) = (there, found);
+        if let Some(next) = next {
+            (sigma, s) = next;
             continue;
         }
         if !(worst <= BALANCE_ACCEPTED) {
@@ -392,7 +393,8 @@ fn descend(
 }
 
 /// The material at the pulleys and the stretches after the longest part of a step `p` that gains:
-/// energy where nothing rubs, else or where rounding hides that, a smaller residual.
+/// energy where nothing rubs, else or where rounding hides that, a smaller residual. Also the
+/// iterations of the stretches that it took.
 fn search(
     slide: &Slide<'_>,
     sigma: &[f64],
@@ -400,20 +402,23 @@ fn search(
     r: &[f64],
     p: &[f64],
     modes: &[Mode],
-) -> Option<(Vec<f64>, Stretches)> {
+) -> (Option<(Vec<f64>, Stretches)>, usize) {
     let smooth = is_smooth(modes);
+    let mut spent = 0;
     let slope: f64 = r.iter().zip(p).map(|(a, b)| a * b).sum();
     let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
     let (energy, norm) = (s.energy, size(r));
-    backtrack(room(slide, s, p), STEP_HALVINGS, |alpha| {
+    let found = backtrack(room(slide, s, p), STEP_HALVINGS, |alpha| {
         let trial: Vec<f64> = sigma.iter().zip(p).map(|(a, b)| a + alpha * b).collect();
         let t = slide.stretches(&trial, Some(s))?;
+        spent += t.iterations;
         let down = smooth && t.energy - energy <= 1e-4 * alpha * slope;
         let noise = !smooth || alpha * slope.abs() <= ENERGY_NOISE * energy.abs();
         let closer =
             noise && rows(slide, &t, modes, smooth).is_some_and(|(rt, ..)| size(&rt) < (1.0 - 1e-4 * alpha) * norm);
         (down || closer).then_some((trial, t))
-    })
+    });
+    (found, spent)
 }
 
 /// A dangling end that has run through its pulley.

@@ -257,7 +257,8 @@ impl Elastica {
         Some(Contact { mobilised: c.mobilised, slips: c.slips, sense: c.sense, ..other })
     }
 
-    /// Looks for what free pieces run into; a contact in one point where they are deepest.
+    /// Looks for what free pieces run into; a contact in one point where they are deepest. None
+    /// where a piece has no node at which it could be parted.
     fn meet(&mut self, problem: &Problem) -> Option<bool> {
         let deep = OVERLAP_TOLERANCE * problem.radius;
         let mut worst: Option<(f64, usize, usize, crate::contact::Gap)> = None;
@@ -281,11 +282,15 @@ impl Elastica {
                 world.geometry().segment_pairs(place(a), place(b), bulge, &mut |p| {
                     let at = self.read(piece, from + (to - from) * p.gap.fraction);
                     let nearer = if p.gap.fraction < 0.5 { i } else { i + 1 };
-                    look(place(&at), nearer.clamp(1, last - 1));
+                    // Of a piece of one element that is an end.
+                    look(place(&at), nearer.min(last - 1).max(1));
                 });
             }
         }
         let Some((_, k, i, gap)) = worst else { return Some(false) };
+        if i + 1 >= self.pieces[k].nodes.len() {
+            return None;
+        }
         let u = self.pieces[k].nodes[i];
         // A line is where the gap was measured.
         let x = gap.point + gap.normal * (gap.gap_m + self.offset(problem, &gap));
