@@ -13,6 +13,7 @@ use super::{CatenaryModel, Layout};
 use crate::math::{larger, smaller};
 use crate::model::Settings;
 use crate::problem::Problem;
+use crate::scene::SupportKind;
 use crate::solution::{CableSolution, Histories, Node};
 
 /// Material that a taut span has to spare at the start, of its length. Smaller: it pulls so hard
@@ -37,14 +38,14 @@ fn tensions(nodes: &[Node]) -> [f64; 3] {
 /// The material at the anchors with the slack of one part of the cable in one of its spans, for
 /// each span, m.
 fn starts(problem: &Problem, layout: &Layout, sigma: &[f64]) -> Vec<Vec<f64>> {
-    let way = layout.taut_way();
+    let way: Vec<f64> = layout.taut_way().into_iter().map(|w| w / problem.thermal_stretch).collect();
     let last = sigma.len() - 1;
     let bounds: Vec<usize> = (0..=last).filter(|&k| k == 0 || k == last || layout.anchors[k].held.is_some()).collect();
     let mut out = Vec::new();
     for part in bounds.windows(2) {
         let [from, to] = [part[0], part[1]];
         let taut = way[to] - way[from];
-        let slack = sigma[to] - sigma[from] - taut * problem.thermal_stretch;
+        let slack = sigma[to] - sigma[from] - taut;
         if to - from < 2 || !(slack > LEAST_SLACK_FRACTION * problem.length) {
             continue;
         }
@@ -69,7 +70,8 @@ fn starts(problem: &Problem, layout: &Layout, sigma: &[f64]) -> Vec<Vec<f64>> {
 /// those of an answer at a time (s); None where none was found, or where obstacles, bending
 /// stiffness or friction leave it to other models.
 pub(crate) fn other_balances(problem: &Problem, answer: &CableSolution, time_s: f64) -> Option<Histories> {
-    if problem.supports.iter().any(|s| s.friction > 0.0) || problem.supports.len() < 3 {
+    let slides = problem.supports.iter().any(|s| s.kind == SupportKind::Pulley);
+    if !slides || problem.supports.iter().any(|s| s.friction > 0.0) {
         return None;
     }
     let model = CatenaryModel::new(Arc::new(problem.clone()), Settings::default()).ok()?;
@@ -84,7 +86,7 @@ pub(crate) fn other_balances(problem: &Problem, answer: &CableSolution, time_s: 
     let shown = from(layout.anchors.iter().map(material).collect::<Option<_>>()?)?;
     let mut found = vec![shown];
     for start in starts(problem, &layout, &found[0].sigma) {
-        let Some(other) = from(start) else { continue };
+        let Some(other) = from(start).filter(|e| !e.runs_away) else { continue };
         let apart = |e: &Equilibrium| {
             e.sigma.iter().zip(&other.sigma).any(|(a, b)| (a - b).abs() > OTHER_FRACTION * problem.length)
         };
