@@ -37,7 +37,7 @@ pub(crate) struct HalvedSteps {
     step: f64,
     halvings: u32,
     max_halvings: u32,
-    /// What is left after a step is taken with it if it is less than this part of one.
+    /// A rest of the way of less than this part of a step is taken with the step before it.
     joined: f64,
 }
 

@@ -45,7 +45,7 @@ pub const STATES: [State; 8] = [
 ];
 
 impl State {
-    /// Whether nothing moves in it and nothing is computed beside the window: it is drawn at once.
+    /// True if nothing moves in it and nothing is computed beside the window: it is drawn at once.
     #[must_use]
     pub fn rests(&self) -> bool {
         self.frames <= STILL_FRAMES && self.name != "safe-reach"

@@ -160,7 +160,7 @@ fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -
     let marked = is_new(ui, (id, "marked"), state.analysis.tension_marker) && state.analysis.tension_marker.is_some();
     let selected = is_new(ui, (id, "selected"), state.selection.selected) && state.selection.selected.is_some();
     let holds = |title: &str| sections.iter().any(|(t, _)| *t == title);
-    // What is changed within the panel stays under the pointer.
+    // A thing that is changed within the panel stays under the pointer.
     let from_elsewhere = !ui.ctx().pointer_latest_pos().is_some_and(|at| ui.max_rect().contains(at));
     if marked && from_elsewhere && holds(MARKED) {
         return Some(MARKED);
@@ -173,7 +173,7 @@ fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -
     }
 }
 
-/// Whether a value is another than in the frame before.
+/// Returns whether a value is another than in the frame before.
 fn is_new<T: Copy + PartialEq + Send + Sync + 'static>(ui: &Ui, key: (&str, &str), now: T) -> bool {
     let id = Id::unique(key);
     let before = ui.data(|d| d.get_temp::<T>(id));

@@ -188,8 +188,8 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
     after_edit(state, dragged, effects);
 }
 
-/// Whether an undo or redo leads to the scene of the run that an edit ended, with nothing run
-/// since.
+/// Returns whether an undo or redo leads to the scene of the run that an edit ended, with nothing
+/// run since.
 fn ends_at_earlier_run(state: &AppState, command: &SceneCommand) -> bool {
     let scene = state.live.earlier_run.as_ref().and_then(|run| run.scene.as_ref());
     let [back, forward] = state.document.undo.neighbours();

@@ -10,7 +10,7 @@ use crate::render::colour::LINES;
 use crate::render::offscreen::Offscreen;
 use crate::units::format::{round_step, significant};
 
-/// What the limits are called, and their colours.
+/// Names of the limits, and their colours.
 const LIMITS: [(&str, [u8; 3]); 2] = [("service limit", [196, 122, 0]), ("breaking limit", [213, 60, 40])];
 
 /// The limits that are in view, in the unit shown.
@@ -32,7 +32,7 @@ const SWATCH: f64 = 20.0;
 /// Width of a letter, points: fonts of a reader are wider or narrower, and must not overlap.
 const LETTER: f64 = 7.0;
 
-/// Where the entries of the legend stand, points from the left and lines from above, so that none
+/// Places of the entries of the legend, points from the left and lines from above, so that none
 /// leaves the picture or lies on another; longer names are cut. Last: how many lines there are.
 fn legend(sheet: &Sheet) -> (Vec<(String, f64, usize)>, usize) {
     let widest = SIZE[0] - ROOM[0] - ROOM[2];
@@ -63,7 +63,7 @@ const GRID: [u8; 3] = [221; 3];
 const FRAME: [u8; 3] = [68; 3];
 const INK: [u8; 3] = [0; 3];
 
-/// How a line is drawn: colour, width and lengths of dashes and gaps (points), if it has any.
+/// Stroke of a line: colour, width and lengths of dashes and gaps (points), if it has any.
 type Pen = ([u8; 3], f64, Option<[f64; 2]>);
 
 /// One mark of a drawing, in points from the left and from above.
@@ -77,7 +77,7 @@ enum Mark {
     Text(Words),
 }
 
-/// Where words stand from their place.
+/// Side of its place on which a word stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Anchor {
     Start,

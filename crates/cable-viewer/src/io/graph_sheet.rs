@@ -2,14 +2,14 @@
 
 use crate::record::series::Series;
 
-/// What is in view of a graph.
+/// Part of a graph that is in view.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sheet {
     /// Its title.
     pub title: String,
-    /// What goes right: name with unit for people, and for a column.
+    /// Quantity along the axis to the right: name with unit for people, and for a column.
     pub across: [String; 2],
-    /// What goes up, the same, and how many SI units its unit holds.
+    /// Quantity along the axis upwards, the same, and how many SI units its unit holds.
     pub up: [String; 2],
     /// SI units in one unit shown, across and up.
     pub si: [f64; 2],

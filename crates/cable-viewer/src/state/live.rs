@@ -88,7 +88,7 @@ impl Live {
         moved
     }
 
-    /// Whether time has run since the last start.
+    /// True if time has run since the last start.
     #[must_use]
     pub fn has_run(&self) -> bool {
         self.recording.span_s().is_some_and(|[first, last]| last > first)

@@ -16,7 +16,7 @@ pub fn renderer() -> Result<WgpuTestRenderer, String> {
     render_state(egui_wgpu::RendererOptions::PREDICTABLE).map(WgpuTestRenderer::from_render_state)
 }
 
-/// What draws on whatever adapter there is, without a window.
+/// A renderer on whatever adapter there is, without a window.
 ///
 /// # Errors
 /// There is none.

@@ -113,7 +113,7 @@ fn a_click_on_the_cable_shows_where_its_tension_comes_from() {
     click(&mut harness, "From hand");
     assert_eq!(state(&harness).analysis.tension_marker.map(|p| p.from), Some(StartEnd::Start));
     assert!(!words(&harness).contains("Friction on beam"), "the beam is not between the hand and the place");
-    // What is scrolled to its end moves where it becomes shorter.
+    // A list that is scrolled to its end moves where it becomes shorter.
     harness.run_steps(2);
     click(&mut harness, "At the largest");
     let most = answer(&harness).max_tension();

@@ -1,6 +1,6 @@
 //! This file finds the other balances of a slack cable that slides over pulleys without friction.
 //!
-//! What hangs down between two pulleys pulls the harder the longer it is, so that the slack may
+//! A loop between two pulleys pulls the harder the longer it is, so that the slack may
 //! rest in one span as well as in another: the energy has more than one minimum in the material at
 //! the pulleys. It is minimised from the slack of each part of the cable in each of its spans.
 

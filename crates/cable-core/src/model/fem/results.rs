@@ -704,7 +704,7 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
             let floor = load.floor[1];
             let over = OverRound::between([a, b], floor);
             let mean = over.map_or(0.5 * (a + b), |over| over.normal(1.0));
-            // What would push lies slack there.
+            // A bar that would push lies slack there.
             let pressed = larger(mean * acts.turn, 0.0);
             r.normal_n += pressed;
             push += node.end.mark * pressed;

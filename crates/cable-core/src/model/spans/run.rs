@@ -320,7 +320,7 @@ impl CableRun {
         (from, to)
     }
 
-    /// What span k has to spare over its chord, and the chord, m; None where an end hangs.
+    /// Length that span k has to spare over its chord, and the chord, m; None where an end hangs.
     pub fn slack(&self, course: &Course, k: usize) -> Option<[f64; 2]> {
         let [Some(a), Some(b)] = self.ends_of(course, k) else { return None };
         let (from, to) = self.material(k);

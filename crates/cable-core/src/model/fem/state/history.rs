@@ -144,23 +144,16 @@ impl Motion {
 
     /// Puts a node in before node `k`, at an arc length (m).
     pub(in crate::model::fem) fn insert_node(&mut self, k: usize, arc_length: f64, node: NodeMotion) {
-        let (
-            h,
-            NodeMotion {
-                position: x,
-                velocity: v,
-                previous_velocity: v_before,
-                slide_rate: w,
-                previous_slide_rate: w_before,
-            },
-        ) = (self.step_before, node);
-        self.positions.insert(k, x);
-        self.velocities.insert(k, v);
-        self.previous_positions.insert(k, x - (v + v_before) * (0.5 * h));
-        self.previous_velocities.insert(k, v_before);
-        self.slide_rates.insert(k, w);
-        self.previous_slide_rates.insert(k, w_before);
-        self.previous_arc_length.insert(k, arc_length - (w + w_before) * (0.5 * h));
+        let half = 0.5 * self.step_before;
+        self.positions.insert(k, node.position);
+        self.velocities.insert(k, node.velocity);
+        let way = (node.velocity + node.previous_velocity) * half;
+        self.previous_positions.insert(k, node.position - way);
+        self.previous_velocities.insert(k, node.previous_velocity);
+        self.slide_rates.insert(k, node.slide_rate);
+        self.previous_slide_rates.insert(k, node.previous_slide_rate);
+        let slid = (node.slide_rate + node.previous_slide_rate) * half;
+        self.previous_arc_length.insert(k, arc_length - slid);
     }
 
     /// Takes node `k` out.

@@ -86,7 +86,7 @@ impl Stretch {
             return elastic.and(viscous);
         }
         if ratio > 1.0 {
-            // What the loss has at the length at which the pull ends stays, per length.
+            // The energy at the length at which the pull ends stays, per length.
             let kept = 0.5 * ea * loss / (ea + loss) * (ratio - 1.0) * (ratio - 1.0);
             return Self { energy: kept * at[1], slope: [0.0, kept], ..Self::default() };
         }
