@@ -87,6 +87,18 @@ fn warnings() -> Vec<Warning> {
             ),
             [0.0; 2],
         ),
+        (
+            many(
+                ShownEquilibrium::FromRoute,
+                Histories::BowedElsewhere {
+                    greatest_n: -6.5,
+                    others_n: vec![-12.5],
+                    start_n: [-12.5, -6.5],
+                    end_n: [-0.001, 0.0],
+                },
+            ),
+            [0.0; 2],
+        ),
         (many(ShownEquilibrium::FromRouteAsFlexible, Histories::NotFound { greatest_n: 80.0 }), [0.0; 2]),
         (Cause::Blocked { support: name("grip") }, [0.2, 0.0]),
         (Cause::ClearOfWheel { pulley: name("grip") }, [0.0; 2]),

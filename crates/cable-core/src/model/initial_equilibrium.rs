@@ -62,7 +62,7 @@ pub fn initial_equilibrium(
         warnings.iter_mut().for_each(of_flexible);
     }
     let answer = spans.solution();
-    let clear = !meets_outline(problem, robot_pose, &answer) && !is_buried(problem, &answer);
+    let clear = !meets_outline(problem, robot_pose, &answer) && !is_buried(problem, &answer.nodes);
     Ok(clear.then(|| InitialEquilibrium { answer, warnings, spans: Box::new(spans) }))
 }
 
@@ -141,9 +141,9 @@ pub(crate) fn meets_outline(problem: &Problem, robot_pose: Option<RigidPose>, an
     !outline.is_clear(at, answer.nodes.iter().map(Node::at), problem.radius + ROBOT_CLEARANCE_M)
 }
 
-/// Returns whether it lies in an obstacle, deeper than what the models disagree by.
+/// Returns whether a cable lies in an obstacle, deeper than what the models disagree by.
 #[must_use]
-pub(crate) fn is_buried(problem: &Problem, answer: &CableSolution) -> bool {
+pub(crate) fn is_buried(problem: &Problem, nodes: &[Node]) -> bool {
     let gap = |n: &Node| problem.world.signed_gap(n.at(), BURIAL_SEARCH_M).map(|g| g.gap_m);
-    answer.nodes.iter().any(|n| gap(n).is_some_and(|g| g < -MAX_BURIAL_M))
+    nodes.iter().any(|n| gap(n).is_some_and(|g| g < -MAX_BURIAL_M))
 }

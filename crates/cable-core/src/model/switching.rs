@@ -93,7 +93,7 @@ impl SwitchingModel {
     fn handed_over(&self) -> Result<FemModel, SolveError> {
         let mut fem = self.new_fem()?;
         let answer = self.spans.solution();
-        if self.meets_robot(&answer) || (self.spans.time_s() == 0.0 && is_buried(&self.problem, &answer)) {
+        if self.meets_robot(&answer) || (self.spans.time_s() == 0.0 && is_buried(&self.problem, &answer.nodes)) {
             // Found without knowing of the robot, or no answer: laid anew.
         } else if let Some(state) = &self.adopted {
             fem.set_state(state)?;
@@ -215,7 +215,7 @@ impl Mechanics for SwitchingModel {
         if self.fem.is_none() {
             match self.spans.settle() {
                 Ok(_) if self.meets_robot(&self.spans.solution()) => why = Some(ModelReason::TouchesRobot),
-                Ok(_) if is_buried(&self.problem, &self.spans.solution()) => {
+                Ok(_) if is_buried(&self.problem, &self.spans.solution().nodes) => {
                     why = Some(ModelReason::BuriedWithoutMesh);
                 }
                 Ok(report) => {

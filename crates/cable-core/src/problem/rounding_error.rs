@@ -3,7 +3,7 @@
 
 use super::Problem;
 use crate::math::{Mat2, larger};
-use crate::solution::error_estimates::{ErrorEstimates, greatest};
+use crate::solution::error_estimates::{ErrorEstimates, largest_force};
 use crate::solution::{CableSolution, Node};
 
 /// Relative rounding of a length that is added up from many pieces, in units in the last place.
@@ -27,7 +27,7 @@ impl ErrorEstimates {
         stops.extend(answer.contacts.iter().flat_map(|c| c.extent_m()));
         stops.sort_by(f64::total_cmp);
         let stretches = stops.windows(2).filter_map(|w| stiffness(between_stops(&answer.nodes, w), problem));
-        let force = ROUNDING * (far * stretches.fold(0.0, larger) + greatest(answer));
+        let force = ROUNDING * (far * stretches.fold(0.0, larger) + largest_force(answer));
         Self {
             max_tension_n: Some(force),
             support_force_n: Some(force),

@@ -34,7 +34,7 @@ impl ErrorEstimates {
         let touched: Vec<f64> =
             obstacles(answer, better).map(|name| (force_of(answer, name) - force_of(better, name)).norm()).collect();
         let apart = Self {
-            max_tension_n: Some((greatest(answer) - greatest(better)).abs()),
+            max_tension_n: Some((greatest_tension(&answer.nodes) - greatest_tension(&better.nodes)).abs()),
             support_force_n: Some(off.fold(0.0, larger)),
             contact_force_n: touched.into_iter().reduce(larger),
             position_m: Some(moved.fold(0.0, larger)),
@@ -42,20 +42,20 @@ impl ErrorEstimates {
         apart.times(READING_FACTOR)
     }
 
-    /// Forces known to a part of the greatest tension; of the shape nothing is.
+    /// Forces known to a part of the largest force in the cable; of the shape nothing is.
     #[must_use]
     pub(crate) fn of_forces(answer: &CableSolution, part: Option<f64>) -> Self {
-        let force = part.map(|p| p * greatest(answer));
+        let force = part.map(|p| p * largest_force(answer));
         let touches = !answer.contacts.is_empty();
         let contact_force_n = force.filter(|_| touches);
         Self { max_tension_n: force, support_force_n: force, contact_force_n, position_m: None }
     }
 
     /// The error of forces, of the greatest tension and of any support, in parts of what the
-    /// greatest tension is at least.
+    /// largest force in the cable is at least: of its greatest tension where it pulls.
     #[must_use]
     pub fn relative(&self, answer: &CableSolution) -> Option<f64> {
-        let (force, most) = (larger(self.max_tension_n?, self.support_force_n?), greatest(answer));
+        let (force, most) = (larger(self.max_tension_n?, self.support_force_n?), largest_force(answer));
         let least = if force < 0.5 * most { most - force } else { most };
         Some(if least > 0.0 { force / least } else { force })
     }
@@ -159,8 +159,21 @@ fn between_curvatures(a: f64, b: f64) -> f64 {
     }
 }
 
-pub(crate) fn greatest(c: &CableSolution) -> f64 {
-    c.nodes.iter().map(|n| n.tension_n).fold(0.0, larger)
+/// The greatest tension, less than zero where the whole of a stiff cable is compressed, N.
+pub(crate) fn greatest_tension(nodes: &[Node]) -> f64 {
+    nodes.iter().map(|n| n.tension_n).reduce(larger).unwrap_or(0.0)
+}
+
+/// The largest force in the cable, N: its greatest tension, or what compresses or shears a stiff
+/// one.
+pub(crate) fn largest_force(c: &CableSolution) -> f64 {
+    let along = c.nodes.iter().map(|n| n.tension_n.abs()).fold(0.0, larger);
+    // A flexible cable is not sheared, and a support in its middle bears more than its tension.
+    if c.assumptions.bending_stiffness_n_m2 == 0.0 {
+        return along;
+    }
+    let ends = c.supports.first().into_iter().chain(c.supports.last());
+    ends.map(|s| s.reaction_x_n.hypot(s.reaction_y_n)).fold(along, larger)
 }
 
 /// The obstacles that either answer touches, each once.

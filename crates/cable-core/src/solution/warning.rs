@@ -485,6 +485,17 @@ pub enum Histories {
         /// Range of the tension at the end, N.
         end_n: [f64; 2],
     },
+    /// A stiff cable that is compressed was bowed to another side.
+    BowedElsewhere {
+        /// Greatest tension as laid, N; less than zero = all of it is compressed.
+        greatest_n: f64,
+        /// The same of each of the others, N.
+        others_n: Vec<f64>,
+        /// Range of the tension at the start, N.
+        start_n: [f64; 2],
+        /// Range of the tension at the end, N.
+        end_n: [f64; 2],
+    },
 }
 
 impl Histories {
@@ -492,13 +503,17 @@ impl Histories {
     /// start, at its end and at most, N. None where there is no other.
     #[must_use]
     pub(crate) fn slack_elsewhere(shown: [f64; 3], others: &[[f64; 3]]) -> Option<Self> {
-        let range = |k: usize| others.iter().fold([shown[k]; 2], |[a, b], t| [smaller(a, t[k]), larger(b, t[k])]);
-        (!others.is_empty()).then(|| Self::SlackElsewhere {
-            greatest_n: shown[2],
-            others_n: others.iter().map(|t| t[2]).collect(),
-            start_n: range(0),
-            end_n: range(1),
-        })
+        let [start_n, end_n] = ranges_at_ends(shown, others)?;
+        let (greatest_n, others_n) = (shown[2], others.iter().map(|t| t[2]).collect());
+        Some(Self::SlackElsewhere { greatest_n, others_n, start_n, end_n })
+    }
+
+    /// The same of a stiff cable that is compressed.
+    #[must_use]
+    pub(crate) fn bowed_elsewhere(shown: [f64; 3], others: &[[f64; 3]]) -> Option<Self> {
+        let [start_n, end_n] = ranges_at_ends(shown, others)?;
+        let (greatest_n, others_n) = (shown[2], others.iter().map(|t| t[2]).collect());
+        Some(Self::BowedElsewhere { greatest_n, others_n, start_n, end_n })
     }
 
     /// The same of an answer that may be another equilibrium than the one they were sought from:
@@ -513,7 +528,8 @@ impl Histories {
             Self::NotSought => {}
             Self::NotFound { greatest_n } => *greatest_n = most,
             Self::Mobilised { greatest_n, start_n, end_n, .. }
-            | Self::SlackElsewhere { greatest_n, start_n, end_n, .. } => {
+            | Self::SlackElsewhere { greatest_n, start_n, end_n, .. }
+            | Self::BowedElsewhere { greatest_n, start_n, end_n, .. } => {
                 *greatest_n = most;
                 widen(start_n, ends[0]);
                 widen(end_n, ends[1]);
@@ -527,6 +543,13 @@ impl Histories {
         }
         self
     }
+}
+
+/// The ranges of the tension at the start and at the end among the equilibrium that is shown and the
+/// others, N; None where there is no other.
+fn ranges_at_ends(shown: [f64; 3], others: &[[f64; 3]]) -> Option<[[f64; 2]; 2]> {
+    let range = |k: usize| others.iter().fold([shown[k]; 2], |[a, b], t| [smaller(a, t[k]), larger(b, t[k])]);
+    (!others.is_empty()).then(|| [range(0), range(1)])
 }
 
 /// An end that was moved and put back.

@@ -19,9 +19,8 @@ use crate::model::{Model, Settings};
 use crate::scene::Scene;
 use crate::scene::preset::cable_preset;
 use crate::simulation::Simulation;
-use crate::solution::{
-    CableSolution, ErrorEstimates, LikelyBending, ModelReason, Solution, TakenStiffness, WarningKind,
-};
+use crate::solution::error_estimates::greatest_tension;
+use crate::solution::{ErrorEstimates, LikelyBending, ModelReason, Solution, TakenStiffness, WarningKind};
 
 /// Effects that an answer at rest without bending stiffness left out, for one cable.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -69,7 +68,7 @@ pub fn neglected_bending(scene: &Scene, answer: &Solution, settings: Settings) -
         match &better {
             Ok(better) => {
                 if let (Some(flexible), Some(stiff)) = (answer.cables.get(k), better.cables.get(k)) {
-                    of.greatest_tension_n = Some(greatest(stiff));
+                    of.greatest_tension_n = Some(greatest_tension(&stiff.nodes));
                     let known = stiff.errors;
                     of.changes = ErrorEstimates::between(flexible, stiff).with(&known, larger);
                 }
@@ -79,10 +78,6 @@ pub fn neglected_bending(scene: &Scene, answer: &Solution, settings: Settings) -
         of
     };
     found.into_iter().map(fill).collect()
-}
-
-fn greatest(of: &CableSolution) -> f64 {
-    of.nodes.iter().map(|n| n.tension_n).fold(0.0, larger)
 }
 
 /// Bending stiffness of the cables that are perfectly flexible in the scene.

@@ -57,10 +57,19 @@ pub(crate) use serialize_in_si;
 #[derive(Clone, Copy)]
 struct Figures(UnitSystem);
 
+/// A number with so many decimals; one that they round to zero has no sign.
+fn rounded(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(size) if size.bytes().all(|b| matches!(b, b'0' | b'.')) => size.to_owned(),
+        _ => text,
+    }
+}
+
 impl Figures {
     /// With so many decimals.
     fn fixed(self, quantity: Quantity, value: f64, decimals: usize) -> String {
-        self.with_unit(quantity, format!("{:.decimals$}", quantity.convert(value, self.0)))
+        self.with_unit(quantity, rounded(quantity.convert(value, self.0), decimals))
     }
 
     /// As a power of ten with so many decimals.
@@ -137,6 +146,6 @@ impl Figures {
 
     /// From one force (N) to another, with two decimals.
     fn forces(self, [from_n, to_n]: [f64; 2]) -> String {
-        format!("{:.2} to {}", Quantity::Force.convert(from_n, self.0), self.force(to_n, 2))
+        format!("{} to {}", rounded(Quantity::Force.convert(from_n, self.0), 2), self.force(to_n, 2))
     }
 }

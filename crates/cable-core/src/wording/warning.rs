@@ -122,7 +122,7 @@ impl Sentence for Warning {
                     ShownEquilibrium::FromRoute => ": this is the one found from its way",
                     ShownEquilibrium::FromRouteAsFlexible => ": this is the one found from its way; the histories are those of a flexible cable in its place",
                 };
-                let friction = if matches!(known, Histories::SlackElsewhere { .. }) { "The" } else { "With friction the" };
+                let friction = if matches!(known, Histories::SlackElsewhere { .. } | Histories::BowedElsewhere { .. }) { "The" } else { "With friction the" };
                 format!("{friction} resting place depends on how the cable was laid{shown}{}", histories(f, known))
             }
             Cause::Blocked { support } => {
@@ -250,10 +250,13 @@ fn histories(f: Figures, known: &Histories) -> String {
                 f.forces(*end_n)
             )
         }
-        Histories::SlackElsewhere { greatest_n, others_n, start_n, end_n } => {
+        Histories::SlackElsewhere { greatest_n, others_n, start_n, end_n }
+        | Histories::BowedElsewhere { greatest_n, others_n, start_n, end_n } => {
             let others: Vec<String> = others_n.iter().map(|n| f.force(*n, 2)).collect();
+            let slack = matches!(known, Histories::SlackElsewhere { .. });
+            let otherwise = if slack { "with the slack in another span" } else { "bowed to another side" };
             format!(
-                ". The greatest tension is {}; with the slack in another span: {}. Among these the tension is {} at the start and {} at the end",
+                ". The greatest tension is {}; {otherwise}: {}. Among these the tension is {} at the start and {} at the end",
                 f.force(*greatest_n, 2),
                 others.join(", "),
                 f.forces(*start_n),

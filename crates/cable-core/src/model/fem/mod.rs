@@ -48,14 +48,18 @@ use crate::model::fem::obstacle::moving_outline::place_outline;
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::system::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;
-use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
+use crate::model::initial_equilibrium::{
+    InitialEquilibrium, initial_equilibrium, is_buried, slid_first, slides_on, work,
+};
 use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::ErrorEstimates;
-use crate::solution::{CableSolution, Cost, Node, Warning, WarningCause};
+use crate::solution::error_estimates::{greatest_tension, place};
+use crate::solution::{CableSolution, Cost, Histories, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 use elastica::Elastica;
+use free::beam::other_bows::SAME_SHAPE_FRACTION;
 
 /// The outcome of starting from the solution of `spans`.
 enum FirstEquilibrium {
@@ -175,6 +179,49 @@ impl FemModel {
         }
         self.dynamics = before;
         Ok((FirstEquilibrium::Rejected, flexible.then_some(lay)))
+    }
+
+    /// The resting place.
+    fn rest(&mut self) -> Result<StepReport, SolveError> {
+        if touches_nothing(&self.problem) {
+            return self.rest_in_the_air();
+        }
+        self.bent = None;
+        self.unbent = None;
+        if let Some(report) = self.bend() {
+            return Ok(report);
+        }
+        self.dynamics.solver.work_left = WorkBudget::Left(self.tuning().equilibrium.max_work);
+        let found = self.rest_in_touch();
+        self.dynamics.solver.work_left = WorkBudget::Unlimited;
+        found
+    }
+
+    /// A warning of the other equilibria of a stiff cable that is compressed and touches nothing: it
+    /// may bow to another side.
+    fn bow_warning(&self) -> Option<Warning> {
+        let answer = self.solution();
+        let compressed = answer.nodes.iter().any(|n| n.tension_n < 0.0);
+        if !(self.problem.bending_stiffness > 0.0 && compressed && answer.contacts.is_empty()) {
+            return None;
+        }
+        let mut statics = self.statics.clone();
+        if self.present == Part::Dynamics || self.bent.is_some() {
+            statics.settle(&self.dragged).ok()?;
+        }
+        let apart = |nodes: &[Node]| {
+            let off = |n: &Node| place(nodes, n.arc_length_m).map_or(0.0, |at| (at - n.at()).norm());
+            answer.nodes.iter().map(off).fold(0.0, larger) > SAME_SHAPE_FRACTION * self.problem.length
+        };
+        let others = statics.bows().into_iter().filter(|nodes| apart(nodes) && !is_buried(&self.problem, nodes));
+        let tensions = |nodes: &[Node]| {
+            let at = |n: Option<&Node>| n.map_or(f64::NAN, |n| n.tension_n);
+            [at(nodes.first()), at(nodes.last()), greatest_tension(nodes)]
+        };
+        let others: Vec<[f64; 3]> = others.map(|nodes| tensions(&nodes)).collect();
+        let histories = Histories::bowed_elsewhere(tensions(&answer.nodes), &others)?;
+        let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
+        Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
     }
 
     /// The resting place where nothing can be touched. From the flexible cable up in EI a stiff one
@@ -409,18 +456,9 @@ impl Mechanics for FemModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        if touches_nothing(&self.problem) {
-            return self.rest_in_the_air();
-        }
-        self.bent = None;
-        self.unbent = None;
-        if let Some(report) = self.bend() {
-            return Ok(report);
-        }
-        self.dynamics.solver.work_left = WorkBudget::Left(self.tuning().equilibrium.max_work);
-        let found = self.rest_in_touch();
-        self.dynamics.solver.work_left = WorkBudget::Unlimited;
-        found
+        let mut report = self.rest()?;
+        report.warnings.extend(self.bow_warning());
+        Ok(report)
     }
 
     fn advance_gauged(

@@ -70,9 +70,11 @@ pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Opt
         let coarse = std::mem::replace(elastica, fine);
         let count: usize = elastica.pieces.iter().map(|p| p.nodes.len()).sum();
         if estimate <= tolerance || count > MOST_ELEMENTS {
-            let errors = ErrorEstimates::between(&solution(&coarse, problem), &solution(elastica, problem))
-                .times(HALVING_ERROR_FRACTION);
-            return estimate.is_finite().then_some((estimate, errors));
+            let answer = solution(elastica, problem);
+            let rounding = ErrorEstimates::rounding(&answer, problem);
+            let errors = ErrorEstimates::between(&solution(&coarse, problem), &answer).times(HALVING_ERROR_FRACTION);
+            let known = estimate + rounding.relative(&answer)?;
+            return known.is_finite().then_some((known, errors.plus(&rounding)));
         }
     }
 }

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
-use crate::model::fem::free::beam::equilibrium::{Beam, Outcome};
+use crate::model::fem::free::beam::equilibrium::{Beam, Outcome, STEP_TOLERANCE};
 use crate::model::fem::free::dual_weighted_residual;
 use crate::model::fem::free::element::Material;
 use crate::model::fem::free::pulley_balance::{Failure, Network};
@@ -22,7 +22,8 @@ use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::ErrorEstimates;
-use crate::solution::{Assumptions, CableSolution, Cost, Histories, ShownEquilibrium, Warning, WarningCause};
+use crate::solution::error_estimates::greatest_tension;
+use crate::solution::{Assumptions, CableSolution, Cost, Histories, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 
 /// Elements to start with where nothing says how many: 1e-6 for a usual span, and 50 µs.
@@ -83,6 +84,8 @@ pub struct Statics {
     /// The same on a finer mesh where pulleys rub: it tells what the mesh does to what friction
     /// remembers.
     finer: Option<Network>,
+    /// The stiff cable of the last answer.
+    beam: Option<Beam>,
     /// The stops of the last answer and the tension forces before and after them, N.
     rested: Option<(Layout, Vec<[Vec2; 2]>)>,
     points: Vec<Point>,
@@ -105,6 +108,7 @@ impl Statics {
             slid: vec![None; problem.supports.len()],
             network: None,
             finer: None,
+            beam: None,
             rested: None,
             points: Vec::new(),
             estimate: None,
@@ -400,10 +404,20 @@ impl Statics {
         // A mesh that the user gives is answered at its nodes.
         self.points = coarse.points(!given);
         self.rested = Some((coarse.layout().clone(), coarse.stop_forces()));
-        (self.estimate, self.moved) = (estimate, moved);
+        (self.estimate, self.moved) = (estimate.map(|e| larger(e, STEP_TOLERANCE)), moved);
         let cost = Cost { iterations, residual_n: coarse.residual, ..Cost::default() };
         self.network = Some(network);
-        Ok(StepReport { cost, warnings: self.warnings(hinted) })
+        // A stiff cable has a shape of its own without weight, too.
+        self.beam = Some(coarse);
+        let warnings = self.warnings(false);
+        Ok(StepReport { cost, warnings })
+    }
+
+    /// The equilibria of a stiff cable that is compressed: the one that was found and those bowed to
+    /// another side, each its nodes; none of any other cable.
+    pub fn bows(&self) -> Vec<Vec<Node>> {
+        let nodes = |b: &Beam| b.points(true).iter().map(|p| p.node(&self.problem)).collect();
+        self.beam.as_ref().map_or_else(Vec::new, |b| std::iter::once(b).chain(&b.other_bows()).map(nodes).collect())
     }
 
     /// Values that the elements share, and true if a weightless cable was given a hint of weight.
@@ -496,7 +510,7 @@ impl Statics {
                     Some(crate::model::fem::free::stations::nearest(&state.position_m, &state.arc_length_m, at));
             }
         }
-        self.network = None;
+        (self.network, self.beam) = (None, None);
         self.adopted = true;
         self.rested = None;
         (self.estimate, self.moved) = (None, None);
@@ -540,7 +554,12 @@ impl Statics {
             },
             ..CableSolution::default()
         };
-        let errors = ErrorEstimates { position_m: self.moved, ..ErrorEstimates::of_forces(&answer, self.estimate) };
+        let mut errors = ErrorEstimates { position_m: self.moved, ..ErrorEstimates::of_forces(&answer, self.estimate) };
+        // The greatest tension of a stiff cable may be between the nodes of a given mesh.
+        if let Some(beam) = &self.beam {
+            let unseen = (beam.greatest_tension() - greatest_tension(&answer.nodes)).abs();
+            errors.max_tension_n = errors.max_tension_n.map(|e| e + unseen);
+        }
         CableSolution { errors, ..answer }
     }
 }

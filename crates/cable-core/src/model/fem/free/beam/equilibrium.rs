@@ -34,7 +34,7 @@ const MAX_STEPS: usize = 40;
 /// steps.
 const LONGEST_TURN: f64 = 0.5;
 /// Angles and forces are found when a step changes them by less than this.
-const STEP_TOLERANCE: f64 = 1e-11;
+pub(in crate::model::fem) const STEP_TOLERANCE: f64 = 1e-11;
 /// Tries with other bending stiffnesses on the way to the real one.
 const MAX_TRIES: usize = 80;
 /// 3l ∫φₐ'φ_b' ds of a bar of length l.
@@ -57,12 +57,13 @@ pub struct Beam {
     pub(in crate::model::fem) layout: Layout,
     pub(in crate::model::fem) material: Material,
     pub(in crate::model::fem) bending: f64,
-    ends: Vec<SpanEnds>,
+    pub(super) ends: Vec<SpanEnds>,
     pub(in crate::model::fem) bars: Vec<Bar>,
     pub(in crate::model::fem) angles: Vec<f64>,
     /// Prescribed angles: which, and its value, rad.
     clamps: Vec<(usize, f64)>,
-    forces: Vec<Vec2>,
+    /// Tension force at the start of each span, N.
+    pub(super) forces: Vec<Vec2>,
     /// Newton steps taken.
     pub steps: usize,
     /// Largest unbalanced force left, N.
@@ -153,7 +154,7 @@ impl Beam {
     }
 
     /// Prescribes each clamp's angle, counted so that the bar beside it turns least.
-    fn turn_to_clamps(&mut self) {
+    pub(super) fn turn_to_clamps(&mut self) {
         let n = self.bars.len();
         self.clamps.clear();
         for (k, stop) in self.layout.stops.iter().enumerate() {
@@ -168,7 +169,7 @@ impl Beam {
     }
 
     /// Turn of the cable from its first clamp to its last, rad.
-    fn winding(&self) -> f64 {
+    pub(super) fn winding(&self) -> f64 {
         self.clamps.last().map_or(0.0, |z| z.1) - self.clamps.first().map_or(0.0, |a| a.1)
     }
 
@@ -331,7 +332,7 @@ impl Beam {
     }
 
     /// Newton at a bending stiffness.
-    fn newton(&mut self, bending: f64) -> Outcome {
+    pub(super) fn newton(&mut self, bending: f64) -> Outcome {
         let n = self.angles.len();
         let Ok(mut factor) = BandFactor::new(n, 2) else { return Outcome::Failed };
         let mut h = BandMatrix::new(n, 2);

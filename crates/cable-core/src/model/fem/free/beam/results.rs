@@ -1,9 +1,10 @@
 //! This module reads nodes out of a solved stiff cable: places, tensions, moments and curvatures.
 
-use crate::math::{GAUSS_3, Vec2, larger};
+use crate::math::{GAUSS_3, Vec2, larger, perp};
 use crate::model::fem::free::beam::equilibrium::{BEND_STIFFNESS_INTEGRALS, Beam, dot};
 use crate::model::fem::free::results::Point;
 use crate::model::fem::free::stations::Stop;
+use crate::numerics::bisect;
 
 /// Between two points the cable leaves a straight line by no more than this part of its length.
 /// More: places read between points are off by as much, with the nodes alone by 1e-3 of a span;
@@ -12,6 +13,12 @@ const FLATNESS: f64 = 1e-5;
 /// Parts of a bar at most. Fewer: a bar of a coarse given mesh shows corners; more: points that
 /// nobody can tell apart.
 const MOST_PARTS: f64 = 32.0;
+/// Points in a bar are at least this part of it apart. Smaller: lines of no length; larger: the
+/// greatest tension is read beside its place.
+const PLACE_SPACING: f64 = 1e-6;
+/// Halvings by which the place of the greatest tension is found: its tension is off by the square
+/// of what is left.
+const PEAK_HALVINGS: usize = 30;
 
 impl Beam {
     /// Moments at both nodes of bar `e`, N·m: those that balance it.
@@ -41,6 +48,12 @@ impl Beam {
         let left = if before.is_some() { self.moments(v - 1, starts)[1] } else { 0.0 };
         let right = if after.is_some() { self.moments(v, starts)[0] } else { 0.0 };
         per_moment * if left.abs() > right.abs() { left } else { right }
+    }
+
+    /// The greatest tension, at nodes or between them, N.
+    #[must_use]
+    pub fn greatest_tension(&self) -> f64 {
+        self.points(true).iter().map(|p| p.tension).reduce(larger).unwrap_or(0.0)
     }
 
     /// All nodes; `smooth`, as many points between them as it takes to draw the cable with straight
@@ -93,9 +106,13 @@ impl Beam {
         // A sagitta κl²/8 with κ of the half that turns more.
         let off = 0.25 * half_turn * bar.ds;
         let parts = (off / (FLATNESS * self.layout.length)).sqrt().ceil().clamp(1.0, MOST_PARTS);
-        let step = 1.0 / parts;
-        for k in 1..parts as usize {
-            let (from, x) = ((k - 1) as f64 * step, k as f64 * step);
+        let mut places: Vec<f64> = (1..parts as usize).map(|k| k as f64 / parts).collect();
+        let clear = |x: &f64| places.iter().chain(&[0.0, 1.0]).all(|y| (x - y).abs() > PLACE_SPACING);
+        places.extend(self.peak(e, starts).filter(clear));
+        places.sort_by(f64::total_cmp);
+        let mut from = 0.0;
+        for x in places {
+            let step = x - from;
             for (part, weight) in GAUSS_3 {
                 let x = from + part * step;
                 let t = self.tangent(self.angle(e, x));
@@ -110,7 +127,19 @@ impl Beam {
                 tension: force.dot(&self.tangent(self.angle(e, x))),
                 curvature: curvatures[0] + x * (curvatures[1] - curvatures[0]),
             });
+            from = x;
         }
+    }
+
+    /// The place in bar `e`, from 0 to 1, of the greatest tension, if it is at neither of its nodes.
+    fn peak(&self, e: usize, starts: &[Vec2]) -> Option<f64> {
+        let (bar, a) = (&self.bars[e], &self.angles[2 * e..2 * e + 3]);
+        let rises = |x: f64| {
+            let t = self.tangent(self.angle(e, x));
+            let turn = dot(&[4.0 * x - 3.0, 4.0 - 8.0 * x, 4.0 * x - 1.0], a);
+            self.force(bar, x, starts).dot(&perp(t)) * turn - self.material.body.dot(&t) * bar.ds > 0.0
+        };
+        (rises(0.0) && !rises(1.0)).then(|| bisect([0.0, 1.0], PEAK_HALVINGS, rises)[0])
     }
 
     fn tangent(&self, angle: f64) -> Vec2 {
