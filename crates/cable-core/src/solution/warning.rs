@@ -545,8 +545,8 @@ impl Histories {
     }
 }
 
-/// The ranges of the tension at the start and at the end among the equilibrium that is shown and the
-/// others, N; None where there is no other.
+/// The ranges of the tension at the start and at the end among the equilibrium that is shown and
+/// the others, N; None where there is no other.
 fn ranges_at_ends(shown: [f64; 3], others: &[[f64; 3]]) -> Option<[[f64; 2]; 2]> {
     let range = |k: usize| others.iter().fold([shown[k]; 2], |[a, b], t| [smaller(a, t[k]), larger(b, t[k])]);
     (!others.is_empty()).then(|| [range(0), range(1)])

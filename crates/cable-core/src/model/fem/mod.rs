@@ -197,8 +197,8 @@ impl FemModel {
         found
     }
 
-    /// A warning of the other equilibria of a stiff cable that is compressed and touches nothing: it
-    /// may bow to another side.
+    /// A warning of the other equilibria of a stiff cable that is compressed and touches nothing:
+    /// it may bow to another side.
     fn bow_warning(&self) -> Option<Warning> {
         let answer = self.solution();
         let compressed = answer.nodes.iter().any(|n| n.tension_n < 0.0);

@@ -413,8 +413,8 @@ impl Statics {
         Ok(StepReport { cost, warnings })
     }
 
-    /// The equilibria of a stiff cable that is compressed: the one that was found and those bowed to
-    /// another side, each its nodes; none of any other cable.
+    /// The equilibria of a stiff cable that is compressed: the one that was found and those bowed
+    /// to another side, each its nodes; none of any other cable.
     pub fn bows(&self) -> Vec<Vec<Node>> {
         let nodes = |b: &Beam| b.points(true).iter().map(|p| p.node(&self.problem)).collect();
         self.beam.as_ref().map_or_else(Vec::new, |b| std::iter::once(b).chain(&b.other_bows()).map(nodes).collect())

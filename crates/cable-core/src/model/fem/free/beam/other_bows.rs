@@ -3,8 +3,8 @@
 //!
 //! A cable beyond its first buckling load rests on either side of the straight line (L. Euler, *De
 //! curvis elasticis*, 1744; S. Timoshenko and J. Gere, *Theory of Elastic Stability*, McGraw-Hill
-//! 1961). Its mirror image about the chord of its span balances the mirror image of its weight. From
-//! there the weight is turned back to where it is.
+//! 1961). Its mirror image about the chord of its span balances the mirror image of its weight.
+//! From there the weight is turned back to where it is.
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::free::beam::equilibrium::{Beam, Outcome, nearest_turn};

@@ -131,7 +131,8 @@ impl Beam {
         }
     }
 
-    /// The place in bar `e`, from 0 to 1, of the greatest tension, if it is at neither of its nodes.
+    /// The place in bar `e`, from 0 to 1, of the greatest tension, if it is at neither of its
+    /// nodes.
     fn peak(&self, e: usize, starts: &[Vec2]) -> Option<f64> {
         let (bar, a) = (&self.bars[e], &self.angles[2 * e..2 * e + 3]);
         let rises = |x: f64| {
