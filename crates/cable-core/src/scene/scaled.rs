@@ -24,8 +24,8 @@ pub struct Similarity {
 /// 0.2 % of the tension, at 0.01 m by 0.5 %, at 1 mm by 10 %. Narrower: no harm but that answers of
 /// scenes that were well before change in their last digits.
 const NATURAL_M: [f64; 2] = [2.0, 1000.0];
-/// Length of a copied cable at least, m; at most it is four times that.
-const COPY_M: f64 = 8.0;
+/// Length of the copy of a short cable at least, m; at most it is four times that.
+const COPY_OF_SHORT_M: f64 = 8.0;
 /// Distance of a cable from (0, 0) in its lengths from which its copy is made at (0, 0): there
 /// coordinates have lost two digits.
 const MAX_ORIGIN_DISTANCE: f64 = 100.0;
@@ -36,15 +36,18 @@ impl Similarity {
     /// digit is lost by them.
     #[must_use]
     pub fn to_natural(length_m: f64, origin: Vec2) -> Option<Self> {
-        let natural = (NATURAL_M[0]..=NATURAL_M[1]).contains(&length_m);
+        let [shortest, longest] = NATURAL_M;
+        let natural = (shortest..=longest).contains(&length_m);
         if natural && origin.amax() <= MAX_ORIGIN_DISTANCE * length_m {
             return None;
         }
         let mut time = 1.0f64;
-        while !natural && length_m * time * time < COPY_M {
+        while length_m < shortest && length_m * time * time < COPY_OF_SHORT_M {
             time *= 2.0;
         }
-        while !natural && length_m * time * time >= 4.0 * COPY_M {
+        // No shorter than it must be: the gap at which a contact pushes grows with what the copy is
+        // shortened by.
+        while length_m * time * time > longest {
             time *= 0.5;
         }
         Some(Self { length: time * time, time, origin })

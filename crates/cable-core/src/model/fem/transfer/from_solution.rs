@@ -8,7 +8,7 @@
 //! friction the answer had is what a contact remembers from then on. Corners and posts get their
 //! sliding nodes at once, with the material the answer has there.
 
-use crate::math::{Vec2, perp};
+use crate::math::{Vec2, larger, perp};
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::{End, angle_between, rotate};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
@@ -23,6 +23,14 @@ const NEAR: f64 = 1e-3;
 
 /// Part of its radius by which a node of an answer may be off a round and lie on it.
 const ON_ROUND: f64 = 1e-3;
+
+/// Part of the greatest tension below which there is none. Smaller: the rounding of an answer is a
+/// tension, and folds are given away; larger: bars that pull are given too much material.
+const SLACK: f64 = 1e-6;
+
+/// Part of their material that folds may give to bars beside them. More: folds are drawn out by
+/// what was read amiss elsewhere; less: spans in the air give it, and pull.
+const MOST_OF_FOLDS: f64 = 0.5;
 
 /// An answer's nodes read as a curve.
 pub(in crate::model::fem) struct SolutionCurve<'a>(pub(in crate::model::fem) &'a [Node]);
@@ -231,13 +239,29 @@ pub(in crate::model::fem) fn adopt_stretch(cable: &mut CableState, curve: &Solut
 /// contact.
 fn stretch_run(cable: &mut CableState, curve: &SolutionCurve<'_>, [first, last]: [usize; 2], next: usize) {
     let s = cable.mesh.arc_length.clone();
-    let mut lengths = vec![0.0; last + 1 - first];
-    for e in first..last {
-        let strain = curve.tension(0.5 * (s[e] + s[e + 1])) / cable.mesh.axial_stiffness;
-        let length = cable.mesh.path(e, &cable.motion.positions).length / (cable.mesh.thermal_stretch * (1.0 + strain));
-        lengths[e + 1 - first] = lengths[e - first] + length;
+    let greatest = curve.0.iter().map(|n| n.tension_n).fold(0.0, larger);
+    // Material of each bar of the run, and whether it lies in a fold: there is more of it than way,
+    // without tension.
+    let mut bars: Vec<(f64, bool)> = (first..last)
+        .map(|e| {
+            let (material, tension) = (s[e + 1] - s[e], curve.tension(0.5 * (s[e] + s[e + 1])));
+            let strained = cable.mesh.thermal_stretch * (1.0 + tension / cable.mesh.axial_stiffness);
+            let length = cable.mesh.path(e, &cable.motion.positions).length / strained;
+            let folds = tension <= SLACK * greatest && length < material;
+            (if folds { material } else { length }, folds)
+        })
+        .collect();
+    let mut taken = bars.iter().map(|b| b.0).sum::<f64>() - (s[last] - s[first]);
+    let in_folds: f64 = bars.iter().filter(|b| b.1).map(|b| b.0).sum();
+    // Folds have it to spare.
+    if in_folds > 0.0 && taken < MOST_OF_FOLDS * in_folds {
+        bars.iter_mut().filter(|b| b.1).for_each(|b| b.0 *= 1.0 - taken / in_folds);
+        taken = 0.0;
     }
-    let taken = lengths[last - first] - (s[last] - s[first]);
+    let mut lengths = vec![0.0; last + 1 - first];
+    for (k, bar) in bars.iter().enumerate() {
+        lengths[k + 1] = lengths[k] + bar.0;
+    }
     let before = (0..first).rev().find(|&k| k == 0 || !cable.meshing.removable(&cable.mesh, k)).unwrap_or(0);
     let give = |k: usize, length: f64| {
         if cable.mesh.held[k] || cable.mesh.sliding[k].is_some() { length } else { f64::INFINITY }
