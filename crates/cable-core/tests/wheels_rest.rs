@@ -410,4 +410,13 @@ fn issue_015_a_cable_hangs_clear_of_a_wheel() {
     sim.settle().unwrap();
     let lifted = &sim.solution().cables[0].supports[2];
     assert!(lifted.reaction_y_n < -1.0 && (lifted.y_m - 2.6).abs() < 1e-9, "{lifted:?}");
+
+    // Back down, and about where nothing presses on it.
+    for at in [[3.8, 0.6], [3.9, 0.5], [3.6, 0.2]] {
+        sim.drag_support(0, 2, Vec2::new(at[0], at[1]));
+        sim.settle().unwrap_or_else(|e| panic!("drawn to {at:?}: {e}"));
+        let clear = sim.solution().cables[0].supports[2].clone();
+        assert_eq!([clear.reaction_x_n, clear.reaction_y_n, clear.x_m, clear.y_m], [0.0, 0.0, at[0], at[1]]);
+        assert!(sim.warnings().any(|w| w.kind == WarningKind::ClearOfWheel));
+    }
 }

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use super::gauge::TensionGauge;
 use super::mechanics::Constructor;
 use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
+use crate::contact::distance::segment_segment;
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{RigidPose, Vec2};
 use crate::problem::wheels_as_posts::WheelPost;
@@ -113,7 +114,17 @@ impl LeavableWheels {
         Self::new(of.problem.clone(), of.copy.clone(), of.settings, of.construct.clone(), inner)
     }
 
-    /// A support is led; a wheel that was a post is a wheel again, since posts stand still.
+    /// Returns whether a wheel that is a post goes clear of the cable to a place (m).
+    fn goes_clear(&self, support: usize, to: Vec2) -> bool {
+        let wheel = self.copy.wheels.iter().find(|w| w.support == support);
+        let radius = self.problem.supports.get(support).map(|s| s.wheel_radius);
+        let (Some(wheel), Some(radius)) = (wheel, radius) else { return false };
+        let state = self.inner.state();
+        state.position_m.windows(2).all(|bar| segment_segment(bar[0], bar[1], wheel.center, to) > radius)
+    }
+
+    /// A support is led. A wheel that was a post stays one where its way is clear of the cable;
+    /// else it is a wheel again, since posts stand still.
     fn lead(&mut self, support: usize, lead: Lead) {
         if let Some(led) = self.led.get_mut(support) {
             *led = Some(lead);
@@ -121,18 +132,47 @@ impl LeavableWheels {
         match (self.inner_index(support), lead) {
             (Some(inner), Lead::Dragged(at)) => self.inner.drag_support(inner, at),
             (Some(inner), Lead::Pulled(at)) => self.inner.pull_support(inner, at),
-            (None, _) => {
-                if let Ok(inner) = self.built(false, Some(&self.inner.state())) {
+            (None, lead) => {
+                let clear = matches!(lead, Lead::Dragged(to) if self.goes_clear(support, to));
+                if !(clear && self.move_posts())
+                    && let Ok(inner) = self.built(false, Some(&self.inner.state()))
+                {
                     (self.inner, self.on_posts) = (inner, false);
                 }
             }
         }
     }
 
-    /// Returns whether the copy with posts can take over: no wheel was led elsewhere.
-    fn can_leave(&self) -> bool {
-        let wheels_stand = self.copy.wheels.iter().all(|w| self.led.get(w.support).is_none_or(Option::is_none));
-        !self.on_posts && wheels_stand
+    /// Goes on with posts where the wheels were led; false where it cannot.
+    fn move_posts(&mut self) -> bool {
+        let Some(posts) = self.posts() else { return false };
+        let before = std::mem::replace(&mut self.copy, posts);
+        match self.built(true, Some(&self.inner.state())) {
+            Ok(inner) => {
+                (self.inner, self.on_posts) = (inner, true);
+                true
+            }
+            Err(_) => {
+                self.copy = before;
+                false
+            }
+        }
+    }
+
+    /// The copy with posts where the wheels were led; None where a hand holds one by a spring.
+    fn posts(&self) -> Option<Arc<WheelsAsPosts>> {
+        let leads: Vec<Lead> = self.copy.wheels.iter().filter_map(|w| self.led.get(w.support).copied()?).collect();
+        if leads.iter().any(|lead| matches!(lead, Lead::Pulled(_))) {
+            return None;
+        }
+        if leads.is_empty() {
+            return Some(self.copy.clone());
+        }
+        let place = |k: usize| match self.led.get(k) {
+            Some(Some(Lead::Dragged(at))) if self.copy.replaced[k] => Some(*at),
+            _ => None,
+        };
+        self.copy.moved((0..self.copy.replaced.len()).map(place))
     }
 
     /// The warnings of a report, with one for each wheel of which the cable hangs clear.
@@ -195,7 +235,11 @@ impl Mechanics for LeavableWheels {
             Ok(_) => self.inner.refusal().is_some_and(leaves_wheel),
             Err(error) => leaves_wheel(error),
         };
-        if leaves && self.can_leave() {
+        if leaves
+            && !self.on_posts
+            && let Some(posts) = self.posts()
+        {
+            let before = std::mem::replace(&mut self.copy, posts);
             let state = (self.inner.time_s() > 0.0).then(|| self.inner.state());
             if let Ok(mut inner) = self.built(true, state.as_ref())
                 && let Ok(report) = inner.settle()
@@ -203,6 +247,7 @@ impl Mechanics for LeavableWheels {
                 (self.inner, self.on_posts) = (inner, true);
                 return Ok(self.told(report));
             }
+            self.copy = before;
         }
         found.map(|report| self.told(report))
     }
@@ -218,7 +263,9 @@ impl Mechanics for LeavableWheels {
             Ok(report) => return Ok(self.told(report)),
             Err(error) => error,
         };
-        if !self.can_leave() || !leaves_wheel(&error) {
+        // Posts stand still: a wheel that is drawn on its way is none.
+        let led = self.copy.wheels.iter().any(|w| self.led.get(w.support).is_some_and(Option::is_some));
+        if self.on_posts || led || !leaves_wheel(&error) {
             return Err(error);
         }
         let Ok(mut inner) = self.built(true, Some(&self.inner.state())) else { return Err(error) };

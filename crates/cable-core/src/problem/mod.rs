@@ -277,21 +277,36 @@ pub(crate) struct WheelsAsPosts {
     pub wheels: Vec<WheelPost>,
     /// For each support of the scene, true if it is one of them.
     pub replaced: Vec<bool>,
+    /// The scene with wheels, and the cable in it.
+    source: Arc<(Scene, usize, Cable)>,
+}
+
+impl WheelsAsPosts {
+    /// The same with wheels elsewhere: for each support its new place, m, or None where it stays;
+    /// None where the cable cannot be laid round the posts there.
+    pub fn moved(&self, places: impl IntoIterator<Item = Option<Vec2>>) -> Option<Arc<Self>> {
+        let (scene, index, mut cable) = self.source.as_ref().clone();
+        for (support, place) in cable.supports.iter_mut().zip(places) {
+            support.at_m = place.map(Into::into).or(support.at_m);
+        }
+        with_posts(&scene, index, &cable)
+    }
 }
 
 /// A cable with posts in place of its wheels; None where it has none that stand still, or cannot be
 /// laid round the posts.
 fn with_posts(scene: &Scene, index: usize, cable: &Cable) -> Option<Arc<WheelsAsPosts>> {
-    let WithPosts { scene, cables, wheels, replaced } = wheels_as_posts::with_posts(scene, cable)?;
+    let source = || Arc::new((scene.clone(), index, cable.clone()));
+    let WithPosts { scene: with_posts, cables, wheels, replaced } = wheels_as_posts::with_posts(scene, cable)?;
     let lay = |cable: &Cable| -> Result<Problem, SceneError> {
-        let mut this = problem(&scene, index, cable)?;
+        let mut this = problem(&with_posts, index, cable)?;
         support_clearance::clear_supports(&mut this)?;
         ground_route::lift_route(&mut this);
         route_check::check_route(&this)?;
         Ok(this)
     };
     let problem = Arc::new(cables.iter().find_map(|cable| lay(cable).ok())?);
-    Some(Arc::new(WheelsAsPosts { problem, wheels, replaced }))
+    Some(Arc::new(WheelsAsPosts { problem, wheels, replaced, source: source() }))
 }
 
 fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, SceneError> {
