@@ -166,13 +166,19 @@ pub fn even_posts(r: &mut Chance) -> Case {
     // Loops as deep as takes the length, as two straight lines each.
     let loop_length = length / count as f64;
     let deep = 0.5 * (loop_length * loop_length - far * far).sqrt();
+    // Over the posts, past both of their sides.
     let mut route = vec![[0.0, 0.0]];
     for k in 0..count {
-        route.push([far * (k as f64 + 0.5), -deep]);
-        route.push([far * (k as f64 + 1.0), if k + 1 < count { 0.5 * radius } else { 0.0 }]);
+        let post = far * (k as f64 + 1.0);
+        route.push([post - 0.5 * far, -deep]);
+        if k + 1 < count {
+            route.extend([-2.0, 2.0].map(|side| [post + side * radius, 0.5 * radius]));
+        } else {
+            route.push([post, 0.0]);
+        }
     }
     let diameter = 0.1 * radius;
-    let mut s = cable([length, r.scale(0.05, 20.0), r.scale(1e4, 1e8), diameter], fixed([route[0], route[2 * count]]));
+    let mut s = cable([length, r.scale(0.05, 20.0), r.scale(1e4, 1e8), diameter], fixed([route[0], route[route.len() - 1]]));
     s.cables[0].route_m = route;
     let friction = r.or_nothing(0.7, 0.05, 0.6);
     for k in 1..count {

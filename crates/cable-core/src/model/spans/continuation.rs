@@ -562,43 +562,54 @@ impl CableEquilibrium {
 
     /// Other balances of a slack cable that slides without friction: what hangs down in a loop
     /// pulls the harder the longer it is, so that the slack may rest on either side of a contact.
-    /// It is moved from each side of each contact to the other.
+    /// It is moved from each side of each contact to the other, and on from each balance that is
+    /// found so.
     pub fn other_balances(&self, layout: &Layout, work: &mut Work) -> Vec<Self> {
         let tuned = &layout.settings.continuation;
+        let mut found = vec![self.clone()];
+        let (mut from, mut tries) = (0, 0);
+        while let Some(base) = found.get(from).cloned() {
+            for (contact, by) in base.moves_of_slack(layout) {
+                if tries == tuned.max_other_balances {
+                    break;
+                }
+                tries += 1;
+                let (mut other, to) = (base.clone(), base.instant.clone());
+                let moved = |k: usize| if k == contact { by } else { 0.0 };
+                if other.slide_from(layout, &to, moved, work).is_ok() && !found.iter().any(|f| f.is_at(&other, layout)) {
+                    found.push(other);
+                }
+            }
+            from += 1;
+        }
+        found.split_off(1)
+    }
+
+    /// The contacts on both sides of which cable hangs, and the material that is moved to bring
+    /// the slack of either side to the other, m.
+    fn moves_of_slack(&self, layout: &Layout) -> Vec<(usize, f64)> {
+        let least = layout.settings.continuation.least_slack_fraction;
         let mut moves = Vec::new();
         let mut index = 0;
         for strand in &self.strands {
             for j in 0..strand.contacts.len() {
                 let slack = [j, j + 1].map(|k| strand.has_span(k).then(|| strand.slack(&self.course, k)).flatten());
                 if let [Some([before, near]), Some([after, far])] = slack
-                    && before + after > tuned.least_slack_fraction * smaller(near, far)
+                    && before + after > least * smaller(near, far)
                 {
-                    let part = 1.0 - tuned.least_slack_fraction;
-                    moves.extend([(index, part * after), (index, -part * before)]);
+                    moves.extend([(index, (1.0 - least) * after), (index, -(1.0 - least) * before)]);
                 }
                 index += 1;
             }
         }
-        moves.truncate(tuned.max_other_balances);
-        let here = self.materials();
-        let mut found: Vec<Self> = Vec::new();
-        for (contact, by) in moves {
-            let mut other = self.clone();
-            let to = self.instant.clone();
-            let moved = |k: usize| if k == contact { by } else { 0.0 };
-            if other.slide_from(layout, &to, moved, work).is_err() {
-                continue;
-            }
-            let there = other.materials();
-            let is_apart = |materials: &[f64]| {
-                let far = |(a, b): (&f64, &f64)| (a - b).abs() > tuned.other_balance_fraction * layout.problem.length;
-                materials.len() != there.len() || materials.iter().zip(&there).any(far)
-            };
-            if is_apart(&here) && found.iter().all(|f| is_apart(&f.materials())) {
-                found.push(other);
-            }
-        }
-        found
+        moves
+    }
+
+    /// True if two balances have the same material at the same contacts.
+    fn is_at(&self, other: &Self, layout: &Layout) -> bool {
+        let near = layout.settings.continuation.other_balance_fraction * layout.problem.length;
+        let [here, there] = [self, other].map(Self::materials);
+        here.len() == there.len() && here.iter().zip(&there).all(|(a, b)| (a - b).abs() <= near)
     }
 
     /// Lets the cable slide to a stable balance, under a drag, from where the material at each
@@ -618,7 +629,12 @@ impl CableEquilibrium {
         let (mut drag, mut taken, mut left) = (tuned.leaving_drag_factor * size, StepStats::default(), None);
         let mut raised = 0;
         for (k, c) in self.strands.iter_mut().flat_map(|s| &mut s.contacts).enumerate() {
-            c.history.pass_on(passed_on_m(k));
+            let by = passed_on_m(k);
+            c.history.pass_on(by);
+            c.ends.s = c.ends.s.map(|s| s + by);
+        }
+        for strand in &mut self.strands {
+            contacts::solve_spans(strand, &self.course).ok_or(Failure::Restless { s: strand.from })?;
         }
         for _ in 0..tuned.max_drag_steps {
             let materials = self.materials();

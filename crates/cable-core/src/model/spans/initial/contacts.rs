@@ -160,7 +160,7 @@ fn along(
 }
 
 /// Forces of spans whose ends and material are known.
-fn solve_spans(strand: &mut CableRun, course: &Course) -> Option<()> {
+pub(in crate::model::spans) fn solve_spans(strand: &mut CableRun, course: &Course) -> Option<()> {
     for k in 0..strand.spans() {
         if strand.has_span(k) {
             strand.forces[k] = strand.solve_span(course, k)?;
