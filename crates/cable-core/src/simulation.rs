@@ -397,10 +397,13 @@ impl Simulation {
                 continue;
             }
             let of_cable = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == *name;
-            let seek = || {
-                let laid = initial_equilibrium(&Arc::new(problem.clone()), Settings::default(), &[], None).ok()??;
+            let laid = |problem: &Arc<Problem>| {
+                let laid = initial_equilibrium(problem, Settings::default(), &[], None).ok()??;
                 laid.warnings.into_iter().find(of_cable)
             };
+            // A cable that leaves a wheel is laid over posts in their place.
+            let posts = || problem.wheels_as_posts.as_ref().and_then(|posts| laid(&posts.problem));
+            let seek = || laid(&Arc::new(problem.clone())).or_else(posts);
             let known = self.warnings.iter().position(|w| of_cable(w) && w.cause.histories().is_some());
             if known.is_none() && self.warnings.iter().any(of_cable) {
                 continue;

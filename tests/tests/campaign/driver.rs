@@ -233,7 +233,7 @@ fn unsound(answer: &Solution) -> bool {
 /// True if an answer with `own` forces at its ends says that other histories of the cable leave
 /// tensions there as large as those of `other` forces, N.
 fn states(answer: &Solution, own: [Point; 2], other: [Point; 2]) -> bool {
-    let ranges = answer.warnings.iter().find_map(|w| match &w.cause {
+    let mut ranges = answer.warnings.iter().filter_map(|w| match &w.cause {
         WarningCause::ManyEquilibria {
             histories:
                 Histories::Mobilised { start_n, end_n, .. }
@@ -241,13 +241,18 @@ fn states(answer: &Solution, own: [Point; 2], other: [Point; 2]) -> bool {
                 | Histories::SlackElsewhere { start_n, end_n, .. },
             ..
         } => Some([*start_n, *end_n]),
+        // What pushes is sheared at its ends, too: their forces are a little more than the
+        // tensions.
+        WarningCause::ManyEquilibria { histories: Histories::BowedElsewhere { start_n, end_n, .. }, .. } => {
+            Some([*start_n, *end_n].map(|[a, b]| [0.95 * a.abs().min(b.abs()), 1.05 * a.abs().max(b.abs())]))
+        }
         WarningCause::Loose { held_n, .. } => {
             Some(own.map(|f| [f64::max(distance(f, [0.0; 2]) - held_n, 0.0), distance(f, [0.0; 2]) + held_n]))
         }
         _ => None,
     });
     let greatest = own.iter().chain(&other).map(|f| distance(*f, [0.0; 2])).fold(0.0, f64::max);
-    ranges.is_some_and(|ranges| {
+    ranges.any(|ranges| {
         ranges.iter().zip(other).all(|(range, f)| {
             let (tension, rounding) = (distance(f, [0.0; 2]), 1e-3 * greatest);
             tension >= range[0] - rounding && tension <= range[1] + rounding

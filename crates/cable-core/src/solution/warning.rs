@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::error_estimates::greatest_tension;
 use super::{CableSolution, Node};
 use crate::math::{larger, smaller};
 use crate::model_id::Model;
@@ -522,7 +523,7 @@ impl Histories {
     pub(crate) fn beside(mut self, answer: &CableSolution) -> Self {
         let tension = |node: Option<&Node>| node.map_or(0.0, |n| n.tension_n);
         let ends = [tension(answer.nodes.first()), tension(answer.nodes.last())];
-        let most = answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
+        let most = greatest_tension(&answer.nodes);
         let widen = |range: &mut [f64; 2], n: f64| *range = [smaller(range[0], n), larger(range[1], n)];
         match &mut self {
             Self::NotSought => {}

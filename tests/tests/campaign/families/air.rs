@@ -178,7 +178,8 @@ pub fn even_posts(r: &mut Chance) -> Case {
         }
     }
     let diameter = 0.1 * radius;
-    let mut s = cable([length, r.scale(0.05, 20.0), r.scale(1e4, 1e8), diameter], fixed([route[0], route[route.len() - 1]]));
+    let mut s =
+        cable([length, r.scale(0.05, 20.0), r.scale(1e4, 1e8), diameter], fixed([route[0], route[route.len() - 1]]));
     s.cables[0].route_m = route;
     let friction = r.or_nothing(0.7, 0.05, 0.6);
     for k in 1..count {

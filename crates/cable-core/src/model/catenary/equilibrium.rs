@@ -114,8 +114,8 @@ pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Eq
     }
 }
 
-/// The friction a pulley uses, as m: on a wheel that holds, the m of the whole arc that leads from one
-/// tension to the other, the weight on it included. With the m of a point, ln(T₂/T₁)/turn, the
+/// The friction a pulley uses, as m: on a wheel that holds, the m of the whole arc that leads from
+/// one tension to the other, the weight on it included. With the m of a point, ln(T₂/T₁)/turn, the
 /// material on the wheel would jump where it begins to slip: by 0.1 mm in one of 300 random wheels,
 /// of which neither state was then a balance.
 pub(super) fn called_upon(slide: &Slide<'_>, s: &Stretches, k: usize, mode: Mode) -> f64 {

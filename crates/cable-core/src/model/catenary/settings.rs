@@ -26,8 +26,9 @@ pub struct CatenarySettings {
     /// Sets of modes that are changed together; after that one pulley at a time, which cannot cycle
     /// so easily. Smaller: more solves. Larger: cycles last longer.
     pub joint_mode_rounds: usize,
-    /// Most corrections of the friction that a wheel is found to use; measured: 3 to 6. Smaller: it is
-    /// off by what the weight on the wheel does to it. Larger: a wheel that is all weight costs more.
+    /// Most corrections of the friction that a wheel is found to use; measured: 3 to 6. Smaller: it
+    /// is off by what the weight on the wheel does to it. Larger: a wheel that is all weight costs
+    /// more.
     pub max_friction_corrections: usize,
     /// Most rises of friction from none to what it is, failed ones included; as many halve the rise
     /// to 1e-6. One has done for every scene tried (400 random dead loads over a rubbing wheel, EA

@@ -6,6 +6,7 @@
 //! | `state` | the state of the cable (`state/cable.rs`) and its parts, the setup of a step, and what controls it (`state/control.rs`) |
 //! | `dynamics` | advances that state: one step with inertia, halvings, reports |
 //! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
+//! | `bows` | the other equilibria of a stiff cable that is compressed |
 //! | `equilibrium` | equilibria in contact, and steps without inertia |
 //! | `time` | BDF2, step sizes, sleep, hands, momentum, checkpoints |
 //! | `newton` | one step: its initial guess, its Newton iterations, and what bounds them |
@@ -18,6 +19,7 @@
 //!
 //! [`FemModel`] decides which part answers, and hands the state over when the question changes.
 
+mod bows;
 mod dynamics;
 mod elastica;
 mod equilibrium;
@@ -48,18 +50,14 @@ use crate::model::fem::obstacle::moving_outline::place_outline;
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::system::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;
-use crate::model::initial_equilibrium::{
-    InitialEquilibrium, initial_equilibrium, is_buried, slid_first, slides_on, work,
-};
+use crate::model::initial_equilibrium::{InitialEquilibrium, initial_equilibrium, slid_first, slides_on, work};
 use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
 use crate::solution::ErrorEstimates;
-use crate::solution::error_estimates::{greatest_tension, place};
-use crate::solution::{CableSolution, Cost, Histories, Node, ShownEquilibrium, Warning, WarningCause};
+use crate::solution::{CableSolution, Cost, Node, ShownEquilibrium, Warning, WarningCause};
 use crate::state::State;
 use elastica::Elastica;
-use free::beam::other_bows::SAME_SHAPE_FRACTION;
 
 /// The outcome of starting from the solution of `spans`.
 enum FirstEquilibrium {
@@ -197,29 +195,19 @@ impl FemModel {
         found
     }
 
-    /// A warning of the other equilibria of a stiff cable that is compressed and touches nothing:
-    /// it may bow to another side.
+    /// A warning of the other equilibria of a stiff cable that is compressed: it may bow to another
+    /// side.
     fn bow_warning(&self) -> Option<Warning> {
-        let answer = self.solution();
-        let compressed = answer.nodes.iter().any(|n| n.tension_n < 0.0);
-        if !(self.problem.bending_stiffness > 0.0 && compressed && answer.contacts.is_empty()) {
+        if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
         let mut statics = self.statics.clone();
         if self.present == Part::Dynamics || self.bent.is_some() {
-            statics.settle(&self.dragged).ok()?;
+            // Of the cable without obstacles: those are asked of each shape.
+            let _ = statics.settle(&self.dragged);
         }
-        let apart = |nodes: &[Node]| {
-            let off = |n: &Node| place(nodes, n.arc_length_m).map_or(0.0, |at| (at - n.at()).norm());
-            answer.nodes.iter().map(off).fold(0.0, larger) > SAME_SHAPE_FRACTION * self.problem.length
-        };
-        let others = statics.bows().into_iter().filter(|nodes| apart(nodes) && !is_buried(&self.problem, nodes));
-        let tensions = |nodes: &[Node]| {
-            let at = |n: Option<&Node>| n.map_or(f64::NAN, |n| n.tension_n);
-            [at(nodes.first()), at(nodes.last()), greatest_tension(nodes)]
-        };
-        let others: Vec<[f64; 3]> = others.map(|nodes| tensions(&nodes)).collect();
-        let histories = Histories::bowed_elsewhere(tensions(&answer.nodes), &others)?;
+        let time_s = self.time_s();
+        let histories = bows::elsewhere(&self.problem, time_s, &self.dragged, &self.solution(), &statics)?;
         let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
         Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
     }

@@ -576,7 +576,8 @@ impl CableEquilibrium {
                 tries += 1;
                 let (mut other, to) = (base.clone(), base.instant.clone());
                 let moved = |k: usize| if k == contact { by } else { 0.0 };
-                if other.slide_from(layout, &to, moved, work).is_ok() && !found.iter().any(|f| f.is_at(&other, layout)) {
+                if other.slide_from(layout, &to, moved, work).is_ok() && !found.iter().any(|f| f.is_at(&other, layout))
+                {
                     found.push(other);
                 }
             }

@@ -41,6 +41,10 @@ pub(in crate::model::fem) use answer::{refine, solution};
 pub(in crate::model::fem) use boundary_value::Elastica;
 use relax::{Chain, LetGo};
 
+/// Accuracy asked of the forces of another equilibrium that is only told. Smaller: time; larger:
+/// its tensions are told with fewer digits than they are written.
+const BOW_TOLERANCE: f64 = 1e-4;
+
 /// The resting place of a stiff cable in contact, from the answer for a flexible one where there is
 /// one: as an elastica where that is found, else as a chain of bars with what halving them changes
 /// as its error.
@@ -79,6 +83,20 @@ pub fn rest(
     let (coarse, finer) = (chain.solution(), fine.solution());
     let errors = ErrorEstimates::between(&coarse, &finer);
     Some((if rests { finer } else { coarse }.known_to(errors), cost))
+}
+
+/// The nodes of the equilibrium to which a chain of bars leads that is let go at a shape, if it
+/// keeps to the sides of obstacles on which the cable is; None where it finds none.
+pub fn rest_near(
+    problem: &Problem,
+    time_s: f64,
+    dragged: &[Option<Vec2>],
+    from: &[Node],
+    shape: &[Node],
+) -> Option<Vec<Node>> {
+    let chain = Chain::near(problem, time_s, dragged, shape)?;
+    let bent = Elastica::from_chain(&chain, dragged).and_then(|e| answer::answer(e, problem, BOW_TOLERANCE));
+    bent.map(|(found, _)| found).filter(|found| keeps_sides(problem, from, found)).map(|found| found.nodes)
 }
 
 /// True if a cable can have come from one shape to an answer without passing through an obstacle.

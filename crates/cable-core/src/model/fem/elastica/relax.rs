@@ -219,6 +219,13 @@ impl<'a> Chain<'a> {
         Some((fine, rests))
     }
 
+    /// A chain at rest to which a shape leads where it is let go; None where it finds none, or
+    /// would not stay.
+    pub fn near(problem: &'a Problem, time_s: f64, dragged: &[Option<Vec2>], shape: &[Node]) -> Option<Self> {
+        let mut chain = Self::new(problem, time_s, dragged, &Curve::new(shape), None, 1.0)?;
+        (chain.settle(REDUCED_RESISTANCE_FACTOR) && chain.stable).then_some(chain)
+    }
+
     /// The chain along a curve: the way of a flexible cable or its first lay. None where the scene
     /// has what this knows nothing of.
     pub fn new(

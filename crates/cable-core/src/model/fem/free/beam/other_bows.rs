@@ -13,7 +13,7 @@ use crate::model::fem::free::stations::Stop;
 
 /// Least buckling load of a straight cable in parts of EI/L²: held at one end, free at the other,
 /// π²/4.
-const LEAST_BUCKLING_LOAD: f64 = 2.467_401_100_272_34;
+pub(in crate::model::fem) const LEAST_BUCKLING_LOAD: f64 = 2.467_401_100_272_34;
 /// Steps in which the mirrored weight is turned back. Fewer: Newton fails on the way; more: time.
 const TURNS_OF_WEIGHT: u32 = 8;
 /// Shapes that are nowhere further apart than this part of the length are one. Smaller: the error

@@ -1,0 +1,89 @@
+//! This file finds the other equilibria of a stiff cable that is compressed: it may bow to either side
+//! of its chord, past what it then touches.
+//!
+//! Of a cable that touches nothing they are those of the free cable (`free/beam/other_bows.rs`) that
+//! keep clear of obstacles. Where one of them does not, or the cable touches something as it is, its
+//! mirror image, pushed out of what it lies in, is let go as a chain of bars.
+
+use crate::math::{Vec2, larger};
+use crate::model::fem::elastica;
+use crate::model::fem::free::beam::other_bows::{LEAST_BUCKLING_LOAD, SAME_SHAPE_FRACTION};
+use crate::model::fem::free::statics::Statics;
+use crate::model::initial_equilibrium::is_buried;
+use crate::problem::Problem;
+use crate::solution::error_estimates::{greatest_tension, place};
+use crate::solution::{CableSolution, Histories, Node};
+
+/// Depth inside an obstacle up to which a mirror image is pushed out, of the cable's length. Larger:
+/// time; smaller: bows that lie on the ground are not found.
+const PUSHED_OUT_FRACTION: f64 = 0.5;
+
+/// Returns the other equilibria of a compressed cable beside an answer at a time (s); `statics` holds
+/// the equilibrium of the free cable. None where there is no other.
+pub(in crate::model::fem) fn elsewhere(
+    problem: &Problem,
+    time_s: f64,
+    dragged: &[Option<Vec2>],
+    answer: &CableSolution,
+    statics: &Statics,
+) -> Option<Histories> {
+    let pushes = answer.nodes.iter().map(|n| -n.tension_n).fold(0.0, larger);
+    if !(pushes > LEAST_BUCKLING_LOAD * problem.bending_stiffness / (problem.length * problem.length)) {
+        return None;
+    }
+    let mut shapes = statics.bows();
+    shapes.extend(if answer.contacts.is_empty() { None } else { mirrored(problem, answer) });
+    let mut found: Vec<Vec<Node>> = vec![answer.nodes.clone()];
+    for shape in shapes {
+        let other = match is_buried(problem, &shape) {
+            false if answer.contacts.is_empty() => Some(shape),
+            _ => elastica::rest_near(problem, time_s, dragged, &answer.nodes, &pushed_out(problem, shape)),
+        };
+        found.extend(other.filter(|nodes| found.iter().all(|f| are_apart(problem, f, nodes))));
+    }
+    let tensions = |nodes: &[Node]| {
+        let at = |n: Option<&Node>| n.map_or(f64::NAN, |n| n.tension_n);
+        [at(nodes.first()), at(nodes.last()), greatest_tension(nodes)]
+    };
+    let others: Vec<[f64; 3]> = found.iter().skip(1).map(|nodes| tensions(nodes)).collect();
+    Histories::bowed_elsewhere(tensions(&answer.nodes), &others)
+}
+
+/// Returns whether two shapes of a cable are two equilibria.
+fn are_apart(problem: &Problem, some: &[Node], others: &[Node]) -> bool {
+    let off = |n: &Node| place(others, n.arc_length_m).map_or(0.0, |at| (at - n.at()).norm());
+    some.iter().map(off).fold(0.0, larger) > SAME_SHAPE_FRACTION * problem.length
+}
+
+/// The mirror image of each part of a cable about the chord between its supports; None where nothing
+/// is between two of them.
+fn mirrored(problem: &Problem, answer: &CableSolution) -> Option<Vec<Node>> {
+    let held = problem.supports.iter().zip(&answer.supports).filter(|(s, _)| s.at.is_some());
+    let stops: Vec<(f64, Vec2)> = held.map(|(_, r)| (r.arc_length_m, Vec2::new(r.x_m, r.y_m))).collect();
+    let mut nodes = answer.nodes.clone();
+    let mut any = false;
+    for part in stops.windows(2) {
+        let [(from, a), (to, b)] = [part[0], part[1]];
+        let Some(along) = (b - a).try_normalize(SAME_SHAPE_FRACTION * problem.length) else { continue };
+        any = true;
+        for n in nodes.iter_mut().filter(|n| n.arc_length_m > from && n.arc_length_m < to) {
+            let off = n.at() - a;
+            let image = a + along * (2.0 * along.dot(&off)) - off;
+            (n.x_m, n.y_m) = (image.x, image.y);
+        }
+    }
+    any.then_some(nodes)
+}
+
+/// Nodes with those that lie in an obstacle on its surface.
+fn pushed_out(problem: &Problem, mut nodes: Vec<Node>) -> Vec<Node> {
+    for n in &mut nodes {
+        if let Some(gap) =
+            problem.world.signed_gap(n.at(), PUSHED_OUT_FRACTION * problem.length).filter(|g| g.gap_m < 0.0)
+        {
+            let at = n.at() - gap.normal * gap.gap_m;
+            (n.x_m, n.y_m) = (at.x, at.y);
+        }
+    }
+    nodes
+}
