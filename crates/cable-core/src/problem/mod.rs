@@ -284,7 +284,7 @@ pub(crate) struct WheelsAsPosts {
 impl WheelsAsPosts {
     /// The same with wheels elsewhere: for each support its new place, m, or None where it stays;
     /// None where the cable cannot be laid round the posts there.
-    pub fn moved(&self, places: impl IntoIterator<Item = Option<Vec2>>) -> Option<Arc<Self>> {
+    pub(crate) fn moved(&self, places: impl IntoIterator<Item = Option<Vec2>>) -> Option<Arc<Self>> {
         let (scene, index, mut cable) = self.source.as_ref().clone();
         for (support, place) in cable.supports.iter_mut().zip(places) {
             support.at_m = place.map(Into::into).or(support.at_m);
