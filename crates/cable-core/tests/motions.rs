@@ -9,6 +9,8 @@
 mod dice;
 
 use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
@@ -214,6 +216,15 @@ fn seed() -> u64 {
 }
 
 impl Found {
+    fn add(&mut self, more: Self) {
+        self.runs += more.runs;
+        self.stops.extend(more.stops);
+        self.apart.extend(more.apart);
+        for (same, count) in more.same {
+            *self.same.entry(same).or_default() += count;
+        }
+    }
+
     fn tell(&self) {
         println!("{} runs, {} stopped, {:?}:", self.runs, self.stops.len(), self.same);
         for line in self.stops.iter().chain(&self.apart) {
@@ -292,24 +303,37 @@ fn rounds_and_floors_agree_in_some_random_ways() {
 #[test]
 #[ignore = "an hour: every motion of the catalogue, one factor at a time and twenty ways at random"]
 fn every_motion_of_the_catalogue_runs_to_its_end() {
-    let mut found = Found::default();
     let only_random = std::env::var("WAYS").is_ok_and(|w| w == "random");
+    // A part of the ways of a scene, each with the same reference: what one thread takes at once.
+    let mut parts = Vec::new();
     for (name, scene, end) in moving() {
-        let mut ways = Vec::new();
         for model in [Model::Auto, Model::Fem] {
             for inertia in [Inertia::Dynamic, Inertia::QuasiStatic] {
                 let plain = Way { model, inertia, ..PLAIN };
-                ways.extend([42, 84, 168, 336, 1000].map(|n| Way { segments: Some(n), ..plain }));
-                ways.extend([1e-2, 1e-4].map(|tolerance| Way { tolerance, ..plain }));
-                ways.extend([0.8, 1.2].map(|friction| Way { friction, ..plain }));
-                ways.extend([1.0 / 60.0, 1.0].map(|every_s| Way { every_s, ..plain }));
+                let mut ways = Vec::new();
+                if !only_random {
+                    ways.extend([42, 84, 168, 336, 1000].map(|n| Way { segments: Some(n), ..plain }));
+                    ways.extend([1e-2, 1e-4].map(|tolerance| Way { tolerance, ..plain }));
+                    ways.extend([0.8, 1.2].map(|friction| Way { friction, ..plain }));
+                    ways.extend([1.0 / 60.0, 1.0].map(|every_s| Way { every_s, ..plain }));
+                }
+                let random = at_random(&mut Dice(seed()), 20, 1000.0);
+                ways.extend(random.into_iter().filter(|w| w.model == model && w.inertia == inertia));
+                parts.push((name, scene.clone(), end, ways));
             }
         }
-        if only_random {
-            ways.clear();
-        }
-        ways.extend(at_random(&mut Dice(seed()), 20, 1000.0));
-        compare(&mut found, (name, &scene, end), &ways);
     }
-    found.check();
+    let (next, found) = (AtomicUsize::new(0), Mutex::new(Found::default()));
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some((name, scene, end, ways)) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let mut part = Found::default();
+                    compare(&mut part, (name, scene, *end), ways);
+                    found.lock().expect("no panic").add(part);
+                }
+            });
+        }
+    });
+    found.into_inner().expect("no panic").check();
 }
