@@ -5,9 +5,10 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use cable_core::Settings;
+
 use cable_core::analysis::safe_reach::area::{ReachQuery, area};
 use cable_core::scene::catalog;
+use cable_core::{Scene, Settings};
 
 /// CPU time of this thread so far, s; 0 where it is not known. Linux only.
 fn cpu_s() -> f64 {
@@ -19,13 +20,23 @@ fn cpu_s() -> f64 {
 #[test]
 #[ignore = "a minute"]
 fn cost_of_a_robot() {
-    let scene = catalog::robot_drive();
+    print_cost(&catalog::robot_drive(), [-2.0, 20.0]);
+}
+
+/// The robot of the opening scene along the ground of its tank, as its window asks.
+#[test]
+#[ignore = "a minute"]
+fn cost_of_the_robot_in_the_tank() {
+    print_cost(&catalog::tank_robot(), [-7.2, 7.2]);
+}
+
+fn print_cost(scene: &Scene, ends_m: [f64; 2]) {
     let (began, cpu, mut told) = (Instant::now(), cpu_s(), -1.0);
     let map = cable_core::analysis::safe_reach::line::robot_reach(
-        &scene,
+        scene,
         None,
         Settings::default(),
-        [-2.0, 20.0],
+        ends_m,
         41,
         |map, share| {
             if share > told + 0.1 {
