@@ -5,15 +5,15 @@
 //! 2008, section 3.4). It is not laid out beforehand but chosen anew in every step from how the
 //! vehicle is, because cable and ground may hold it up.
 //!
-//! Two accelerations are known for the end of a step of h. The one that comes to the commanded
-//! speed u as soon as possible and ends there with a = 0 is, with e = |u − v|,
+//! In a step of h the acceleration goes evenly from a to a', so the speed grows by h (a + a')/2. Two
+//! choices of a' are known. The one that comes to the commanded speed u as soon as possible and ends
+//! there with an acceleration of 0 is, with e = u − v − ha/2 > 0,
 //! ```text
-//! a²/2J + ah/2 = e,    a ≤ A,    a ≤ e/h
+//! a'²/2J + ha'/2 = e,    a' ≤ A,    a' ≤ e/h
 //! ```
-//! since a, a − Jh, a − 2Jh, … 0 over steps of h add up to a speed of a²/2J + ah/2. The one that
-//! comes to a stand as soon as possible is the same with u = 0. Where there is a place to stop at,
-//! the greatest acceleration between these two is taken after which the vehicle can still stop
-//! there.
+//! and the last limit ends it in two steps. The one that comes to a stand as soon as possible is the
+//! same with u = 0. Where there is a place to stop at, the greatest acceleration between these two
+//! is taken after which the vehicle can still stop there.
 //!
 //! To stop, a falls to −p and rises again to 0. The speed that this takes is p²/J − a²/2J = v, thus
 //! ```text
@@ -33,6 +33,10 @@ pub(super) const MAX_ACCELERATION: f64 = 1.0;
 /// 0.07 and 0.45 s, the ripple of the tension is 8.3 N without limit, 3.0 N with 3, and 1.7 N with
 /// 1.5 m/s³.
 pub(super) const MAX_JERK: f64 = 2.0;
+
+/// A speed this near to the planned one is that one, m/s. If it is larger, a pull that slows the
+/// vehicle down counts as braking; if it is smaller, rounding does.
+const KEPT_M_PER_S: f64 = 1e-6;
 
 /// Halvings of the interval of accelerations. With fewer the vehicle stops short of its place; more
 /// are below rounding.
@@ -60,7 +64,25 @@ impl PlannedMotion {
     /// Returns the motion to ask for at the end of a step of `h` (s).
     pub fn next(self, order: SpeedOrder, h: f64) -> Self {
         let acceleration = self.next_acceleration(order, h);
-        Self { speed: self.speed + acceleration * h, acceleration }
+        self.then(acceleration, h)
+    }
+
+    /// Returns the motion from which the governor goes on after a step of `h` (s) that led from one
+    /// speed to another, m/s. What slows the vehicle down but the governor is no planned
+    /// acceleration.
+    pub fn held_up(self, h: f64, [from, to]: [f64; 2]) -> Self {
+        let planned = self.acceleration;
+        let acceleration = if (to - self.speed).abs() < KEPT_M_PER_S {
+            planned
+        } else {
+            bounded((to - from) / h, smaller(planned, 0.0), larger(planned, 0.0))
+        };
+        Self { acceleration, ..self }
+    }
+
+    /// Returns the motion after a step in which the acceleration goes to another one.
+    fn then(self, acceleration: f64, h: f64) -> Self {
+        Self { speed: self.speed + 0.5 * h * (self.acceleration + acceleration), acceleration }
     }
 
     fn next_acceleration(self, order: SpeedOrder, h: f64) -> f64 {
@@ -70,7 +92,7 @@ impl PlannedMotion {
         let sense = left.signum();
         let ahead = Self { speed: self.speed * sense, acceleration: self.acceleration * sense };
         let stops_in_time = |a: f64| {
-            let end = Self { speed: ahead.speed + a * h, acceleration: a };
+            let end = ahead.then(a, h);
             0.5 * h * (ahead.speed + end.speed) + end.stopping_distance() <= left.abs()
         };
         let (mut slow, mut fast) = (self.toward(0.0, h) * sense, fastest * sense);
@@ -91,10 +113,10 @@ impl PlannedMotion {
     /// Returns the acceleration that comes to a speed as soon as possible, m/s².
     fn toward(self, speed: f64, h: f64) -> f64 {
         let change = MAX_JERK * h;
-        let left = (speed - self.speed).abs();
-        let ramp = (0.25 * change * change + 2.0 * MAX_JERK * left).sqrt() - 0.5 * change;
-        let wanted = [left / h, MAX_ACCELERATION].into_iter().fold(ramp, smaller);
-        bounded(wanted.copysign(speed - self.speed), self.acceleration - change, self.acceleration + change)
+        let left = speed - self.speed - 0.5 * h * self.acceleration;
+        let ramp = (0.25 * change * change + 2.0 * MAX_JERK * left.abs()).sqrt() - 0.5 * change;
+        let wanted = [left.abs() / h, MAX_ACCELERATION].into_iter().fold(ramp, smaller);
+        bounded(wanted.copysign(left), self.acceleration - change, self.acceleration + change)
     }
 
     /// Returns the distance in which the vehicle stops, m.

@@ -74,10 +74,6 @@ const MAX_TIP_RAD_PER_S2: f64 = 10.0;
 /// vehicle.
 const BALANCE_TOLERANCE: f64 = 5e-3;
 
-/// A speed this near to the one that the governor asks for is that one, m/s. If it is larger, a pull
-/// that slows the vehicle down counts as braking; if it is smaller, rounding stops the governor.
-const KEPT_M_PER_S: f64 = 1e-6;
-
 /// Slower than this it stands, m/s.
 const STANDSTILL_M_PER_S: f64 = 1e-4;
 
@@ -311,9 +307,7 @@ impl Vehicle {
         // The energy of a stop is none of those.
         work.impact_j += self.preset.mass_kg.value * (speed - balance.speed) / drive.h * way;
         self.tipping = (to.pitch - self.pose.pitch) / drive.h;
-        // What slows it down but the governor is no planned acceleration.
-        let acceleration = if (speed - drive.asked.speed).abs() > KEPT_M_PER_S { 0.0 } else { drive.asked.acceleration };
-        self.set = PlannedMotion { acceleration, ..drive.asked };
+        self.set = drive.asked.held_up(drive.h, [self.speed, speed]);
         (self.pose, self.speed) = (to, speed);
         self.rate = (pulls.hitch - self.pulls.hitch) / drive.h;
         self.pulls = pulls;
