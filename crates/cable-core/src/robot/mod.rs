@@ -382,14 +382,7 @@ impl Vehicle {
         };
         let going = grip.going(v, speed, traction);
         let [speed, tracks, rolling] = [speed, tracks, rolling].map(|x| x * sense);
-        SpeedBalance {
-            speed,
-            tracks,
-            rolling,
-            slips: traction == Traction::Slips,
-            going,
-            ..SpeedBalance::default()
-        }
+        SpeedBalance { speed, tracks, rolling, slips: traction == Traction::Slips, going, ..SpeedBalance::default() }
     }
 
     /// Returns what tracks and rolling resistance can do in a step, in the `sense` in which it is
