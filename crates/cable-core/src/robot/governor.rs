@@ -5,15 +5,15 @@
 //! 2008, section 3.4). It is not laid out beforehand but chosen anew in every step from how the
 //! vehicle is, because cable and ground may hold it up.
 //!
-//! In a step of h the acceleration goes evenly from a to a', so the speed grows by h (a + a')/2. Two
-//! choices of a' are known. The one that comes to the commanded speed u as soon as possible and ends
-//! there with an acceleration of 0 is, with e = u − v − ha/2 > 0,
+//! In a step of h the acceleration goes evenly from a to a', so the speed grows by h (a + a')/2.
+//! Two choices of a' are known. The one that comes to the commanded speed u as soon as possible and
+//! ends there with an acceleration of 0 is, with e = u − v − ha/2 > 0,
 //! ```text
 //! a'²/2J + ha'/2 = e,    a' ≤ A,    a' ≤ e/h
 //! ```
-//! and the last limit ends it in two steps. The one that comes to a stand as soon as possible is the
-//! same with u = 0. Where there is a place to stop at, the greatest acceleration between these two
-//! is taken after which the vehicle can still stop there.
+//! and the last limit ends it in two steps. The one that comes to a stand as soon as possible is
+//! the same with u = 0. Where there is a place to stop at, the greatest acceleration between these
+//! two is taken after which the vehicle can still stop there.
 //!
 //! To stop, a falls to −p and rises again to 0. The speed that this takes is p²/J − a²/2J = v, thus
 //! ```text
@@ -23,15 +23,15 @@
 
 use crate::math::{bounded, larger, smaller};
 
-/// Greatest acceleration that the governor asks for, m/s². If it is larger, the tracks slip at every
-/// start; if it is smaller, driving by hand feels dead.
+/// Greatest acceleration that the governor asks for, m/s². If it is larger, the tracks slip at
+/// every start; if it is smaller, driving by hand feels dead.
 pub(super) const MAX_ACCELERATION: f64 = 1.0;
 
-/// Greatest change of the acceleration, m/s³. Of the swing of period T that a jump excites, a ramp of
-/// duration A/J leaves at most T J/(π A). If J is larger, the cable ripples whenever the robot starts
-/// or stops; if it is smaller, the robot answers a hand late. In the opening scene, with swings of
-/// 0.07 and 0.45 s, the ripple of the tension is 8.3 N without limit, 3.0 N with 3, and 1.7 N with
-/// 1.5 m/s³.
+/// Greatest change of the acceleration, m/s³. Of the swing of period T that a jump excites, a ramp
+/// of duration A/J leaves at most T J/(π A). If J is larger, the cable ripples whenever the robot
+/// starts or stops; if it is smaller, the robot answers a hand late. In the opening scene, with
+/// swings of 0.07 and 0.45 s, the ripple of the tension is 8.3 N without limit, 3.0 N with 3, and
+/// 1.7 N with 1.5 m/s³.
 pub(super) const MAX_JERK: f64 = 2.0;
 
 /// A speed this near to the planned one is that one, m/s. If it is larger, a pull that slows the

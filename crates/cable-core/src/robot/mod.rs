@@ -30,8 +30,8 @@
 //! such ground its weight and the hitch do work that is not along the way, and
 //! [`RobotWork::ground_j`] is that.
 //!
-//! The speed that the governor asks for is planned in `governor.rs`, with limits on acceleration and
-//! jerk.
+//! The speed that the governor asks for is planned in `governor.rs`, with limits on acceleration
+//! and jerk.
 //!
 //! Robot and cable are one system: how their steps are brought together stands in
 //! `simulation/coupling.rs`.
@@ -400,8 +400,8 @@ impl Vehicle {
         }
     }
 
-    /// Returns the motion from which the governor goes on: the one that it has given. A vehicle that
-    /// its cable drags has none of it.
+    /// Returns the motion from which the governor goes on: the one that it has given. A vehicle
+    /// that its cable drags has none of it.
     fn planned(&self) -> PlannedMotion {
         let v = self.speed;
         if self.set.speed * v > 0.0 {

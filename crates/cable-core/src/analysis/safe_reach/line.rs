@@ -340,7 +340,8 @@ fn is_held_back(left_m: Option<f64>) -> bool {
     left_m.is_some_and(|m| m > MAX_SHORTFALL_M)
 }
 
-/// Returns why a push has no answer: cable that is squeezed between the robot and what stands jams it.
+/// Returns why a push has no answer: cable that is squeezed between the robot and what stands jams
+/// it.
 fn why_stuck(error: &SolveError) -> Obstruction {
     match error {
         SolveError::StepFailed { place, .. } if place.near.as_ref().is_some_and(|n| n.name == OUTLINE_NAME) => {
