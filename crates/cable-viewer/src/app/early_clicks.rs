@@ -1,7 +1,8 @@
 //! Clicks that come before the first frame wait for the second.
 //!
-//! egui finds what a pointer is on among the widgets of the frame before. A loaded machine draws the
-//! first frame long after the window has opened, and whoever clicked in between clicked on nothing.
+//! egui finds what a pointer is on among the widgets of the frame before. A loaded machine draws
+//! the first frame long after the window has opened, and whoever clicked in between clicked on
+//! nothing.
 
 use egui::{Context, Event, Plugin, RawInput, Ui};
 
