@@ -287,7 +287,9 @@ fn the_table_of_pinned_results_is_as_wide_as_its_panel() {
 /// Every text of a picture that is not cut, and where it stands.
 fn texts(shape: &egui::Shape, out: &mut Vec<(String, egui::Rect)>) {
     match shape {
-        egui::Shape::Text(text) if !text.galley.elided => out.push((text.galley.text().to_owned(), text.visual_bounding_rect())),
+        egui::Shape::Text(text) if !text.galley.elided => {
+            out.push((text.galley.text().to_owned(), text.visual_bounding_rect()))
+        }
         egui::Shape::Vec(shapes) => shapes.iter().for_each(|s| texts(s, out)),
         _ => {}
     }

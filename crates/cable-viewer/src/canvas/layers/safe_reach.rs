@@ -196,7 +196,7 @@ pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
     let [service_n, breaking_n] = maps.limits_n();
     let corner = pos2(
         view.rect.min.x + crate::canvas::layers::grid::STRIP[0] + 10.0,
-        view.rect.max.y - crate::canvas::layers::grid::STRIP[1] - 30.0,
+        view.rect.max.y - crate::canvas::layers::grid::STRIP[1] - 30.0 - crate::canvas::hints_height(state),
     );
     let over = match maps {
         Maps::Line(_) => "above service".to_owned(),
