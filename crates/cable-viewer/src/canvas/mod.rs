@@ -16,22 +16,13 @@ use crate::canvas::layers::{
     cable, compare_overlay, contact, forces, grid, legend, obstacles, robot, robot_path, safe_reach, supports,
     tension_marker,
 };
-use crate::canvas::view::CanvasView;
+use crate::canvas::view::{CanvasView, hints_height};
 use crate::command::{Command, PlaybackCommand};
 use crate::geometry::bounds;
 use crate::render::theme;
 use crate::state::AppState;
 use crate::state::camera::{BORDER, BORDER_WITHOUT_LEGEND};
 use crate::units::labels;
-
-/// Room for the hints of the first minute at the foot of the canvas, points: they must not lie over
-/// the cable or the legend of the safe reach.
-const HINTS: f32 = 46.0;
-
-/// Returns the room that the hints take now, points.
-fn hints_height(state: &AppState) -> f32 {
-    if state.ui.first_steps.open().is_empty() { 0.0 } else { HINTS }
-}
 
 /// Draws the scene into the rest of the window and reads the pointer.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {

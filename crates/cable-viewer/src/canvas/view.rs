@@ -4,7 +4,18 @@ use cable_core::math::Point;
 use egui::{Align2, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
 use crate::render::theme::Palette;
+use crate::state::AppState;
 use crate::state::camera::Camera;
+
+/// Room for the hints of the first minute at the foot of the canvas, points: they must not lie over
+/// the cable or the legend of the safe reach.
+const HINTS: f32 = 46.0;
+
+/// Returns the room that the hints take now, points.
+#[must_use]
+pub fn hints_height(state: &AppState) -> f32 {
+    if state.ui.first_steps.open().is_empty() { 0.0 } else { HINTS }
+}
 
 /// One frame's picture.
 pub struct CanvasView<'a> {
