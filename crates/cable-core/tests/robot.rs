@@ -47,6 +47,8 @@ fn the_cable_ends_on_the_hitch_and_follows_it() {
         // Level ground here: 0.9 m behind and 0.4 m above the middle of its tracks.
         far = far.max((end.x_m - (r.x_m - 0.9)).hypot(end.y_m - (r.y_m + 0.4)));
     });
+    // Its speed comes smoothly: within 2 √(u/J) = 1.1 s.
+    run(&mut s, &[], 0.5, |_| {});
     let r = s.solution().robot.unwrap();
     assert!((r.speed_m_per_s - 0.6).abs() < 1e-9 && r.going == Going::Driving, "{r:?}");
     assert!(far < 1e-9, "the cable's end is {far} m off the hitch");
@@ -82,4 +84,25 @@ fn energy_is_reported_and_not_made() {
         most = most.max(s.energy.kinetic_j);
     });
     assert!(most > 100.0, "{most} J");
+}
+
+/// Issue 20: the tension swung by 8 N (root mean square) beside its mean over 0.3 s as the robot of
+/// the opening scene set off and braked, because its acceleration began and ended at once.
+#[test]
+fn issue_020_the_cable_does_not_ripple_as_its_robot_sets_off_and_brakes() {
+    let mut s = Simulation::new(catalog::tank_robot(), Model::Auto).unwrap();
+    s.settle().unwrap();
+    let (mut tensions, mut speeds) = (Vec::new(), Vec::new());
+    run(&mut s, &[], 7.0, |answer| {
+        tensions.push(answer.max_tension().tension_n);
+        speeds.push(answer.robot.unwrap().speed_m_per_s);
+    });
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+    let off: Vec<f64> = (9..tensions.len() - 9).map(|k| tensions[k] - mean(&tensions[k - 9..=k + 9])).collect();
+    let rms = |part: &[f64]| mean(&part.iter().map(|x| x * x).collect::<Vec<_>>()).sqrt();
+    for (k, part) in off.chunks(30).enumerate() {
+        println!("{:4.1} s: {:5.2} N, {:.3} m/s", 0.15 + 0.5 * k as f64, rms(part), speeds[9 + 30 * k]);
+    }
+    let worst = off.windows(60).map(rms).fold(0.0, f64::max);
+    assert!(worst < 2.5, "{worst} N");
 }

@@ -82,9 +82,10 @@ fn backing_over_its_own_slack_cable_it_pushes_it_along() {
     let mut s = start(scene(15.5, &LEVEL));
     drive(&mut s, -0.6, 5.0);
     let r = robot(&s);
-    // As fast as on free ground, where it gets up to speed in 0.6 s; the heap rubs on the ground
-    // before it.
-    assert!((r.x_m - (10.0 - 0.6 * 5.0 + 0.18)).abs() < 0.02, "{r:?}");
+    // As fast as on free ground, where it gets up to a speed u with a jerk J = 2 m/s³ in 2 √(u/J),
+    // with half of it on average; the heap rubs on the ground before it.
+    let lost = 0.6 * (0.6_f64 / 2.0).sqrt();
+    assert!((r.x_m - (10.0 - 0.6 * 5.0 + lost)).abs() < 0.02, "{r:?}");
     assert!(r.push_x_n > 5.0 && pushed(&s) > 5.0, "{r:?}");
     // Standing it holds what leans on it.
     drive(&mut s, 0.0, 1.5);

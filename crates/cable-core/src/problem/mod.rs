@@ -15,7 +15,7 @@
 
 mod describe_place;
 pub(crate) mod ground_route;
-mod robot_outline;
+pub(crate) mod robot_outline;
 mod rounding_error;
 mod route_check;
 mod support_clearance;

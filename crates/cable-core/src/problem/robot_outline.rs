@@ -6,6 +6,9 @@ use crate::scene::preset::robot_preset;
 use crate::scene::robot::Pose;
 use crate::scene::{Scene, View};
 
+/// Name of the outline among the obstacles of a cable.
+pub(crate) const OUTLINE_NAME: &str = "robot";
+
 impl Scene {
     /// The outline of the robot that a cable of this friction meets; None where there is no robot,
     /// and in a plan view.
@@ -15,7 +18,7 @@ impl Scene {
         let preset = robot_preset(&robot.preset)?;
         let corners = preset.meets_cable_m(robot.heading);
         let hitch = vec2(Pose { heading: robot.heading, ..Pose::default() }.hitch_m(preset));
-        let outline = Outline::new(&corners, hitch, pose.placement(), cable_friction, "robot".to_owned());
+        let outline = Outline::new(&corners, hitch, pose.placement(), cable_friction, OUTLINE_NAME.to_owned());
         outline.filter(|_| self.view == View::Elevation)
     }
 }

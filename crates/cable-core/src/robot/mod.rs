@@ -30,11 +30,17 @@
 //! such ground its weight and the hitch do work that is not along the way, and
 //! [`RobotWork::ground_j`] is that.
 //!
+//! The speed that the governor asks for is planned in `governor.rs`, with limits on acceleration
+//! and jerk.
+//!
 //! Robot and cable are one system: how their steps are brought together stands in
 //! `simulation/coupling.rs`.
 
+mod governor;
+
 use std::sync::Arc;
 
+use self::governor::{MAX_ACCELERATION, PlannedMotion, SpeedOrder};
 use crate::math::{RigidPose, Vec2, bounded, larger, smaller, vec2};
 use crate::scene::ground::Ground;
 use crate::scene::preset::{RobotPreset, robot_preset};
@@ -51,14 +57,6 @@ const MAX_SLOPE: f64 = 35.0 * std::f64::consts::PI / 180.0;
 
 /// A leg of its path is driven when it is this near to its end, m.
 const ARRIVAL_DISTANCE_M: f64 = 1e-3;
-
-/// Near the end of a leg it brakes with half of [`MAX_ACCELERATION`], and over the last centimetres
-/// its speed is the way left over this time, s: shorter stops with a jerk, longer creeps.
-const APPROACH_S: f64 = 0.3;
-
-/// Greatest change of speed the governor asks for, m/s²: more, and the tracks slip at every start;
-/// less feels dead by hand.
-const MAX_ACCELERATION: f64 = 1.0;
 
 /// Fastest it tips over an edge, rad/s: a machine of a metre's length that falls by a hand's
 /// breadth takes a fifth of a second. Faster: its hitch draws the cable along where the ground has
@@ -100,8 +98,8 @@ pub struct Vehicle {
     /// Forces of the cable on hitch and outline, N, and how fast that on the hitch changes, N/s.
     pulls: Pulls,
     rate: Vec2,
-    /// Speed that the governor asked for in the last step, m/s.
-    set: f64,
+    /// Motion that the governor asked for in the last step.
+    set: PlannedMotion,
     /// Tipping speed, rad/s.
     tipping: f64,
     report: RobotReport,
@@ -133,7 +131,7 @@ impl Vehicle {
             waited: 0.0,
             pulls: Pulls::default(),
             rate: Vec2::zeros(),
-            set: 0.0,
+            set: PlannedMotion::default(),
             tipping: 0.0,
             report: RobotReport::default(),
         };
@@ -170,7 +168,9 @@ impl Vehicle {
         if let Some(pose) = self.robot.pose_on(&self.ground, self.preset, then.x_m) {
             (self.pose, self.speed) = (pose, then.speed_m_per_s);
             (self.leg, self.waited) = (then.leg.unwrap_or(self.robot.path.len()), 0.0);
-            (self.report.work, self.set) = (then.work, then.speed_m_per_s);
+            self.report.work = then.work;
+            let acceleration = bounded(then.governor_m_per_s2, -MAX_ACCELERATION, MAX_ACCELERATION);
+            self.set = PlannedMotion { speed: then.speed_m_per_s, acceleration };
             let forces = Forces { normal: then.normal_n, thrust: then.thrust_n };
             let hitch = Vec2::new(then.hitch_x_n, then.hitch_y_n);
             let push = Vec2::new(then.push_x_n, then.push_y_n);
@@ -183,8 +183,10 @@ impl Vehicle {
     pub fn put(&mut self, x_m: f64) -> Option<Vec2> {
         self.pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
         (self.speed, self.tipping, self.rate) = (0.0, 0.0, Vec2::zeros());
+        self.set = PlannedMotion::default();
         (self.report.x_m, self.report.y_m) = (self.pose.at_m[0], self.pose.at_m[1]);
-        (self.report.pitch_deg, self.report.speed_m_per_s) = (self.pose.pitch.to_degrees(), 0.0);
+        self.report.pitch_deg = self.pose.pitch.to_degrees();
+        (self.report.speed_m_per_s, self.report.governor_m_per_s2) = (0.0, 0.0);
         Some(vec2(self.pose.hitch_m(self.preset)))
     }
 
@@ -216,10 +218,11 @@ impl Vehicle {
     pub(crate) fn hold_back(&mut self, placement: RigidPose) {
         self.pose = Pose { at_m: [placement.at.x, placement.at.y], pitch: placement.angle, ..self.pose };
         self.report.work.impact_j -= self.kinetic_j();
-        (self.speed, self.tipping) = (0.0, 0.0);
+        (self.speed, self.tipping, self.set) = (0.0, 0.0, PlannedMotion::default());
         (self.report.x_m, self.report.y_m) = (placement.at.x, placement.at.y);
         self.report.pitch_deg = placement.angle.to_degrees();
-        (self.report.speed_m_per_s, self.report.going) = (0.0, Going::Jammed);
+        (self.report.speed_m_per_s, self.report.governor_m_per_s2) = (0.0, 0.0);
+        self.report.going = Going::Jammed;
     }
 
     /// Kinetic energy, J.
@@ -231,7 +234,8 @@ impl Vehicle {
     /// Begins a step of `h` (s): its path goes on.
     pub fn begin(&mut self, h: f64, pulls: Pulls) -> Drive {
         self.pulls = pulls;
-        Drive { wanted: self.wanted(h), h }
+        let order = self.order(h);
+        Drive { wanted: order.speed, asked: self.planned().next(order, h), h }
     }
 
     /// The speed that it would have at the end of a step if the pull on its hitch went on changing
@@ -303,7 +307,8 @@ impl Vehicle {
         // The energy of a stop is none of those.
         work.impact_j += self.preset.mass_kg.value * (speed - balance.speed) / drive.h * way;
         self.tipping = (to.pitch - self.pose.pitch) / drive.h;
-        (self.pose, self.speed, self.set) = (to, speed, balance.asked);
+        self.set = drive.asked.held_up(drive.h, [self.speed, speed]);
+        (self.pose, self.speed) = (to, speed);
         self.rate = (pulls.hitch - self.pulls.hitch) / drive.h;
         self.pulls = pulls;
         let forces = Forces { normal: balance.normal, thrust: tracks };
@@ -376,30 +381,18 @@ impl Vehicle {
             }
         };
         let going = grip.going(v, speed, traction);
-        let [speed, tracks, rolling, asked] = [speed, tracks, rolling, grip.asked].map(|x| x * sense);
-        SpeedBalance {
-            speed,
-            tracks,
-            rolling,
-            asked,
-            slips: traction == Traction::Slips,
-            going,
-            ..SpeedBalance::default()
-        }
+        let [speed, tracks, rolling] = [speed, tracks, rolling].map(|x| x * sense);
+        SpeedBalance { speed, tracks, rolling, slips: traction == Traction::Slips, going, ..SpeedBalance::default() }
     }
 
     /// Returns what tracks and rolling resistance can do in a step, in the `sense` in which it is
     /// asked to go.
     fn grip(&self, drive: Drive, normal: f64, sense: f64) -> TrackGrip {
-        let (v, set, wanted) = (self.speed * sense, self.set * sense, drive.wanted * sense);
-        // The governor goes on from the speed that it has given; dragged by its cable the vehicle
-        // has none of that.
-        let given = if set * v > 0.0 { v.signum() * smaller(set.abs(), v.abs()) } else { 0.0 };
-        let goes = larger(v, 0.0);
+        let goes = larger(self.speed * sense, 0.0);
         let (most, top) = (self.preset.drive_pull_n.value, self.preset.speed_m_per_s.value);
         TrackGrip {
-            asked: given + (wanted - given).clamp(-MAX_ACCELERATION * drive.h, MAX_ACCELERATION * drive.h),
-            drives: wanted > 0.0,
+            asked: drive.asked.speed * sense,
+            drives: drive.wanted * sense > 0.0,
             hold: self.track_friction * normal,
             rolling: self.rolling * normal,
             drive: larger(most * (1.0 - 0.5 * goes / top), 0.0),
@@ -407,11 +400,22 @@ impl Vehicle {
         }
     }
 
-    /// The speed asked for now, m/s, by hand or by its path, on which it moves on.
-    fn wanted(&mut self, dt: f64) -> f64 {
+    /// Returns the motion from which the governor goes on: the one that it has given. A vehicle
+    /// that its cable drags has none of it.
+    fn planned(&self) -> PlannedMotion {
+        let v = self.speed;
+        if self.set.speed * v > 0.0 {
+            PlannedMotion { speed: v.signum() * smaller(self.set.speed.abs(), v.abs()), ..self.set }
+        } else {
+            PlannedMotion::default()
+        }
+    }
+
+    /// Returns the order of now, by hand or by its path, on which it moves on.
+    fn order(&mut self, dt: f64) -> SpeedOrder {
         let top = self.preset.speed_m_per_s.value;
         if let Some(speed) = self.by_hand {
-            return speed.clamp(-top, top);
+            return SpeedOrder { speed: speed.clamp(-top, top), left: None };
         }
         // At most once round the path: one of nothing but legs that are done must not go on for
         // ever.
@@ -423,23 +427,21 @@ impl Vehicle {
                 Some(RobotTask::Drive { to_x_m, speed_m_per_s }) => {
                     let left = to_x_m - self.pose.at_m[0];
                     if left.abs() > ARRIVAL_DISTANCE_M {
-                        let brakes = (MAX_ACCELERATION * left.abs()).sqrt();
-                        let speed = (left.abs() / APPROACH_S).min(brakes).min(*speed_m_per_s).min(top);
-                        return speed * left.signum();
+                        return SpeedOrder { speed: smaller(*speed_m_per_s, top) * left.signum(), left: Some(left) };
                     }
                 }
                 Some(RobotTask::Wait { wait_s }) => {
                     if self.waited < *wait_s {
                         self.waited += dt;
-                        return 0.0;
+                        return SpeedOrder::default();
                     }
                 }
-                None => return 0.0,
+                None => return SpeedOrder::default(),
             }
             self.leg += 1;
             self.waited = 0.0;
         }
-        0.0
+        SpeedOrder::default()
     }
 
     fn tell(&mut self, [hitch, push]: [Vec2; 2], forces: Forces, commanded: f64, going: Going) {
@@ -448,6 +450,7 @@ impl Vehicle {
             y_m: self.pose.at_m[1],
             pitch_deg: self.pose.pitch.to_degrees(),
             speed_m_per_s: self.speed,
+            governor_m_per_s2: self.set.acceleration,
             commanded_m_per_s: commanded,
             thrust_n: forces.thrust,
             normal_n: forces.normal,
@@ -475,8 +478,10 @@ pub struct Pulls {
 /// The task of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Drive {
-    /// Speed asked for, m/s.
+    /// Commanded speed, m/s.
     wanted: f64,
+    /// Motion that the governor asks for at its end.
+    asked: PlannedMotion,
     /// Its length, s.
     h: f64,
 }
@@ -496,8 +501,6 @@ pub struct SpeedBalance {
     weight: f64,
     /// Across the ground, N.
     normal: f64,
-    /// Speed that the governor asked for, m/s.
-    asked: f64,
     /// True if the tracks slip.
     slips: bool,
     going: Going,

@@ -70,8 +70,8 @@ fn half_speed_asked_is_half_speed_driven() {
     v.command(Some(-0.3));
     run(&mut v, 5.0, Vec2::zeros());
     assert!((v.speed + 0.3).abs() < 1e-12 && v.report.going == Going::Driving);
-    // It gains its speed u within u/a, on the way u²/2a.
-    let way = 0.3 * 5.0 - 0.3 * 0.3 / (2.0 * MAX_ACCELERATION);
+    // It gains its speed u within 2 √(u/J), with half of it on average.
+    let way = 0.3 * 5.0 - 0.3 * (0.3 / governor::MAX_JERK).sqrt();
     assert!((v.pose.at_m[0] + way * v.pose.pitch.cos()).abs() < 0.3 * STEP_S, "{:?}", v.pose);
 }
 

@@ -82,6 +82,10 @@ pub struct RobotReport {
     pub pitch_deg: f64,
     /// Speed along the ground, positive to the right, m/s.
     pub speed_m_per_s: f64,
+    /// Acceleration that its governor gave it, positive to the right, m/s²; 0 where something else
+    /// held it up.
+    #[serde(default)]
+    pub governor_m_per_s2: f64,
     /// Speed it is asked for, m/s.
     pub commanded_m_per_s: f64,
     /// Force of its tracks along the ground, N.

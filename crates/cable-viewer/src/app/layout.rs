@@ -21,7 +21,7 @@ const READ: &[Section] = &[
     (SELECTED, panels::selected::ui),
     (MARKED, panels::analysis::tension_budget::ui),
     (READOUTS, panels::readouts::ui),
-    ("Safe reach", panels::analysis::safe_reach::ui),
+    (SAFE_REACH, panels::analysis::safe_reach::ui),
     ("Compare", panels::analysis::compare::ui),
     (UNMARKED, panels::analysis::tension_budget::ui),
     ("Friction range", panels::analysis::friction_range::ui),
@@ -29,6 +29,7 @@ const READ: &[Section] = &[
 
 /// Where there is a panel of their own for them, their head stands above what scrolls there.
 const READOUTS: &str = "Readouts";
+const SAFE_REACH: &str = "Safe reach";
 const SELECTED: &str = "Selected";
 const MARKED: &str = "Tension at the marked place";
 const UNMARKED: &str = "Tension at a place";
@@ -155,7 +156,8 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
 }
 
 /// The section to scroll to, since something else is marked or selected than in the frame before:
-/// where a tension comes from, or the form of the selected thing. Warnings stay in sight above it.
+/// where a tension comes from, a search that was begun elsewhere, or the form of the selected
+/// thing. Warnings stay in sight above it.
 fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -> Option<&'static str> {
     let marked = is_new(ui, (id, "marked"), state.analysis.tension_marker) && state.analysis.tension_marker.is_some();
     let selected = is_new(ui, (id, "selected"), state.selection.selected) && state.selection.selected.is_some();
@@ -164,6 +166,10 @@ fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -
     let from_elsewhere = !ui.ctx().pointer_latest_pos().is_some_and(|at| ui.max_rect().contains(at));
     if marked && from_elsewhere && holds(MARKED) {
         return Some(MARKED);
+    }
+    let searches = is_new(ui, (id, "searches"), state.analysis.safe_reach.began);
+    if searches && state.analysis.safe_reach.began.is_some() && from_elsewhere && holds(SAFE_REACH) {
+        return Some(SAFE_REACH);
     }
     // The form stands on the right where there is such a panel, else below the outline.
     match (selected, id == "read", state.ui.legend_beside) {

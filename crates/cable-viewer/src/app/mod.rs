@@ -3,10 +3,12 @@
 //! - `layout`, `menu`, `keys`, `palette`: where panels are, and every command by menu, key or name
 //! - `dialogs`, `path_picker`, `feedback_form`: what the user is asked
 //! - `first_steps`, `start_here`: the hints of the first minute, and what to begin with
+//! - `early_clicks`: clicks that come before the first frame
 //! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
 //! - `screenshot`, `gallery`: the window as a picture file, and in eight states
 
 mod dialogs;
+mod early_clicks;
 mod feedback_form;
 mod first_steps;
 pub mod gallery;
@@ -93,6 +95,9 @@ impl ViewerApp {
 
     fn start(ctx: &egui::Context, scene: Scene, path: Option<PathBuf>, threaded: bool) -> Self {
         theme::install(ctx);
+        ctx.add_plugin(early_clicks::EarlyClicks::default());
+        // A press that stays where it is is a click, however long a frame takes meanwhile.
+        ctx.options_mut(|o| o.input_options.max_click_duration = f64::INFINITY);
         let worker = new_worker(ctx, threaded);
         let mut app = Self {
             state: AppState::new(scene, path),

@@ -16,17 +16,13 @@ use crate::canvas::layers::{
     cable, compare_overlay, contact, forces, grid, legend, obstacles, robot, robot_path, safe_reach, supports,
     tension_marker,
 };
-use crate::canvas::view::CanvasView;
+use crate::canvas::view::{CanvasView, hints_height};
 use crate::command::{Command, PlaybackCommand};
 use crate::geometry::bounds;
 use crate::render::theme;
 use crate::state::AppState;
 use crate::state::camera::{BORDER, BORDER_WITHOUT_LEGEND};
 use crate::units::labels;
-
-/// Room for the hints of the first minute at the foot of the canvas, points: they must not lie over
-/// the cable.
-const HINTS: f32 = 46.0;
 
 /// Draws the scene into the rest of the window and reads the pointer.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
@@ -44,9 +40,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let resized = state.view.camera.fitted_to.is_some_and(|size| size != <[f32; 2]>::from(rect.size()));
     if (state.view.camera.fit_wanted || resized) && answered {
         let mut border = if state.ui.legend_beside { BORDER_WITHOUT_LEGEND } else { BORDER };
-        if !state.ui.first_steps.open().is_empty() {
-            border[3] += HINTS;
-        }
+        border[3] += hints_height(state);
         let bounds = bounds::scene(state);
         state.view.camera.fit(rect, bounds, border);
     }

@@ -4,7 +4,18 @@ use cable_core::math::Point;
 use egui::{Align2, FontId, Painter, Pos2, Rect, Stroke, Vec2, pos2, vec2};
 
 use crate::render::theme::Palette;
+use crate::state::AppState;
 use crate::state::camera::Camera;
+
+/// Room for the hints of the first minute at the foot of the canvas, points: they must not lie over
+/// the cable or the legend of the safe reach.
+const HINTS: f32 = 46.0;
+
+/// Returns the room that the hints take now, points.
+#[must_use]
+pub fn hints_height(state: &AppState) -> f32 {
+    if state.ui.first_steps.open().is_empty() { 0.0 } else { HINTS }
+}
 
 /// One frame's picture.
 pub struct CanvasView<'a> {
@@ -21,6 +32,9 @@ pub struct CanvasView<'a> {
     /// What labels should not cover if there is room elsewhere: the cable, arrows.
     pub avoided: Vec<Rect>,
 }
+
+/// Points between two squares along a line that labels keep off.
+const SPACING: f32 = 7.0;
 
 /// Whether a label may cover the cable or an arrow where there is no other room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,10 +72,22 @@ impl CanvasView<'_> {
         self.painter.add(egui::Shape::convex_polygon(vec![tip, neck + side, neck - side], stroke.color, Stroke::NONE));
     }
 
+    /// Labels placed later keep off an area on screen if they can, as much of it as there is of a
+    /// line.
+    pub fn avoid_area(&mut self, area: Rect) {
+        let area = area.intersect(self.rect);
+        if !area.is_positive() {
+            return;
+        }
+        let rows = (area.height() / SPACING).ceil().clamp(1.0, 100.0);
+        for k in 0..=rows as usize {
+            let y = area.min.y + area.height() * (k as f32 / rows);
+            self.avoid_line(pos2(area.min.x, y), pos2(area.max.x, y));
+        }
+    }
+
     /// Labels placed later keep off a line on screen if they can.
     pub fn avoid_line(&mut self, a: Pos2, b: Pos2) {
-        /// Points between two squares along the line.
-        const SPACING: f32 = 7.0;
         if !self.rect.intersects(Rect::from_two_pos(a, b)) {
             return;
         }
@@ -93,6 +119,10 @@ impl CanvasView<'_> {
             vec2(-w / 2.0, -4.5 * gap - h),
             vec2(2.0 * gap, -4.0 * gap - h),
             vec2(-2.0 * gap - w, -4.0 * gap - h),
+            vec2(gap, 3.5 * gap),
+            vec2(-gap - w, 3.5 * gap),
+            vec2(gap, -7.0 * gap - h),
+            vec2(-gap - w, -7.0 * gap - h),
         ];
         let rects = spots.map(|spot| Rect::from_min_size(near + spot, plate)).into_iter();
         let open: Vec<Rect> =

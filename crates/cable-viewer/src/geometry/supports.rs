@@ -15,7 +15,9 @@ pub fn reaction(state: &AppState, cable: usize, support: usize) -> Option<&Suppo
     state.live.snapshot.solution.as_ref()?.cables.get(cable)?.supports.get(support)
 }
 
-fn is_broken(state: &AppState, cable: usize) -> bool {
+/// Returns whether a cable has broken.
+#[must_use]
+pub fn is_broken(state: &AppState, cable: usize) -> bool {
     let solution = state.live.snapshot.solution.as_ref();
     solution.and_then(|s| s.cables.get(cable)).is_some_and(|c| !c.breaks.is_empty())
 }

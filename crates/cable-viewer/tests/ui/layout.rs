@@ -283,3 +283,43 @@ fn the_table_of_pinned_results_is_as_wide_as_its_panel() {
     assert!(cost.right() <= 1272.0, "{cost:?}");
     harness.get_by_label("Length: 14.20 m, now 15.20 m");
 }
+
+/// Every text of a picture that is not cut, and where it stands.
+fn texts(shape: &egui::Shape, out: &mut Vec<(String, egui::Rect)>) {
+    match shape {
+        egui::Shape::Text(text) if !text.galley.elided => {
+            out.push((text.galley.text().to_owned(), text.visual_bounding_rect()))
+        }
+        egui::Shape::Vec(shapes) => shapes.iter().for_each(|s| texts(s, out)),
+        _ => {}
+    }
+}
+
+/// Issue 20: names of the hitch, the robot and its legs lay on the robot itself, which could not be
+/// seen in a small window; and its legs were called "…" in the outline.
+#[test]
+fn issue_020_labels_leave_the_robot_to_be_seen() {
+    for (size, at_x_m) in
+        [([1024.0, 640.0], 4.6), ([1024.0, 640.0], 4.1), ([1280.0, 800.0], 4.6), ([1280.0, 800.0], 5.3)]
+    {
+        let mut scene = catalog::tank_robot();
+        scene.robot.as_mut().unwrap().at_m[0] = at_x_m;
+        let mut harness = Harness::builder()
+            .with_size(Vec2::from(size))
+            .build_eframe(|cc| ViewerApp::inline(&cc.egui_ctx, scene, None));
+        harness.run_steps(6);
+        let canvas = harness.get_by_label("Canvas").rect();
+        let state = &harness.state().state;
+        let outline = cable_viewer::geometry::robot::robot_outline(state);
+        let outline: Vec<egui::Pos2> = outline.iter().map(|p| state.view.camera.to_screen(canvas, *p)).collect();
+        let robot = egui::Rect::from_points(&outline);
+        let mut found = Vec::new();
+        harness.output().shapes.iter().for_each(|s| texts(&s.shape, &mut found));
+        assert!(found.iter().any(|(text, _)| text.starts_with("leg 1")), "{found:?}");
+        let hidden: f32 =
+            found.iter().map(|(_, r)| r.intersect(robot)).filter(|r| r.is_positive()).map(|r| r.area()).sum();
+        assert!(hidden < 0.1 * robot.area(), "{size:?}, {at_x_m} m: {hidden} of {}", robot.area());
+        let named = found.iter().filter(|(text, _)| text == "leg 1" || text == "leg 3").count();
+        assert_eq!(named, 2, "{found:?}");
+    }
+}

@@ -6,6 +6,7 @@
 mod contrast;
 mod controls;
 mod defects;
+mod early;
 mod editing;
 mod first_minute;
 mod gallery;

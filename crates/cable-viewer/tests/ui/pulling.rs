@@ -1,12 +1,16 @@
 //! D10.9: dragging an end past the length while time runs. Refused unless the user wants it to
 //! pull.
 
+use std::sync::Arc;
+
 use cable_core::Settings;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, PlaybackCommand, ViewCommand};
 use cable_viewer::geometry;
+use cable_viewer::state::Item;
 use egui::{Pos2, Vec2};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 
 use crate::{apply, open_span, press, support};
 
@@ -88,6 +92,18 @@ fn s15_a_pull_past_the_length_pulls_harder_and_harder_until_the_cable_breaks() {
         assert_eq!(geometry::supports::support_position(state, 0, k), stands, "{}", now.name);
         assert_eq!(geometry::supports::hand_spring(state, 0, k), None, "{}", now.name);
     }
+    // Issue 20: the form of a support that a piece hangs on said only where the scene had it first.
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
+    apply(&mut harness, Command::View(ViewCommand::Select(Some(Item::Support { cable: 0, support: 1 }))));
+    harness.run_steps(3);
+    let said = |h: &Harness<'_, ViewerApp>| h.query_all_by_label_contains("(14.000, 5.000) m").count() > 0;
+    assert!(!said(&harness), "it is where the form says");
+    let live = &mut harness.state_mut().state.live;
+    let mut answer = (**live.snapshot.solution.as_ref().unwrap()).clone();
+    (answer.cables[0].supports[1].x_m, answer.cables[0].supports[1].reaction_y_n) = (14.0, 20.0);
+    live.snapshot.solution = Some(Arc::new(answer));
+    harness.run_steps(1);
+    assert!(said(&harness));
     apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
     harness.run_steps(3);
     assert!(!broken(&harness) && tension_n(&harness) < 1e4, "{} N", tension_n(&harness));

@@ -269,3 +269,33 @@ fn progress_of_a_robots_reach_counts_places_and_what_is_found_so_far_is_said_to_
     }
     click(&mut harness, "Cancel safe reach");
 }
+
+/// Issue 20: begun by the palette, a search showed neither its progress nor its result, which stood
+/// below what was in sight; and the hints of the first minute lay over its legend.
+#[test]
+fn issue_020_a_search_is_seen_wherever_it_was_begun() {
+    let mut harness = open(catalog::tank_robot());
+    harness.hover_at(harness.get_by_label("Canvas").rect().center());
+    harness.run_steps(2);
+    apply(&mut harness, Command::View(ViewCommand::Reach(true)));
+    patiently("the first places", || {
+        harness.run_steps(2);
+        reach(&harness).found().is_some()
+    });
+    harness.run_steps(10);
+    let screen = harness.ctx.content_rect();
+    let bar = harness.get_by_label("Progress of the safe reach").rect();
+    assert!(screen.contains_rect(bar), "{bar:?}");
+    let hints = harness.get_by_label("Start here…").rect();
+    let mut legend = None;
+    for shape in &harness.output().shapes {
+        if let egui::Shape::Text(text) = &shape.shape
+            && text.galley.text() == "above service"
+        {
+            legend = Some(text.visual_bounding_rect());
+        }
+    }
+    let legend = legend.expect("the map has a legend");
+    assert!(legend.max.y < hints.min.y, "{legend:?} {hints:?}");
+    apply(&mut harness, Command::View(ViewCommand::Reach(false)));
+}

@@ -36,7 +36,7 @@ fn s06_keys_drive_the_robot_and_the_cable_follows() {
     let mut harness = open(catalog::robot_drive());
     let start = robot(&harness);
     hold(&mut harness, Key::D, true);
-    harness.run_steps(60);
+    harness.run_steps(75);
     let state = &harness.state().state;
     assert_eq!(state.live.snapshot.error, None);
     assert!(!state.live.playback.paused, "who drives sees time run");
@@ -44,8 +44,9 @@ fn s06_keys_drive_the_robot_and_the_cable_follows() {
     assert!(driven.x_m > start.x_m + 0.3 && driven.going == Going::Driving, "{driven:?}");
     let end = harness.state().state.live.snapshot.solution.as_ref().unwrap().cables[0].nodes.last().copied().unwrap();
     assert!((end.x_m - (driven.x_m - 0.9)).abs() < 0.02, "{} {}", end.x_m, driven.x_m);
+    // With limited acceleration and jerk it stops from its 0.8 m/s within 1.3 s.
     hold(&mut harness, Key::D, false);
-    harness.run_steps(60);
+    harness.run_steps(90);
     let stopped = robot(&harness);
     assert!(stopped.speed_m_per_s == 0.0 && stopped.going == Going::Standing, "{stopped:?}");
     hold(&mut harness, Key::A, true);
@@ -151,7 +152,9 @@ fn s17_the_robot_says_that_its_cable_holds_it() {
     harness.run_steps(240);
     let r = robot(&harness);
     assert!(r.speed_m_per_s.abs() < 0.05, "{r:?}");
-    assert!(matches!(r.going, Going::Stalled | Going::Slipping | Going::Slowed), "{r:?}");
+    // Where its tracks slip, the swing of the cable may draw it back at this instant.
+    let held = [Going::Stalled, Going::Slipping, Going::Slowed, Going::Dragged];
+    assert!(held.contains(&r.going), "{r:?}");
     harness.get_by_label(r.going.name());
     assert!(!harness.state().state.live.recording.events().is_empty(), "the pull beyond the service tension is marked");
     click(&mut harness, "Stop");

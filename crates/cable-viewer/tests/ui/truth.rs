@@ -349,7 +349,7 @@ fn a_restart_is_undone_by_its_button_whatever_was_edited_since() {
     let scene = catalog::tank_robot();
     let mut harness = open(scene.clone());
     harness.key_press(Key::Space);
-    harness.run_steps(60);
+    harness.run_steps(90);
     harness.key_press(Key::Space);
     harness.run_steps(2);
     let end_s = answer(&harness).time_s;

@@ -8,10 +8,11 @@ use std::ops::ControlFlow;
 
 use super::{STEP_S, UNREACHABLE_FACTOR, lay, least, stilled, unsupported};
 use crate::any_error::Error;
-use crate::error::UnsupportedReach;
-use crate::math::{Point, larger};
+use crate::error::{SolveError, UnsupportedReach};
+use crate::math::{Point, larger, smaller};
 use crate::model::auto::Question;
 use crate::model::{Inertia, Model, Settings};
+use crate::problem::robot_outline::OUTLINE_NAME;
 use crate::robot;
 use crate::scene::ground::Ground;
 use crate::scene::preset::robot_preset;
@@ -30,6 +31,11 @@ const MAX_SHORTFALL_M: f64 = 1e-3;
 /// Speed of a step that is taken with inertia because a heap of slack cable has no rest to be
 /// pushed to and is thrown over, m/s. Faster: its swing shows in the tension; slower: longer.
 const PUSH_SPEED_M_PER_S: f64 = 0.3;
+
+/// Time for which a robot that is held back goes on pushing before it counts as jammed, s. Less:
+/// cable that still falls out of its way counts as jamming it; more: longer. What does not move in
+/// this time has no rest either: relaxing it took 60 s in the opening scene, in vain.
+const PUSH_TIME_S: f64 = 1.0;
 
 /// Every how manieth way back is looked at, one after the other. Begun with less: longer until the
 /// first picture; with more: of no use.
@@ -297,7 +303,7 @@ impl Traverse<'_> {
             // Where it cannot stand the cable is led past.
             let left_m = simulation.lead_robot(x, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?;
             most = larger(most, simulation.largest_n(self.cables.iter().copied()));
-            if left_m.is_some_and(|m| m > MAX_SHORTFALL_M) {
+            if is_held_back(left_m) {
                 self.shove(simulation, [x - (to - from) / steps, x])?;
                 most = larger(most, simulation.largest_n(self.cables.iter().copied()));
             }
@@ -312,15 +318,36 @@ impl Traverse<'_> {
     /// not looked at: with what speed a robot does this is not asked.
     fn shove(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<(), Obstruction> {
         let parts = ((to - from).abs() / (PUSH_SPEED_M_PER_S * robot::STEP_S)).ceil();
-        let mut left_m = None;
-        for k in 1..=parts as usize {
-            let x = from + (to - from) * (k as f64 / parts);
-            left_m = simulation.lead_robot(x, robot::STEP_S, Inertia::Dynamic).map_err(|_| Obstruction::NoAnswer)?;
+        let pushes = (PUSH_TIME_S / robot::STEP_S).ceil();
+        for k in 1..=(parts + pushes) as usize {
+            let x = from + (to - from) * smaller(k as f64 / parts, 1.0);
+            let left_m = simulation.lead_robot(x, robot::STEP_S, Inertia::Dynamic).map_err(|e| why_stuck(&e))?;
+            if k as f64 >= parts && !is_held_back(left_m) {
+                break;
+            }
+            if k as f64 == parts + pushes {
+                return Err(Obstruction::Jammed);
+            }
         }
         // The cable that was thrown over has come down.
-        let rests =
-            simulation.lead_robot(to, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?.or(left_m);
-        if rests.is_some_and(|m| m > MAX_SHORTFALL_M) { Err(Obstruction::Jammed) } else { Ok(()) }
+        let rests = simulation.lead_robot(to, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?;
+        if is_held_back(rests) { Err(Obstruction::Jammed) } else { Ok(()) }
+    }
+}
+
+/// Returns whether the cable holds a robot back that is so far from where it was led, m.
+fn is_held_back(left_m: Option<f64>) -> bool {
+    left_m.is_some_and(|m| m > MAX_SHORTFALL_M)
+}
+
+/// Returns why a push has no answer: cable that is squeezed between the robot and what stands jams
+/// it.
+fn why_stuck(error: &SolveError) -> Obstruction {
+    match error {
+        SolveError::StepFailed { place, .. } if place.near.as_ref().is_some_and(|n| n.name == OUTLINE_NAME) => {
+            Obstruction::Jammed
+        }
+        _ => Obstruction::NoAnswer,
     }
 }
 

@@ -47,6 +47,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     }
     view.painter.add(mesh);
     let body: Vec<Pos2> = points.iter().map(|&p| view.at(p)).collect();
+    view.avoid_area(egui::Rect::from_points(&body));
     view.painter.add(egui::Shape::closed_line(body, line));
     tracks(view, &pose, preset);
     touched(view, state, &pose, preset);

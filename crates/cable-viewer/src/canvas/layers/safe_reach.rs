@@ -9,7 +9,7 @@ use cable_core::math::Point;
 use cable_core::scene::preset::robot_preset;
 use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
 
-use crate::canvas::view::CanvasView;
+use crate::canvas::view::{CanvasView, hints_height};
 use crate::jobs::safe_reach::Maps;
 use crate::render::colour::ColourMap;
 use crate::state::AppState;
@@ -196,7 +196,7 @@ pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
     let [service_n, breaking_n] = maps.limits_n();
     let corner = pos2(
         view.rect.min.x + crate::canvas::layers::grid::STRIP[0] + 10.0,
-        view.rect.max.y - crate::canvas::layers::grid::STRIP[1] - 30.0,
+        view.rect.max.y - crate::canvas::layers::grid::STRIP[1] - 30.0 - hints_height(state),
     );
     let over = match maps {
         Maps::Line(_) => "above service".to_owned(),

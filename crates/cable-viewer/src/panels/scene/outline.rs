@@ -88,7 +88,7 @@ fn robot(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     for (k, task) in robot.path.iter().enumerate() {
         indented(ui, ("leg", k), |ui| match task {
             RobotTask::Drive { to_x_m, .. } => {
-                let about = format!("drive to {}", Unit::COORDINATE.text(*to_x_m));
+                let about = format!("to {}", Unit::COORDINATE.text(*to_x_m));
                 row(ui, state, Item::Leg(k), &format!("leg {}", k + 1), &about, commands);
             }
             RobotTask::Wait { wait_s } => {

@@ -7,10 +7,12 @@ use egui::{ComboBox, Response, Ui};
 
 use crate::command::support_kind::{KINDS, of_kind, refusal};
 use crate::command::{Command, SceneCommand};
+use crate::geometry::supports::{COINCIDENCE_M, is_broken, support_position};
 use crate::panels::scene::loads::FIRST_SPAN_S;
 use crate::panels::scene::rows::{self, NUMBER_WIDTH, cell, components, coordinates, optional, show_faults};
 use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
+use crate::units::format;
 use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::property::labelled;
@@ -107,6 +109,22 @@ fn head(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command
     });
 }
 
+/// Where it is now, if its cable is torn or the scene moves it away from where it begins.
+fn place_apart(ui: &mut Ui, state: &AppState, row: &Row<'_>) {
+    let Some(begins) = row.value.at_m else { return };
+    if !is_broken(state, row.cable) && row.value.motion.is_none() {
+        return;
+    }
+    let Some(at) = support_position(state, row.cable, row.support) else { return };
+    if (at[0] - begins[0]).hypot(at[1] - begins[1]) <= COINCIDENCE_M {
+        return;
+    }
+    labelled(ui, "Now at", &format!("Position now of {}", row.value.name), |ui| {
+        let help = "Where it is at the time shown; above stands where the scene puts it at the start";
+        ui.weak(format::position(at)).on_hover_text(help)
+    });
+}
+
 fn kind(ui: &mut Ui, state: &AppState, row: &Row<'_>, commands: &mut Vec<Command>) -> Response {
     let combo = ComboBox::from_id_salt("kind").selected_text(kind_name(row.value.kind));
     let shown = combo.width(ui.available_width() - 14.0).truncate().show_ui(ui, |ui| {
@@ -140,6 +158,7 @@ pub fn form(ui: &mut Ui, state: &AppState, cable: usize, support: usize, command
         entry.response.on_hover_text("What it is called here, in tables and in warnings")
     });
     head(ui, state, row, commands, &mut faults);
+    place_apart(ui, state, row);
     if s.arc_length_m.is_some() || (!row.end && s.kind != SupportKind::Pulley) {
         let text = ["Sits at", "Where on the cable it grips, m of unstretched length from the start"];
         if let Some(v) = optional(ui, text, Unit::COORDINATE, s.arc_length_m, &mut faults) {
