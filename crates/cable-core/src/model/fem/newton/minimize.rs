@@ -214,8 +214,7 @@ impl Workspace {
                         scale * WORK_MAGNITUDE_FRACTION * (k * away.norm() + input.force[i].norm()) * x[i].norm();
                 }
                 s.add_gradient(i, (away * k - input.force[i]) * scale);
-                s.hessian.add(2 * i, 2 * i, k * scale);
-                s.hessian.add(2 * i + 1, 2 * i + 1, k * scale);
+                s.hessian.add_diagonal(2 * i, k * scale);
                 // Work is measured from the start of the step, so that its size is that of the
                 // change.
                 (0.5 * k * away.norm_squared(), input.force[i].dot(&(x[i] - input.start[i])))
@@ -269,10 +268,14 @@ impl Workspace {
             let left = self.system.gradient_at(node) / node_scale(input, node);
             let slides = mesh.sliding[node].is_some();
             let r = if slides { left.x.abs() } else { left.norm() };
-            drift = if slides || input.moves { Vec2::zeros() } else { drift + left };
-            let adds_up = drift.norm() / mesh.tuning.newton.stretch_residual;
-            let most = larger(adds_up, worst.drift);
-            let excess = larger(r, adds_up) / accepted;
+            let mut most = worst.drift;
+            let mut counts = r;
+            if !input.moves {
+                drift = if slides { Vec2::zeros() } else { drift + left };
+                let adds_up = drift.norm() / mesh.tuning.newton.stretch_residual;
+                (most, counts) = (larger(adds_up, most), larger(r, adds_up));
+            }
+            let excess = counts / accepted;
             if !(excess <= worst.excess) && !worst.excess.is_nan() {
                 worst = Residual { force: r, node, excess, drift: most };
             }
@@ -324,11 +327,11 @@ impl Workspace {
             return solve_coupled(&s.hessian, &self.coupling, &mut self.direction).is_ok()
                 && self.direction.iter().all(|d| d.is_finite());
         }
-        if self.factor.factor(&s.hessian).is_err() {
+        self.ahead.keep(&self.direction);
+        if self.factor.factor_and_solve(&s.hessian, &mut self.direction).is_err() {
+            self.direction.copy_from_slice(self.ahead.kept());
             return false;
         }
-        self.ahead.keep(&self.direction);
-        self.factor.solve_in_place(&mut self.direction);
         self.direction.iter().all(|d| d.is_finite())
     }
 
