@@ -38,12 +38,14 @@ struct Entry {
 impl Entry {
     /// True if a segment whose ends come to all these places (m) is never within `reach` (m) of
     /// anything.
+    #[inline]
     fn is_clear<const N: usize>(&self, at: [[Vec2; 2]; N], reach: f64) -> bool {
         stays_within(self.gap - reach - GAP_ROUNDING, self.measured, at)
     }
 }
 
 /// True if both ends of a segment are, at all these places, within `room` of where they were (m).
+#[inline]
 fn stays_within<const N: usize>(room: f64, from: [Vec2; 2], at: [[Vec2; 2]; N]) -> bool {
     let inside = |p: Vec2, from: Vec2| room > 0.0 && (p - from).norm_squared() <= room * room;
     at.iter().all(|ends| inside(ends[0], from[0]) && inside(ends[1], from[1]))
@@ -97,6 +99,7 @@ impl NeighbourLists {
         (entry.measured, entry.gap) = (ends, smaller(nearest, unlisted));
     }
 
+    #[inline]
     fn parts_of(&self, e: usize) -> &[Part] {
         let Some(entry) = self.entries.get(e) else { return &[] };
         let end = self.entries.get(e + 1).map_or(self.parts.len(), |next| next.first);
@@ -105,6 +108,7 @@ impl NeighbourLists {
 
     /// True if segment `e`, whose ends come to all these places (m), is known to be never within
     /// `reach` (m) of anything.
+    #[inline]
     #[must_use]
     pub fn is_clear<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> bool {
         self.entries.get(e).is_some_and(|entry| entry.is_clear(at, reach))
@@ -112,12 +116,14 @@ impl NeighbourLists {
 
     /// The list of segment `e` if it holds all that its ends, at each of the places `at` (m), can
     /// be within `reach` (m) of; an empty one if that is known to be nothing.
+    #[inline]
     #[must_use]
     pub fn of<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[Part]> {
         if self.entries.get(e)?.is_clear(at, reach) { Some(&[]) } else { self.listed(e, at, reach) }
     }
 
     /// The same, whatever the gap of the segment is.
+    #[inline]
     #[must_use]
     pub fn listed<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[Part]> {
         let entry = self.entries.get(e)?;

@@ -137,6 +137,7 @@ impl Geometry {
 }
 
 /// Node against the inside of an edge.
+#[inline]
 fn push_edge(body: &Body, k: usize, p: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
     let e = &body.edges[k];
     let along = (p - e.p).dot(&e.tangent);
@@ -152,6 +153,7 @@ fn push_edge(body: &Body, k: usize, p: Vec2, reach: f64, out: &mut impl FnMut(Pa
 }
 
 /// Node against a corner: what inclusion and exclusion leave of it.
+#[inline]
 fn push_corner(body: &Body, corner: &super::geometry::Corner, p: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
     let (clamped, edges) = corner.clamped(p);
     let weight = if edges == 2 { clamped as f64 - 1.0 } else { clamped as f64 };
@@ -160,6 +162,7 @@ fn push_corner(body: &Body, corner: &super::geometry::Corner, p: Vec2, reach: f6
 
 /// Corner or circle against a node, seen from it: what inclusion and exclusion over the node's
 /// segments leave.
+#[inline]
 fn push_wedge(body: &Body, feature: usize, v: Vec2, chain: [Option<Vec2>; 3], reach: f64, out: &mut impl FnMut(Pair)) {
     let [before, Some(p), after] = chain else { return };
     let beyond = |other: Option<Vec2>| other.map(|o| (v - p).dot(&(o - p)) <= 0.0);
@@ -169,6 +172,7 @@ fn push_wedge(body: &Body, feature: usize, v: Vec2, chain: [Option<Vec2>; 3], re
     push_point(body, feature, [p, v], weight, reach, out);
 }
 
+#[inline]
 fn push_point(body: &Body, feature: usize, [p, v]: [Vec2; 2], weight: f64, reach: f64, out: &mut impl FnMut(Pair)) {
     let d = (p - v).norm();
     if weight != 0.0 && d > 0.0 && d - body.offset < reach {
@@ -177,6 +181,7 @@ fn push_point(body: &Body, feature: usize, [p, v]: [Vec2; 2], weight: f64, reach
 }
 
 /// Corner or circle against the inside of a segment.
+#[inline]
 fn push_segment(body: &Body, feature: usize, v: Vec2, [a, b]: [Vec2; 2], reach: f64, out: &mut impl FnMut(Pair)) {
     let (d, l2) = (b - a, (b - a).norm_squared());
     let along = (v - a).dot(&d);

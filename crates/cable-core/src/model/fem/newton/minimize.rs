@@ -15,6 +15,7 @@ use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
+use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::contact_energy::{add_floor, add_friction, add_touch};
@@ -179,17 +180,11 @@ impl Workspace {
         let s = &mut self.system;
         s.hessian.clear();
         s.gradient.fill(0.0);
-        let mut value = 0.0;
-        self.magnitude = 0.0;
         let mut round = Rounding { tolerance: input.tolerance, ..Rounding::default() };
         // The undamped Newton does not use the energy, so its round-off is not estimated.
         let measured = self.carried.is_empty();
-        for e in 0..mesh.rest_length.len() {
-            let carried = self.carried.get(e).copied();
-            let (energy, size) = bar_energy::add(s, mesh, input, e, unknowns, curvature, carried);
-            value += energy;
-            self.magnitude += size;
-        }
+        let (mut value, size) = bar_energy::add_all(s, mesh, input, unknowns, curvature, &self.carried);
+        self.magnitude = size;
         if !input.coupling.is_empty() {
             value += add_coupling(s, input, x);
         }
@@ -261,7 +256,7 @@ impl Workspace {
         let accepted = larger(input.tolerance, known);
         let mut drift = Vec2::zeros();
         for node in 0..mesh.nodes() {
-            if mesh.held[node] || mesh.sliding[node].is_some_and(|s| s.sticks()) {
+            if mesh.held[node] || mesh.sliding[node].as_ref().is_some_and(SlidingNode::sticks) {
                 drift = Vec2::zeros();
                 continue;
             }

@@ -31,6 +31,7 @@ pub struct ContactPair {
 
 impl ContactPair {
     /// Weights of the two nodes that carry it.
+    #[inline]
     #[must_use]
     pub fn shares(&self) -> [f64; 2] {
         if self.on_segment { [1.0 - self.pair.gap.fraction, self.pair.gap.fraction] } else { [1.0, 0.0] }
@@ -44,6 +45,7 @@ impl ContactPair {
     }
 
     /// A field's value at the touching point.
+    #[inline]
     #[must_use]
     pub fn interpolate(&self, x: &[Vec2]) -> Vec2 {
         let [a, b] = self.shares();
@@ -51,12 +53,14 @@ impl ContactPair {
     }
 
     /// Direction in which friction acts: the normal turned clockwise.
+    #[inline]
     #[must_use]
     pub fn tangent(&self) -> Vec2 {
         Vec2::new(self.pair.gap.normal.y, -self.pair.gap.normal.x)
     }
 
     /// Normal force, N.
+    #[inline]
     #[must_use]
     pub fn load(&self, barrier: &Barrier) -> f64 {
         -barrier.at(self.pair.gap.gap_m).slope * self.pair.weight
@@ -118,12 +122,14 @@ pub struct FrictionContact {
 
 impl FrictionContact {
     /// True if it is the friction of a touch, wherever that is now.
+    #[inline]
     fn is_of(&self, touch: &ContactPair) -> bool {
         let key = |t: &ContactPair| (t.node, t.on_segment, t.pair.gap.feature);
         key(&self.touch) == key(touch)
     }
 
     /// Sliding since the anchor, m.
+    #[inline]
     #[must_use]
     pub fn sliding(&self, x: &[Vec2]) -> f64 {
         self.slid + self.tangent.dot(&(self.touch.interpolate(x) - self.origin))
