@@ -184,7 +184,7 @@ mod tests {
             if let Some(parts) = near.of(0, [now], reach) {
                 let (mut listed, mut found) = (Vec::new(), Vec::new());
                 let chain = [None, Some(now[0]), Some(now[1])];
-                geometry.node_pairs_among(parts.iter().copied(), chain, reach, &mut |p| listed.push(p));
+                geometry.node_pairs_among(parts.iter().copied(), &chain, reach, &mut |p| listed.push(p));
                 geometry.segment_pairs_among(parts.iter().copied(), now, reach, &mut |p| listed.push(p));
                 geometry.node_pairs(None, now[0], Some(now[1]), reach, &mut |p| found.push(p));
                 geometry.segment_pairs(now[0], now[1], reach, &mut |p| found.push(p));

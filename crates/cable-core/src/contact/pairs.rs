@@ -42,7 +42,7 @@ impl Geometry {
         reach: f64,
         out: &mut impl FnMut(Pair),
     ) {
-        self.node_pairs_among(self.parts(p, p, reach), [before, Some(p), after], reach, out);
+        self.node_pairs_among(self.parts(p, p, reach), &[before, Some(p), after], reach, out);
     }
 
     /// The same among `parts`, which hold all that are within reach. The chain is the node between
@@ -50,7 +50,7 @@ impl Geometry {
     pub(crate) fn node_pairs_among(
         &self,
         parts: impl Iterator<Item = Part>,
-        chain: [Option<Vec2>; 3],
+        chain: &[Option<Vec2>; 3],
         reach: f64,
         out: &mut impl FnMut(Pair),
     ) {
@@ -163,8 +163,8 @@ fn push_corner(body: &Body, corner: &super::geometry::Corner, p: Vec2, reach: f6
 /// Corner or circle against a node, seen from it: what inclusion and exclusion over the node's
 /// segments leave.
 #[inline]
-fn push_wedge(body: &Body, feature: usize, v: Vec2, chain: [Option<Vec2>; 3], reach: f64, out: &mut impl FnMut(Pair)) {
-    let [before, Some(p), after] = chain else { return };
+fn push_wedge(body: &Body, feature: usize, v: Vec2, chain: &[Option<Vec2>; 3], reach: f64, out: &mut impl FnMut(Pair)) {
+    let [before, Some(p), after] = *chain else { return };
     let beyond = |other: Option<Vec2>| other.map(|o| (v - p).dot(&(o - p)) <= 0.0);
     let (b, a) = (beyond(before), beyond(after));
     let clamped = f64::from(u8::from(b == Some(true)) + u8::from(a == Some(true)));

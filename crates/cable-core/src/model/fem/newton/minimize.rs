@@ -443,12 +443,15 @@ impl Workspace {
         if free >= step.mesh.tuning.newton.free_step_fraction {
             return free;
         }
-        let downhill = self.slope();
-        self.plain.clone_from(&self.direction);
+        // The undamped Newton does not use the energy.
+        let needs_descent = self.carried.is_empty();
+        let downhill = if needs_descent { self.slope() } else { 0.0 };
+        if needs_descent {
+            self.plain.clone_from(&self.direction);
+        }
         let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
         self.ahead.solve(step, equations, &unknowns.positions, &mut self.direction);
-        // The undamped Newton does not use the energy.
-        if self.carried.is_empty() && !(self.slope() <= step.mesh.tuning.newton.min_descent_fraction * downhill) {
+        if needs_descent && !(self.slope() <= step.mesh.tuning.newton.min_descent_fraction * downhill) {
             self.direction.clone_from(&self.plain);
             return free;
         }
