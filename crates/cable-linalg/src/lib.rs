@@ -225,8 +225,8 @@ impl BandFactor {
     /// [`Self::solve_in_place`], but the processor substitutes while it waits for the pivots.
     ///
     /// # Errors
-    /// `NotPositive` with the first row whose pivot is not positive; then neither the factor nor `b`
-    /// is of use.
+    /// `NotPositive` with the first row whose pivot is not positive; then neither the factor nor
+    /// `b` is of use.
     pub fn factor_and_solve(&mut self, a: &BandMatrix, b: &mut [f64]) -> Result<(), FactorError> {
         debug_assert!(a.rows == self.rows && a.half_bandwidth == self.half_bandwidth && b.len() == self.rows);
         let (lower, inverse) = (&mut self.lower, &mut self.inverse);
