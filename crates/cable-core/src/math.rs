@@ -29,12 +29,14 @@ pub fn vec2(p: Point) -> Vec2 {
 }
 
 /// The vector turned by +90° (counter-clockwise).
+#[inline]
 #[must_use]
 pub fn perp(v: Vec2) -> Vec2 {
     Vec2::new(-v.y, v.x)
 }
 
 /// The z component of the cross product `a × b`.
+#[inline]
 #[must_use]
 pub fn cross(a: Vec2, b: Vec2) -> f64 {
     a.x * b.y - a.y * b.x
@@ -47,6 +49,7 @@ const MAX_SERIES_TANGENT: f64 = 0.05;
 /// The value brought between two bounds, whatever they are: unlike [`f64::clamp`] it does not panic
 /// where they are exchanged or no numbers, as bounds that a solver works out may be. The upper one
 /// wins.
+#[inline]
 #[must_use]
 pub fn bounded(value: f64, low: f64, high: f64) -> f64 {
     let above = if value < low { low } else { value };
@@ -136,12 +139,14 @@ pub fn exp(x: f64) -> f64 {
 }
 
 /// The larger of two numbers; NaN once one of them is, unlike `f64::max`.
+#[inline]
 #[must_use]
 pub fn larger(a: f64, b: f64) -> f64 {
     if b <= a || a.is_nan() { a } else { b }
 }
 
 /// The smaller of two numbers; NaN once one of them is, unlike `f64::min`.
+#[inline]
 #[must_use]
 pub fn smaller(a: f64, b: f64) -> f64 {
     if b >= a || a.is_nan() { a } else { b }

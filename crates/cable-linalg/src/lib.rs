@@ -99,6 +99,14 @@ impl BandMatrix {
         self.values[k] += value;
     }
 
+    /// Adds `value` to the entries (i, i) and (i + 1, i + 1).
+    pub fn add_diagonal(&mut self, i: usize, value: f64) {
+        let b = self.half_bandwidth;
+        let Some(w) = self.values.get_mut((i + 1) * b + i..).and_then(|w| w.get_mut(..b + 2)) else { return };
+        w[0] += value;
+        w[b + 1] += value;
+    }
+
     /// Adds a 2×2 block in rows i, i + 1 and columns j, j + 1 with i ≤ j and, by symmetry, its
     /// mirror; of a block on the diagonal (i = j) the entry below it is not read.
     pub fn add_block(&mut self, i: usize, j: usize, block: [[f64; 2]; 2]) {
@@ -213,6 +221,22 @@ impl BandFactor {
         self.inverse.iter().skip(self.half_bandwidth).filter(|&&d| !(d > 0.0)).count()
     }
 
+    /// Factorises `a` and solves `a x = b`; `b` becomes `x`. The same as [`Self::factor`] and
+    /// [`Self::solve_in_place`], but the processor substitutes while it waits for the pivots.
+    ///
+    /// # Errors
+    /// `NotPositive` with the first row whose pivot is not positive; then neither the factor nor
+    /// `b` is of use.
+    pub fn factor_and_solve(&mut self, a: &BandMatrix, b: &mut [f64]) -> Result<(), FactorError> {
+        debug_assert!(a.rows == self.rows && a.half_bandwidth == self.half_bandwidth && b.len() == self.rows);
+        let (lower, inverse) = (&mut self.lower, &mut self.inverse);
+        match self.half_bandwidth {
+            BARS_HALF_BANDWIDTH => factor_and_solve(BARS_HALF_BANDWIDTH, &a.values, lower, inverse, b),
+            BENDING_HALF_BANDWIDTH => factor_and_solve(BENDING_HALF_BANDWIDTH, &a.values, lower, inverse, b),
+            half => factor_and_solve(half, &a.values, lower, inverse, b),
+        }
+    }
+
     /// Solves `A x = b` with the last factorisation; `b` becomes `x`.
     pub fn solve_in_place(&mut self, b: &mut [f64]) {
         match self.half_bandwidth {
@@ -228,32 +252,76 @@ impl BandFactor {
 fn factor(b: usize, values: &[f64], lower: &mut [f64], inverse: &mut [f64]) -> Result<(), FactorError> {
     let mut done = Ok(());
     for (j, column) in values.chunks_exact(b + 1).enumerate() {
-        let (before, here) = lower[j * b..].split_at_mut(b * b);
-        let (scales, pivot) = inverse[j..].split_at_mut(b);
-        let row = &mut here[..b];
-        // Into `row` first v, then L.
-        for i in 0..b {
-            let mut v = column[i];
-            for k in 0..i {
-                v -= row[k] * before[i * b + b + k - i];
-            }
-            row[i] = v;
-        }
-        let mut d = column[b];
-        for i in 0..b {
-            let l = row[i] * scales[i];
-            d -= row[i] * l;
-            row[i] = l;
-        }
+        let d = eliminate(b, j, column, lower, inverse);
         if !(d > 0.0) {
             done = done.and(Err(FactorError::NotPositive { row: j, pivot: d }));
             if !(d < 0.0) {
                 return done;
             }
         }
-        pivot[0] = 1.0 / d;
     }
     done
+}
+
+/// Row `j` of L and of 1/d from column `j` of the matrix and the rows before it; returns d.
+#[inline(always)]
+fn eliminate(b: usize, j: usize, column: &[f64], lower: &mut [f64], inverse: &mut [f64]) -> f64 {
+    let (before, here) = lower[j * b..].split_at_mut(b * b);
+    let (scales, pivot) = inverse[j..].split_at_mut(b);
+    let row = &mut here[..b];
+    // Into `row` first v, then L.
+    for i in 0..b {
+        let mut v = column[i];
+        for k in 0..i {
+            v -= row[k] * before[i * b + b + k - i];
+        }
+        row[i] = v;
+    }
+    let mut d = column[b];
+    for i in 0..b {
+        let l = row[i] * scales[i];
+        d -= row[i] * l;
+        row[i] = l;
+    }
+    pivot[0] = 1.0 / d;
+    d
+}
+
+/// What the rows of a lower triangle with ones take from the `b` unknowns before them.
+#[inline(always)]
+fn substitute(b: usize, row: &[f64], x: &mut f64, last: &mut [f64; WIDEST]) {
+    let mut sum = *x;
+    for k in 0..b {
+        sum -= row[k] * last[k];
+    }
+    *x = sum;
+    for k in 1..b {
+        last[k - 1] = last[k];
+    }
+    if b > 0 {
+        last[b - 1] = sum;
+    }
+}
+
+/// Factorises and solves in one pass, and one back.
+#[inline(always)]
+fn factor_and_solve(
+    b: usize,
+    values: &[f64],
+    lower: &mut [f64],
+    inverse: &mut [f64],
+    x: &mut [f64],
+) -> Result<(), FactorError> {
+    let mut last = [0.0; WIDEST];
+    for ((j, column), x) in values.chunks_exact(b + 1).enumerate().zip(x.iter_mut()) {
+        let d = eliminate(b, j, column, lower, inverse);
+        if !(d > 0.0) {
+            return Err(FactorError::NotPositive { row: j, pivot: d });
+        }
+        substitute(b, &lower[(j + b) * b..][..b], x, &mut last);
+    }
+    substitute_back(b, lower, inverse, x);
+    Ok(())
 }
 
 /// Solves L D Lᵀ x = x for a half-bandwidth `b`. What the next row needs stays in registers.
@@ -261,19 +329,14 @@ fn factor(b: usize, values: &[f64], lower: &mut [f64], inverse: &mut [f64]) -> R
 fn solve(b: usize, lower: &[f64], inverse: &[f64], x: &mut [f64]) {
     let mut last = [0.0; WIDEST];
     for (j, x) in x.iter_mut().enumerate() {
-        let row = &lower[(j + b) * b..][..b];
-        let mut sum = *x;
-        for k in 0..b {
-            sum -= row[k] * last[k];
-        }
-        *x = sum;
-        for k in 1..b {
-            last[k - 1] = last[k];
-        }
-        if b > 0 {
-            last[b - 1] = sum;
-        }
+        substitute(b, &lower[(j + b) * b..][..b], x, &mut last);
     }
+    substitute_back(b, lower, inverse, x);
+}
+
+/// Solves D Lᵀ x = x.
+#[inline(always)]
+fn substitute_back(b: usize, lower: &[f64], inverse: &[f64], x: &mut [f64]) {
     // What the rows after take from the b rows before them, nearest first.
     let mut taken = [0.0; WIDEST];
     for (j, (x, scale)) in x.iter_mut().zip(&inverse[b..]).enumerate().rev() {
@@ -352,6 +415,9 @@ mod tests {
                 for (x, y) in x.iter().zip(&y) {
                     prop_assert!((x - y).abs() < 1e-12);
                 }
+                let mut at_once = b.clone();
+                factor.factor_and_solve(&a, &mut at_once).unwrap();
+                prop_assert_eq!(at_once, y);
             }
         }
 
@@ -408,6 +474,9 @@ mod tests {
             for i in [0, 2, 4] {
                 let (mut a, mut b) = (BandMatrix::new(8, band), BandMatrix::new(8, band));
                 a.add_spring(i, [xx, xy, yy]);
+                a.add_diagonal(i, 0.25);
+                b.add(i, i, 0.25);
+                b.add(i + 1, i + 1, 0.25);
                 b.add_block(i, i, [[xx, xy], [xy, yy]]);
                 b.add_block(i + 2, i + 2, [[xx, xy], [xy, yy]]);
                 b.add_block(i, i + 2, [[-xx, -xy], [-xy, -yy]]);

@@ -31,6 +31,7 @@ pub struct BarrierAt {
 
 impl Barrier {
     /// The barrier at a gap (m).
+    #[inline]
     #[must_use]
     pub fn at(&self, gap: f64) -> BarrierAt {
         let u = gap / self.reach;

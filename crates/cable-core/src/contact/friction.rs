@@ -13,6 +13,7 @@
 use crate::math::{Mat2, Vec2, bounded};
 
 /// Value, first and second derivative of D: J, N, N/m.
+#[inline]
 #[must_use]
 pub fn at(y: f64, limit_force: f64, epsilon: f64) -> (f64, f64, f64) {
     let u = y.abs() / epsilon;
@@ -41,6 +42,7 @@ pub enum Branch {
 
 impl Branch {
     /// The branch at a sliding y.
+    #[inline]
     #[must_use]
     pub fn at(y: f64, epsilon: f64) -> Self {
         match y {
@@ -54,6 +56,7 @@ impl Branch {
     /// sliding the other way leads through holding, and so does the way from one side of holding
     /// beyond the other, where the law is nearly flat: else a contact that holds is thrown from one
     /// side to the other for ever, each time by its whole force.
+    #[inline]
     #[must_use]
     pub fn next(self, [from, to]: [f64; 2], epsilon: f64) -> Self {
         let across = from.abs() < epsilon && from * to < 0.0;
@@ -66,6 +69,7 @@ impl Branch {
 
     /// D' (N) and D'' (N/m) of this branch, carried on beyond its end: a holding contact by a
     /// spring of R/ε.
+    #[inline]
     #[must_use]
     pub fn force(self, y: f64, limit_force: f64, epsilon: f64) -> (f64, f64) {
         match self {

@@ -110,6 +110,7 @@ impl Corner {
 
     /// Returns how many of the edges that meet here have this corner as their nearest point to `p`,
     /// and how many meet.
+    #[inline]
     #[must_use]
     pub fn clamped(&self, p: Vec2) -> (usize, usize) {
         let d = p - self.at;
@@ -130,6 +131,7 @@ impl Edge {
     }
 
     /// Outward unit normal.
+    #[inline]
     #[must_use]
     pub fn normal(&self) -> Vec2 {
         perp(self.tangent)
@@ -185,6 +187,7 @@ impl Body {
     }
 
     /// Returns whether an edge ends at the corner or circle `feature`.
+    #[inline]
     #[must_use]
     pub(crate) fn is_beside(&self, edge: usize, feature: usize) -> bool {
         let n = self.edges.len();
@@ -206,12 +209,14 @@ impl Body {
 
     /// Returns whether contact at a corner can be felt by a straight segment: not where a solid
     /// recedes from it.
+    #[inline]
     #[must_use]
     pub(crate) fn juts_out(&self, corner: &Corner) -> bool {
         !self.solid || corner.is_convex()
     }
 
     /// A contact of this body at distance `distance` of the centre line, along `normal`.
+    #[inline]
     #[must_use]
     pub fn gap(&self, feature: usize, distance: f64, normal: Vec2, point: Vec2) -> Gap {
         Gap {
@@ -379,6 +384,7 @@ impl Geometry {
     }
 
     /// The bodies, in the order of the scene.
+    #[inline]
     #[must_use]
     pub fn bodies(&self) -> &[Body] {
         &self.bodies

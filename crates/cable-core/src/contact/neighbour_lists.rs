@@ -9,9 +9,19 @@
 //! ```
 //! since every point of it is then within R − r of the box. Else the trees are asked: the list
 //! never decides what is found.
+//!
+//! A segment whose list holds parts is mostly still clear of them. So its gap G from the nearest of
+//! them is measured once a step, with its ends at a₁, b₁, and nothing is within r of it as long as
+//! ```text
+//! max(|a − a₁|, |b − b₁|) + r < G
+//! ```
 
+use super::distance::{point_segment, segment_segment};
 use super::geometry::{Geometry, Part};
-use crate::math::Vec2;
+use crate::math::{Vec2, smaller};
+
+/// Rounding of a gap, m: a segment is clear only if it is by this much.
+const GAP_ROUNDING: f64 = 1e-9;
 
 /// The list of one segment.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +29,26 @@ struct Entry {
     ends: [Vec2; 2],
     within: f64,
     first: usize,
+    /// Ends of the segment when its gap was measured, m.
+    measured: [Vec2; 2],
+    /// Its gap then, m.
+    gap: f64,
+}
+
+impl Entry {
+    /// True if a segment whose ends come to all these places (m) is never within `reach` (m) of
+    /// anything.
+    #[inline]
+    fn is_clear<const N: usize>(&self, at: [[Vec2; 2]; N], reach: f64) -> bool {
+        stays_within(self.gap - reach - GAP_ROUNDING, self.measured, at)
+    }
+}
+
+/// True if both ends of a segment are, at all these places, within `room` of where they were (m).
+#[inline]
+fn stays_within<const N: usize>(room: f64, from: [Vec2; 2], at: [[Vec2; 2]; N]) -> bool {
+    let inside = |p: Vec2, from: Vec2| room > 0.0 && (p - from).norm_squared() <= room * room;
+    at.iter().all(|ends| inside(ends[0], from[0]) && inside(ends[1], from[1]))
 }
 
 /// The lists of all segments of a chain, by their number.
@@ -49,22 +79,67 @@ impl NeighbourLists {
 
     /// Appends the list of the next segment: all parts within `within` (m) of the box of its ends.
     pub fn push(&mut self, geometry: &Geometry, ends: [Vec2; 2], within: f64) {
-        self.entries.push(Entry { ends, within, first: self.parts.len() });
         let [a, b] = ends;
+        self.entries.push(Entry { ends, within, first: self.parts.len(), measured: ends, gap: within });
         self.parts.extend(geometry.parts(a.inf(&b), a.sup(&b), within));
+        self.measure(geometry, self.entries.len() - 1, ends);
+    }
+
+    /// Measures the gap of segment `e`, with its ends here (m), from what its list holds.
+    pub fn measure(&mut self, geometry: &Geometry, e: usize, ends: [Vec2; 2]) {
+        let parts = self.parts_of(e);
+        if parts.is_empty() {
+            return;
+        }
+        let gaps = parts.iter().map(|part| gap(geometry, *part, ends));
+        let nearest = gaps.fold(f64::INFINITY, smaller);
+        let Some(entry) = self.entries.get_mut(e) else { return };
+        let moved = [0, 1].map(|k| (ends[k] - entry.ends[k]).norm_squared());
+        let unlisted = entry.within - if moved[0] > moved[1] { moved[0] } else { moved[1] }.sqrt();
+        (entry.measured, entry.gap) = (ends, smaller(nearest, unlisted));
+    }
+
+    #[inline]
+    fn parts_of(&self, e: usize) -> &[Part] {
+        let Some(entry) = self.entries.get(e) else { return &[] };
+        let end = self.entries.get(e + 1).map_or(self.parts.len(), |next| next.first);
+        self.parts.get(entry.first..end).unwrap_or_default()
+    }
+
+    /// True if segment `e`, whose ends come to all these places (m), is known to be never within
+    /// `reach` (m) of anything.
+    #[inline]
+    #[must_use]
+    pub fn is_clear<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> bool {
+        self.entries.get(e).is_some_and(|entry| entry.is_clear(at, reach))
     }
 
     /// The list of segment `e` if it holds all that its ends, at each of the places `at` (m), can
-    /// be within `reach` (m) of.
+    /// be within `reach` (m) of; an empty one if that is known to be nothing.
+    #[inline]
     #[must_use]
     pub fn of<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[Part]> {
-        let entry = self.entries.get(e)?;
-        let room = entry.within - reach;
-        let inside = |p: Vec2, from: Vec2| room > 0.0 && (p - from).norm_squared() <= room * room;
-        let all = at.iter().all(|ends| inside(ends[0], entry.ends[0]) && inside(ends[1], entry.ends[1]));
-        let end = self.entries.get(e + 1).map_or(self.parts.len(), |next| next.first);
-        if all { self.parts.get(entry.first..end) } else { None }
+        if self.entries.get(e)?.is_clear(at, reach) { Some(&[]) } else { self.listed(e, at, reach) }
     }
+
+    /// The same, whatever the gap of the segment is.
+    #[inline]
+    #[must_use]
+    pub fn listed<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[Part]> {
+        let entry = self.entries.get(e)?;
+        stays_within(entry.within - reach, entry.ends, at).then(|| self.parts_of(e))
+    }
+}
+
+/// Gap of a segment from a part, m.
+fn gap(geometry: &Geometry, part: Part, [a, b]: [Vec2; 2]) -> f64 {
+    let Some(body) = geometry.bodies().get(part.body) else { return f64::INFINITY };
+    let distance = match (part.edge.and_then(|k| body.edges.get(k)), body.center) {
+        (Some(e), _) => segment_segment(a, b, e.p, e.q),
+        (None, Some(c)) => point_segment(c, a, b),
+        (None, None) => return f64::INFINITY,
+    };
+    distance - body.offset
 }
 
 #[cfg(test)]
@@ -109,7 +184,7 @@ mod tests {
             if let Some(parts) = near.of(0, [now], reach) {
                 let (mut listed, mut found) = (Vec::new(), Vec::new());
                 let chain = [None, Some(now[0]), Some(now[1])];
-                geometry.node_pairs_among(parts.iter().copied(), chain, reach, &mut |p| listed.push(p));
+                geometry.node_pairs_among(parts.iter().copied(), &chain, reach, &mut |p| listed.push(p));
                 geometry.segment_pairs_among(parts.iter().copied(), now, reach, &mut |p| listed.push(p));
                 geometry.node_pairs(None, now[0], Some(now[1]), reach, &mut |p| found.push(p));
                 geometry.segment_pairs(now[0], now[1], reach, &mut |p| found.push(p));

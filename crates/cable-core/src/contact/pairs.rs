@@ -42,7 +42,7 @@ impl Geometry {
         reach: f64,
         out: &mut impl FnMut(Pair),
     ) {
-        self.node_pairs_among(self.parts(p, p, reach), [before, Some(p), after], reach, out);
+        self.node_pairs_among(self.parts(p, p, reach), &[before, Some(p), after], reach, out);
     }
 
     /// The same among `parts`, which hold all that are within reach. The chain is the node between
@@ -50,7 +50,7 @@ impl Geometry {
     pub(crate) fn node_pairs_among(
         &self,
         parts: impl Iterator<Item = Part>,
-        chain: [Option<Vec2>; 3],
+        chain: &[Option<Vec2>; 3],
         reach: f64,
         out: &mut impl FnMut(Pair),
     ) {
@@ -137,6 +137,7 @@ impl Geometry {
 }
 
 /// Node against the inside of an edge.
+#[inline]
 fn push_edge(body: &Body, k: usize, p: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
     let e = &body.edges[k];
     let along = (p - e.p).dot(&e.tangent);
@@ -152,6 +153,7 @@ fn push_edge(body: &Body, k: usize, p: Vec2, reach: f64, out: &mut impl FnMut(Pa
 }
 
 /// Node against a corner: what inclusion and exclusion leave of it.
+#[inline]
 fn push_corner(body: &Body, corner: &super::geometry::Corner, p: Vec2, reach: f64, out: &mut impl FnMut(Pair)) {
     let (clamped, edges) = corner.clamped(p);
     let weight = if edges == 2 { clamped as f64 - 1.0 } else { clamped as f64 };
@@ -160,8 +162,9 @@ fn push_corner(body: &Body, corner: &super::geometry::Corner, p: Vec2, reach: f6
 
 /// Corner or circle against a node, seen from it: what inclusion and exclusion over the node's
 /// segments leave.
-fn push_wedge(body: &Body, feature: usize, v: Vec2, chain: [Option<Vec2>; 3], reach: f64, out: &mut impl FnMut(Pair)) {
-    let [before, Some(p), after] = chain else { return };
+#[inline]
+fn push_wedge(body: &Body, feature: usize, v: Vec2, chain: &[Option<Vec2>; 3], reach: f64, out: &mut impl FnMut(Pair)) {
+    let [before, Some(p), after] = *chain else { return };
     let beyond = |other: Option<Vec2>| other.map(|o| (v - p).dot(&(o - p)) <= 0.0);
     let (b, a) = (beyond(before), beyond(after));
     let clamped = f64::from(u8::from(b == Some(true)) + u8::from(a == Some(true)));
@@ -169,6 +172,7 @@ fn push_wedge(body: &Body, feature: usize, v: Vec2, chain: [Option<Vec2>; 3], re
     push_point(body, feature, [p, v], weight, reach, out);
 }
 
+#[inline]
 fn push_point(body: &Body, feature: usize, [p, v]: [Vec2; 2], weight: f64, reach: f64, out: &mut impl FnMut(Pair)) {
     let d = (p - v).norm();
     if weight != 0.0 && d > 0.0 && d - body.offset < reach {
@@ -177,6 +181,7 @@ fn push_point(body: &Body, feature: usize, [p, v]: [Vec2; 2], weight: f64, reach
 }
 
 /// Corner or circle against the inside of a segment.
+#[inline]
 fn push_segment(body: &Body, feature: usize, v: Vec2, [a, b]: [Vec2; 2], reach: f64, out: &mut impl FnMut(Pair)) {
     let (d, l2) = (b - a, (b - a).norm_squared());
     let along = (v - a).dot(&d);

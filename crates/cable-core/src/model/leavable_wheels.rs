@@ -7,8 +7,9 @@
 use std::sync::Arc;
 
 use super::gauge::TensionGauge;
+use super::layered::Layer;
 use super::mechanics::Constructor;
-use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
+use super::{Inertia, Mechanics, Settings, StepReport};
 use crate::contact::distance::segment_segment;
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{RigidPose, Vec2};
@@ -61,20 +62,6 @@ impl LeavableWheels {
     ) -> Self {
         let led = vec![None; problem.supports.len()];
         Self { problem, copy, settings, construct, inner, on_posts: false, led, robot_pose: None }
-    }
-
-    /// The same with another inner model.
-    fn around(&self, inner: Box<dyn Mechanics>) -> Box<dyn Mechanics> {
-        Box::new(Self {
-            problem: self.problem.clone(),
-            copy: self.copy.clone(),
-            settings: self.settings,
-            construct: self.construct.clone(),
-            inner,
-            on_posts: self.on_posts,
-            led: self.led.clone(),
-            robot_pose: self.robot_pose,
-        })
     }
 
     /// Index that a support has in the inner model; None for a wheel that is a post there.
@@ -179,8 +166,12 @@ impl LeavableWheels {
     fn told(&self, mut report: StepReport) -> StepReport {
         if self.on_posts {
             let name = &self.problem.cable.name;
-            let wheels =
-                self.solution().supports.into_iter().zip(&self.copy.replaced).filter(|(_, replaced)| **replaced);
+            let wheels = self
+                .outer_solution(self.inner.solution())
+                .supports
+                .into_iter()
+                .zip(&self.copy.replaced)
+                .filter(|(_, replaced)| **replaced);
             let clear = wheels.map(|(s, _)| s).filter(|s| s.reaction_x_n == 0.0 && s.reaction_y_n == 0.0);
             report.warnings.extend(clear.map(|s| {
                 let cause = WarningCause::ClearOfWheel { pulley: s.name };
@@ -216,17 +207,30 @@ fn reaction(problem: &Problem, wheel: &WheelPost, answer: &CableSolution) -> Sup
     out
 }
 
-impl Mechanics for LeavableWheels {
-    fn model(&self) -> Model {
-        self.inner.model()
+impl Layer for LeavableWheels {
+    fn inner(&self) -> &dyn Mechanics {
+        &*self.inner
+    }
+
+    fn inner_mut(&mut self) -> &mut dyn Mechanics {
+        &mut *self.inner
+    }
+
+    fn around(&self, inner: Box<dyn Mechanics>) -> Self {
+        Self {
+            problem: self.problem.clone(),
+            copy: self.copy.clone(),
+            settings: self.settings,
+            construct: self.construct.clone(),
+            inner,
+            on_posts: self.on_posts,
+            led: self.led.clone(),
+            robot_pose: self.robot_pose,
+        }
     }
 
     fn reason(&self) -> Option<&ModelReason> {
         self.inner.reason().or(self.on_posts.then_some(&ModelReason::Obstacles))
-    }
-
-    fn refusal(&self) -> Option<&SolveError> {
-        self.inner.refusal()
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
@@ -274,18 +278,6 @@ impl Mechanics for LeavableWheels {
         Ok(self.told(report))
     }
 
-    fn state(&self) -> State {
-        self.inner.state()
-    }
-
-    fn time_s(&self) -> f64 {
-        self.inner.time_s()
-    }
-
-    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
-        self.inner.set_state(state)
-    }
-
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         if self.on_posts {
             return self.inner.set_state(&State::of_nodes(&answer.nodes, time_s));
@@ -306,16 +298,7 @@ impl Mechanics for LeavableWheels {
         self.inner.set_robot_pose(to);
     }
 
-    fn robot_contact(&self) -> Option<RobotContact> {
-        self.inner.robot_contact()
-    }
-
-    fn fall_back(&mut self, why: &SolveError) -> bool {
-        self.inner.fall_back(why)
-    }
-
-    fn solution(&self) -> CableSolution {
-        let mut answer = self.inner.solution();
+    fn outer_solution(&self, mut answer: CableSolution) -> CableSolution {
         if !self.on_posts {
             return answer;
         }
@@ -329,25 +312,5 @@ impl Mechanics for LeavableWheels {
 
     fn problem(&self) -> &Arc<Problem> {
         &self.problem
-    }
-
-    fn inner_step_s(&self) -> f64 {
-        self.inner.inner_step_s()
-    }
-
-    fn copy_to_keep(&self) -> Box<dyn Mechanics> {
-        self.around(self.inner.copy_to_keep())
-    }
-
-    fn lend(&mut self) -> Option<OwnedResources> {
-        self.inner.lend()
-    }
-
-    fn borrow(&mut self, own: Option<OwnedResources>) {
-        self.inner.borrow(own);
-    }
-
-    fn boxed_clone(&self) -> Box<dyn Mechanics> {
-        self.around(self.inner.boxed_clone())
     }
 }

@@ -6,7 +6,7 @@
 //! | `mechanics.rs` | the trait and its reports; `settings.rs`: [`Settings`]; `gauge.rs`: tensions of the inner steps |
 //! | `registry.rs` | one entry a model: name, capabilities, constructor; [`build`] |
 //! | `auto.rs`, `switching.rs` | the choice of a model, and two models that take turns |
-//! | `initial_equilibrium.rs`, `input_filter.rs`, `similar.rs`, `leavable_wheels.rs`, `arc_nodes.rs` | what several models share |
+//! | `initial_equilibrium.rs`, `input_filter.rs`, `layered.rs`, `similar.rs`, `leavable_wheels.rs`, `arc_nodes.rs` | what several models share |
 //! | `catenary/`, `spans/`, `fem/`, `mass_spring/` | the models |
 //!
 //! A model answers two kinds of question: where does the cable rest ([`Mechanics::settle`]), and
@@ -20,6 +20,7 @@ pub mod fem;
 pub mod gauge;
 pub(crate) mod initial_equilibrium;
 pub mod input_filter;
+mod layered;
 mod leavable_wheels;
 pub mod mass_spring;
 pub mod mechanics;

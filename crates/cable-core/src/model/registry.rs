@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use super::auto::{self, Question};
+use super::layered::Layered;
 use super::mechanics::{Constructor, Mechanics};
 use super::settings::Settings;
 use super::switching::SwitchingModel;
@@ -248,5 +249,6 @@ fn construct(model: Model, problem: Arc<Problem>, settings: Settings) -> Built {
     let inner = bare(problem, settings)?;
     let problem = inner.problem().clone();
     let Some(copy) = problem.wheels_as_posts.clone().filter(|_| info.capabilities.contact) else { return Ok(inner) };
-    Ok(Box::new(leavable_wheels::LeavableWheels::new(problem, copy, settings, Arc::new(bare), inner)))
+    let wheels = leavable_wheels::LeavableWheels::new(problem, copy, settings, Arc::new(bare), inner);
+    Ok(Box::new(Layered(wheels)))
 }

@@ -4,10 +4,12 @@
 //! Barriers, slips and gaps are lengths that solvers need as numbers, and were found on cables of 1
 //! to 100 m. Instead of making each of them a part of something, the whole scene is brought there.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::gauge::TensionGauge;
-use super::{Inertia, Mechanics, Model, OwnedResources, StepReport};
+use super::layered::{Layer, Layered};
+use super::{Inertia, Mechanics, StepReport};
 use crate::error::{Place, SolveError};
 use crate::math::Vec2;
 use crate::problem::Problem;
@@ -31,26 +33,10 @@ pub struct Similar {
 impl Similar {
     /// Wraps the model of the copy.
     #[must_use]
-    pub fn new(problem: Arc<Problem>, by: Similarity, inner: Box<dyn Mechanics>) -> Self {
+    pub(super) fn new(problem: Arc<Problem>, by: Similarity, inner: Box<dyn Mechanics>) -> Layered<Self> {
         let mut this = Self { problem, by, inner, reason: None, refusal: None };
-        this.listen();
-        this
-    }
-
-    /// Takes down why the inner model is the one it is, and why another has no answer.
-    fn listen(&mut self) {
-        self.refusal = self.inner.refusal().cloned().map(|e| self.error(e));
-        self.reason = self.inner.reason().cloned().map(|reason| match reason {
-            ModelReason::NoAnswer(error) => ModelReason::NoAnswer(Box::new(self.error(*error))),
-            // Asked of the scene itself: see `fall_back`.
-            other => other,
-        });
-    }
-
-    /// The same with another inner model.
-    fn around(&self, inner: Box<dyn Mechanics>) -> Box<dyn Mechanics> {
-        let (problem, reason, refusal) = (self.problem.clone(), self.reason.clone(), self.refusal.clone());
-        Box::new(Self { problem, by: self.by, inner, reason, refusal })
+        this.observe();
+        Layered(this)
     }
 
     fn at_back(&self, at: Vec2) -> Vec2 {
@@ -58,89 +44,11 @@ impl Similar {
     }
 
     fn place_back(&self, place: &Place) -> Box<Place> {
-        self.problem.place(place.arc_length_m / self.by.length, self.at_back(place.at_m), self.time_s())
-    }
-
-    fn error(&self, error: SolveError) -> SolveError {
-        let (l, t) = (self.by.length, self.by.time);
-        match error {
-            SolveError::NotConverged { model, iterations, residual_n, place } => {
-                SolveError::NotConverged { model, iterations, residual_n, place: self.place_back(&place) }
-            }
-            SolveError::Compressed { model, tension_n, place } => {
-                SolveError::Compressed { model, tension_n, place: self.place_back(&place) }
-            }
-            SolveError::TensionLost { model, loss, arc_length_m, at_m } => {
-                SolveError::TensionLost { model, loss, arc_length_m: arc_length_m / l, at_m: self.at_back(at_m) }
-            }
-            SolveError::NoRestingPlace { why } => {
-                SolveError::NoRestingPlace { why: why.with_places(|s| s / l, |at| self.at_back(at)) }
-            }
-            SolveError::Unsupported { model, feature } => {
-                let feature = feature.with_places(|s| s / l, |at| self.at_back(at));
-                SolveError::Unsupported { model, feature }
-            }
-            SolveError::NonFinite { quantity, arc_length_m, time_s } => {
-                SolveError::NonFinite { quantity, arc_length_m: arc_length_m / l, time_s: time_s / t }
-            }
-            SolveError::Buried { model, obstacle, depth_m, arc_length_m, at_m } => SolveError::Buried {
-                model,
-                obstacle,
-                depth_m: depth_m / l,
-                arc_length_m: arc_length_m / l,
-                at_m: self.at_back(at_m),
-            },
-            SolveError::TimeStep { dt_s, longest_s } => {
-                SolveError::TimeStep { dt_s: dt_s / t, longest_s: longest_s / t }
-            }
-            SolveError::StepFailed { model, time_s, dt_s, residual_n, place, cause } => SolveError::StepFailed {
-                model,
-                time_s: time_s / t,
-                dt_s: dt_s / t,
-                residual_n,
-                place: self.place_back(&place),
-                cause: cause.with_speed(|v| v * t / l),
-            },
-            SolveError::Neither { told, other } => {
-                SolveError::Neither { told: Box::new(self.error(*told)), other: Box::new(self.error(*other)) }
-            }
-            SolveError::TooMuchWork { model, iterations, segments, residual_n, place } => {
-                SolveError::TooMuchWork { model, iterations, segments, residual_n, place: self.place_back(&place) }
-            }
-            error @ (SolveError::Indefinite { .. } | SolveError::Unsound { .. } | SolveError::Setting { .. }) => error,
-        }
-    }
-
-    fn report(&self, report: StepReport) -> StepReport {
-        let mut cost = report.cost;
-        cost.inner_step_s /= self.by.time;
-        let warning = |w: Warning| Warning {
-            at_m: w.at_m.map(|[x, y]| self.at_back(Vec2::new(x, y)).into()),
-            ..w.scaled(1.0 / self.by.length, 1.0 / self.by.time)
-        };
-        StepReport { cost, warnings: report.warnings.into_iter().map(warning).collect() }
-    }
-
-    fn state_to(&self, state: &State) -> State {
-        let speed = self.by.length / self.by.time;
-        State {
-            time_s: state.time_s * self.by.time,
-            arc_length_m: state.arc_length_m.iter().map(|s| s * self.by.length).collect(),
-            position_m: state.position_m.iter().map(|p| self.by.place(*p)).collect(),
-            velocity_m_per_s: state.velocity_m_per_s.iter().map(|v| v * speed).collect(),
-            in_motion: state.in_motion,
-        }
-    }
-
-    fn state_back(&self, state: &State) -> State {
-        let speed = self.by.time / self.by.length;
-        State {
-            time_s: state.time_s / self.by.time,
-            arc_length_m: state.arc_length_m.iter().map(|s| s / self.by.length).collect(),
-            position_m: state.position_m.iter().map(|p| self.by.place_back(*p)).collect(),
-            velocity_m_per_s: state.velocity_m_per_s.iter().map(|v| v * speed).collect(),
-            in_motion: state.in_motion,
-        }
+        self.problem.place(
+            place.arc_length_m / self.by.length,
+            self.at_back(place.at_m),
+            self.outer_time(self.inner.time_s()),
+        )
     }
 }
 
@@ -198,9 +106,32 @@ fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) ->
     a
 }
 
-impl Mechanics for Similar {
-    fn model(&self) -> Model {
-        self.inner.model()
+impl Layer for Similar {
+    fn inner(&self) -> &dyn Mechanics {
+        &*self.inner
+    }
+
+    fn inner_mut(&mut self) -> &mut dyn Mechanics {
+        &mut *self.inner
+    }
+
+    fn around(&self, inner: Box<dyn Mechanics>) -> Self {
+        let (problem, reason, refusal) = (self.problem.clone(), self.reason.clone(), self.refusal.clone());
+        Self { problem, by: self.by, inner, reason, refusal }
+    }
+
+    fn problem(&self) -> &Arc<Problem> {
+        &self.problem
+    }
+
+    /// Takes down why the inner model is the one it is, and why another has no answer.
+    fn observe(&mut self) {
+        self.refusal = self.inner.refusal().cloned().map(|e| self.outer_error(e));
+        self.reason = self.inner.reason().cloned().map(|reason| match reason {
+            ModelReason::NoAnswer(error) => ModelReason::NoAnswer(Box::new(self.outer_error(*error))),
+            // Asked of the scene itself: see `fall_back`.
+            other => other,
+        });
     }
 
     fn reason(&self) -> Option<&ModelReason> {
@@ -209,15 +140,6 @@ impl Mechanics for Similar {
 
     fn refusal(&self) -> Option<&SolveError> {
         self.refusal.as_ref()
-    }
-
-    fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let found = self.inner.settle();
-        self.listen();
-        match found {
-            Ok(report) => Ok(self.report(report)),
-            Err(e) => Err(self.error(e)),
-        }
     }
 
     fn advance_gauged(
@@ -235,44 +157,18 @@ impl Mechanics for Similar {
             gauge.of_copy([self.by.length, self.by.time]);
             let done = self.inner.advance_gauged(whole / parts, inertia, gauge);
             gauge.of_copy([self.by.length, self.by.time].map(f64::recip));
-            match done {
-                Ok(report) => {
-                    let report = self.report(report);
-                    sum.cost.iterations += report.cost.iterations;
-                    sum.cost.halved_steps += report.cost.halved_steps;
-                    (sum.cost.residual_n, sum.cost.inner_step_s) = (report.cost.residual_n, report.cost.inner_step_s);
-                    sum.warnings = report.warnings;
-                }
-                Err(e) => {
-                    self.listen();
-                    return Err(self.error(e));
-                }
-            }
+            let report = done?;
+            sum.cost.iterations += report.cost.iterations;
+            sum.cost.halved_steps += report.cost.halved_steps;
+            (sum.cost.residual_n, sum.cost.inner_step_s) = (report.cost.residual_n, report.cost.inner_step_s);
+            sum.warnings = report.warnings;
         }
-        self.listen();
         Ok(sum)
-    }
-
-    fn state(&self) -> State {
-        self.state_back(&self.inner.state())
-    }
-
-    fn time_s(&self) -> f64 {
-        self.inner.time_s() / self.by.time
-    }
-
-    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
-        let to = self.state_to(state);
-        let done = self.inner.set_state(&to);
-        self.listen();
-        done.map_err(|e| self.error(e))
     }
 
     fn warm_start(&mut self, given: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         let to = answer(given.clone(), self.by.length, self.by.time, |p| self.by.place(p));
-        let done = self.inner.warm_start(&to, time_s * self.by.time);
-        self.listen();
-        done.map_err(|e| self.error(e))
+        self.inner.warm_start(&to, time_s * self.by.time)
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
@@ -283,37 +179,94 @@ impl Mechanics for Similar {
         self.inner.pull_support(support, self.by.place(hand_m));
     }
 
-    fn fall_back(&mut self, why: &SolveError) -> bool {
-        let fell = self.inner.fall_back(why);
-        self.listen();
-        fell
+    fn outer_time(&self, time_s: f64) -> f64 {
+        time_s / self.by.time
     }
 
-    fn solution(&self) -> CableSolution {
-        answer(self.inner.solution(), 1.0 / self.by.length, 1.0 / self.by.time, |p| self.by.place_back(p))
+    fn inner_state<'a>(&self, state: &'a State) -> Cow<'a, State> {
+        let speed = self.by.length / self.by.time;
+        Cow::Owned(State {
+            time_s: state.time_s * self.by.time,
+            arc_length_m: state.arc_length_m.iter().map(|s| s * self.by.length).collect(),
+            position_m: state.position_m.iter().map(|p| self.by.place(*p)).collect(),
+            velocity_m_per_s: state.velocity_m_per_s.iter().map(|v| v * speed).collect(),
+            in_motion: state.in_motion,
+        })
     }
 
-    fn problem(&self) -> &Arc<Problem> {
-        &self.problem
+    fn outer_state(&self, state: State) -> State {
+        let speed = self.by.time / self.by.length;
+        State {
+            time_s: state.time_s / self.by.time,
+            arc_length_m: state.arc_length_m.iter().map(|s| s / self.by.length).collect(),
+            position_m: state.position_m.iter().map(|p| self.by.place_back(*p)).collect(),
+            velocity_m_per_s: state.velocity_m_per_s.iter().map(|v| v * speed).collect(),
+            in_motion: state.in_motion,
+        }
     }
 
-    fn inner_step_s(&self) -> f64 {
-        self.inner.inner_step_s() / self.by.time
+    fn outer_solution(&self, inner: CableSolution) -> CableSolution {
+        answer(inner, 1.0 / self.by.length, 1.0 / self.by.time, |p| self.by.place_back(p))
     }
 
-    fn copy_to_keep(&self) -> Box<dyn Mechanics> {
-        self.around(self.inner.copy_to_keep())
+    fn outer_report(&self, report: StepReport) -> StepReport {
+        let mut cost = report.cost;
+        cost.inner_step_s /= self.by.time;
+        let warning = |w: Warning| Warning {
+            at_m: w.at_m.map(|[x, y]| self.at_back(Vec2::new(x, y)).into()),
+            ..w.scaled(1.0 / self.by.length, 1.0 / self.by.time)
+        };
+        StepReport { cost, warnings: report.warnings.into_iter().map(warning).collect() }
     }
 
-    fn lend(&mut self) -> Option<OwnedResources> {
-        self.inner.lend()
-    }
-
-    fn borrow(&mut self, own: Option<OwnedResources>) {
-        self.inner.borrow(own);
-    }
-
-    fn boxed_clone(&self) -> Box<dyn Mechanics> {
-        self.around(self.inner.boxed_clone())
+    fn outer_error(&self, error: SolveError) -> SolveError {
+        let (l, t) = (self.by.length, self.by.time);
+        match error {
+            SolveError::NotConverged { model, iterations, residual_n, place } => {
+                SolveError::NotConverged { model, iterations, residual_n, place: self.place_back(&place) }
+            }
+            SolveError::Compressed { model, tension_n, place } => {
+                SolveError::Compressed { model, tension_n, place: self.place_back(&place) }
+            }
+            SolveError::TensionLost { model, loss, arc_length_m, at_m } => {
+                SolveError::TensionLost { model, loss, arc_length_m: arc_length_m / l, at_m: self.at_back(at_m) }
+            }
+            SolveError::NoRestingPlace { why } => {
+                SolveError::NoRestingPlace { why: why.with_places(|s| s / l, |at| self.at_back(at)) }
+            }
+            SolveError::Unsupported { model, feature } => {
+                let feature = feature.with_places(|s| s / l, |at| self.at_back(at));
+                SolveError::Unsupported { model, feature }
+            }
+            SolveError::NonFinite { quantity, arc_length_m, time_s } => {
+                SolveError::NonFinite { quantity, arc_length_m: arc_length_m / l, time_s: time_s / t }
+            }
+            SolveError::Buried { model, obstacle, depth_m, arc_length_m, at_m } => SolveError::Buried {
+                model,
+                obstacle,
+                depth_m: depth_m / l,
+                arc_length_m: arc_length_m / l,
+                at_m: self.at_back(at_m),
+            },
+            SolveError::TimeStep { dt_s, longest_s } => {
+                SolveError::TimeStep { dt_s: dt_s / t, longest_s: longest_s / t }
+            }
+            SolveError::StepFailed { model, time_s, dt_s, residual_n, place, cause } => SolveError::StepFailed {
+                model,
+                time_s: time_s / t,
+                dt_s: dt_s / t,
+                residual_n,
+                place: self.place_back(&place),
+                cause: cause.with_speed(|v| v * t / l),
+            },
+            SolveError::Neither { told, other } => SolveError::Neither {
+                told: Box::new(self.outer_error(*told)),
+                other: Box::new(self.outer_error(*other)),
+            },
+            SolveError::TooMuchWork { model, iterations, segments, residual_n, place } => {
+                SolveError::TooMuchWork { model, iterations, segments, residual_n, place: self.place_back(&place) }
+            }
+            error @ (SolveError::Indefinite { .. } | SolveError::Unsound { .. } | SolveError::Setting { .. }) => error,
+        }
     }
 }

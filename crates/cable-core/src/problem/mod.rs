@@ -255,7 +255,7 @@ fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneEr
     if scene.robot.is_none()
         && let Some(by) = Similarity::to_natural(cable.length_m, origin)
     {
-        let scaled = scene.scaled(&by);
+        let scaled = by.scaled(scene);
         if let Some(cable) = scaled.cables.get(index) {
             let mut copy = problem(&scaled, index, cable)?;
             copy.time_scale = by.time;

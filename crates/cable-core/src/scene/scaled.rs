@@ -84,61 +84,59 @@ impl Similarity {
         self.times(&mut motion.times_s);
         self.points(&mut motion.points_m);
     }
-}
 
-impl Scene {
     /// The similar scene; the robot, whose size is its maker's, is left out.
     #[must_use]
-    pub(crate) fn scaled(&self, by: &Similarity) -> Self {
-        let mut out = Self { robot: None, ..self.clone() };
-        let l = by.length;
+    pub(crate) fn scaled(&self, scene: &Scene) -> Scene {
+        let mut out = Scene { robot: None, ..scene.clone() };
+        let l = self.length;
         let per_m = |force: &mut Point| *force = [force[0] / l, force[1] / l];
         per_m(&mut out.environment.wind_n_per_m);
         out.environment.winds_n_per_m.iter_mut().for_each(per_m);
-        by.times(&mut out.environment.wind_times_s);
+        self.times(&mut out.environment.wind_times_s);
         for c in &mut out.cables {
             c.length_m *= l;
             c.linear_density_kg_per_m /= l;
             c.bending_stiffness_n_m2 *= l * l;
             c.diameter_m *= l;
             c.min_bend_radius_m *= l;
-            c.breaking_time_s *= by.time;
+            c.breaking_time_s *= self.time;
             if let Some(limit) = &mut c.sidewall_limit_n_per_m {
                 *limit /= l;
             }
-            by.points(&mut c.route_m);
+            self.points(&mut c.route_m);
             for s in &mut c.supports {
                 for length in [&mut s.arc_length_m, &mut s.radius_m].into_iter().flatten() {
                     *length *= l;
                 }
                 if let Some(at) = &mut s.at_m {
-                    by.point(at);
+                    self.point(at);
                 }
                 if let Some(motion) = &mut s.motion {
-                    by.motion(motion);
+                    self.motion(motion);
                 }
                 if let Some(release) = &mut s.release_s {
-                    *release *= by.time;
+                    *release *= self.time;
                 }
-                by.times(&mut s.times_s);
+                self.times(&mut s.times_s);
             }
         }
         for o in &mut out.obstacles {
             match &mut o.shape {
-                Shape::Terrain { points_m } | Shape::Polygon { points_m } => by.points(points_m),
+                Shape::Terrain { points_m } | Shape::Polygon { points_m } => self.points(points_m),
                 Shape::Polyline { points_m, thickness_m } => {
-                    by.points(points_m);
+                    self.points(points_m);
                     *thickness_m *= l;
                 }
                 Shape::Circle { center_m, radius_m } => {
-                    by.point(center_m);
+                    self.point(center_m);
                     *radius_m *= l;
                 }
             }
         }
         for load in &mut out.loads {
             load.arc_length_m *= l;
-            by.times(&mut load.times_s);
+            self.times(&mut load.times_s);
         }
         out
     }

@@ -72,15 +72,18 @@ use crate::state::State;
 use contact_memory::ContactMemory;
 use dynamics::momentum::Account;
 use dynamics::rollback::{Rollback, transaction};
+use dynamics::sub_step::integrate;
 use dynamics::supports::SupportDrives;
 use dynamics::{Clock, hands, impacts};
 use equilibrium::contact_energy::Anchors;
 use equilibrium::error_estimate::{Estimate, Start};
+use equilibrium::quasi_static::{find_equilibrium, quasi_static_step};
 use forces::{nodal, tension};
 use integrator::is_preview;
-use mesh::edit::{even_out, remesh};
+use mesh::edit::even_out;
 use mesh::nodes::{Mesh, first_support_arc_lengths};
 use settings::Tuning;
+use xpbd::sub_step::preview;
 
 part! {
     /// The report of the present instant and of the last step.
@@ -97,15 +100,37 @@ part! {
     }
 }
 
+part! {
+    /// The chain of masses and springs, in parts: all that a step changes, and that a rollback
+    /// keeps.
+    ChainState {
+        /// The time reached.
+        clock: Clock,
+        /// Nodes, springs and pulleys.
+        mesh: Mesh,
+        /// What leads the supports.
+        drives: SupportDrives,
+        /// The contacts of the last sub-step.
+        contacts: ContactMemory,
+        /// What is said of it.
+        report: Report,
+    }
+}
+
+impl ChainState {
+    /// Keeps the elements beside pulleys near the even length.
+    pub(in crate::model::mass_spring) fn remesh(&mut self) {
+        if mesh::edit::remesh(&mut self.mesh, self.clock.time_s) {
+            self.contacts.renew(self.mesh.rest_length.len());
+        }
+    }
+}
+
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
 pub struct MassSpringModel {
     settings: Settings,
-    clock: Clock,
-    mesh: Mesh,
-    drives: SupportDrives,
-    contacts: ContactMemory,
-    report: Report,
+    chain: ChainState,
     /// True if it has left the route for a shape found by a solve, a step or another model.
     has_shape: bool,
     rollback: Rollback,
@@ -188,33 +213,26 @@ impl MassSpringModel {
         drives.place_nodes(&mut mesh, clock.time_s);
         even_out(&mut mesh, clock.time_s);
         nodal::update(&mut mesh, clock.time_s);
-        Self {
-            settings,
-            clock,
-            contacts: ContactMemory::new(mesh.rest_length.len()),
-            mesh,
-            drives,
-            report: Report::default(),
-            has_shape: false,
-            rollback: Rollback::default(),
-        }
+        let contacts = ContactMemory::new(mesh.rest_length.len());
+        let chain = ChainState { clock, mesh, drives, contacts, report: Report::default() };
+        Self { settings, chain, has_shape: false, rollback: Rollback::default() }
     }
 
     /// The same cable along a shape, its supports at given arc lengths (m); None if the shape has
     /// no place for it.
     fn on_shape(&self, shape: &State, supports: &[f64]) -> Option<Self> {
-        let (problem, tuning) = (self.mesh.problem.clone(), self.mesh.tuning.clone());
+        let (problem, tuning) = (self.chain.mesh.problem.clone(), self.chain.mesh.tuning.clone());
         let segments = segments(&problem, &self.settings, &tuning);
-        let mesh = match self.mesh.usable_nodes(shape) {
+        let mesh = match self.chain.mesh.usable_nodes(shape) {
             Some(nodes) => Mesh::with_nodes(problem, tuning, segments, supports, nodes),
             None => Mesh::new(problem, tuning, segments, supports),
         };
         let mut next = Self::of_mesh(mesh, self.settings);
         let time_s = shape.time_s;
-        next.clock.time_s = time_s;
-        next.drives.take_drags(&self.drives);
+        next.chain.clock.time_s = time_s;
+        next.chain.drives.take_drags(&self.chain.drives);
         next.has_shape = true;
-        let mesh = &mut next.mesh;
+        let mesh = &mut next.chain.mesh;
         let speeds = State { position_m: shape.velocity_m_per_s.clone(), ..shape.clone() };
         // A cable whose length was edited keeps its shape: material is spread over it evenly.
         let scale = shape.arc_length_m.last().copied().unwrap_or(0.0) / mesh.problem.length;
@@ -222,7 +240,7 @@ impl MassSpringModel {
             mesh.position[n] = shape.position_at(mesh.arc_length[n] * scale)?;
             mesh.velocity[n] = speeds.position_at(mesh.arc_length[n] * scale)?;
         }
-        next.drives.place_pulleys(mesh, time_s);
+        next.chain.drives.place_pulleys(mesh, time_s);
         for k in 0..mesh.wheels.pulleys.len() {
             // The arc length of a support is that of the middle of the arc, σ is that of the mark.
             let i = mesh.wheels.pulleys[k].node;
@@ -232,24 +250,24 @@ impl MassSpringModel {
         }
         even_out(mesh, time_s);
         nodal::update(mesh, time_s);
-        next.contacts = ContactMemory::new(next.mesh.rest_length.len());
+        next.chain.contacts = ContactMemory::new(next.chain.mesh.rest_length.len());
         Some(next)
     }
 
     /// Starts from the equilibrium of `fem`, if that finds one.
     fn start_from_fem(&mut self) {
-        let settings = Settings { segments: Some(self.mesh.rest_length.len()), ..self.settings };
-        let found = FemEquilibrium::find(self.mesh.problem.clone(), settings)
+        let settings = Settings { segments: Some(self.chain.mesh.rest_length.len()), ..self.settings };
+        let found = FemEquilibrium::find(self.chain.mesh.problem.clone(), settings)
             .or_else(|| FemEquilibrium::find(Arc::new(self.without_pulleys()), settings));
         if let Some(found) = found
             && let Some(mut next) = self.on_shape(&found.state, &found.supports)
         {
-            next.clock.time_s = self.clock.time_s;
-            for e in 0..next.mesh.tension.len() {
-                let middle = 0.5 * (next.mesh.arc_length[e] + next.mesh.arc_length[e + 1]);
-                next.mesh.tension[e] = found.tension_at(middle);
+            next.chain.clock.time_s = self.chain.clock.time_s;
+            for e in 0..next.chain.mesh.tension.len() {
+                let middle = 0.5 * (next.chain.mesh.arc_length[e] + next.chain.mesh.arc_length[e + 1]);
+                next.chain.mesh.tension[e] = found.tension_at(middle);
             }
-            next.report.warnings.extend(found.warnings);
+            next.chain.report.warnings.extend(found.warnings);
             *self = next;
         }
         self.has_shape = true;
@@ -258,12 +276,12 @@ impl MassSpringModel {
     /// The problem with pulleys that grip the cable at its first shape: for models that have no
     /// pulleys beside obstacles.
     fn without_pulleys(&self) -> Problem {
-        let mut problem = (*self.mesh.problem).clone();
-        for p in &self.mesh.wheels.pulleys {
+        let mut problem = (*self.chain.mesh.problem).clone();
+        for p in &self.chain.mesh.wheels.pulleys {
             let support = &mut problem.supports[p.support];
             let out = Vec2::new(-p.mark_angle.sin(), p.mark_angle.cos()) * (p.sense * p.radius);
             support.kind = SupportKind::Fixed;
-            support.arc_length = Some(self.mesh.arc_length[p.node]);
+            support.arc_length = Some(self.chain.mesh.arc_length[p.node]);
             support.at = support.at.map(|a| a + out);
             if let Some(m) = &mut support.motion {
                 m.shift(out);
@@ -274,42 +292,35 @@ impl MassSpringModel {
 
     /// Comes to rest; on an error nothing has changed.
     fn settle_alone(&mut self) -> Result<(), SolveError> {
-        self.report.account = Account::default();
+        self.chain.report.account = Account::default();
         let before = self.clone();
         if !self.has_shape {
             self.start_from_fem();
         }
-        let found = self.equilibrium(Anchors::Forgotten);
+        let found = find_equilibrium(&mut self.chain, Anchors::Forgotten);
         if found.is_err() {
             *self = before;
         }
         found
     }
 
-    /// Keeps the elements beside pulleys near the even length.
-    fn remesh(&mut self) {
-        if remesh(&mut self.mesh, self.clock.time_s) {
-            self.contacts.renew(self.mesh.rest_length.len());
-        }
-    }
-
     /// Arc lengths of the supports on a shape, m: that of a pulley is of the material nearest to
     /// it, in order.
     pub(in crate::model::mass_spring) fn support_arc_lengths(&self, shape: &State) -> Vec<f64> {
-        let scale = self.mesh.problem.length / shape.arc_length_m.last().copied().unwrap_or(1.0);
+        let scale = self.chain.mesh.problem.length / shape.arc_length_m.last().copied().unwrap_or(1.0);
         let mut least = 0.0;
-        let mut out = vec![0.0; self.mesh.problem.supports.len()];
-        for (k, s) in self.mesh.problem.supports.iter().enumerate() {
+        let mut out = vec![0.0; self.chain.mesh.problem.supports.len()];
+        for (k, s) in self.chain.mesh.problem.supports.iter().enumerate() {
             out[k] = match (s.arc_length, s.position_at(shape.time_s)) {
                 (Some(known), _) => known,
                 (None, Some((at, _))) => {
-                    let at = self.drives.targets[k].unwrap_or(at);
+                    let at = self.chain.drives.targets[k].unwrap_or(at);
                     let off = |j: &usize| (shape.position_m[*j] - at).norm();
                     let later = (0..shape.position_m.len()).filter(|&j| shape.arc_length_m[j] * scale > least);
                     // Of several nodes as near the middle one counts: they are those on the wheel.
                     let nearest = later.clone().map(|j| off(&j)).fold(f64::INFINITY, f64::min);
                     let near: Vec<usize> =
-                        later.filter(|j| off(j) <= nearest + NEAREST_TOLERANCE * self.mesh.even_length).collect();
+                        later.filter(|j| off(j) <= nearest + NEAREST_TOLERANCE * self.chain.mesh.even_length).collect();
                     near.get(near.len() / 2).map_or(least, |&j| shape.arc_length_m[j] * scale)
                 }
                 (None, None) => least,
@@ -321,12 +332,17 @@ impl MassSpringModel {
 
     fn step_report(&mut self) -> StepReport {
         let fastest = self.settings.hand_speed_m_per_s;
-        let corner = results::contacts::corner_warning(&self.mesh, &self.contacts, &self.report.cost, &self.settings);
-        let mut warnings = std::mem::take(&mut self.report.warnings);
+        let corner = results::contacts::corner_warning(
+            &self.chain.mesh,
+            &self.chain.contacts,
+            &self.chain.report.cost,
+            &self.settings,
+        );
+        let mut warnings = std::mem::take(&mut self.chain.report.warnings);
         warnings.extend(corner);
-        warnings.extend(self.drives.warnings(&self.mesh, fastest));
-        warnings.extend(hands::warnings(&self.drives, &self.mesh, fastest));
-        StepReport { cost: self.report.cost, warnings }
+        warnings.extend(self.chain.drives.warnings(&self.chain.mesh, fastest));
+        warnings.extend(hands::warnings(&self.chain.drives, &self.chain.mesh, fastest));
+        StepReport { cost: self.chain.report.cost, warnings }
     }
 }
 
@@ -341,10 +357,10 @@ impl Mechanics for MassSpringModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let is_first = !self.has_shape && self.clock.time_s == 0.0;
+        let is_first = !self.has_shape && self.chain.clock.time_s == 0.0;
         self.settle_alone()?;
-        self.report.estimate = Estimate::default();
-        self.report.estimate = Estimate::at_rest(self, if is_first { Start::Scene } else { Start::Present });
+        self.chain.report.estimate = Estimate::default();
+        self.chain.report.estimate = Estimate::at_rest(self, if is_first { Start::Scene } else { Start::Present });
         Ok(self.step_report())
     }
 
@@ -358,32 +374,35 @@ impl Mechanics for MassSpringModel {
             return Err(SolveError::TimeStep { dt_s, longest_s: 60.0 });
         }
         self.has_shape = true;
-        let end_s = self.clock.time_s + dt_s;
-        self.clock.due_s = end_s;
-        if inertia == Inertia::Dynamic && gauge.asks(self.clock.time_s) {
-            let at_rest = self.mesh.velocity.iter().all(|v| *v == Vec2::zeros());
-            gauge.begin(self.clock.time_s, at_rest, &self.mesh.arc_length, |i| tension::at_node(&self.mesh, i));
+        let end_s = self.chain.clock.time_s + dt_s;
+        self.chain.clock.due_s = end_s;
+        if inertia == Inertia::Dynamic && gauge.asks(self.chain.clock.time_s) {
+            let at_rest = self.chain.mesh.velocity.iter().all(|v| *v == Vec2::zeros());
+            gauge.begin(self.chain.clock.time_s, at_rest, &self.chain.mesh.arc_length, |i| {
+                tension::at_node(&self.chain.mesh, i)
+            });
         }
         // The model beside this one is not copied with each part of a step.
-        let estimate = std::mem::take(&mut self.report.estimate);
-        let done = transaction(self, |model| {
-            model.report.account = Account::default();
+        let estimate = std::mem::take(&mut self.chain.report.estimate);
+        let settings = &self.settings;
+        let done = transaction(&mut self.rollback, &mut self.chain, |chain| {
+            chain.report.account = Account::default();
             match inertia {
-                Inertia::Dynamic if is_preview(&model.mesh, model.settings.stepping) => model.preview(dt_s, gauge),
+                Inertia::Dynamic if is_preview(&chain.mesh, settings.stepping) => preview(chain, settings, dt_s, gauge),
                 Inertia::Dynamic => {
-                    model.report.account = Account::of_step(&model.mesh, dt_s);
-                    model.integrate(dt_s, gauge)
+                    chain.report.account = Account::of_step(&chain.mesh, dt_s);
+                    integrate(chain, settings, dt_s, gauge)
                 }
-                Inertia::QuasiStatic => model.quasi_static_step(dt_s),
+                Inertia::QuasiStatic => quasi_static_step(chain, dt_s),
             }
         });
         if let Err(error) = done {
-            self.report.estimate = estimate;
+            self.chain.report.estimate = estimate;
             return Err(error);
         }
-        self.clock.time_s = end_s;
+        self.chain.clock.time_s = end_s;
         if inertia == Inertia::QuasiStatic {
-            self.report.estimate = estimate.follow(self, dt_s);
+            self.chain.report.estimate = estimate.follow(self, dt_s);
         }
         Ok(self.step_report())
     }
@@ -398,25 +417,25 @@ impl Mechanics for MassSpringModel {
         }
         let supports = self.support_arc_lengths(state);
         let next = self.on_shape(state, &supports).ok_or_else(|| unsupported(Unsupported::EmptyState))?;
-        impacts::refuse_buried(&next.mesh)?;
+        impacts::refuse_buried(&next.chain.mesh)?;
         *self = next;
         Ok(())
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
         if target_m.iter().all(|c| c.is_finite())
-            && let Some(d) = self.drives.targets.get_mut(support)
+            && let Some(d) = self.chain.drives.targets.get_mut(support)
         {
             *d = Some(target_m);
-            self.drives.by_spring[support] = false;
+            self.chain.drives.by_spring[support] = false;
         }
     }
 
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {
         self.drag_support(support, hand_m);
         let holds = |kind| matches!(kind, SupportKind::Fixed | SupportKind::Clamped);
-        if self.mesh.problem.supports.get(support).is_some_and(|s| holds(s.kind)) {
-            self.drives.by_spring[support] = true;
+        if self.chain.mesh.problem.supports.get(support).is_some_and(|s| holds(s.kind)) {
+            self.chain.drives.by_spring[support] = true;
         }
     }
 
@@ -425,7 +444,7 @@ impl Mechanics for MassSpringModel {
     }
 
     fn problem(&self) -> &Arc<Problem> {
-        &self.mesh.problem
+        &self.chain.mesh.problem
     }
 
     fn boxed_clone(&self) -> Box<dyn Mechanics> {

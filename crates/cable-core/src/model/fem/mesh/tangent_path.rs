@@ -32,6 +32,7 @@ pub struct End {
 
 impl End {
     /// A plain point.
+    #[inline]
     #[must_use]
     pub fn point(at: Vec2) -> Self {
         Self { center: at, radius: 0.0, mark: Vec2::x(), sense: 1.0 }
@@ -70,6 +71,7 @@ pub fn angle_between(a: Vec2, b: Vec2) -> f64 {
 
 impl Path {
     /// The way between two points.
+    #[inline]
     #[must_use]
     pub fn line(a: Vec2, b: Vec2) -> Self {
         let length = (b - a).norm();

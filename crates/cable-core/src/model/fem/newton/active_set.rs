@@ -70,6 +70,11 @@ impl PredictedContacts {
         self.right.extend_from_slice(right);
     }
 
+    /// The right side that was kept.
+    pub fn kept(&self) -> &[f64] {
+        &self.right
+    }
+
     /// Stops each node of a step at its landing gap, whatever its neighbours do.
     pub(in crate::model::fem) fn stop(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &mut [f64]) {
         let StepContext { mesh, contacts, .. } = *step;
@@ -131,12 +136,11 @@ impl PredictedContacts {
             step.copy_from_slice(right);
             let solved = if !coupling.is_empty() {
                 solve_coupled(&system.hessian, coupling, step).is_ok()
+            } else if stiffer {
+                factor.factor_and_solve(&system.hessian, step).is_ok()
             } else {
-                let sound = !stiffer || factor.factor(&system.hessian).is_ok();
-                if sound {
-                    factor.solve_in_place(step);
-                }
-                sound
+                factor.solve_in_place(step);
+                true
             };
             if !solved || !step.iter().all(|d| d.is_finite()) {
                 return;

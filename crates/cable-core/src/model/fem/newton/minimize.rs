@@ -15,6 +15,7 @@ use crate::contact::self_contact::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
+use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::contact_energy::{add_floor, add_friction, add_touch};
@@ -179,17 +180,11 @@ impl Workspace {
         let s = &mut self.system;
         s.hessian.clear();
         s.gradient.fill(0.0);
-        let mut value = 0.0;
-        self.magnitude = 0.0;
         let mut round = Rounding { tolerance: input.tolerance, ..Rounding::default() };
         // The undamped Newton does not use the energy, so its round-off is not estimated.
         let measured = self.carried.is_empty();
-        for e in 0..mesh.rest_length.len() {
-            let carried = self.carried.get(e).copied();
-            let (energy, size) = bar_energy::add(s, mesh, input, e, unknowns, curvature, carried);
-            value += energy;
-            self.magnitude += size;
-        }
+        let (mut value, size) = bar_energy::add_all(s, mesh, input, unknowns, curvature, &self.carried);
+        self.magnitude = size;
         if !input.coupling.is_empty() {
             value += add_coupling(s, input, x);
         }
@@ -214,8 +209,7 @@ impl Workspace {
                         scale * WORK_MAGNITUDE_FRACTION * (k * away.norm() + input.force[i].norm()) * x[i].norm();
                 }
                 s.add_gradient(i, (away * k - input.force[i]) * scale);
-                s.hessian.add(2 * i, 2 * i, k * scale);
-                s.hessian.add(2 * i + 1, 2 * i + 1, k * scale);
+                s.hessian.add_diagonal(2 * i, k * scale);
                 // Work is measured from the start of the step, so that its size is that of the
                 // change.
                 (0.5 * k * away.norm_squared(), input.force[i].dot(&(x[i] - input.start[i])))
@@ -262,17 +256,21 @@ impl Workspace {
         let accepted = larger(input.tolerance, known);
         let mut drift = Vec2::zeros();
         for node in 0..mesh.nodes() {
-            if mesh.held[node] || mesh.sliding[node].is_some_and(|s| s.sticks()) {
+            if mesh.held[node] || mesh.sliding[node].as_ref().is_some_and(SlidingNode::sticks) {
                 drift = Vec2::zeros();
                 continue;
             }
             let left = self.system.gradient_at(node) / node_scale(input, node);
             let slides = mesh.sliding[node].is_some();
             let r = if slides { left.x.abs() } else { left.norm() };
-            drift = if slides || input.moves { Vec2::zeros() } else { drift + left };
-            let adds_up = drift.norm() / mesh.tuning.newton.stretch_residual;
-            let most = larger(adds_up, worst.drift);
-            let excess = larger(r, adds_up) / accepted;
+            let mut most = worst.drift;
+            let mut counts = r;
+            if !input.moves {
+                drift = if slides { Vec2::zeros() } else { drift + left };
+                let adds_up = drift.norm() / mesh.tuning.newton.stretch_residual;
+                (most, counts) = (larger(adds_up, most), larger(r, adds_up));
+            }
+            let excess = counts / accepted;
             if !(excess <= worst.excess) && !worst.excess.is_nan() {
                 worst = Residual { force: r, node, excess, drift: most };
             }
@@ -324,11 +322,11 @@ impl Workspace {
             return solve_coupled(&s.hessian, &self.coupling, &mut self.direction).is_ok()
                 && self.direction.iter().all(|d| d.is_finite());
         }
-        if self.factor.factor(&s.hessian).is_err() {
+        self.ahead.keep(&self.direction);
+        if self.factor.factor_and_solve(&s.hessian, &mut self.direction).is_err() {
+            self.direction.copy_from_slice(self.ahead.kept());
             return false;
         }
-        self.ahead.keep(&self.direction);
-        self.factor.solve_in_place(&mut self.direction);
         self.direction.iter().all(|d| d.is_finite())
     }
 
@@ -445,12 +443,15 @@ impl Workspace {
         if free >= step.mesh.tuning.newton.free_step_fraction {
             return free;
         }
-        let downhill = self.slope();
-        self.plain.clone_from(&self.direction);
+        // The undamped Newton does not use the energy.
+        let needs_descent = self.carried.is_empty();
+        let downhill = if needs_descent { self.slope() } else { 0.0 };
+        if needs_descent {
+            self.plain.clone_from(&self.direction);
+        }
         let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
         self.ahead.solve(step, equations, &unknowns.positions, &mut self.direction);
-        // The undamped Newton does not use the energy.
-        if self.carried.is_empty() && !(self.slope() <= step.mesh.tuning.newton.min_descent_fraction * downhill) {
+        if needs_descent && !(self.slope() <= step.mesh.tuning.newton.min_descent_fraction * downhill) {
             self.direction.clone_from(&self.plain);
             return free;
         }

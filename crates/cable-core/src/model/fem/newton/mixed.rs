@@ -216,11 +216,11 @@ impl Workspace {
                 }
             }
             counted = part;
-            if self.factor.factor(&self.system.hessian).is_ok() {
-                self.ahead.keep(&self.direction);
-                self.factor.solve_in_place(&mut self.direction);
+            self.ahead.keep(&self.direction);
+            if self.factor.factor_and_solve(&self.system.hessian, &mut self.direction).is_ok() {
                 return self.direction.iter().all(|d| d.is_finite());
             }
+            self.direction.copy_from_slice(self.ahead.kept());
         }
         false
     }

@@ -44,6 +44,16 @@ impl Workspace {
                 continue;
             }
             let x = &unknowns.positions;
+            if slides == [false, false] {
+                let ends = [x[e], x[e + 1]];
+                if contacts.near.is_clear(
+                    e,
+                    [ends, [ends[0] + move_of(e) * free, ends[1] + move_of(e + 1) * free]],
+                    most,
+                ) {
+                    continue;
+                }
+            }
             let from = mesh.straight(e, x);
             let to = if slides == [false, false] {
                 [from[0] + move_of(e) * free, from[1] + move_of(e + 1) * free]
@@ -73,16 +83,14 @@ impl Workspace {
     ) -> f64 {
         let StepContext { mesh, contacts, .. } = *step;
         let still = |k: usize| self.direction[2 * k] == 0.0 && self.direction[2 * k + 1] == 0.0;
-        let plain = !contacts.own.shape.is_on()
-            && (0..mesh.nodes()).all(|k| mesh.sliding[k].is_none() && (!mesh.held[k] || still(k)));
-        if plain {
-            let gaps = self.touches.iter().map(|t| t.pair.gap.gap_m);
-            let least = gaps.fold(contacts.barrier.reach, |a, b| if b < a { b } else { a });
-            if fraction * longest(&self.direction) <= (1.0 - mesh.tuning.newton.kept_gap_fraction) * least {
-                return fraction;
-            }
-        }
-        self.free_way(step, unknowns, fraction)
+        let plain = || {
+            !contacts.own.shape.is_on()
+                && (0..mesh.nodes()).all(|k| mesh.sliding[k].is_none() && (!mesh.held[k] || still(k)))
+        };
+        let gaps = self.touches.iter().map(|t| t.pair.gap.gap_m);
+        let least = gaps.fold(contacts.barrier.reach, |a, b| if b < a { b } else { a });
+        let is_short = fraction * longest(&self.direction) <= (1.0 - mesh.tuning.newton.kept_gap_fraction) * least;
+        if is_short && plain() { fraction } else { self.free_way(step, unknowns, fraction) }
     }
 }
 

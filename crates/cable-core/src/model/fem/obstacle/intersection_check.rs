@@ -13,6 +13,7 @@ use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::Path;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::system::step_context::StepContext;
 use crate::problem::Problem;
 
 /// A cable among its obstacles, at given positions.
@@ -35,6 +36,11 @@ impl<'a> IntersectionCheck<'a> {
     /// Of a cable at positions `x` (m).
     pub(in crate::model::fem) fn at(cable: &'a CableState, x: &'a [Vec2]) -> Self {
         Self { problem: &cable.problem, mesh: &cable.mesh, reach: cable.contacts.barrier.reach, positions: x }
+    }
+
+    /// Of the cable of a step at positions `x` (m).
+    pub(in crate::model::fem) fn among(step: &StepContext<'a>, x: &'a [Vec2]) -> Self {
+        Self { problem: step.problem, mesh: step.mesh, reach: step.contacts.barrier.reach, positions: x }
     }
 
     /// True if a bar meets nothing.

@@ -12,47 +12,16 @@
 
 use crate::math::{Vec2, bounded, perp};
 use crate::model::Inertia;
-use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
-use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
+use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::remesh::arc_nodes::{move_marks, wind};
+use crate::model::fem::remesh::criteria::{Criteria, Share};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::momentum::attribute_to;
 use crate::model::fem::state::step_setup::renew_input;
 use crate::model::fem::system::floor_friction;
-use crate::model::fem::system::mesh::Mesh;
-use crate::model::fem::system::step_input::load_scale;
-use crate::problem::Problem;
-
-/// Least part of the material between two nodes on each side of a node put between them.
-const LEAST_PART: f64 = 1e-3;
-
-/// The shares of two bars in their material where their paths change.
-#[derive(Clone, Copy, Debug)]
-struct Share {
-    /// Part of the first.
-    first: f64,
-    /// Growth of the strain of stretched bars; less than zero: the slack that is left.
-    added_strain: f64,
-}
-
-impl Share {
-    /// Ways (m), how much each bar is stretched (length over unstretched length), and the
-    /// unstretched length of both (m). What is stretched keeps its strain and takes what it needs
-    /// for that from what is slack; where that is not enough both are stretched by as much more.
-    fn of(ways: [f64; 2], stretch: [f64; 2], whole: f64) -> Self {
-        let needs = [0, 1].map(|j| if stretch[j] > 1.0 { ways[j] / stretch[j] } else { ways[j] });
-        let sum = needs[0] + needs[1];
-        let first = match stretch.map(|s| s > 1.0) {
-            [true, false] if sum < whole => needs[0] / whole,
-            [false, true] if sum < whole => 1.0 - needs[1] / whole,
-            _ => needs[0] / sum,
-        };
-        Self { first: bounded(first, LEAST_PART, 1.0 - LEAST_PART), added_strain: sum / whole - 1.0 }
-    }
-}
 
 /// The effect of a change of the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -104,7 +73,9 @@ fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool)
             Some(SlideOver::Pulley(support)) => {
                 cable.problem.supports.get(support).is_none_or(|s| !s.holds_from(cable.motion.time))
             }
-            Some(slide_over @ SlideOver::Obstacle { .. }) => !kept.contains(&slide_over) && lifts_off(cable, k),
+            Some(slide_over @ SlideOver::Obstacle { .. }) => {
+                !kept.contains(&slide_over) && Criteria::of(cable).lifts_off(k)
+            }
         };
         if leaves
             && cable.mesh.runs_straight(k, &cable.motion.positions)
@@ -112,7 +83,7 @@ fn remove_sliding_nodes(cable: &mut CableState, kept: &[SlideOver], rests: bool)
         {
             remove(cable, k);
             changed = true;
-        } else if leaves && (rests || settles_unstretched(cable, k)) && settle_down(cable, k) {
+        } else if leaves && (rests || Criteria::of(cable).settles_unstretched(k)) && settle_down(cable, k) {
             changed = true;
             k += 1;
         } else if leaves && rests && IntersectionCheck::of(cable).clear_without(k) {
@@ -205,30 +176,6 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     true
 }
 
-/// True if a sliding node on an obstacle is pulled away from it, or is in the way of a node
-/// that has to pass.
-fn lifts_off(cable: &CableState, k: usize) -> bool {
-    let Some(node) = cable.mesh.sliding[k] else { return false };
-    let beside = |j: usize| cable.mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
-    let fixed = |j: usize| cable.mesh.sliding[j].is_none() && !cable.meshing.removable(&cable.mesh, j);
-    let blocked = [k - 1, k + 1].into_iter().any(|j| {
-        fixed(j) && cable.mesh.material_between(j, k) < cable.mesh.tuning.remesh.removed_distance * cable.even()
-    });
-    if blocked {
-        return true;
-    }
-    if beside(k - 1) || beside(k + 1) {
-        return false;
-    }
-    let Some(load) = cable.load(k) else { return false };
-    let (turn, tension) = (cable.mesh.turn(k, &cable.motion.positions), 0.5 * (load.tension[0] + load.tension[1]));
-    load.normal < 0.0
-        || turn < 0.0
-        || IntersectionCheck::of(cable).beyond_its_corner(k)
-        || (tension < cable.mesh.tuning.remesh.material_tension_weights * cable.meshing.bar_weight
-            && turn < 2.0 * cable.mesh.tuning.remesh.max_left_half_turn_rad)
-}
-
 /// Puts sliding nodes where corners and circles press; returns what they slide over.
 fn add_sliding_nodes(cable: &mut CableState, rests: bool) -> Vec<SlideOver> {
     let mut taken = Vec::new();
@@ -238,22 +185,23 @@ fn add_sliding_nodes(cable: &mut CableState, rests: bool) -> Vec<SlideOver> {
     let mut touches = std::mem::take(&mut cable.meshing.found);
     for _ in 0..cable.mesh.tuning.remesh.max_changes {
         cable.contacts.find(&cable.problem, &cable.mesh, &cable.motion.positions, &mut touches);
+        let criteria = Criteria::of(cable);
         let found = touches.iter().find_map(|t| {
             let pressed = t.pair.weight > 0.0 && t.load(&cable.contacts.barrier) > 0.0 && t.pair.gap.feature % 2 == 1;
             let (bar, arc_length, sliding) =
-                if pressed { sliding_node_for(cable, t.node, t.on_segment, &t.pair.gap)? } else { return None };
+                if pressed { criteria.sliding_node_for(t.node, t.on_segment, &t.pair.gap)? } else { return None };
             let near = cable.mesh.tuning.remesh.removed_distance * cable.even();
             let node = [bar, bar + 1].into_iter().find(|&k| {
                 cable.meshing.removable(&cable.mesh, k) && (cable.mesh.arc_length[k] - arc_length).abs() < near
             });
             let beside = node.map_or([bar, bar + 1], |k| [k - 1, k + 1]);
-            if !fits(cable, beside, &sliding) {
+            if !criteria.fits(beside, &sliding) {
                 return None;
             }
             let s = beside.map(|k| cable.mesh.arc_length[k]);
             let arc_length = match rests {
                 true => arc_length,
-                false => s[0] + share_of_sliding(cable, beside, &sliding)?.first * (s[1] - s[0]),
+                false => s[0] + criteria.share_of_sliding(beside, &sliding)?.first * (s[1] - s[0]),
             };
             Some((bar, node, arc_length, sliding))
         });
@@ -267,146 +215,6 @@ fn add_sliding_nodes(cable: &mut CableState, rests: bool) -> Vec<SlideOver> {
     }
     cable.meshing.found = touches;
     taken
-}
-
-/// The share of the material between two nodes of a cable in motion where a sliding node comes
-/// between them; None where the cable is not taut, pulled by less than what its own speed
-/// across, hitting something, would make of it, or where the node would stretch it.
-fn share_of_sliding(cable: &CableState, [before, after]: [usize; 2], sliding: &SlidingNode) -> Option<Share> {
-    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
-    let ways = [Path::between(&mesh.end(before, x), &sliding.end), Path::between(&sliding.end, &mesh.end(after, x))];
-    let stretch = [before, after - 1].map(|e| mesh.path(e, x).length / mesh.rest_length[e]);
-    let whole = (before..after).map(|e| mesh.rest_length[e]).sum();
-    let share = Share::of(ways.map(|w| w.length), stretch, whole);
-    let near = mesh.arc_length[before] - cable.mesh.tuning.remesh.neighbourhood_m
-        ..mesh.arc_length[after] + cable.mesh.tuning.remesh.neighbourhood_m;
-    let speed = |k: usize| {
-        if mesh.sliding[k].is_some() { cable.motion.slide_rates[k].abs() } else { cable.motion.velocities[k].norm() }
-    };
-    let fastest = (0..mesh.nodes())
-        .filter(|&k| near.contains(&mesh.arc_length[k]))
-        .map(speed)
-        .fold(0.0, |a: f64, b| if b <= a { a } else { b });
-    let wave = (mesh.axial_stiffness / cable.problem.linear_density).sqrt();
-    let impact = cable.mesh.tuning.remesh.impact_tension * mesh.axial_stiffness * (fastest / wave).powf(4.0 / 3.0);
-    let tension = cable.mesh.lesser_tension(stretch);
-    (tension > impact && may_change(&cable.problem, mesh, tension, &share)).then_some(share)
-}
-
-/// True if a sliding node that becomes a plain one leaves a cable in motion as tense as it is.
-fn settles_unstretched(cable: &CableState, k: usize) -> bool {
-    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
-    let Some(end) = mesh.sliding[k].map(|s| s.end) else { return false };
-    let half = (0.5 * cable.mesh.turn(k, &cable.motion.positions)).abs();
-    let longer = end.radius * (half.tan() - half);
-    let lengths = [k - 1, k].map(|e| mesh.path(e, x).length);
-    let stretch = [0, 1].map(|j| lengths[j] / mesh.rest_length[k - 1 + j]);
-    let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
-    half < cable.mesh.tuning.remesh.max_tangent_half_turn_rad
-        && may_change(
-            &cable.problem,
-            mesh,
-            mesh.lesser_tension(stretch),
-            &Share::of(lengths.map(|l| l + longer), stretch, whole),
-        )
-}
-
-/// True if a change of the mesh adds so little to a tension (N) that it does not show.
-fn may_change(problem: &Problem, mesh: &Mesh, tension: f64, share: &Share) -> bool {
-    let weight = load_scale(problem).0 * problem.length;
-    let tuning = &mesh.tuning.remesh;
-    mesh.axial_stiffness * share.added_strain < tuning.max_tension_change * (tension + tuning.weight_fraction * weight)
-}
-
-/// True if a sliding node between two nodes would bend the cable the right way and its bars
-/// would meet nothing.
-fn fits(cable: &CableState, [before, after]: [usize; 2], sliding: &SlidingNode) -> bool {
-    let x = &cable.motion.positions;
-    let paths = [
-        Path::between(&cable.mesh.end(before, x), &sliding.end),
-        Path::between(&sliding.end, &cable.mesh.end(after, x)),
-    ];
-    let slide_over = |k: usize| cable.mesh.sliding[k].as_ref();
-    let nodes = [[slide_over(before), Some(sliding)], [Some(sliding), slide_over(after)]];
-    let turn = if sliding.end.radius > 0.0 {
-        paths[0].arcs[1] + paths[1].arcs[0]
-    } else {
-        sliding.end.sense * angle_between(paths[0].direction, paths[1].direction)
-    };
-    // Nor may it turn a neighbour the wrong way.
-    let beside = |k: usize, arc: f64, e: usize, j: usize| {
-        cable.mesh.sliding[k].is_none_or(|s| {
-            s.feature().is_none()
-                || s.shares_round(sliding)
-                || arc + cable.mesh.path(e, x).arcs[j] > -cable.mesh.tuning.remesh.max_reverse_turn_rad
-        })
-    };
-    let sides = (before == 0 || beside(before, paths[0].arcs[0], before - 1, 1))
-        && (after + 1 == cable.mesh.nodes() || beside(after, paths[1].arcs[1], after, 0));
-    turn > -cable.mesh.tuning.remesh.max_reverse_turn_rad
-        && sides
-        && (0..2).all(|j| IntersectionCheck::of(cable).way_is_clear(&paths[j], nodes[j]))
-}
-
-/// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc
-/// length and itself.
-fn sliding_node_for(
-    cable: &CableState,
-    node: usize,
-    on_segment: bool,
-    gap: &crate::contact::Gap,
-) -> Option<(usize, f64, SlidingNode)> {
-    let (mesh, x, last) = (&cable.mesh, &cable.motion.positions, cable.mesh.nodes() - 1);
-    let (center, radius) = round_of(
-        cable.problem.world.geometry(),
-        gap.feature,
-        IntersectionCheck::of(cable).clearance(gap.feature),
-        cable.mesh.tuning.remesh.min_turn_rad,
-    )?;
-    let (bar, fraction) = match (on_segment, node) {
-        (true, e) => (e, gap.fraction),
-        (false, k) if k > 0 && k < last => (k - 1, 1.0),
-        (false, _) => return None,
-    };
-    let path = mesh.path(bar, x);
-    let along = if on_segment { path.direction } else { path.direction + mesh.path(node, x).direction };
-    let sense = if gap.normal.dot(&perp(along)) > 0.0 { -1.0 } else { 1.0 };
-    // A cable folded back on itself at an obstacle runs neither way round it, one that is bent
-    // away from it hits it with a node.
-    if !on_segment
-        && (along.norm() < cable.mesh.tuning.remesh.fold_direction_sum
-            || cable.mesh.turn(node, &cable.motion.positions) * sense < 0.0)
-    {
-        return None;
-    }
-    // Seen from beyond the bar the cable must bend round the corner, and be taut.
-    let first = bar.saturating_sub(1);
-    let beyond = (bar + 1).min(last - 1);
-    let wrap = sense * angle_between(mesh.path(first, x).direction, mesh.path(beyond, x).direction);
-    let tension = mesh.bar(bar).tension(path.length);
-    if !(wrap > 0.0 && tension > cable.mesh.tuning.remesh.sliding_tension_weights * cable.meshing.bar_weight) {
-        return None;
-    }
-    let s = [mesh.arc_length[bar], mesh.arc_length[bar + 1]];
-    let near = cable.mesh.tuning.remesh.removed_distance * cable.even();
-    // The ends of a cable and what hangs on it stay clear of corners.
-    let from_start = fraction * (s[1] - s[0]);
-    let from_end = (1.0 - fraction) * (s[1] - s[0]);
-    if (from_start < near && !cable.meshing.removable(&cable.mesh, bar))
-        || (from_end < near && !cable.meshing.removable(&cable.mesh, bar + 1))
-    {
-        return None;
-    }
-    if cable.meshing.bends_visibly(&cable.mesh, cable.problem.length, tension) {
-        return None;
-    }
-    let before = path.arcs[0] * mesh.end(bar, x).radius;
-    let part = if path.length > 0.0 { (before + fraction * path.straight) / path.length } else { fraction };
-    let arc_length = s[0] + bounded(part, LEAST_PART, 1.0 - LEAST_PART) * (s[1] - s[0]);
-    let end = End { center, radius, mark: gap.normal, sense };
-    let slide_over = SlideOver::Obstacle { obstacle: gap.obstacle, feature: gap.feature };
-    let sliding = SlidingNode::new(end, gap.friction, slide_over);
-    Some((bar, arc_length, sliding))
 }
 
 /// Takes out plain nodes in the way of a new sliding node.

@@ -2,4 +2,5 @@
 
 pub(in crate::model::fem) mod adapt;
 pub(in crate::model::fem) mod arc_nodes;
+mod criteria;
 pub(in crate::model::fem) mod edit;

@@ -160,7 +160,7 @@ impl CableState {
 
     /// Length of an even bar, m of arc length.
     pub(in crate::model::fem) fn even(&self) -> f64 {
-        self.problem.length / self.meshing.even_bars as f64
+        self.meshing.even(self.problem.length)
     }
 
     /// The barrier's stiffness follows the greatest tension: see [`ContactSet::adapt_stiffness`].
@@ -186,7 +186,7 @@ impl CableState {
 
     /// Steps without inertia that keep every support's move below half an element.
     pub(in crate::model::fem) fn static_steps(&self, end: f64, dragged: &[Option<Vec2>]) -> f64 {
-        let even = self.problem.length / self.meshing.even_bars as f64;
+        let even = self.even();
         let mut most: f64 = 0.0;
         for (k, s) in self.problem.supports.iter().enumerate() {
             if let (Some((at, _)), Some(now)) = (s.position_at(end), self.support_position(k)) {

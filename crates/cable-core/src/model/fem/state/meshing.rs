@@ -31,6 +31,11 @@ impl Meshing {
         self.bar_weight / 0.1
     }
 
+    /// Length of an even bar of a cable of this length, m of arc length.
+    pub(in crate::model::fem) fn even(&self, length: f64) -> f64 {
+        length / self.even_bars as f64
+    }
+
     /// True if a node is there for nothing but the mesh.
     pub(in crate::model::fem) fn removable(&self, mesh: &Mesh, k: usize) -> bool {
         k > 0

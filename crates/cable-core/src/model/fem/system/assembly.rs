@@ -38,6 +38,7 @@ impl System {
 
     /// Adds a 2×2 block; a block on the diagonal (`i == j`) must be symmetric, and of a pair (i,
     /// j), (j, i) with `i != j` only one is to be added.
+    #[inline]
     pub fn add_block(&mut self, i: usize, j: usize, block: &Mat2) {
         let b = block;
         if i <= j {
@@ -48,12 +49,14 @@ impl System {
     }
 
     /// Adds a force gradient (N) at a node.
+    #[inline]
     pub fn add_gradient(&mut self, node: usize, gradient: Vec2) {
         self.gradient[2 * node] += gradient.x;
         self.gradient[2 * node + 1] += gradient.y;
     }
 
     /// The gradient at a node, N.
+    #[inline]
     #[must_use]
     pub fn gradient_at(&self, node: usize) -> Vec2 {
         Vec2::new(self.gradient[2 * node], self.gradient[2 * node + 1])

@@ -23,6 +23,7 @@ use crate::model::fem::system::step_input::{StepInput, Unknowns, WORK_MAGNITUDE_
 /// sideways between its nodes instead of pushing. With any part of EA slack cables stand in arches
 /// on the ground and push their supports (a hundredth: 5.7 kN of a power cable that lies loose). A
 /// cable with bending stiffness does push.
+#[inline]
 #[must_use]
 pub fn stiffness(mesh: &Mesh, stretched: bool) -> f64 {
     if stretched || !mesh.is_flexible() { mesh.axial_stiffness } else { 0.0 }
@@ -118,6 +119,7 @@ pub fn lifted(mesh: &Mesh, body: Vec2, e: usize, j: usize, x: &[Vec2]) -> f64 {
 
 /// The pull at the present length P of a bar between nodes that move with the material, and its
 /// slope by P, N and N/m.
+#[inline]
 #[must_use]
 pub fn pull(mesh: &Mesh, input: &StepInput, e: usize, taut: bool, p: f64) -> (f64, f64) {
     let l = mesh.rest_length[e];
@@ -126,22 +128,44 @@ pub fn pull(mesh: &Mesh, input: &StepInput, e: usize, taut: bool, p: f64) -> (f6
     (stiffness * (p / l - 1.0) + loss, stiffness / l + slope)
 }
 
-/// Adds the bar `e`; returns its energy and the size of what was summed (its rounding counted in),
-/// J. The stiffness across the bar is that of the pull `carried`, if there is one, not that of its
+/// Adds all bars; returns their energy and the size of what was summed (its rounding counted in),
+/// J. The stiffness across a bar is that of the pull `carried`, if there are such, not that of its
 /// present length.
-pub fn add(
+pub fn add_all(
+    s: &mut System,
+    mesh: &Mesh,
+    input: &StepInput,
+    unknowns: &Unknowns,
+    curvature: Curvature,
+    carried: &[Carried],
+) -> (f64, f64) {
+    let (mut energy, mut size) = (0.0, 0.0);
+    let mut slides = mesh.sliding.first().is_some_and(Option::is_some);
+    for e in 0..mesh.rest_length.len() {
+        let next = mesh.sliding[e + 1].is_some();
+        let (more, sized) = if slides || next {
+            add_sliding(s, mesh, input, e, unknowns, curvature)
+        } else {
+            add(s, mesh, input, e, &unknowns.positions, curvature, carried.get(e))
+        };
+        (energy, size) = (energy + more, size + sized);
+        slides = next;
+    }
+    (energy, size)
+}
+
+/// Adds the bar `e`, which has no sliding node.
+#[inline(always)]
+fn add(
     s: &mut System,
     mesh: &Mesh,
     input: &StepInput,
     e: usize,
-    unknowns: &Unknowns,
+    x: &[Vec2],
     curvature: Curvature,
-    carried: Option<Carried>,
+    carried: Option<&Carried>,
 ) -> (f64, f64) {
-    if mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
-        return add_sliding(s, mesh, input, e, unknowns, curvature);
-    }
-    let d = unknowns.positions[e + 1] - unknowns.positions[e];
+    let d = x[e + 1] - x[e];
     let (p, l, scale) = (d.norm(), mesh.rest_length[e], input.scale[e]);
     let t = if p > 0.0 { d / p } else { Vec2::x() };
     let taut = carried.map_or(!(p < l), |c| c.taut);
@@ -153,16 +177,17 @@ pub fn add(
     let clip = curvature == Curvature::Clipped && across < 0.0;
     let geometric = if p > 0.0 && !clip { scale * across / p } else { 0.0 };
     let along = scale * (stiffness + c) - geometric;
-    s.add_gradient(e, -t * (pull * scale));
-    s.add_gradient(e + 1, t * (pull * scale));
+    let gradient = t * (pull * scale);
+    if let Some([ax, ay, bx, by]) = s.gradient.get_mut(2 * e..).and_then(|g| g.first_chunk_mut()) {
+        *ax -= gradient.x;
+        *ay -= gradient.y;
+        *bx += gradient.x;
+        *by += gradient.y;
+    }
     s.hessian.add_spring(2 * e, [along * t.x * t.x + geometric, along * t.x * t.y, along * t.y * t.y + geometric]);
     let energy = 0.5 * scale * (stiffness * (p - l) * (p - l) + 2.0 * input.loss_energy(e, lossy, l, p));
     // The undamped Newton does not use the energy, so its round-off is not estimated.
-    let rounding = if carried.is_some() {
-        0.0
-    } else {
-        scale * WORK_MAGNITUDE_FRACTION * pull.abs() * unknowns.positions[e].norm()
-    };
+    let rounding = if carried.is_some() { 0.0 } else { scale * WORK_MAGNITUDE_FRACTION * pull.abs() * x[e].norm() };
     (energy, energy + rounding)
 }
 

@@ -316,7 +316,7 @@ mod tests {
             let energy = |x: &[Vec2], slide: &[f64]| {
                 let mut s = System::new(&mesh);
                 let unknowns = Unknowns { positions: x.to_vec(), slides: slide.to_vec() };
-                (bar_energy::add(&mut s, &mesh, &input, 0, &unknowns, Curvature::Exact, None).0, s)
+                (bar_energy::add_all(&mut s, &mesh, &input, &unknowns, Curvature::Exact, &[]).0, s)
             };
             let mut slides = [0.0; 2];
             slides[1 - j] = slide;

@@ -9,6 +9,7 @@ use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{StepInput, Unknowns, node_scale};
 
 /// Adds a force gradient and a block shared by the nodes of a touch; those that slide feel neither.
+#[inline]
 pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &ContactPair, gradient: Vec2, block: &Mat2) {
     let (node, [a, b]) = (touch.node, touch.shares());
     let moves = |k: usize| mesh.sliding[k].is_none();

@@ -31,6 +31,7 @@ pub struct ContactPair {
 
 impl ContactPair {
     /// Weights of the two nodes that carry it.
+    #[inline]
     #[must_use]
     pub fn shares(&self) -> [f64; 2] {
         if self.on_segment { [1.0 - self.pair.gap.fraction, self.pair.gap.fraction] } else { [1.0, 0.0] }
@@ -44,6 +45,7 @@ impl ContactPair {
     }
 
     /// A field's value at the touching point.
+    #[inline]
     #[must_use]
     pub fn interpolate(&self, x: &[Vec2]) -> Vec2 {
         let [a, b] = self.shares();
@@ -51,12 +53,14 @@ impl ContactPair {
     }
 
     /// Direction in which friction acts: the normal turned clockwise.
+    #[inline]
     #[must_use]
     pub fn tangent(&self) -> Vec2 {
         Vec2::new(self.pair.gap.normal.y, -self.pair.gap.normal.x)
     }
 
     /// Normal force, N.
+    #[inline]
     #[must_use]
     pub fn load(&self, barrier: &Barrier) -> f64 {
         -barrier.at(self.pair.gap.gap_m).slope * self.pair.weight
@@ -118,12 +122,14 @@ pub struct FrictionContact {
 
 impl FrictionContact {
     /// True if it is the friction of a touch, wherever that is now.
+    #[inline]
     fn is_of(&self, touch: &ContactPair) -> bool {
         let key = |t: &ContactPair| (t.node, t.on_segment, t.pair.gap.feature);
         key(&self.touch) == key(touch)
     }
 
     /// Sliding since the anchor, m.
+    #[inline]
     #[must_use]
     pub fn sliding(&self, x: &[Vec2]) -> f64 {
         self.slid + self.tangent.dot(&(self.touch.interpolate(x) - self.origin))
@@ -243,22 +249,25 @@ impl ContactSet {
             return;
         }
         let (geometry, last) = (problem.world.geometry(), x.len().saturating_sub(1));
-        let mut before: Option<Vec2> = None;
+        let plain = |e: usize| mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none();
         for node in 0..x.len() {
+            if node < last && plain(node) && self.near.is_clear(node, [[x[node], x[node + 1]]], reach) {
+                continue;
+            }
             let ends = (node < last).then(|| mesh.straight(node, x));
             let listed = match ends {
                 Some(ends) => self.near.of(node, [ends], reach),
                 None => last.checked_sub(1).and_then(|e| self.near.of(e, [mesh.straight(e, x)], reach)),
             };
-            let chain = [before, Some(x[node]), ends.map(|e| e[1])];
-            before = ends.map(|e| e[0]);
             if listed.is_some_and(<[_]>::is_empty) {
                 continue;
             }
             if mesh.is_free(node) {
+                let before = node.checked_sub(1).map(|e| mesh.straight(e, x)[0]);
+                let chain = [before, Some(x[node]), ends.map(|e| e[1])];
                 let mut keep = |pair| out.push(ContactPair { node, on_segment: false, pair });
                 match listed {
-                    Some(parts) => geometry.node_pairs_among(parts.iter().copied(), chain, reach, &mut keep),
+                    Some(parts) => geometry.node_pairs_among(parts.iter().copied(), &chain, reach, &mut keep),
                     None => geometry.node_pairs(chain[0], x[node], chain[2], reach, &mut keep),
                 }
             }
@@ -280,12 +289,12 @@ impl ContactSet {
     pub fn out_of_reach(&self, mesh: &Mesh, [from, to]: [&[Vec2]; 2]) -> bool {
         (0..mesh.rest_length.len()).all(|e| {
             let ways = [mesh.straight(e, from), mesh.straight(e, to)];
-            self.near.of(e, ways, self.barrier.reach).is_some_and(<[_]>::is_empty)
+            self.near.listed(e, ways, self.barrier.reach).is_some_and(<[_]>::is_empty)
         })
     }
 
     /// Lists what each bar can come near to while its nodes move from `x` by no more than `most`
-    /// says, with room to spare, unless the lists at hand are good for that.
+    /// says, with room to spare, unless the lists at hand are good for that, and measures its gap.
     pub fn look_around(&mut self, problem: &Problem, mesh: &Mesh, x: &[Vec2], most: impl Fn(usize) -> f64) {
         if problem.world.is_empty() {
             return;
@@ -294,9 +303,12 @@ impl ContactSet {
         let bars = mesh.rest_length.len();
         let good = |e: usize| {
             let need = self.barrier.reach + move_of(e) + self.tuning.listed_move_m;
-            self.near.of(e, [mesh.straight(e, x)], need).is_some()
+            self.near.listed(e, [mesh.straight(e, x)], need).is_some()
         };
         if self.near.len() == bars && (0..bars).all(good) {
+            for e in 0..bars {
+                self.near.measure(problem.world.geometry(), e, mesh.straight(e, x));
+            }
             return;
         }
         self.near.clear();

@@ -101,12 +101,14 @@ impl Mesh {
     }
 
     /// Number of nodes.
+    #[inline]
     #[must_use]
     pub fn nodes(&self) -> usize {
         self.arc_length.len()
     }
 
     /// True if nothing resists bending.
+    #[inline]
     #[must_use]
     pub fn is_flexible(&self) -> bool {
         self.bending_stiffness == 0.0
@@ -125,6 +127,7 @@ impl Mesh {
     }
 
     /// The way of bar `e`.
+    #[inline]
     #[must_use]
     pub fn path(&self, e: usize, x: &[Vec2]) -> Path {
         if self.sliding[e].is_none() && self.sliding[e + 1].is_none() {
@@ -134,18 +137,21 @@ impl Mesh {
     }
 
     /// Ends of the straight part of bar `e`, m.
+    #[inline]
     #[must_use]
     pub fn straight(&self, e: usize, x: &[Vec2]) -> [Vec2; 2] {
         if self.sliding[e].is_none() && self.sliding[e + 1].is_none() { [x[e], x[e + 1]] } else { self.path(e, x).ends }
     }
 
     /// Features that the ends of bar `e` run round.
+    #[inline]
     #[must_use]
     pub fn rounds(&self, e: usize) -> [Option<usize>; 2] {
         [e, e + 1].map(|k| self.sliding[k].as_ref().and_then(SlidingNode::feature))
     }
 
     /// True if a node moves with the material and nothing prescribes where it is.
+    #[inline]
     #[must_use]
     pub fn is_free(&self, k: usize) -> bool {
         !self.held[k] && self.sliding[k].is_none()

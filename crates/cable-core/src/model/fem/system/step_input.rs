@@ -86,6 +86,7 @@ impl StepInput {
     /// Force of the loss of bar `e` of rest length `l` at a length `p` (m), and its slope by that,
     /// N and N/m: c (P − P̂)/L, and where it is slack that of P = L with the slope of a slack bar
     /// from there on.
+    #[inline]
     #[must_use]
     pub fn loss_at(&self, e: usize, taut: bool, l: f64, p: f64) -> (f64, f64) {
         let [c, slack] = self.loss.get(e).copied().unwrap_or_default();
@@ -98,6 +99,7 @@ impl StepInput {
     }
 
     /// The energy of which that is the slope, J.
+    #[inline]
     #[must_use]
     pub fn loss_energy(&self, e: usize, taut: bool, l: f64, p: f64) -> f64 {
         let [c, slack] = self.loss.get(e).copied().unwrap_or_default();
@@ -109,6 +111,7 @@ impl StepInput {
     }
 
     /// EA τ a of a bar with a sliding node, N.
+    #[inline]
     #[must_use]
     pub fn damping(&self, e: usize) -> f64 {
         self.loss.get(e).map_or(0.0, |c| c[0])
@@ -192,6 +195,7 @@ pub struct Converged {
 }
 
 /// Factor of the equations of a node.
+#[inline]
 pub(in crate::model::fem) fn node_scale(input: &StepInput, node: usize) -> f64 {
     input.scale.get(node.saturating_sub(1)).copied().unwrap_or(1.0)
 }

@@ -3,8 +3,9 @@
 
 use crate::error::{FailureCause, SolveError};
 use crate::math::smaller;
+use crate::model::Settings;
 use crate::model::gauge::TensionGauge;
-use crate::model::mass_spring::MassSpringModel;
+use crate::model::mass_spring::ChainState;
 use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;
 use crate::model::mass_spring::dynamics::sliding::slide;
 use crate::model::mass_spring::dynamics::supports::HandSettings;
@@ -14,99 +15,96 @@ use crate::model::mass_spring::mesh::edit::release_pulleys;
 use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::problem::Problem;
 
-/// This block is the explicit integrator: the one place of the model that sets every part in
-/// motion.
-impl MassSpringModel {
-    /// Advances by `dt_s` in equal sub-steps below the stability limit, shorter where motion is
-    /// fast.
-    pub(in crate::model::mass_spring) fn integrate(
-        &mut self,
-        dt_s: f64,
-        gauge: &mut TensionGauge,
-    ) -> Result<(), SolveError> {
-        let (begin, end) = (self.clock.time_s, self.clock.time_s + dt_s);
-        release_pulleys(&mut self.mesh, begin);
-        self.remesh();
-        let hand_settings = HandSettings::of(&self.settings);
-        let tuning = self.mesh.tuning.sub_step;
-        let mut stable = stable_step(&self.mesh);
-        let mut count = 0;
-        let mut left = dt_s;
-        let mut shortest = f64::INFINITY;
-        let mut guard = RunawayGuard::new(&self.mesh.problem, begin);
-        // Material only slides over pulleys.
-        let points = if self.mesh.wheels.pulleys.is_empty() && gauge.knows(&self.mesh.arc_length) {
-            GaugePoints::Nodes
-        } else {
-            GaugePoints::Others
-        };
-        while left > 0.0 {
-            let fastest = guard.limit(&mut self.mesh, &mut self.drives, self.clock.time_s);
-            let travel = tuning.max_travel_radii * self.mesh.problem.radius / fastest;
-            let limit = if !self.mesh.problem.world.is_empty() && travel < stable { travel } else { stable };
-            let h = until_release(&self.mesh.problem, self.clock.time_s, left / (left / limit).ceil());
-            if let Some(e) = self.mesh.non_finite(self.clock.time_s) {
-                return Err(e);
-            }
-            if h < tuning.min_stable_fraction * if stable < dt_s { stable } else { dt_s } {
-                let node = self.mesh.velocity.iter().position(|v| v.norm() >= fastest).unwrap_or(0);
-                return Err(SolveError::StepFailed {
-                    model: crate::Model::MassSpring,
-                    time_s: self.clock.time_s,
-                    dt_s: h,
-                    residual_n: self.mesh.force[node].norm(),
-                    place: self.mesh.problem.place(
-                        self.mesh.arc_length[node],
-                        self.mesh.position[node],
-                        self.clock.time_s,
-                    ),
-                    cause: FailureCause::RunawaySpeed { speed_m_per_s: fastest },
-                });
-            }
-            left -= h;
-            self.clock.time_s = end - left;
-            release_pulleys(&mut self.mesh, self.clock.time_s);
-            let (mesh, account) = (&mut self.mesh, &mut self.report.account);
-            self.drives.move_nodes(mesh, &self.clock, hand_settings.max_speed_m_per_s, account, h);
-            hands::follow(&mut self.drives, mesh, hand_settings, h);
-            nodal::update(mesh, self.clock.time_s);
-            record(mesh, gauge, points, self.clock.time_s);
-            // Velocities go with the middle of a sub-step: from that of the last one to that of
-            // this. A motion that begins has half a kick; with a whole one all falls g h t/2 too
-            // far, an error of first order.
-            let kick = self.clock.behind_s + 0.5 * h;
-            self.clock.behind_s = 0.5 * h;
-            let step = SubStep { length_s: h, kick_s: kick };
-            hands::pull(&self.drives, mesh, account, step);
-            slide(mesh, step);
-            for i in 0..mesh.position.len() {
-                if !mesh.supported[i] {
-                    mesh.velocity[i] += mesh.force[i] * (kick / mesh.mass[i]);
-                }
-            }
-            account.add_kick(mesh, self.clock.time_s, kick);
-            self.drives.correct_released(mesh, account, kick - 0.5 * h);
-            impacts::floor_friction(mesh, account, kick);
-            impacts::apply(&mut self.contacts, mesh, account, h);
-            for i in 0..mesh.position.len() {
-                mesh.position[i] += mesh.velocity[i] * h;
-            }
-            if !mesh.wheels.pulleys.is_empty() {
-                mesh.update_pulley_elements();
-                self.remesh();
-                stable = stable_step(&self.mesh);
-            }
-            count += 1;
-            shortest = if h < shortest { h } else { shortest };
+/// Advances by `dt_s` in equal sub-steps below the stability limit, shorter where motion is
+/// fast.
+pub(in crate::model::mass_spring) fn integrate(
+    chain: &mut ChainState,
+    settings: &Settings,
+    dt_s: f64,
+    gauge: &mut TensionGauge,
+) -> Result<(), SolveError> {
+    let (begin, end) = (chain.clock.time_s, chain.clock.time_s + dt_s);
+    release_pulleys(&mut chain.mesh, begin);
+    chain.remesh();
+    let hand_settings = HandSettings::of(settings);
+    let tuning = chain.mesh.tuning.sub_step;
+    let mut stable = stable_step(&chain.mesh);
+    let mut count = 0;
+    let mut left = dt_s;
+    let mut shortest = f64::INFINITY;
+    let mut guard = RunawayGuard::new(&chain.mesh.problem, begin);
+    // Material only slides over pulleys.
+    let points = if chain.mesh.wheels.pulleys.is_empty() && gauge.knows(&chain.mesh.arc_length) {
+        GaugePoints::Nodes
+    } else {
+        GaugePoints::Others
+    };
+    while left > 0.0 {
+        let fastest = guard.limit(&mut chain.mesh, &mut chain.drives, chain.clock.time_s);
+        let travel = tuning.max_travel_radii * chain.mesh.problem.radius / fastest;
+        let limit = if !chain.mesh.problem.world.is_empty() && travel < stable { travel } else { stable };
+        let h = until_release(&chain.mesh.problem, chain.clock.time_s, left / (left / limit).ceil());
+        if let Some(e) = chain.mesh.non_finite(chain.clock.time_s) {
+            return Err(e);
         }
-        guard.limit(&mut self.mesh, &mut self.drives, self.clock.time_s);
-        self.report.warnings.extend(guard.warnings(&self.mesh.problem.cable.name));
-        self.report.cost.iterations = count;
-        self.report.cost.inner_step_s = shortest;
-        self.report.cost.residual_n = 0.0;
-        debug_assert!(self.clock.time_s > begin);
-        self.mesh.non_finite(self.clock.time_s).map_or(Ok(()), Err)
+        if h < tuning.min_stable_fraction * if stable < dt_s { stable } else { dt_s } {
+            let node = chain.mesh.velocity.iter().position(|v| v.norm() >= fastest).unwrap_or(0);
+            return Err(SolveError::StepFailed {
+                model: crate::Model::MassSpring,
+                time_s: chain.clock.time_s,
+                dt_s: h,
+                residual_n: chain.mesh.force[node].norm(),
+                place: chain.mesh.problem.place(
+                    chain.mesh.arc_length[node],
+                    chain.mesh.position[node],
+                    chain.clock.time_s,
+                ),
+                cause: FailureCause::RunawaySpeed { speed_m_per_s: fastest },
+            });
+        }
+        left -= h;
+        chain.clock.time_s = end - left;
+        release_pulleys(&mut chain.mesh, chain.clock.time_s);
+        let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
+        chain.drives.move_nodes(mesh, &chain.clock, hand_settings.max_speed_m_per_s, account, h);
+        hands::follow(&mut chain.drives, mesh, hand_settings, h);
+        nodal::update(mesh, chain.clock.time_s);
+        record(mesh, gauge, points, chain.clock.time_s);
+        // Velocities go with the middle of a sub-step: from that of the last one to that of
+        // this. A motion that begins has half a kick; with a whole one all falls g h t/2 too
+        // far, an error of first order.
+        let kick = chain.clock.behind_s + 0.5 * h;
+        chain.clock.behind_s = 0.5 * h;
+        let step = SubStep { length_s: h, kick_s: kick };
+        hands::pull(&chain.drives, mesh, account, step);
+        slide(mesh, step);
+        for i in 0..mesh.position.len() {
+            if !mesh.supported[i] {
+                mesh.velocity[i] += mesh.force[i] * (kick / mesh.mass[i]);
+            }
+        }
+        account.add_kick(mesh, chain.clock.time_s, kick);
+        chain.drives.correct_released(mesh, account, kick - 0.5 * h);
+        impacts::floor_friction(mesh, account, kick);
+        impacts::apply(&mut chain.contacts, mesh, account, h);
+        for i in 0..mesh.position.len() {
+            mesh.position[i] += mesh.velocity[i] * h;
+        }
+        if !mesh.wheels.pulleys.is_empty() {
+            mesh.update_pulley_elements();
+            chain.remesh();
+            stable = stable_step(&chain.mesh);
+        }
+        count += 1;
+        shortest = if h < shortest { h } else { shortest };
     }
+    guard.limit(&mut chain.mesh, &mut chain.drives, chain.clock.time_s);
+    chain.report.warnings.extend(guard.warnings(&chain.mesh.problem.cable.name));
+    chain.report.cost.iterations = count;
+    chain.report.cost.inner_step_s = shortest;
+    chain.report.cost.residual_n = 0.0;
+    debug_assert!(chain.clock.time_s > begin);
+    chain.mesh.non_finite(chain.clock.time_s).map_or(Ok(()), Err)
 }
 
 /// The longest stable sub-step, s. By Gershgorin's circles a node of mass m between springs k₁,

@@ -47,7 +47,7 @@ pub(in crate::model::mass_spring) enum Start {
 impl Estimate {
     /// Estimates the errors of a model at rest, which came there from a `start`.
     pub(in crate::model::mass_spring) fn at_rest(model: &MassSpringModel, start: Start) -> Self {
-        let (problem, targets) = (&model.mesh.problem, &model.drives.targets);
+        let (problem, targets) = (&model.chain.mesh.problem, &model.chain.drives.targets);
         if start == Start::Scene {
             let flexible = problem.bending_stiffness == 0.0;
             if flexible && let Ok(Some(exact)) = initial_equilibrium(problem, model.settings, targets, None) {
@@ -64,7 +64,7 @@ impl Estimate {
         let mut errors = ErrorEstimates::between(&half, &fine).plus(&rounding);
         if let Some(coarsest) = coarser(model, 4, start) {
             let change = ErrorEstimates::between(&coarsest.solution(), &half);
-            errors = errors.or_larger(&change.times(model.mesh.tuning.estimate.first_order_fraction));
+            errors = errors.or_larger(&change.times(model.chain.mesh.tuning.estimate.first_order_fraction));
         }
         Self { estimator: ErrorEstimator::Coarse(Box::new(coarse)), errors }
     }
@@ -77,7 +77,7 @@ impl Estimate {
             ErrorEstimator::None => None,
             ErrorEstimator::AtRest => renewed(),
             ErrorEstimator::Exact(mut spans) => {
-                for (k, at) in model.drives.targets.iter().enumerate() {
+                for (k, at) in model.chain.drives.targets.iter().enumerate() {
                     if let Some(at) = at {
                         spans.drag_support(k, *at);
                     }
@@ -90,7 +90,7 @@ impl Estimate {
                 }
             }
             ErrorEstimator::Coarse(mut coarse) => {
-                coarse.drives.targets.clone_from(&model.drives.targets);
+                coarse.chain.drives.targets.clone_from(&model.chain.drives.targets);
                 let stepped = coarse.advance(dt_s, Inertia::QuasiStatic).is_ok();
                 stepped.then(|| Self::beside(model, errors, *coarse))
             }
@@ -110,8 +110,8 @@ impl Estimate {
 /// asked for.
 fn errors_beside_fem(model: &MassSpringModel) -> Option<ErrorEstimates> {
     let settings = Settings { segments: None, ..model.settings };
-    let mut fem = FemModel::new(model.mesh.problem.clone(), settings).ok()?;
-    for (k, at) in model.drives.targets.iter().enumerate() {
+    let mut fem = FemModel::new(model.chain.mesh.problem.clone(), settings).ok()?;
+    for (k, at) in model.chain.drives.targets.iter().enumerate() {
         if let Some(at) = at {
             fem.drag_support(k, *at);
         }
@@ -123,20 +123,21 @@ fn errors_beside_fem(model: &MassSpringModel) -> Option<ErrorEstimates> {
 }
 
 fn errors_beside(model: &MassSpringModel, exact: &CableSolution) -> ErrorEstimates {
-    let rounding = ErrorEstimates::rounding(exact, &model.mesh.problem);
+    let rounding = ErrorEstimates::rounding(exact, &model.chain.mesh.problem);
     ErrorEstimates::between(&model.solution(), exact).plus(&rounding)
 }
 
 /// The same cable at rest on elements `times` as long.
 fn coarser(model: &MassSpringModel, times: usize, start: Start) -> Option<MassSpringModel> {
-    let elements = model.mesh.rest_length.len();
-    if elements < model.mesh.tuning.estimate.min_elements {
+    let elements = model.chain.mesh.rest_length.len();
+    if elements < model.chain.mesh.tuning.estimate.min_elements {
         return None;
     }
     let settings = Settings { segments: Some(elements / times), ..model.settings };
     let mut coarse =
-        MassSpringModel::with_tuning(model.mesh.problem.clone(), settings, model.mesh.tuning.clone()).ok()?;
-    coarse.drives.targets.clone_from(&model.drives.targets);
+        MassSpringModel::with_tuning(model.chain.mesh.problem.clone(), settings, model.chain.mesh.tuning.clone())
+            .ok()?;
+    coarse.chain.drives.targets.clone_from(&model.chain.drives.targets);
     if start == Start::Present {
         let state = model.state();
         coarse = coarse.on_shape(&state, &coarse.support_arc_lengths(&state))?;

@@ -4,6 +4,7 @@ pub(in crate::model::mass_spring) mod contacts;
 pub(in crate::model::mass_spring) mod nodes;
 
 use crate::math::Vec2;
+use crate::model::mass_spring::ChainState;
 use crate::model::mass_spring::MassSpringModel;
 use crate::solution::{Assumptions, CableSolution};
 use crate::state::State;
@@ -11,7 +12,8 @@ use nodes::NodeReader;
 
 /// The answer of the present state.
 pub(in crate::model::mass_spring) fn answer(model: &MassSpringModel) -> CableSolution {
-    let MassSpringModel { settings, clock, mesh, drives, contacts, report, .. } = model;
+    let MassSpringModel { settings, chain, .. } = model;
+    let ChainState { clock, mesh, drives, contacts, report } = chain;
     let reader = NodeReader { mesh, time_s: clock.time_s };
     let answer = CableSolution {
         name: mesh.problem.cable.name.clone(),
@@ -34,8 +36,8 @@ pub(in crate::model::mass_spring) fn answer(model: &MassSpringModel) -> CableSol
 
 /// Positions and velocities as every model reads them.
 pub(in crate::model::mass_spring) fn state(model: &MassSpringModel) -> State {
-    let time_s = model.clock.time_s;
-    let nodes = NodeReader { mesh: &model.mesh, time_s }.nodes();
+    let time_s = model.chain.clock.time_s;
+    let nodes = NodeReader { mesh: &model.chain.mesh, time_s }.nodes();
     State {
         time_s,
         arc_length_m: nodes.iter().map(|n| n.arc_length_m).collect(),

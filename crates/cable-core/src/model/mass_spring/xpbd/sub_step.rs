@@ -16,8 +16,9 @@
 
 use crate::error::SolveError;
 use crate::math::Vec2;
+use crate::model::Settings;
 use crate::model::gauge::TensionGauge;
-use crate::model::mass_spring::MassSpringModel;
+use crate::model::mass_spring::ChainState;
 use crate::model::mass_spring::dynamics::hands;
 use crate::model::mass_spring::dynamics::impacts;
 use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;
@@ -30,95 +31,92 @@ use crate::model::mass_spring::xpbd::constraint_solve::ConstraintSolver;
 use crate::model::settings::Stepping;
 use crate::solution::{Warning, WarningCause};
 
-/// This block is the integrator of the preview: it sets every part of the model in motion.
-impl MassSpringModel {
-    /// Advances by `dt_s` in sub-steps.
-    pub(in crate::model::mass_spring) fn preview(
-        &mut self,
-        dt_s: f64,
-        gauge: &mut TensionGauge,
-    ) -> Result<(), SolveError> {
-        let end = self.clock.time_s + dt_s;
-        let tuning = self.mesh.tuning.preview;
-        let shortest = tuning.max_sub_step_s * tuning.min_sub_step_fraction;
-        let mut solver = ConstraintSolver::default();
-        let mut guard = RunawayGuard::new(&self.mesh.problem, self.clock.time_s);
-        let (mut left, mut count, mut longest) = (dt_s, 0, 0.0);
-        while left > 0.0 {
-            let stable = (tuning.max_swing / max_transverse_frequency_squared(&self.mesh)).sqrt();
-            let limit = if stable < tuning.max_sub_step_s { stable } else { tuning.max_sub_step_s };
-            let parts = (left / if limit > shortest { limit } else { shortest } - 1e-9).ceil().max(1.0);
-            let h = left / parts;
-            left = if parts > 1.0 { left - h } else { 0.0 };
-            self.clock.time_s = end - left;
-            self.preview_step(h, &mut solver);
-            gauge.note(self.clock.time_s, &self.mesh.arc_length, |i| tension::at_node_inside(&self.mesh, i));
-            gauge.keep();
-            guard.limit(&mut self.mesh, &mut self.drives, self.clock.time_s);
-            let (mesh, account) = (&mut self.mesh, &mut self.report.account);
-            impacts::floor_friction(mesh, account, h);
-            impacts::apply(&mut self.contacts, mesh, account, h);
-            for (x, v) in mesh.position.iter_mut().zip(&mesh.velocity) {
-                *x += v * h;
-            }
-            if !mesh.wheels.pulleys.is_empty() {
-                mesh.update_pulley_elements();
-                pulley::update_all(mesh, self.clock.time_s);
-            }
-            if let Some(e) = mesh.non_finite(self.clock.time_s) {
-                return Err(e);
-            }
-            count += 1;
-            longest = if h > longest { h } else { longest };
+/// Advances by `dt_s` in sub-steps.
+pub(in crate::model::mass_spring) fn preview(
+    chain: &mut ChainState,
+    settings: &Settings,
+    dt_s: f64,
+    gauge: &mut TensionGauge,
+) -> Result<(), SolveError> {
+    let end = chain.clock.time_s + dt_s;
+    let tuning = chain.mesh.tuning.preview;
+    let shortest = tuning.max_sub_step_s * tuning.min_sub_step_fraction;
+    let mut solver = ConstraintSolver::default();
+    let mut guard = RunawayGuard::new(&chain.mesh.problem, chain.clock.time_s);
+    let (mut left, mut count, mut longest) = (dt_s, 0, 0.0);
+    while left > 0.0 {
+        let stable = (tuning.max_swing / max_transverse_frequency_squared(&chain.mesh)).sqrt();
+        let limit = if stable < tuning.max_sub_step_s { stable } else { tuning.max_sub_step_s };
+        let parts = (left / if limit > shortest { limit } else { shortest } - 1e-9).ceil().max(1.0);
+        let h = left / parts;
+        left = if parts > 1.0 { left - h } else { 0.0 };
+        chain.clock.time_s = end - left;
+        preview_step(chain, settings, h, &mut solver);
+        gauge.note(chain.clock.time_s, &chain.mesh.arc_length, |i| tension::at_node_inside(&chain.mesh, i));
+        gauge.keep();
+        guard.limit(&mut chain.mesh, &mut chain.drives, chain.clock.time_s);
+        let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
+        impacts::floor_friction(mesh, account, h);
+        impacts::apply(&mut chain.contacts, mesh, account, h);
+        for (x, v) in mesh.position.iter_mut().zip(&mesh.velocity) {
+            *x += v * h;
         }
-        nodal::update_from_tensions(&mut self.mesh, self.clock.time_s);
-        self.clock.behind_s = 0.0;
-        self.report.cost.iterations = count;
-        self.report.cost.inner_step_s = longest;
-        self.report.cost.residual_n = 0.0;
-        self.report.warnings.extend(guard.warnings(&self.mesh.problem.cable.name));
-        self.warn_of_preview(longest);
-        Ok(())
+        if !mesh.wheels.pulleys.is_empty() {
+            mesh.update_pulley_elements();
+            pulley::update_all(mesh, chain.clock.time_s);
+        }
+        if let Some(e) = mesh.non_finite(chain.clock.time_s) {
+            return Err(e);
+        }
+        count += 1;
+        longest = if h > longest { h } else { longest };
     }
+    nodal::update_from_tensions(&mut chain.mesh, chain.clock.time_s);
+    chain.clock.behind_s = 0.0;
+    chain.report.cost.iterations = count;
+    chain.report.cost.inner_step_s = longest;
+    chain.report.cost.residual_n = 0.0;
+    chain.report.warnings.extend(guard.warnings(&chain.mesh.problem.cable.name));
+    warn_of_preview(chain, settings, longest);
+    Ok(())
+}
 
-    /// Sets the velocities of a sub-step of `h` (s) without contacts.
-    fn preview_step(&mut self, h: f64, solver: &mut ConstraintSolver) {
-        if !self.mesh.wheels.pulleys.is_empty() {
-            release_pulleys(&mut self.mesh, self.clock.time_s);
-            self.remesh();
-        }
-        let (mesh, account) = (&mut self.mesh, &mut self.report.account);
-        let hand_settings = HandSettings::of(&self.settings);
-        self.drives.move_nodes(mesh, &self.clock, hand_settings.max_speed_m_per_s, account, h);
-        hands::follow(&mut self.drives, mesh, hand_settings, h);
-        nodal::set_loads(mesh, self.clock.time_s);
-        predict(mesh, self.clock.time_s, h, solver);
-        let held_by_hands = predict_held(&self.drives, mesh, h, solver);
-        solver.solve(mesh, h);
-        let per_step = h.recip();
-        for (((v, x), to), held) in
-            mesh.velocity.iter_mut().zip(&mesh.position).zip(&solver.position).zip(&mesh.supported)
-        {
-            if !held {
-                *v = (to - x) * per_step;
-            }
-        }
-        for HeldNode { node, velocity } in held_by_hands {
-            let v = (solver.position[node] - mesh.position[node]) * per_step;
-            mesh.support_acceleration[node] = (v - velocity) * per_step;
-            mesh.velocity[node] = v;
+/// Sets the velocities of a sub-step of `h` (s) without contacts.
+fn preview_step(chain: &mut ChainState, settings: &Settings, h: f64, solver: &mut ConstraintSolver) {
+    if !chain.mesh.wheels.pulleys.is_empty() {
+        release_pulleys(&mut chain.mesh, chain.clock.time_s);
+        chain.remesh();
+    }
+    let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
+    let hand_settings = HandSettings::of(settings);
+    chain.drives.move_nodes(mesh, &chain.clock, hand_settings.max_speed_m_per_s, account, h);
+    hands::follow(&mut chain.drives, mesh, hand_settings, h);
+    nodal::set_loads(mesh, chain.clock.time_s);
+    predict(mesh, chain.clock.time_s, h, solver);
+    let held_by_hands = predict_held(&chain.drives, mesh, h, solver);
+    solver.solve(mesh, h);
+    let per_step = h.recip();
+    for (((v, x), to), held) in mesh.velocity.iter_mut().zip(&mesh.position).zip(&solver.position).zip(&mesh.supported)
+    {
+        if !held {
+            *v = (to - x) * per_step;
         }
     }
+    for HeldNode { node, velocity } in held_by_hands {
+        let v = (solver.position[node] - mesh.position[node]) * per_step;
+        mesh.support_acceleration[node] = (v - velocity) * per_step;
+        mesh.velocity[node] = v;
+    }
+}
 
-    /// Warns that stiffness made the step a preview, with its longest sub-step `h` (s).
-    fn warn_of_preview(&mut self, h: f64) {
-        if self.settings.stepping != Stepping::Auto {
-            return;
-        }
-        let name = &self.mesh.problem.cable.name;
-        let stable = FRAME_S / self.mesh.tuning.sub_step.max_per_frame;
-        self.report.warnings.push(Warning::new(WarningCause::StiffPreview, name, 0.0, [h, stable]));
+/// Warns that stiffness made the step a preview, with its longest sub-step `h` (s).
+fn warn_of_preview(chain: &mut ChainState, settings: &Settings, h: f64) {
+    if settings.stepping != Stepping::Auto {
+        return;
     }
+    let name = &chain.mesh.problem.cable.name;
+    let stable = FRAME_S / chain.mesh.tuning.sub_step.max_per_frame;
+    chain.report.warnings.push(Warning::new(WarningCause::StiffPreview, name, 0.0, [h, stable]));
 }
 
 /// ω² of the fastest swing across the cable, 1/s², by Gershgorin's circles: 2(T_b/l_b +

@@ -1,0 +1,224 @@
+//! The criteria decide where sliding nodes come and go: they read a cable and change nothing.
+
+use crate::contact::Gap;
+use crate::math::{bounded, perp};
+use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
+use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
+use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
+use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::history::Motion;
+use crate::model::fem::state::meshing::Meshing;
+use crate::model::fem::system::step_context::StepContext;
+use crate::model::fem::system::step_input::load_scale;
+
+/// Least part of the material between two nodes on each side of a node put between them.
+const LEAST_PART: f64 = 1e-3;
+
+/// The shares of two bars in their material where their paths change.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Share {
+    /// Part of the first.
+    pub(super) first: f64,
+    /// Growth of the strain of stretched bars; less than zero: the slack that is left.
+    added_strain: f64,
+}
+
+impl Share {
+    /// Ways (m), how much each bar is stretched (length over unstretched length), and the
+    /// unstretched length of both (m). What is stretched keeps its strain and takes what it needs
+    /// for that from what is slack; where that is not enough both are stretched by as much more.
+    pub(super) fn of(ways: [f64; 2], stretch: [f64; 2], whole: f64) -> Self {
+        let needs = [0, 1].map(|j| if stretch[j] > 1.0 { ways[j] / stretch[j] } else { ways[j] });
+        let sum = needs[0] + needs[1];
+        let first = match stretch.map(|s| s > 1.0) {
+            [true, false] if sum < whole => needs[0] / whole,
+            [false, true] if sum < whole => 1.0 - needs[1] / whole,
+            _ => needs[0] / sum,
+        };
+        Self { first: bounded(first, LEAST_PART, 1.0 - LEAST_PART), added_strain: sum / whole - 1.0 }
+    }
+}
+
+/// What the criteria read of a cable: its mesh among obstacles, how that was divided, and how it
+/// moves.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Criteria<'a> {
+    step: StepContext<'a>,
+    meshing: &'a Meshing,
+    motion: &'a Motion,
+}
+
+impl<'a> Criteria<'a> {
+    /// Those of a cable as it is.
+    pub(super) fn of(cable: &'a CableState) -> Self {
+        Self { step: cable.step_context(), meshing: &cable.meshing, motion: &cable.motion }
+    }
+
+    fn intersections(&self) -> IntersectionCheck<'a> {
+        IntersectionCheck::among(&self.step, &self.motion.positions)
+    }
+
+    /// Length of an even bar, m of arc length.
+    fn even(&self) -> f64 {
+        self.meshing.even(self.step.problem.length)
+    }
+
+    /// True if a sliding node on an obstacle is pulled away from it, or is in the way of a node
+    /// that has to pass.
+    pub(super) fn lifts_off(&self, k: usize) -> bool {
+        let (mesh, x) = (self.step.mesh, &self.motion.positions);
+        let Some(node) = mesh.sliding[k] else { return false };
+        let beside = |j: usize| mesh.sliding[j].is_some_and(|s| s.shares_round(&node));
+        let fixed = |j: usize| mesh.sliding[j].is_none() && !self.meshing.removable(mesh, j);
+        let blocked = [k - 1, k + 1]
+            .into_iter()
+            .any(|j| fixed(j) && mesh.material_between(j, k) < mesh.tuning.remesh.removed_distance * self.even());
+        if blocked {
+            return true;
+        }
+        if beside(k - 1) || beside(k + 1) {
+            return false;
+        }
+        let Some(load) = self.step.load_at(k, x, None) else { return false };
+        let (turn, tension) = (mesh.turn(k, x), 0.5 * (load.tension[0] + load.tension[1]));
+        load.normal < 0.0
+            || turn < 0.0
+            || self.intersections().beyond_its_corner(k)
+            || (tension < mesh.tuning.remesh.material_tension_weights * self.meshing.bar_weight
+                && turn < 2.0 * mesh.tuning.remesh.max_left_half_turn_rad)
+    }
+
+    /// The share of the material between two nodes of a cable in motion where a sliding node comes
+    /// between them; None where the cable is not taut, pulled by less than what its own speed
+    /// across, hitting something, would make of it, or where the node would stretch it.
+    pub(super) fn share_of_sliding(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> Option<Share> {
+        let (mesh, x) = (self.step.mesh, &self.motion.positions);
+        let ways =
+            [Path::between(&mesh.end(before, x), &sliding.end), Path::between(&sliding.end, &mesh.end(after, x))];
+        let stretch = [before, after - 1].map(|e| mesh.path(e, x).length / mesh.rest_length[e]);
+        let whole = (before..after).map(|e| mesh.rest_length[e]).sum();
+        let share = Share::of(ways.map(|w| w.length), stretch, whole);
+        let near = mesh.arc_length[before] - mesh.tuning.remesh.neighbourhood_m
+            ..mesh.arc_length[after] + mesh.tuning.remesh.neighbourhood_m;
+        let speed = |k: usize| {
+            if mesh.sliding[k].is_some() { self.motion.slide_rates[k].abs() } else { self.motion.velocities[k].norm() }
+        };
+        let fastest = (0..mesh.nodes())
+            .filter(|&k| near.contains(&mesh.arc_length[k]))
+            .map(speed)
+            .fold(0.0, |a: f64, b| if b <= a { a } else { b });
+        let wave = (mesh.axial_stiffness / self.step.problem.linear_density).sqrt();
+        let impact = mesh.tuning.remesh.impact_tension * mesh.axial_stiffness * (fastest / wave).powf(4.0 / 3.0);
+        let tension = mesh.lesser_tension(stretch);
+        (tension > impact && self.may_change(tension, &share)).then_some(share)
+    }
+
+    /// True if a sliding node that becomes a plain one leaves a cable in motion as tense as it is.
+    pub(super) fn settles_unstretched(&self, k: usize) -> bool {
+        let (mesh, x) = (self.step.mesh, &self.motion.positions);
+        let Some(end) = mesh.sliding[k].map(|s| s.end) else { return false };
+        let half = (0.5 * mesh.turn(k, x)).abs();
+        let longer = end.radius * (half.tan() - half);
+        let lengths = [k - 1, k].map(|e| mesh.path(e, x).length);
+        let stretch = [0, 1].map(|j| lengths[j] / mesh.rest_length[k - 1 + j]);
+        let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
+        half < mesh.tuning.remesh.max_tangent_half_turn_rad
+            && self.may_change(mesh.lesser_tension(stretch), &Share::of(lengths.map(|l| l + longer), stretch, whole))
+    }
+
+    /// True if a change of the mesh adds so little to a tension (N) that it does not show.
+    fn may_change(&self, tension: f64, share: &Share) -> bool {
+        let StepContext { problem, mesh, .. } = self.step;
+        let weight = load_scale(problem).0 * problem.length;
+        let tuning = &mesh.tuning.remesh;
+        mesh.axial_stiffness * share.added_strain
+            < tuning.max_tension_change * (tension + tuning.weight_fraction * weight)
+    }
+
+    /// True if a sliding node between two nodes would bend the cable the right way and its bars
+    /// would meet nothing.
+    pub(super) fn fits(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> bool {
+        let (mesh, x) = (self.step.mesh, &self.motion.positions);
+        let paths =
+            [Path::between(&mesh.end(before, x), &sliding.end), Path::between(&sliding.end, &mesh.end(after, x))];
+        let slide_over = |k: usize| mesh.sliding[k].as_ref();
+        let nodes = [[slide_over(before), Some(sliding)], [Some(sliding), slide_over(after)]];
+        let turn = if sliding.end.radius > 0.0 {
+            paths[0].arcs[1] + paths[1].arcs[0]
+        } else {
+            sliding.end.sense * angle_between(paths[0].direction, paths[1].direction)
+        };
+        // Nor may it turn a neighbour the wrong way.
+        let beside = |k: usize, arc: f64, e: usize, j: usize| {
+            mesh.sliding[k].is_none_or(|s| {
+                s.feature().is_none()
+                    || s.shares_round(sliding)
+                    || arc + mesh.path(e, x).arcs[j] > -mesh.tuning.remesh.max_reverse_turn_rad
+            })
+        };
+        let sides = (before == 0 || beside(before, paths[0].arcs[0], before - 1, 1))
+            && (after + 1 == mesh.nodes() || beside(after, paths[1].arcs[1], after, 0));
+        turn > -mesh.tuning.remesh.max_reverse_turn_rad
+            && sides
+            && (0..2).all(|j| self.intersections().way_is_clear(&paths[j], nodes[j]))
+    }
+
+    /// The sliding node that a corner or circle pressing on a bar or node asks for: its bar, arc
+    /// length and itself.
+    pub(super) fn sliding_node_for(
+        &self,
+        node: usize,
+        on_segment: bool,
+        gap: &Gap,
+    ) -> Option<(usize, f64, SlidingNode)> {
+        let (mesh, x) = (self.step.mesh, &self.motion.positions);
+        let last = mesh.nodes() - 1;
+        let (center, radius) = round_of(
+            self.step.problem.world.geometry(),
+            gap.feature,
+            self.intersections().clearance(gap.feature),
+            mesh.tuning.remesh.min_turn_rad,
+        )?;
+        let (bar, fraction) = match (on_segment, node) {
+            (true, e) => (e, gap.fraction),
+            (false, k) if k > 0 && k < last => (k - 1, 1.0),
+            (false, _) => return None,
+        };
+        let path = mesh.path(bar, x);
+        let along = if on_segment { path.direction } else { path.direction + mesh.path(node, x).direction };
+        let sense = if gap.normal.dot(&perp(along)) > 0.0 { -1.0 } else { 1.0 };
+        // A cable folded back on itself at an obstacle runs neither way round it, one that is bent
+        // away from it hits it with a node.
+        if !on_segment && (along.norm() < mesh.tuning.remesh.fold_direction_sum || mesh.turn(node, x) * sense < 0.0) {
+            return None;
+        }
+        // Seen from beyond the bar the cable must bend round the corner, and be taut.
+        let first = bar.saturating_sub(1);
+        let beyond = (bar + 1).min(last - 1);
+        let wrap = sense * angle_between(mesh.path(first, x).direction, mesh.path(beyond, x).direction);
+        let tension = mesh.bar(bar).tension(path.length);
+        if !(wrap > 0.0 && tension > mesh.tuning.remesh.sliding_tension_weights * self.meshing.bar_weight) {
+            return None;
+        }
+        let s = [mesh.arc_length[bar], mesh.arc_length[bar + 1]];
+        let near = mesh.tuning.remesh.removed_distance * self.even();
+        // The ends of a cable and what hangs on it stay clear of corners.
+        let from_start = fraction * (s[1] - s[0]);
+        let from_end = (1.0 - fraction) * (s[1] - s[0]);
+        if (from_start < near && !self.meshing.removable(mesh, bar))
+            || (from_end < near && !self.meshing.removable(mesh, bar + 1))
+        {
+            return None;
+        }
+        if self.meshing.bends_visibly(mesh, self.step.problem.length, tension) {
+            return None;
+        }
+        let before = path.arcs[0] * mesh.end(bar, x).radius;
+        let part = if path.length > 0.0 { (before + fraction * path.straight) / path.length } else { fraction };
+        let arc_length = s[0] + bounded(part, LEAST_PART, 1.0 - LEAST_PART) * (s[1] - s[0]);
+        let end = End { center, radius, mark: gap.normal, sense };
+        let slide_over = SlideOver::Obstacle { obstacle: gap.obstacle, feature: gap.feature };
+        let sliding = SlidingNode::new(end, gap.friction, slide_over);
+        Some((bar, arc_length, sliding))
+    }
+}

@@ -1,0 +1,214 @@
+//! A layer is a model around another one: it changes some of what goes in or comes out, and
+//! [`Layered`] passes everything else on.
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use super::gauge::TensionGauge;
+use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, StepReport};
+use crate::error::SolveError;
+use crate::math::{RigidPose, Vec2};
+use crate::problem::Problem;
+use crate::solution::{CableSolution, ModelReason};
+use crate::state::State;
+
+/// The changes that a layer makes. A method that it leaves out asks the inner model, or changes
+/// nothing. Those that act return reports and errors of the inner model; `outer_report` and
+/// `outer_error` translate them.
+pub(super) trait Layer: Send + Sized + 'static {
+    /// The inner model.
+    fn inner(&self) -> &dyn Mechanics;
+
+    /// The inner model, to act on.
+    fn inner_mut(&mut self) -> &mut dyn Mechanics;
+
+    /// The same layer around another inner model.
+    fn around(&self, inner: Box<dyn Mechanics>) -> Self;
+
+    /// The problem that the layer solves.
+    fn problem(&self) -> &Arc<Problem>;
+
+    /// Takes down what has to be kept of the inner model after it acted.
+    fn observe(&mut self) {}
+
+    fn reason(&self) -> Option<&ModelReason> {
+        self.inner().reason()
+    }
+
+    fn refusal(&self) -> Option<&SolveError> {
+        self.inner().refusal()
+    }
+
+    fn settle(&mut self) -> Result<StepReport, SolveError> {
+        self.inner_mut().settle()
+    }
+
+    fn advance_gauged(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError> {
+        self.inner_mut().advance_gauged(dt_s, inertia, gauge)
+    }
+
+    fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        self.inner_mut().warm_start(answer, time_s)
+    }
+
+    fn drag_support(&mut self, support: usize, target_m: Vec2) {
+        self.inner_mut().drag_support(support, target_m);
+    }
+
+    fn pull_support(&mut self, support: usize, hand_m: Vec2) {
+        self.inner_mut().pull_support(support, hand_m);
+    }
+
+    fn set_robot_pose(&mut self, to: RigidPose) {
+        self.inner_mut().set_robot_pose(to);
+    }
+
+    /// A time of the inner model, s.
+    fn outer_time(&self, time_s: f64) -> f64 {
+        time_s
+    }
+
+    /// A state for the inner model.
+    fn inner_state<'a>(&self, state: &'a State) -> Cow<'a, State> {
+        Cow::Borrowed(state)
+    }
+
+    /// A state of the inner model.
+    fn outer_state(&self, state: State) -> State {
+        state
+    }
+
+    /// An answer of the inner model.
+    fn outer_solution(&self, answer: CableSolution) -> CableSolution {
+        answer
+    }
+
+    /// A report of the inner model.
+    fn outer_report(&self, report: StepReport) -> StepReport {
+        report
+    }
+
+    /// An error of the inner model.
+    fn outer_error(&self, error: SolveError) -> SolveError {
+        error
+    }
+}
+
+/// A layer as a model.
+pub(super) struct Layered<L>(pub(super) L);
+
+impl<L: Layer> Layered<L> {
+    /// Observes the inner model after it acted, and translates the outcome.
+    fn report(&mut self, outcome: Result<StepReport, SolveError>) -> Result<StepReport, SolveError> {
+        self.0.observe();
+        match outcome {
+            Ok(report) => Ok(self.0.outer_report(report)),
+            Err(error) => Err(self.0.outer_error(error)),
+        }
+    }
+}
+
+impl<L: Layer> Mechanics for Layered<L> {
+    fn model(&self) -> Model {
+        self.0.inner().model()
+    }
+
+    fn reason(&self) -> Option<&ModelReason> {
+        self.0.reason()
+    }
+
+    fn refusal(&self) -> Option<&SolveError> {
+        self.0.refusal()
+    }
+
+    fn settle(&mut self) -> Result<StepReport, SolveError> {
+        let outcome = self.0.settle();
+        self.report(outcome)
+    }
+
+    fn advance_gauged(
+        &mut self,
+        dt_s: f64,
+        inertia: Inertia,
+        gauge: &mut TensionGauge,
+    ) -> Result<StepReport, SolveError> {
+        let outcome = self.0.advance_gauged(dt_s, inertia, gauge);
+        self.report(outcome)
+    }
+
+    fn state(&self) -> State {
+        self.0.outer_state(self.0.inner().state())
+    }
+
+    fn time_s(&self) -> f64 {
+        self.0.outer_time(self.0.inner().time_s())
+    }
+
+    fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
+        let state = self.0.inner_state(state);
+        let outcome = self.0.inner_mut().set_state(&state);
+        self.0.observe();
+        outcome.map_err(|e| self.0.outer_error(e))
+    }
+
+    fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
+        let outcome = self.0.warm_start(answer, time_s);
+        self.0.observe();
+        outcome.map_err(|e| self.0.outer_error(e))
+    }
+
+    fn drag_support(&mut self, support: usize, target_m: Vec2) {
+        self.0.drag_support(support, target_m);
+    }
+
+    fn pull_support(&mut self, support: usize, hand_m: Vec2) {
+        self.0.pull_support(support, hand_m);
+    }
+
+    fn set_robot_pose(&mut self, to: RigidPose) {
+        self.0.set_robot_pose(to);
+    }
+
+    fn robot_contact(&self) -> Option<RobotContact> {
+        self.0.inner().robot_contact()
+    }
+
+    fn fall_back(&mut self, why: &SolveError) -> bool {
+        let fell = self.0.inner_mut().fall_back(why);
+        self.0.observe();
+        fell
+    }
+
+    fn solution(&self) -> CableSolution {
+        self.0.outer_solution(self.0.inner().solution())
+    }
+
+    fn problem(&self) -> &Arc<Problem> {
+        self.0.problem()
+    }
+
+    fn inner_step_s(&self) -> f64 {
+        self.0.outer_time(self.0.inner().inner_step_s())
+    }
+
+    fn copy_to_keep(&self) -> Box<dyn Mechanics> {
+        Box::new(Self(self.0.around(self.0.inner().copy_to_keep())))
+    }
+
+    fn lend(&mut self) -> Option<OwnedResources> {
+        self.0.inner_mut().lend()
+    }
+
+    fn borrow(&mut self, own: Option<OwnedResources>) {
+        self.0.inner_mut().borrow(own);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Mechanics> {
+        Box::new(Self(self.0.around(self.0.inner().boxed_clone())))
+    }
+}
