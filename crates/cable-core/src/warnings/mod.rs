@@ -24,7 +24,7 @@ mod tests;
 
 use crate::breakage::Break;
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Energy, Warning, WarningKind};
+use crate::solution::{CableSolution, Energy, Warning, WarningCause, WarningKind};
 use energy_growth::EnergyGrowth;
 use snag::SnagDetector;
 
@@ -61,6 +61,8 @@ pub(crate) struct WarningMonitor {
     active: Vec<ActiveWarning>,
     snags: Vec<SnagDetector>,
     energy_growth: Vec<EnergyGrowth>,
+    /// Since when each cable has had a part without tension, s.
+    slack_since_s: Vec<Option<f64>>,
     last_s: Option<f64>,
 }
 
@@ -108,6 +110,9 @@ impl WarningMonitor {
                 snags.update(observed, time_s, &mut found);
             }
             self.hold_tension(cable, observed, time_s);
+            if since_s.is_some() {
+                self.let_short_slack_pass(cable, observed.problem, time_s, &mut found);
+            }
             for (k, warning) in found.iter().enumerate() {
                 let number = found[..k].iter().filter(|w| w.kind == warning.kind).count();
                 self.raise(cable, number, warning, time_s, since_s);
@@ -129,6 +134,25 @@ impl WarningMonitor {
         } else {
             let warning = Warning { since_s: warning.since_s.or(since_s), ..warning.clone() };
             self.active.push(ActiveWarning { cable, number, last_seen_s: time_s, warning });
+        }
+    }
+
+    /// In motion a part that loses its tension for less time than a cable takes to fall by its own
+    /// diameter, √(2d/g), has not gone anywhere: as when one sticks and slips. It is no warning.
+    fn let_short_slack_pass(&mut self, cable: usize, problem: &Problem, time_s: f64, found: &mut Vec<Warning>) {
+        let is_slack = |w: &Warning| matches!(w.cause, WarningCause::LowTension { .. });
+        self.slack_since_s.resize(self.slack_since_s.len().max(cable + 1), None);
+        let Some(since_s) = self.slack_since_s.get_mut(cable) else { return };
+        if !found.iter().any(is_slack) {
+            *since_s = None;
+            return;
+        }
+        let began_s = *since_s.get_or_insert(time_s);
+        let weight = problem.body_force(time_s).norm();
+        let mass = problem.cable.linear_density_kg_per_m;
+        let fall_s = if weight > 0.0 { (2.0 * problem.cable.diameter_m * mass / weight).sqrt() } else { 0.0 };
+        if time_s - began_s < fall_s {
+            found.retain(|w| !is_slack(w));
         }
     }
 

@@ -318,6 +318,27 @@ fn a_long_part_without_tension_is_slack() {
     assert!(!kinds(&p, &part(0.03)).contains(&WarningKind::Slack));
 }
 
+/// Slack for a hundredth of a second the cable has not fallen by its own diameter.
+#[test]
+fn a_part_that_is_slack_for_a_moment_is_no_warning() {
+    let p = problem(&scene());
+    let slack = |tension_n: f64| {
+        let mut answer = along(&[[0.0, 5.0], [2.0, 4.0], [3.0, 4.0], [9.0, 5.0]], 50.0);
+        answer.nodes[1].tension_n = tension_n;
+        answer.nodes[2].tension_n = tension_n;
+        answer
+    };
+    let fall_s = (2.0 * p.cable.diameter_m / 9.80665).sqrt();
+    let mut watch = WarningMonitor::default();
+    watch.at_rest(&[observed(&p, &slack(50.0))], 0.0);
+    let mut warned = |tension_n: f64, time_s: f64| {
+        watch.moving(&[observed(&p, &slack(tension_n))], time_s);
+        watch.warnings().any(|w| w.kind == WarningKind::Slack)
+    };
+    assert!(!warned(0.1, 1.0) && !warned(0.1, 1.0 + 0.9 * fall_s) && !warned(50.0, 1.2));
+    assert!(!warned(0.1, 2.0) && warned(0.1, 2.0 + 1.1 * fall_s));
+}
+
 fn toggles(
     watch: &mut WarningMonitor,
     p: &Problem,
