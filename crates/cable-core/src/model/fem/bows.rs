@@ -1,9 +1,9 @@
-//! This file finds the other equilibria of a stiff cable that is compressed: it may bow to either side
-//! of its chord, past what it then touches.
+//! This file finds the other equilibria of a stiff cable that is compressed: it may bow to either
+//! side of its chord, past what it then touches.
 //!
-//! Of a cable that touches nothing they are those of the free cable (`free/beam/other_bows.rs`) that
-//! keep clear of obstacles. Where one of them does not, or the cable touches something as it is, its
-//! mirror image, pushed out of what it lies in, is let go as a chain of bars.
+//! Of a cable that touches nothing they are those of the free cable (`free/beam/other_bows.rs`)
+//! that keep clear of obstacles. Where one of them does not, or the cable touches something as it
+//! is, its mirror image, pushed out of what it lies in, is let go as a chain of bars.
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::elastica;
@@ -14,12 +14,12 @@ use crate::problem::Problem;
 use crate::solution::error_estimates::{greatest_tension, place};
 use crate::solution::{CableSolution, Histories, Node};
 
-/// Depth inside an obstacle up to which a mirror image is pushed out, of the cable's length. Larger:
-/// time; smaller: bows that lie on the ground are not found.
+/// Depth inside an obstacle up to which a mirror image is pushed out, of the cable's length.
+/// Larger: time; smaller: bows that lie on the ground are not found.
 const PUSHED_OUT_FRACTION: f64 = 0.5;
 
-/// Returns the other equilibria of a compressed cable beside an answer at a time (s); `statics` holds
-/// the equilibrium of the free cable. None where there is no other.
+/// Returns the other equilibria of a compressed cable beside an answer at a time (s); `statics`
+/// holds the equilibrium of the free cable. None where there is no other.
 pub(in crate::model::fem) fn elsewhere(
     problem: &Problem,
     time_s: f64,
@@ -55,8 +55,8 @@ fn are_apart(problem: &Problem, some: &[Node], others: &[Node]) -> bool {
     some.iter().map(off).fold(0.0, larger) > SAME_SHAPE_FRACTION * problem.length
 }
 
-/// The mirror image of each part of a cable about the chord between its supports; None where nothing
-/// is between two of them.
+/// The mirror image of each part of a cable about the chord between its supports; None where
+/// nothing is between two of them.
 fn mirrored(problem: &Problem, answer: &CableSolution) -> Option<Vec<Node>> {
     let held = problem.supports.iter().zip(&answer.supports).filter(|(s, _)| s.at.is_some());
     let stops: Vec<(f64, Vec2)> = held.map(|(_, r)| (r.arc_length_m, Vec2::new(r.x_m, r.y_m))).collect();
