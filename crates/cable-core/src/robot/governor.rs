@@ -22,6 +22,7 @@
 //! and where A is less, the vehicle slows down evenly in between.
 
 use crate::math::{bounded, larger, smaller};
+use crate::numerics::bisect;
 
 /// Greatest acceleration that the governor asks for, m/s². If it is larger, the tracks slip at
 /// every start; if it is smaller, driving by hand feels dead.
@@ -104,19 +105,11 @@ impl PlannedMotion {
             let end = ahead.then(a, h);
             0.5 * h * (ahead.speed + end.speed) + end.stopping_distance() <= left.abs()
         };
-        let (mut slow, mut fast) = (self.toward(0.0, h) * sense, fastest * sense);
+        let [slow, fast] = [self.toward(0.0, h) * sense, fastest * sense];
         if stops_in_time(fast) || !stops_in_time(slow) {
             return if stops_in_time(fast) { fast } else { slow } * sense;
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (slow + fast);
-            if stops_in_time(middle) {
-                slow = middle;
-            } else {
-                fast = middle;
-            }
-        }
-        slow * sense
+        bisect([slow, fast], HALVINGS, stops_in_time)[0] * sense
     }
 
     /// Returns the acceleration that comes to a speed as soon as possible, m/s².
