@@ -28,6 +28,11 @@ const ON_ROUND: f64 = 1e-3;
 /// tension, and folds are given away; larger: bars that pull are given too much material.
 const SLACK: f64 = 1e-6;
 
+/// Part of its material that the way of a bar in a fold is at most. Larger: what lies loose but
+/// along its way is a fold, and gives nothing to the spans beside it; smaller: folds are given
+/// away.
+const FOLDED_WAY: f64 = 0.5;
+
 /// Part of their material that folds may give to bars beside them. More: folds are drawn out by
 /// what was read amiss elsewhere; less: spans in the air give it, and pull.
 const MOST_OF_FOLDS: f64 = 0.5;
@@ -247,7 +252,7 @@ fn stretch_run(cable: &mut CableState, curve: &SolutionCurve<'_>, [first, last]:
             let (material, tension) = (s[e + 1] - s[e], curve.tension(0.5 * (s[e] + s[e + 1])));
             let strained = cable.mesh.thermal_stretch * (1.0 + tension / cable.mesh.axial_stiffness);
             let length = cable.mesh.path(e, &cable.motion.positions).length / strained;
-            let folds = tension <= SLACK * greatest && length < material;
+            let folds = tension <= SLACK * greatest && length < FOLDED_WAY * material;
             (if folds { material } else { length }, folds)
         })
         .collect();
