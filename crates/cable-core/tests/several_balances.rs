@@ -205,7 +205,7 @@ fn issue_015_the_other_side_of_a_bowed_cable_is_told() {
     }
 }
 
-/// What hangs has one shape: nothing is told of others.
+/// A cable that is pulled has one shape: nothing is told of others.
 #[test]
 fn issue_015_a_stiff_cable_that_pulls_bows_to_one_side() {
     let answer = Simulation::new(arch(3.0, 2.9, false), Model::Auto).unwrap().settle().unwrap();

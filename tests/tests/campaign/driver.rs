@@ -241,8 +241,8 @@ fn states(answer: &Solution, own: [Point; 2], other: [Point; 2]) -> bool {
                 | Histories::SlackElsewhere { start_n, end_n, .. },
             ..
         } => Some([*start_n, *end_n]),
-        // What pushes is sheared at its ends, too: their forces are a little more than the
-        // tensions.
+        // A cable that pushes is sheared at its ends, too: their forces are a little more than
+        // the tensions.
         WarningCause::ManyEquilibria { histories: Histories::BowedElsewhere { start_n, end_n, .. }, .. } => {
             Some([*start_n, *end_n].map(|[a, b]| [0.95 * a.abs().min(b.abs()), 1.05 * a.abs().max(b.abs())]))
         }

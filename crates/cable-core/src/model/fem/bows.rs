@@ -8,7 +8,6 @@
 use crate::math::{Vec2, larger};
 use crate::model::fem::elastica;
 use crate::model::fem::free::beam::other_bows::{LEAST_BUCKLING_LOAD, SAME_SHAPE_FRACTION};
-use crate::model::fem::free::statics::Statics;
 use crate::model::initial_equilibrium::is_buried;
 use crate::problem::Problem;
 use crate::solution::error_estimates::{greatest_tension, place};
@@ -18,20 +17,21 @@ use crate::solution::{CableSolution, Histories, Node};
 /// Larger: time; smaller: bows that lie on the ground are not found.
 const PUSHED_OUT_FRACTION: f64 = 0.5;
 
-/// Returns the other equilibria of a compressed cable beside an answer at a time (s); `statics`
-/// holds the equilibrium of the free cable. None where there is no other.
+/// Returns the other equilibria of a compressed cable beside an answer at a time (s); `free` finds
+/// the shapes of the same cable without obstacles, and is asked only where it is compressed enough
+/// to buckle. None where there is no other.
 pub(in crate::model::fem) fn elsewhere(
     problem: &Problem,
     time_s: f64,
     dragged: &[Option<Vec2>],
     answer: &CableSolution,
-    statics: &Statics,
+    free: impl FnOnce() -> Vec<Vec<Node>>,
 ) -> Option<Histories> {
     let pushes = answer.nodes.iter().map(|n| -n.tension_n).fold(0.0, larger);
     if !(pushes > LEAST_BUCKLING_LOAD * problem.bending_stiffness / (problem.length * problem.length)) {
         return None;
     }
-    let mut shapes = statics.bows();
+    let mut shapes = free();
     shapes.extend(if answer.contacts.is_empty() { None } else { mirrored(problem, answer) });
     let mut found: Vec<Vec<Node>> = vec![answer.nodes.clone()];
     for shape in shapes {

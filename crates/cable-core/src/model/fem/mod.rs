@@ -201,13 +201,15 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let mut statics = self.statics.clone();
-        if self.present == Part::Dynamics || self.bent.is_some() {
-            // Of the cable without obstacles: those are asked of each shape.
-            let _ = statics.settle(&self.dragged);
-        }
-        let time_s = self.time_s();
-        let histories = bows::elsewhere(&self.problem, time_s, &self.dragged, &self.solution(), &statics)?;
+        let free = || {
+            let mut statics = self.statics.clone();
+            if self.present == Part::Dynamics || self.bent.is_some() {
+                // It tells of no shapes where it has no answer.
+                let _ = statics.settle(&self.dragged);
+            }
+            statics.bows()
+        };
+        let histories = bows::elsewhere(&self.problem, self.time_s(), &self.dragged, &self.solution(), free)?;
         let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
         Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
     }
