@@ -4,6 +4,7 @@
 mod coupling;
 mod next_cheaper;
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::any_error::Error;
@@ -437,18 +438,20 @@ impl Simulation {
         }
     }
 
-    /// Other histories of a cable in plan view, where a floor that rubs everywhere chose the rest
-    /// and `spans` has no answer; None where none was sought or found.
+    /// Other histories of a cable for which `spans` has no answer, those of the most capable model
+    /// where its own explores none; None where that has no answer either.
     fn other_histories(&self, k: usize) -> Option<Histories> {
-        let cable = self
-            .cables
-            .get(k)
-            .filter(|c| c.problem().floor_friction.is_some() && c.model().capabilities().explores_histories)?;
-        cable.histories(|other| {
+        let mut cable = Cow::Borrowed(self.cables.get(k)?);
+        if !cable.model().capabilities().explores_histories {
+            let mut explored = cable.rebuilt(ModelSource::Registered(Model::MOST_CAPABLE)).ok()?;
+            explored.settle().ok()?;
+            cable = Cow::Owned(explored);
+        }
+        Some(cable.histories(|other| {
             let mut answers = self.answers.clone();
             answers[k].clone_from(other);
             self.verify(&answers).is_sound()
-        })
+        }))
     }
 
     /// Advances time with inertia by `dt_s` (s).

@@ -1,9 +1,11 @@
-//! This file estimates how far other loading histories would have changed a cable that the floor of
-//! a plan view holds.
+//! This file estimates how far other loading histories would have changed a cable that rubs where
+//! it lies, and for which no model knows them in closed form.
 //!
-//! Friction keeps what was drawn into it. So each end of the cable is drawn out by a little and put
-//! back, then let in and put back, without inertia, each time from the rest that was found. The
-//! range of the results is a lower bound: other histories may leave more.
+//! Friction keeps what was drawn into it. So each end of the cable is drawn out and put back, then
+//! let in and put back, without inertia, each time from the rest that was found. An end moves
+//! further and further until it makes no difference any more: then all that lies has slid, and the
+//! friction has forgotten how it was laid. The range of the results is a lower bound: other
+//! histories may leave more.
 
 use crate::math::{Vec2, larger, smaller};
 use crate::model::Inertia;
@@ -11,53 +13,99 @@ use crate::solution::{CableSolution, EndMove, Histories};
 
 use super::BreakableCable;
 
-/// Way of an end, of the cable's length. Less: what is held in the middle of a long cable is never
-/// reached; more: a cable that is nearly taut is torn rather than drawn, and it takes longer.
-const END_TRAVEL_FRACTION: f64 = 0.01;
+/// Ways of an end, of the cable's length, shortest first. Less: what is held in the middle of a
+/// long cable is not reached at first; more: a cable that is nearly taut is torn rather than drawn,
+/// and it takes longer.
+const END_TRAVEL_FRACTIONS: [f64; 3] = [0.01, 0.02, 0.04];
+
+/// Change of the greatest tension, of itself, below which a longer way of an end made no difference:
+/// less than an engineer would act on.
+const SAME_TENSION: f64 = 0.01;
 
 /// Time in which an end moves, s: none that counts for what else moves.
 const MOVE_TIME_S: f64 = 1e-6;
 
 impl BreakableCable {
     /// Other histories, and what they would have left in the cable; `sound` judges each as if it
-    /// were the answer. None where none was found.
-    pub(crate) fn histories(&self, sound: impl Fn(&CableSolution) -> bool) -> Option<Histories> {
-        let laid = self.answer();
-        let way = END_TRAVEL_FRACTION * self.problem().length;
-        let (mut moves, mut left) = (Vec::new(), Vec::new());
-        let last = self.problem().supports.len().checked_sub(1)?;
-        for k in [0, last] {
-            let (support, reaction) = (self.problem().supports.get(k)?, laid.supports.get(k)?);
+    /// were the answer.
+    pub(crate) fn histories(&self, sound: impl Fn(&CableSolution) -> bool) -> Histories {
+        let answer = self.answer();
+        let laid = tensions(&answer);
+        let (mut moves, mut left) = (Vec::new(), vec![laid]);
+        let supports: Vec<_> = self.problem().supports.iter().zip(&answer.supports).enumerate().collect();
+        for &(k, (support, reaction)) in supports.first().into_iter().chain(supports.last()) {
             let pull = Vec2::new(reaction.reaction_x_n, reaction.reaction_y_n);
             let at = Vec2::new(reaction.x_m, reaction.y_m);
-            let Some(out) = pull.try_normalize(0.0).filter(|_| support.at.is_some()) else { continue };
-            for (sign, drawn_out_m) in [(-1.0, way), (1.0, -way)] {
-                let Some(there) = self.after(k, [at + out * (sign * way), at]).filter(|a| sound(a)) else { continue };
-                let tensions = tensions(&there);
-                moves.push(EndMove { support: support.name.clone(), drawn_out_m, greatest_n: tensions[2] });
-                left.push(tensions);
+            let Some(inward) = pull.try_normalize(0.0).filter(|_| support.at.is_some()) else { continue };
+            for direction in [-inward, inward] {
+                let found = self.moved_and_put_back(k, at, direction, &sound);
+                left.extend(found.iter().map(|f| f.tensions));
+                moves.extend(found.last().map(|furthest| EndMove {
+                    support: support.name.clone(),
+                    drawn_out_m: -furthest.way_m * direction.dot(&inward),
+                    greatest_n: furthest.tensions[2],
+                }));
             }
         }
-        let laid = tensions(&laid);
-        let range =
-            |k: usize| left.iter().fold([laid[k], laid[k]], |[a, b], t: &[f64; 3]| [smaller(a, t[k]), larger(b, t[k])]);
+        let range = |k: usize| left.iter().fold([laid[k]; 2], |[a, b], t| [smaller(a, t[k]), larger(b, t[k])]);
         let (start_n, end_n, range_n) = (range(0), range(1), range(2));
-        (!moves.is_empty()).then_some(Histories::EndsMoved { greatest_n: laid[2], moves, start_n, end_n, range_n })
+        let greatest_n = laid[2];
+        if moves.is_empty() {
+            return Histories::NotFound { greatest_n };
+        }
+        Histories::EndsMoved { greatest_n, moves, start_n, end_n, range_n }
     }
 
-    /// The answer after a support has been to some places (m), one after the other.
-    fn after(&self, support: usize, places: [Vec2; 2]) -> Option<CableSolution> {
-        let mut other = self.clone();
-        for place in places {
-            other.drag_support(support, place);
-            other.advance(MOVE_TIME_S, Inertia::QuasiStatic).ok()?;
+    /// What is left after a support has been moved from its place (m) in a direction and put back,
+    /// further each time, until that makes no difference to what was left before.
+    fn moved_and_put_back(
+        &self,
+        support: usize,
+        place: Vec2,
+        direction: Vec2,
+        sound: impl Fn(&CableSolution) -> bool,
+    ) -> Vec<Left> {
+        let laid = tensions(&self.answer());
+        let mut moved = self.clone();
+        let mut found: Vec<Left> = Vec::new();
+        for way_m in END_TRAVEL_FRACTIONS.map(|part| part * self.problem().length) {
+            let put_back = moved.drawn_to(support, place + direction * way_m).and_then(|()| {
+                let mut back = moved.clone();
+                back.drawn_to(support, place).map(|()| back.answer())
+            });
+            let Some(answer) = put_back.filter(&sound) else { break };
+            let now = tensions(&answer);
+            if found.last().is_some_and(|before| same(before.tensions, now) && !same(laid, now)) {
+                break;
+            }
+            found.push(Left { way_m, tensions: now });
         }
-        other.breaks().is_empty().then(|| other.answer())
+        found
     }
+
+    /// Draws a support to a place (m) without inertia; None where that fails or breaks the cable.
+    fn drawn_to(&mut self, support: usize, place: Vec2) -> Option<()> {
+        self.drag_support(support, place);
+        self.advance(MOVE_TIME_S, Inertia::QuasiStatic).ok()?;
+        self.breaks().is_empty().then_some(())
+    }
+}
+
+/// What a history left in the cable.
+struct Left {
+    /// Way of the end, m.
+    way_m: f64,
+    /// Tension at the start, at the end and at most, N.
+    tensions: [f64; 3],
 }
 
 fn tensions(answer: &CableSolution) -> [f64; 3] {
     let at = |n: Option<&crate::solution::Node>| n.map_or(f64::NAN, |n| n.tension_n);
     let most = answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
     [at(answer.nodes.first()), at(answer.nodes.last()), most]
+}
+
+/// True if no tension differs by more than an engineer would act on.
+fn same(one: [f64; 3], other: [f64; 3]) -> bool {
+    one.iter().zip(other).all(|(a, b)| (a - b).abs() <= SAME_TENSION * one[2])
 }

@@ -27,7 +27,7 @@ pub struct Capabilities {
     pub mobilised_friction: bool,
     /// Its nodes can catch on corners, so that a sudden rise of tension is to be doubted.
     pub nodes_catch: bool,
-    /// It is asked what other histories would have left where a floor rubs everywhere.
+    /// It is asked what other histories would have left where no model knows them in closed form.
     pub explores_histories: bool,
     /// Its rests can take long: an editor may show a draft on a coarse mesh meanwhile.
     pub long_rests: bool,

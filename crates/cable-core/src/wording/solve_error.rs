@@ -53,7 +53,7 @@ impl Sentence for SolveError {
                 place.sentence(units)
             ),
             Self::TooMuchWork { model, segments, residual_n, place, .. } => format!(
-                "{model} has found no resting place with {segments} segments by all the work it does for one: {} {}. Draw the cable a route_m nearer to where it will lie, or give it fewer segments",
+                "{model} has found no resting place with {segments} segments by all the work it does for one: {} {}. Draw its route nearer to where it will lie, or give it fewer segments",
                 left_over(f, *residual_n),
                 place.sentence(units)
             ),
