@@ -210,8 +210,9 @@ fn a_second_turn_rubs_by_what_the_first_tells() {
 }
 
 /// The fall of the standard for climbing ropes, without its edge: a mass held 2 m above the anchor
-/// falls past it by 4.6 m on 2.6 m of rope (factor 1.77). The greatest pull on the anchor, N.
-fn caught([mass, strands, stiffness]: [f64; 3], (segments, h): (usize, f64), model: Model) -> f64 {
+/// falls past it by 4.6 m on 2.6 m of rope (factor 1.77). The greatest pull on the anchor, N, of the
+/// mass held so far aside, m.
+fn caught([mass, strands, stiffness]: [f64; 3], aside: f64, (segments, h): (usize, f64), model: Model) -> f64 {
     let (length, tail) = (2.6, 2e-3);
     let weight = Support {
         mass_kg: Some(mass),
@@ -219,7 +220,7 @@ fn caught([mass, strands, stiffness]: [f64; 3], (segments, h): (usize, f64), mod
         arc_length_m: Some(length),
         ..Support::new("mass", SupportKind::Load)
     };
-    let hold = Support { release_s: Some(0.02), ..Support::fixed("hold", [0.05, 2.0]) };
+    let hold = Support { release_s: Some(0.02), ..Support::fixed("hold", [0.05 + aside, 2.0]) };
     let rope = [length + tail, 0.053 * strands, stiffness * strands];
     let mut scene = catalog::cable_alone(rope, vec![Support::fixed("anchor", [0.0, 0.0]), weight, hold]);
     scene.cables[0].segments = Some(segments);
@@ -231,6 +232,14 @@ fn caught([mass, strands, stiffness]: [f64; 3], (segments, h): (usize, f64), mod
         most = if pull > most { pull } else { most };
     }
     most
+}
+
+/// The mean of twelve starts that are tens of nanometres apart: the slack rope whips beside the
+/// mass, and what of that is left in the pull differs by 0.1 to 0.2 % (standard deviation) from
+/// start to start, on every mesh.
+fn caught_on_average(given: [f64; 3], way: (usize, f64)) -> f64 {
+    let starts = 12;
+    (0..starts).map(|k| caught(given, f64::from(k) * 3e-8, way, Model::Fem)).sum::<f64>() / f64::from(starts)
 }
 
 /// One rope, three tests: the Beal Joker, 9.1 mm and 53 g/m, was caught with 8.2 kN as a single
@@ -258,9 +267,9 @@ fn a_climbing_rope_catches_a_mass() {
         [(80.0, 1.0, 8200.0, 0.0), (55.0, 1.0, 6000.0, 0.113), (80.0, 2.0, 9500.0, 0.184)]
     {
         let given = [mass, strands, stiffness];
-        let ours = caught(given, (52, 1e-3), Model::Fem);
-        let others = [(26, 1e-3), (52, 2e-3)].map(|way| caught(given, way, Model::Fem));
-        let springs = caught(given, (52, 5e-4), Model::MassSpring);
+        let ours = caught_on_average(given, (52, 1e-3));
+        let others = [(26, 1e-3), (52, 2e-3)].map(|way| caught_on_average(given, way));
+        let springs = caught(given, 0.0, (52, 5e-4), Model::MassSpring);
         let off = ours / declared - 1.0;
         println!(
             "{mass} kg on {strands}: {ours:.0} N, declared {declared}, off by {off:.3}; {others:.0?}, springs {springs:.0} N"
