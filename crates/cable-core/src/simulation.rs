@@ -420,7 +420,7 @@ impl Simulation {
             });
             let unknown = self.warnings[at].cause.histories() == Some(&Histories::NotSought);
             let sought = if unknown && self.settings.histories { seek() } else { None };
-            let others = || self.other_histories(k).filter(|_| self.settings.histories);
+            let others = || if self.settings.histories { self.other_histories(k) } else { None };
             let found = match (known, sought) {
                 (None, Some(sought)) => {
                     self.warnings[at] = sought;

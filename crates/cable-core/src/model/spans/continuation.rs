@@ -17,7 +17,7 @@ use crate::model::spans::initial::tension;
 use crate::model::spans::newton;
 use crate::model::spans::newton::slip_predictor::predict_slip;
 use crate::model::spans::newton::{Solved, Work};
-use crate::model::spans::run::CableRun;
+use crate::model::spans::run::{CableRun, Course};
 use crate::model::spans::slack::{self, Sought};
 use crate::model::spans::verify::clearance;
 use crate::model::spans::verify::equilibrium;
@@ -45,11 +45,13 @@ struct RouteResolution {
     first_tension: Option<f64>,
     /// True if a cable that spreads on the ground may lie there without tension.
     loose: bool,
+    /// True if cable that comes down without friction lies loose where it has no tension left.
+    lies_loose: bool,
 }
 
 impl Default for RouteResolution {
     fn default() -> Self {
-        Self { ring: RINGS[0], first_tension: None, loose: true }
+        Self { ring: RINGS[0], first_tension: None, loose: true, lies_loose: false }
     }
 }
 
@@ -108,12 +110,18 @@ impl CableEquilibrium {
         let resolution =
             ways.map(|(begin, first_tension)| (begin, RouteResolution { first_tension, ..RouteResolution::default() }));
         let nearer = Self::resolutions(layout).into_iter().skip(1).map(|resolution| (instant, resolution));
-        let (mut first, mut stopped) = (None, None);
+        // Where it would push as it comes down without friction, some of it lies loose.
+        let lies_loose = (instant, RouteResolution { lies_loose: true, ..RouteResolution::default() });
+        let (mut first, mut stopped, mut pushes) = (None, None, false);
         for (begin, resolution) in
-            resolution.into_iter().chain(nearer).filter(|(begin, _)| held || begin.friction > 0.0)
+            resolution.into_iter().chain(nearer).chain([lies_loose]).filter(|(begin, _)| held || begin.friction > 0.0)
         {
+            if resolution.lies_loose && !pushes {
+                continue;
+            }
             let first_tension = resolution.first_tension;
-            let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
+            let course = Course { lies_loose: resolution.lies_loose, ..course.clone() };
+            let mut network = Self { strands: Vec::new(), course, instant: begin.clone() };
             match network.laid(layout, begin, resolution, work).and_then(|taken| {
                 if begin.friction < instant.friction {
                     network.rub(layout, instant, work).map(|more| StepStats { eased: true, ..taken.and(more) })
@@ -121,8 +129,12 @@ impl CableEquilibrium {
                     Ok(taken)
                 }
             }) {
-                Ok(taken) => return Ok((network, taken)),
+                Ok(taken) => {
+                    network.course.lies_loose = false;
+                    return Ok((network, taken));
+                }
                 Err(failure) => {
+                    pushes |= matches!(failure, Failure::Compressed { .. });
                     if first_tension.is_some() && stopped.is_none() {
                         stopped = Some((failure.clone(), Some(Box::new(network))));
                     }

@@ -56,6 +56,14 @@ pub(in crate::model::spans) struct Ends {
     pub t: [f64; 2],
 }
 
+impl Ends {
+    /// The end from which a contact that slides with m is drawn: without friction the one with the
+    /// greater tension.
+    pub fn drawn_side(&self, m: f64) -> usize {
+        usize::from(if m == 0.0 { self.t[1] > self.t[0] } else { m > 0.0 })
+    }
+}
+
 /// Direction along a boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::spans) enum Going {
@@ -440,9 +448,9 @@ impl TensionProfile {
         }
         match mode {
             Mode::Slide(m) => {
-                let from = if m > 0.0 { last } else { first };
-                let to = if m > 0.0 { first } else { last };
-                let loose = match track.floored && m != 0.0 {
+                let drawn = e.drawn_side(m);
+                let [from, to] = [[first, last][drawn], [first, last][1 - drawn]];
+                let loose = match track.floored {
                     true => track.slide_floored(from.coordinate, to.coordinate, from.tension, m).1,
                     false => None,
                 };
@@ -454,17 +462,18 @@ impl TensionProfile {
                 // Loose from there to the end that is not drawn, as even as friction keeps it:
                 // without tension.
                 let end = Knot { coordinate: p, arc_length: from.arc_length + material, tension: 0.0, mobilised: m };
-                let [a, b] = if m > 0.0 { [first, end] } else { [end, last] };
+                let [a, b] = if drawn == 1 { [first, end] } else { [end, last] };
+                let bed = Track { friction: track.friction_of_loose, ..*track };
                 let laid = Self::laid(
-                    track,
-                    Knot { tension: 0.0, ..if m > 0.0 { a } else { b } },
+                    &bed,
+                    Knot { tension: 0.0, ..if drawn == 1 { a } else { b } },
                     [a.coordinate, b.coordinate],
                 );
-                if m < 0.0 {
+                if drawn == 0 {
                     self.push(Knot { mobilised: m, ..first });
                 }
                 laid.knots.iter().for_each(|knot| self.push(*knot));
-                if m > 0.0 {
+                if drawn == 1 {
                     self.push(end);
                     self.push(last);
                 }

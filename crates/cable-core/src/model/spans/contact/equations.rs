@@ -39,9 +39,9 @@ pub(in crate::model::spans) fn rows(
     pinned: [bool; 2],
 ) -> (Rows, Option<Held>) {
     // Lifted (Newton looks there): a point without friction.
-    let mode = if e.p[1] < e.p[0] { Mode::Slide(0.0) } else { mode };
-    match mode {
-        Mode::Slide(m) if track.floored && m != 0.0 => (drawn(track, e, spots, m), None),
+    let lifted = e.p[1] < e.p[0];
+    match if lifted { Mode::Slide(0.0) } else { mode } {
+        Mode::Slide(m) if track.floored && !lifted => (drawn(track, e, spots, m), None),
         Mode::Slide(m) => (sliding(track, history, e, spots, m), None),
         Mode::Hold => {
             let held = history.hold(track, e);
@@ -156,10 +156,10 @@ fn sliding(track: &Track<'_>, history: &TensionProfile, e: &Ends, [a, b]: &[Plac
     }
 }
 
-/// Friction fully mobilised: from the end that is drawn the tension falls by the law, to nothing at
-/// most.
+/// Friction fully mobilised, or none: from the end that is drawn the tension falls by the law, to
+/// nothing at most.
 fn drawn(track: &Track<'_>, e: &Ends, spots: &[Place; 2], m: f64) -> Rows {
-    let from = usize::from(m > 0.0);
+    let from = e.drawn_side(m);
     let to = 1 - from;
     let (way, _) = track.slide_floored(e.p[from], e.p[to], e.t[from], m);
     let (start, end) = (&spots[from], &spots[to]);

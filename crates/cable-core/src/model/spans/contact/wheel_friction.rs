@@ -75,6 +75,7 @@ impl WheelFriction {
             friction: self.curve.friction,
             drag: 0.0,
             floored: false,
+            friction_of_loose: 0.0,
             pivot: None,
         }
     }

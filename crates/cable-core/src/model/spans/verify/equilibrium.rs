@@ -188,7 +188,7 @@ const LOST_MATERIAL_FRACTION: f64 = 1e-4;
 /// the next knot holds all along. No material of the strand's `length` (m) is lost between two
 /// knots, nor between the ends and the first and last of them.
 fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(), Failure> {
-    let friction = track.friction;
+    let friction = track.friction_of_loose;
     let room = BALANCE_TOLERANCE * (greatest + 1e-9);
     let lost = |found: f64, kept: f64| !((found - kept).abs() <= LOST_MATERIAL_FRACTION * length);
     if let (0.0, [first, .., last]) = (track.drag, c.history.knots())

@@ -171,6 +171,8 @@ pub(in crate::model::spans) struct Track<'a> {
     /// True if all of it slides away from the end that is drawn, as far as there is tension, and
     /// lies loose beyond that.
     pub floored: bool,
+    /// The μ that holds what lies loose.
+    pub friction_of_loose: f64,
     /// A point of it from which what lies on the same piece is seen.
     pub pivot: Option<Pivot>,
 }
@@ -257,7 +259,8 @@ impl Track<'_> {
                 sum = sum.then(self.slide(at, q, sum.tension, m));
                 loose = loose.or(Some((q, sum.material)));
                 let rest = Step::none(0.0);
-                let material = self.slide(q, next, 0.0, self.even(0.5 * (q + next))).material;
+                let bed = Self { friction: self.friction_of_loose, ..*self };
+                let material = self.slide(q, next, 0.0, bed.even(0.5 * (q + next))).material;
                 sum = sum.then(Step { material, by_tension: 0.0, ..rest });
             }
             at = next;

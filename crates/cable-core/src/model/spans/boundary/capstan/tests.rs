@@ -10,7 +10,7 @@ fn law(stiffness: f64) -> Law {
 const ROUND: ChainRange = ChainRange { first: 0, last: 0 };
 
 fn on(curve: &Curve, chain_range: ChainRange, law: Law, friction: f64) -> Track<'_> {
-    Track { curve, chain_range, law, friction, drag: 0.0, floored: false, pivot: None }
+    Track { curve, chain_range, law, friction, drag: 0.0, floored: false, friction_of_loose: friction, pivot: None }
 }
 
 /// dT/dψ = mT − (c/λ)(b·t + m b·n) and ds/dψ = c/λ by 4th-order Runge–Kutta.
