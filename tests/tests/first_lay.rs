@@ -221,3 +221,67 @@ kind = "terrain"
 points_m = [[-48.37854950614379, -22.83922145453142], [96.75709901228758, 45.67844290906284]]
 friction = 0.41184880710708255
 "#;
+
+/// A mooring line on a slope that friction holds: next to its anchor it lies without tension, then
+/// without sliding as it came down, then it hangs. `fem` answered, off by half, as `spans` let what
+/// lies push.
+#[test]
+fn issue_015_a_mooring_on_a_slope_lies_loose_next_to_its_anchor() {
+    let (weight, stiffness, radius) = (22.0, 1e11, 0.01);
+    for (slope, friction, [loose, taut, hanging]) in [
+        (0.274, 1.03, [6.0, 12.5, 5.2]),
+        (0.1, 0.12, [1.0, 30.0, 8.0]),
+        (0.5, 0.6, [20.0, 2.0, 3.0]),
+        (0.02, 0.5, [0.1, 50.0, 20.0]),
+    ] {
+        let angle = f64::atan(slope);
+        // The tension where it leaves the slope, and the catenary from there.
+        let at_rise = weight * angle.sin() * taut;
+        let (level, rise) = (at_rise * angle.cos(), at_rise * angle.sin());
+        let (from, to) = (rise / level, (rise + weight * hanging) / level);
+        let span = [level / weight * (to.asinh() - from.asinh()), level / weight * (to.hypot(1.0) - from.hypot(1.0))];
+        let lying = loose + taut;
+        let anchor = [-radius * angle.sin(), radius * angle.cos()];
+        let end = [anchor[0] + lying * angle.cos() + span[0], anchor[1] + lying * angle.sin() + span[1]];
+        let text = format!(
+            r#"
+            version = 1
+            name = "mooring"
+            [[cables]]
+            name = "c"
+            length_m = {}
+            linear_density_kg_per_m = {}
+            axial_stiffness_n = {stiffness}
+            diameter_m = {}
+            service_tension_n = 1e6
+            breaking_tension_n = 1e6
+            min_bend_radius_m = 0.0
+            [[cables.supports]]
+            name = "a"
+            kind = "fixed"
+            at_m = {anchor:?}
+            [[cables.supports]]
+            name = "b"
+            kind = "fixed"
+            at_m = {end:?}
+            [[obstacles]]
+            name = "slope"
+            kind = "terrain"
+            points_m = [[-100.0, {}], [200.0, {}]]
+            friction = {friction}
+            "#,
+            lying + hanging,
+            weight / 9.80665,
+            2.0 * radius,
+            -100.0 * slope,
+            200.0 * slope,
+        );
+        let found = rest(&Scene::from_toml(&text).unwrap(), Model::Auto, None);
+        let [start, pull] = [&found.cables[0].supports[0], &found.cables[0].supports[1]];
+        let off = (pull.reaction_x_n.abs() - level).hypot(pull.reaction_y_n.abs() - rise - weight * hanging);
+        println!("{slope}: {}, {off:.1e} of {:.1} N", found.model, level.hypot(rise + weight * hanging));
+        assert_eq!(found.model, Model::Spans);
+        assert!(off < 1e-7 * weight * (lying + hanging), "{slope}: off by {off} N");
+        assert!(start.reaction_x_n.hypot(start.reaction_y_n) < 1e-6, "{slope}: the anchor is pulled: {start:?}");
+    }
+}

@@ -4,7 +4,6 @@
 mod coupling;
 mod next_cheaper;
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::any_error::Error;
@@ -438,15 +437,9 @@ impl Simulation {
         }
     }
 
-    /// Other histories of a cable for which `spans` has no answer, those of the most capable model
-    /// where its own explores none; None where that has no answer either.
+    /// Other histories of a cable for which `spans` has no answer; None where they cannot be sought.
     fn other_histories(&self, k: usize) -> Option<Histories> {
-        let mut cable = Cow::Borrowed(self.cables.get(k)?);
-        if !cable.model().capabilities().explores_histories {
-            let mut explored = cable.rebuilt(ModelSource::Registered(Model::MOST_CAPABLE)).ok()?;
-            explored.settle().ok()?;
-            cable = Cow::Owned(explored);
-        }
+        let cable = self.cables.get(k)?.to_explore()?;
         Some(cable.histories(|other| {
             let mut answers = self.answers.clone();
             answers[k].clone_from(other);

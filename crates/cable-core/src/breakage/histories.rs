@@ -8,7 +8,7 @@
 //! histories may leave more.
 
 use crate::math::{Vec2, larger, smaller};
-use crate::model::Inertia;
+use crate::model::{Inertia, Model, ModelSource, Settings};
 use crate::solution::{CableSolution, EndMove, Histories};
 
 use super::BreakableCable;
@@ -18,6 +18,14 @@ use super::BreakableCable;
 /// and it takes longer.
 const END_TRAVEL_FRACTIONS: [f64; 3] = [0.01, 0.02, 0.04];
 
+/// Most elements of a cable that is drawn to and fro. More: the same to a percent, in a time that
+/// grows with their square (540 elements on a slope took 38 s).
+const MAX_ELEMENTS: usize = 100;
+
+/// Most work for an end in one direction, in iterations times elements: a few tenths of a second.
+/// What was found until then stands; a step that has begun is finished.
+const MAX_WORK: usize = 200_000;
+
 /// Change of the greatest tension, of itself, below which a longer way of an end made no difference:
 /// less than an engineer would act on.
 const SAME_TENSION: f64 = 0.01;
@@ -26,6 +34,20 @@ const SAME_TENSION: f64 = 0.01;
 const MOVE_TIME_S: f64 = 1e-6;
 
 impl BreakableCable {
+    /// The same cable at rest as the most capable model has it, on a mesh of few elements, to be
+    /// drawn to and fro; None where that finds no rest.
+    pub(crate) fn to_explore(&self) -> Option<Self> {
+        let elements = self.answer().nodes.len().saturating_sub(1);
+        if self.model().capabilities().explores_histories && elements <= MAX_ELEMENTS {
+            return Some(self.clone());
+        }
+        let source = ModelSource::Registered(Model::MOST_CAPABLE);
+        let settings = Settings { segments: Some(elements.clamp(1, MAX_ELEMENTS)), ..self.settings };
+        let mut other = Self { settings, ..self.clone() }.rebuilt(source).ok()?;
+        other.settle().ok()?;
+        Some(other)
+    }
+
     /// Other histories, and what they would have left in the cable; `sound` judges each as if it
     /// were the answer.
     pub(crate) fn histories(&self, sound: impl Fn(&CableSolution) -> bool) -> Histories {
@@ -67,27 +89,34 @@ impl BreakableCable {
     ) -> Vec<Left> {
         let laid = tensions(&self.answer());
         let mut moved = self.clone();
-        let mut found: Vec<Left> = Vec::new();
+        let (mut found, mut work): (Vec<Left>, usize) = (Vec::new(), 0);
         for way_m in END_TRAVEL_FRACTIONS.map(|part| part * self.problem().length) {
-            let put_back = moved.drawn_to(support, place + direction * way_m).and_then(|()| {
-                let mut back = moved.clone();
-                back.drawn_to(support, place).map(|()| back.answer())
-            });
-            let Some(answer) = put_back.filter(&sound) else { break };
+            let Some(there) = moved.drawn_to(support, place + direction * way_m) else { break };
+            let mut put_back = moved.clone();
+            let Some(back) = put_back.drawn_to(support, place) else { break };
+            let answer = put_back.answer();
+            if !sound(&answer) {
+                break;
+            }
             let now = tensions(&answer);
             if found.last().is_some_and(|before| same(before.tensions, now) && !same(laid, now)) {
                 break;
             }
             found.push(Left { way_m, tensions: now });
+            work += (there + back) * answer.nodes.len();
+            if work > MAX_WORK {
+                break;
+            }
         }
         found
     }
 
-    /// Draws a support to a place (m) without inertia; None where that fails or breaks the cable.
-    fn drawn_to(&mut self, support: usize, place: Vec2) -> Option<()> {
+    /// Draws a support to a place (m) without inertia; the iterations that it took, None where that
+    /// fails or breaks the cable.
+    fn drawn_to(&mut self, support: usize, place: Vec2) -> Option<usize> {
         self.drag_support(support, place);
-        self.advance(MOVE_TIME_S, Inertia::QuasiStatic).ok()?;
-        self.breaks().is_empty().then_some(())
+        let report = self.advance(MOVE_TIME_S, Inertia::QuasiStatic).ok()?;
+        self.breaks().is_empty().then_some(report.cost.iterations)
     }
 }
 

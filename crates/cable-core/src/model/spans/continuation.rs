@@ -95,27 +95,30 @@ impl CableEquilibrium {
     ) -> Result<(Self, StepStats), Unfound> {
         let curves = layout.curves();
         let course = layout.course(curves, instant);
-        // As it is laid; else where it needs no friction; either may have to begin taut.
+        // As it is laid; else where it needs no friction; where it would push there, some of it lies
+        // loose; each may have to begin taut.
         let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
+        let taut = [
+            None,
+            Some(layout.settings.continuation.first_tension_weights),
+            Some(layout.settings.continuation.second_tension_weights),
+        ];
+        let laid = |k: usize| RouteResolution { first_tension: taut[k], ..RouteResolution::default() };
+        let lies_loose = RouteResolution { lies_loose: true, ..RouteResolution::default() };
         let ways = [
-            (instant, None),
-            (&smooth, None),
-            (&smooth, Some(layout.settings.continuation.first_tension_weights)),
-            (instant, Some(layout.settings.continuation.first_tension_weights)),
-            (&smooth, Some(layout.settings.continuation.second_tension_weights)),
+            (instant, laid(0)),
+            (&smooth, laid(0)),
+            (&smooth, laid(1)),
+            (instant, lies_loose),
+            (instant, laid(1)),
+            (&smooth, laid(2)),
         ];
         // A cable that is not held at both ends would run to where it needs no friction.
         let held = start == SearchStart::AlsoWithoutFriction
             && layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
-        let resolution =
-            ways.map(|(begin, first_tension)| (begin, RouteResolution { first_tension, ..RouteResolution::default() }));
         let nearer = Self::resolutions(layout).into_iter().skip(1).map(|resolution| (instant, resolution));
-        // Where it would push as it comes down without friction, some of it lies loose.
-        let lies_loose = (instant, RouteResolution { lies_loose: true, ..RouteResolution::default() });
         let (mut first, mut stopped, mut pushes) = (None, None, false);
-        for (begin, resolution) in
-            resolution.into_iter().chain(nearer).chain([lies_loose]).filter(|(begin, _)| held || begin.friction > 0.0)
-        {
+        for (begin, resolution) in ways.into_iter().chain(nearer).filter(|(begin, _)| held || begin.friction > 0.0) {
             if resolution.lies_loose && !pushes {
                 continue;
             }
