@@ -25,6 +25,29 @@ fn name_after(line: &str, keyword: &str) -> Option<String> {
     Some(rest[..end].to_owned())
 }
 
+/// The private room of a module from which a line such as `self::room::{A, B}` hands out names, and
+/// these; None for what is public elsewhere.
+fn private_room(text: &str, used: &str) -> Option<(String, Vec<String>)> {
+    let (room, names) = used.strip_prefix("self::").unwrap_or(used).split_once("::")?;
+    let is_private =
+        text.lines().any(|line| [format!("mod {room};"), format!("pub(crate) mod {room};")].contains(&line.to_owned()));
+    let names = names.trim_matches(['{', '}']).split(',').map(|name| name.trim().to_owned());
+    (is_private && !names.clone().any(|name| name.contains("::"))).then(|| (room.to_owned(), names.collect()))
+}
+
+/// Public items of some names that a module hands out of one of its private rooms.
+fn list_of_room(module: &str, room: &str, names: &[String], folder: &Path, out: &mut BTreeSet<String>) {
+    let mut all = BTreeSet::new();
+    let file = file_of(folder, room).expect("the room has a file");
+    list(module, &file, &folder.join(room), &mut all);
+    let inside = format!("{module}::");
+    let of_names = |item: &String| {
+        let name = item.strip_prefix(&inside).and_then(|rest| rest.split("::").next());
+        name.is_some_and(|name| names.iter().any(|n| n == name))
+    };
+    out.extend(all.into_iter().filter(of_names));
+}
+
 /// Public items of a module and of the public modules inside it. Items begin a line; methods are
 /// indented once.
 fn list(module: &str, file: &Path, folder: &Path, out: &mut BTreeSet<String>) {
@@ -55,7 +78,11 @@ fn list(module: &str, file: &Path, folder: &Path, out: &mut BTreeSet<String>) {
             }
         }
         if let Some(used) = line.strip_prefix("pub use ") {
-            out.insert(format!("{module}: use {}", used.trim_end_matches(';')));
+            let used = used.trim_end_matches(';');
+            match private_room(&text, used) {
+                Some((room, names)) => list_of_room(module, &room, &names, folder, out),
+                None => _ = out.insert(format!("{module}: use {used}")),
+            }
         }
     }
 }
