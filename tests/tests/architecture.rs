@@ -211,7 +211,7 @@ fn imports(name: &str, code: &str, all: &BTreeMap<String, String>) -> BTreeSet<S
 
 type Graph = BTreeMap<String, BTreeSet<String>>;
 
-/// What each file of a crate imports from it.
+/// The modules that each file of a crate imports from it.
 fn files_of(name: &str) -> Graph {
     let all = modules(&root().join("crates").join(name).join("src"));
     assert!(all.len() > 5, "{name} has modules");

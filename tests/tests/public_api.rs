@@ -1,5 +1,5 @@
-//! What a user of `cable-core` can name is listed in `docs/public-api.txt`: this test compares the
-//! list with the crate.
+//! The names that a user of `cable-core` can write are listed in `docs/public-api.txt`: this test
+//! compares the list with the crate.
 //!
 //! A change that means to add or take away a public item writes the list anew:
 //! ```text

@@ -30,11 +30,11 @@ part! {
         clock: Clock,
         /// Nodes, springs and pulleys.
         mesh: Mesh,
-        /// What leads the supports.
+        /// The motions and hands that lead the supports.
         drives: SupportDrives,
         /// The contacts of the last sub-step.
         contacts: ContactMemory,
-        /// What is said of it.
+        /// The report of the step.
         report: Report,
     }
 }
