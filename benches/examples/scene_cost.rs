@@ -39,7 +39,7 @@ fn measured_rest(models: &mut [Box<dyn Mechanics>]) -> usize {
 
 #[inline(never)]
 fn measured_motion(models: &mut [Box<dyn Mechanics>], inertia: Inertia) -> usize {
-    let mut step = |m: &mut Box<dyn Mechanics>| m.advance(FRAME_S, inertia).expect("a step").cost.iterations;
+    let step = |m: &mut Box<dyn Mechanics>| m.advance(FRAME_S, inertia).expect("a step").cost.iterations;
     models.iter_mut().map(|m| (0..FRAMES).map(|_| step(m)).sum::<usize>()).sum()
 }
 

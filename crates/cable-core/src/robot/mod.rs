@@ -112,7 +112,7 @@ impl Vehicle {
     pub fn of(scene: &Scene) -> Option<Self> {
         let robot = scene.robot.as_ref()?;
         let preset = robot_preset(&robot.preset)?;
-        let ground = Arc::new(Ground::of(&scene.obstacles));
+        let ground = Arc::new(Ground::of(scene));
         if scene.view == View::Plan {
             return None;
         }

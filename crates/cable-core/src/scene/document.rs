@@ -53,9 +53,7 @@ impl Scene {
         let preset = robot_preset(&robot.preset)?;
         match self.view {
             View::Plan => Some(as_put),
-            View::Elevation => {
-                Some(robot.pose_on(&Ground::of(&self.obstacles), preset, robot.at_m[0]).unwrap_or(as_put))
-            }
+            View::Elevation => Some(robot.pose_on(&Ground::of(self), preset, robot.at_m[0]).unwrap_or(as_put)),
         }
     }
 
@@ -63,5 +61,13 @@ impl Scene {
     #[must_use]
     pub fn hitch_m(&self) -> Option<Point> {
         Some(self.robot_pose()?.hitch_m(robot_preset(&self.robot.as_ref()?.preset)?))
+    }
+}
+
+impl Ground {
+    /// Of a scene.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        Self::of_obstacles(&scene.obstacles)
     }
 }

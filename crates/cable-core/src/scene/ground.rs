@@ -100,9 +100,8 @@ pub struct Stand {
 }
 
 impl Ground {
-    /// That of a scene.
-    #[must_use]
-    pub fn of(obstacles: &[Obstacle]) -> Self {
+    /// The terrains among some obstacles.
+    pub(super) fn of_obstacles(obstacles: &[Obstacle]) -> Self {
         let lines = obstacles.iter().filter_map(|o| match &o.shape {
             Shape::Terrain { points_m } => Some(points_m.as_slice()),
             _ => None,

@@ -131,7 +131,7 @@ pub fn robot_reach(
     if cables.is_empty() {
         return Err(unsupported(UnsupportedReach::RobotWithoutCable));
     }
-    let ground = Ground::of(&scene.obstacles);
+    let ground = Ground::of(scene);
     let start_x_m = vehicle.at_m[0];
     let mut map = ReachMap {
         start_x_m,
