@@ -1,6 +1,6 @@
-//! What `fem` costs: a Newton iteration and a step of a free span by the number of bars, the swing
-//! of a chain, and contact with the ground as a part of real time. Printed beside criterion's own
-//! lines; on one core.
+//! This bench measures the cost of `fem`: a Newton iteration and a step of a free span by the
+//! number of bars, the swing of a chain, and contact with the ground as a part of real time.
+//! Printed beside criterion's own lines; on one core.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 #![allow(missing_docs)] // criterion's macros

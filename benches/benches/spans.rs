@@ -1,6 +1,6 @@
-//! What `spans` costs: a warm step by the number of contacts, over ground of any number of corners,
-//! and a first rest. "solver" is the step of the model alone, "whole step" that of a simulation
-//! with its answer, warnings and energies.
+//! This bench measures the cost of `spans`: a warm step by the number of contacts, over ground of
+//! any number of corners, and a first rest. "solver" is the step of the model alone, "whole step"
+//! that of a simulation with its answer, warnings and energies.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 #![allow(missing_docs)] // criterion's macros

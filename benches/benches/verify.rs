@@ -1,4 +1,4 @@
-//! What it costs to check an answer against the laws, beside what it took to find it: in
+//! This bench measures the cost to check an answer against the laws, beside that to find it: in
 //! nanoseconds a node and as a part of the first rest. Both in one run; the least of some
 //! repetitions.
 

@@ -1,5 +1,5 @@
-//! What the first solve of a process takes, and the least of many: of a scene at rest, or of one
-//! second in motion.
+//! This example times the first solve of a process, and the least of many: of a scene at rest, or
+//! of one second in motion.
 //!
 //! `cargo run -p cable-benches --example first_solve assets/scenes/tank.toml 20`: a scene, how many
 //! times, and a model. `quick` as a fourth word leaves out the search of other histories of

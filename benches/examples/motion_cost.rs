@@ -1,5 +1,5 @@
-//! What a motion costs: processor time as a part of the time that passes in the scene, Newton
-//! iterations and halved steps, interval by interval.
+//! This example measures the cost of a motion: processor time as a part of the time that passes in
+//! the scene, Newton iterations and halved steps, interval by interval.
 //!
 //! `cargo run --release -p cable-benches --example motion_cost rubble 1000 4`: `rubble` and `floor`
 //! are a cable let go above uneven and above flat ground, anything else is a scene file; how many

@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// Points of one kind.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// What the legend calls it; empty: it is not in the legend.
+    /// Its name in the legend; empty: it is not in the legend.
     pub name: String,
     /// Stroke and fill, from the palette of M. Okabe and K. Ito (2008), told apart with any colour
     /// vision.

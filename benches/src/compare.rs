@@ -26,7 +26,7 @@ const STEPS: u32 = 60;
 /// A motion that lasts longer (s) is not followed: the question is then where it rests.
 const LONGEST_MOTION_S: f64 = 10.0;
 
-/// What is asked of a scene.
+/// The question about a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Question {
     /// Where it rests.

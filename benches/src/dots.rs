@@ -16,7 +16,7 @@ pub struct Dot {
 /// One line of the plot.
 #[derive(Clone, Debug)]
 pub struct Line {
-    /// What it is about.
+    /// Its subject.
     pub name: String,
     /// Small print beside it.
     pub note: String,

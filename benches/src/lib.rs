@@ -1,4 +1,4 @@
-//! What the benches and the charts share: the grid of spans, and scenes brought to a model and a
+//! The benches and the charts share this: the grid of spans, and scenes brought to a model and a
 //! mesh.
 
 pub mod chart;

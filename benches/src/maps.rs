@@ -8,7 +8,7 @@ use cable_core::scene::{Motion as Path, Obstacle, STANDARD_GRAVITY as G, Scene, 
 use cable_core::solution::WarningKind;
 use cable_core::{Error, Model, Settings, Simulation, Solution, Vec2};
 
-/// What a model does in a cell.
+/// The outcome of a model in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Within the tolerance of the map.

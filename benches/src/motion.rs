@@ -13,7 +13,7 @@ use cable_core::{Error, Model, Settings, Simulation, SolveError, Vec2};
 pub struct Motion {
     /// Short name, as in files.
     pub id: &'static str,
-    /// What happens, and what is read.
+    /// The event, and the figure that is read.
     pub about: &'static str,
     /// Elements of the ladder, coarse to fine.
     pub meshes: &'static [usize],

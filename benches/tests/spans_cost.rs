@@ -1,6 +1,6 @@
-//! What a warm step and a first rest of `spans` cost, in Newton iterations: a change of the method
-//! that costs more is seen without a clock. One iteration is one evaluation of all equations and
-//! one elimination (`benches/benches/spans.rs` has the same scenes, and times).
+//! A warm step and a first rest of `spans` cost a pinned number of Newton iterations: a change of
+//! the method that costs more is seen without a clock. One iteration is one evaluation of all
+//! equations and one elimination (`benches/benches/spans.rs` has the same scenes, and times).
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

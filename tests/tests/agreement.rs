@@ -33,7 +33,8 @@ const LET_DOWN: [usize; 5] = [1, 71, 135, 173, 194];
 /// Steps in which the end goes from one corner of its way to the next.
 const STEPS: usize = 10;
 
-/// What varies: heights of the ground, the beam, friction, log₁₀ EA, slack, where the end goes.
+/// The numbers that vary: heights of the ground, the beam, friction, log₁₀ EA, slack, where the end
+/// goes.
 type Dice = (Vec<f64>, (bool, f64, f64), f64, f64, f64, Vec<(f64, f64)>);
 
 fn dice() -> impl Strategy<Value = Dice> {

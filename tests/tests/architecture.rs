@@ -146,38 +146,72 @@ fn path_tree<'a>(text: &'a str, before: &[&'a str], out: &mut Vec<Vec<String>>) 
     rest
 }
 
-/// The modules of the crate that one of them imports from.
-fn imports(name: &str, code: &str, all: &BTreeMap<String, String>) -> BTreeSet<String> {
-    let mut paths = Vec::new();
-    let starts = |word: &str| {
-        let ends_before = |at: &usize| !code[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':');
-        code.match_indices(word).map(|(at, _)| at).filter(ends_before).collect::<Vec<_>>()
+/// A path of a module from the root of the crate on.
+fn absolute(name: &str, path: &[String]) -> Vec<String> {
+    let own = || name.split("::").map(str::to_owned);
+    let up = path.iter().take_while(|w| *w == "super").count();
+    let (base, skipped): (Vec<String>, usize) = match path.first().map(String::as_str) {
+        Some("crate") => (Vec::new(), 1),
+        Some("super") => (own().take(own().count().saturating_sub(up)).collect(), up),
+        Some("self") => (own().collect(), 1),
+        _ => (own().collect(), 0),
     };
-    for word in ["crate::", "super::"] {
-        for at in starts(word) {
-            path_tree(&code[at..], &[], &mut paths);
+    base.into_iter().chain(path.iter().skip(skipped).cloned()).filter(|w| w != "self").collect()
+}
+
+/// The statements by which a module hands out what another one defines: what lies between
+/// `pub use` and `;`.
+fn handed_out(code: &str) -> Vec<&str> {
+    let is_public = |at: usize| code[..at].rsplit(['\n', ';']).next().is_some_and(|line| line.starts_with("pub"));
+    let uses = code.match_indices("use ").filter(|(at, _)| is_public(*at));
+    uses.filter_map(|(at, word)| code[at + word.len()..].split(';').next()).collect()
+}
+
+/// The paths of the crate in a text, from its root on. Rooms are called by their names alone.
+fn paths_of(name: &str, code: &str, all: &BTreeMap<String, String>) -> Vec<Vec<String>> {
+    let mut paths = Vec::new();
+    let inside = format!("{name}::");
+    let rooms = all.keys().filter_map(|m| m.strip_prefix(&inside)).filter(|room| !room.contains("::"));
+    let words = ["crate", "super", "self"].into_iter().chain(rooms).map(|word| format!("{word}::"));
+    for word in words.collect::<Vec<_>>() {
+        for (at, _) in code.match_indices(&word) {
+            if !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':') {
+                path_tree(&code[at..], &[], &mut paths);
+            }
         }
     }
-    let mut found = BTreeSet::new();
-    for path in paths {
-        let up = path.iter().take_while(|w| *w == "super").count();
-        let own: Vec<&str> = name.split("::").collect();
-        let base = if up > 0 { own[..own.len().saturating_sub(up)].to_vec() } else { Vec::new() };
-        let below = path.iter().skip(up.max(1)).map(String::as_str);
-        let full: Vec<&str> = base.into_iter().chain(below).collect();
-        found.extend((1..=full.len()).rev().map(|n| full[..n].join("::")).find(|m| all.contains_key(m)));
+    paths.iter().map(|path| absolute(name, path)).collect()
+}
+
+/// The modules of the crate that one of them imports from. A name that a module only hands out
+/// belongs to the module that defines it, and to hand out is no import.
+fn imports(name: &str, code: &str, all: &BTreeMap<String, String>) -> BTreeSet<String> {
+    let mut own = code.to_owned();
+    for statement in handed_out(code) {
+        own = own.replace(&format!("use {statement};"), "");
     }
-    // An entrance calls its rooms by their names alone.
-    let inside = format!("{name}::");
-    let rooms = all.keys().filter(|m| m.strip_prefix(&inside).is_some_and(|room| !room.contains("::")));
-    found.extend(rooms.filter(|m| !starts(&format!("{}::", &m[inside.len()..])).is_empty()).cloned());
+    let mut found = BTreeSet::new();
+    for mut path in paths_of(name, &own, all) {
+        let module = |path: &[String]| (1..=path.len()).rev().find(|n| all.contains_key(&path[..*n].join("::")));
+        // Eight is more than any name is handed on.
+        for _ in 0..8 {
+            let Some(n) = module(&path) else { break };
+            let at = path[..n].join("::");
+            let public: Vec<_> = handed_out(&all[&at]).into_iter().flat_map(|u| paths_of(&at, u, all)).collect();
+            let Some(target) = public.into_iter().find(|p| path.get(n).is_some() && p.last() == path.get(n)) else {
+                break;
+            };
+            path = target.into_iter().chain(path.into_iter().skip(n + 1)).collect();
+        }
+        found.extend(module(&path).map(|n| path[..n].join("::")));
+    }
     found.remove(name);
     found
 }
 
 type Graph = BTreeMap<String, BTreeSet<String>>;
 
-/// What each file of a crate imports from it.
+/// The modules that each file of a crate imports from it.
 fn files_of(name: &str) -> Graph {
     let all = modules(&root().join("crates").join(name).join("src"));
     assert!(all.len() > 5, "{name} has modules");
@@ -215,8 +249,9 @@ fn modules_of_viewer_and_program_import_one_way() {
     }
 }
 
-/// Neither the core's top floor nor the wings of a model have loops. A folder and its files still
-/// do: their number may not grow.
+/// Neither the core's top floor nor the wings of a model have loops. Files have two: the errors of
+/// `mass_spring` are estimated beside a coarser model of its own kind, and the capstan law of
+/// `spans` is integrated along arcs that follow it. Their number may not grow.
 #[test]
 fn the_core_imports_one_way() {
     let files = files_of("cable-core");
@@ -225,7 +260,7 @@ fn the_core_imports_one_way() {
         assert!(wings.len() > 5, "`{below}` has wings");
         assert!(in_loops(&wings).is_empty(), "`{below}`: these import each other in a loop: {:?}", in_loops(&wings));
     }
-    assert!(in_loops(&files).len() <= 41, "{:?}", in_loops(&files));
+    assert!(in_loops(&files).len() <= 5, "{:?}", in_loops(&files));
 }
 
 /// A module is reached by following imports from itself.

@@ -41,7 +41,7 @@ struct Row {
     shape_error: f64,
 }
 
-/// What an axis shows of a row.
+/// Reads the figure of an axis off a row.
 type Read = fn(&Row) -> f64;
 
 fn main() -> Result<(), Box<dyn Error>> {

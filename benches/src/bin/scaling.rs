@@ -30,7 +30,7 @@ const PAGE_BYTES: f64 = 4096.0;
 struct Ladder {
     /// Short name, as in the table.
     id: &'static str,
-    /// What is asked.
+    /// The question.
     about: &'static str,
     /// The things that its size counts.
     size: &'static str,

@@ -297,7 +297,7 @@ named in [convergence.md](../convergence.md). Figures are in
 ![Cost of an error of 1e-2 and of 1e-3 in every scene](work_precision.svg)
 ";
 
-/// What a panel shows of a point.
+/// Reads the figure of a panel off a point.
 type Read = fn(&Point) -> Option<(f64, f64)>;
 
 fn panels(id: &str, points: &[&Point]) -> Vec<Panel> {

@@ -91,7 +91,8 @@ fn allowed(diameter_m: f64) -> f64 {
     (0.02 * diameter_m).min(1e-3)
 }
 
-/// What is cut too deep in the answer of a scene by a model; the number of cables looked at.
+/// Finds the chords that cut too deep in the answer of a scene by a model, and returns the number
+/// of cables looked at.
 fn look(name: &str, scene: &Scene, model: Model, faults: &mut Vec<String>) -> usize {
     let Ok(mut simulation) = Simulation::new(scene.clone(), model) else { return 0 };
     let Ok(answer) = simulation.settle() else { return 0 };

@@ -1,4 +1,4 @@
-//! What an answer at rest draws is as long as its material, and what it reports carries the whole
+//! The line of an answer at rest is as long as its material, and its forces carry the whole
 //! cable: asked of the answer alone.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic

@@ -368,7 +368,7 @@ fn errors(found: &CableSolution, exact: &CableSolution) -> [f64; 4] {
     ]
 }
 
-/// What an answer says of the same.
+/// The errors that an answer states.
 fn stated(c: &CableSolution) -> [Option<f64>; 4] {
     let e = c.errors;
     [e.max_tension_n, e.support_force_n, e.contact_force_n, e.position_m]

@@ -1,4 +1,4 @@
-//! What others measured on real chains, ropes and cords, beside what the models say: the table is
+//! These tests compare the models with measurements on real chains, ropes and cords: the table is
 //! docs/experiments.md.
 //!
 //! `cargo test --locked -p cable-core --test experiments -- --nocapture` prints it. Where a

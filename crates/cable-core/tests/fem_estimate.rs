@@ -1,5 +1,5 @@
-//! What `fem` says of its own error beside answers without one: free spans of every kind beside the
-//! catenary.
+//! These tests compare the error that `fem` states with answers that have none: free spans of every
+//! kind beside the catenary.
 //!
 //! `FEM_SPANS=1000 cargo test -p cable-core --test fem_estimate -- --nocapture` prints what came of
 //! more of them; `FEM_FIRST` says from which.

@@ -78,7 +78,7 @@ fn smallest_gap(world: &World, sim: &Simulation) -> f64 {
     least
 }
 
-/// What the cable does where it meets itself.
+/// The behaviour of a cable that meets itself.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Own {
     Touches,

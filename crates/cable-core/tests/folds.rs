@@ -209,7 +209,7 @@ fn depth(shape: &Shape, [x, y]: [f64; 2]) -> f64 {
     }
 }
 
-/// What is wrong with an answer.
+/// The faults of an answer.
 fn faults(s: &Scene, answer: &Solution) -> Vec<String> {
     let (c, found) = (&s.cables[0], &answer.cables[0]);
     let weight = c.length_m * c.linear_density_kg_per_m * GRAVITY;

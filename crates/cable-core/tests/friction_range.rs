@@ -1,4 +1,4 @@
-//! What less and more friction does to an answer.
+//! These tests ask how an answer changes with less and more friction.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -1,5 +1,5 @@
-//! What draws a support: a motion of the scene is followed exactly or refused, a hand is no faster
-//! than it may be.
+//! These tests draw a support: a motion of the scene is followed exactly or refused, a hand is no
+//! faster than it may be.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::math::Vec2;

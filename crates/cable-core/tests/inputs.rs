@@ -1,4 +1,4 @@
-//! What a scene may hold, however unusual: no panic, no number that is not finite, starts inside
+//! A scene may be as unusual as it likes: no panic, no number that is not finite, starts inside
 //! something solid, and the same answer at every scale.
 
 #![allow(clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic

@@ -1,6 +1,6 @@
-//! What a run says of its errors in motion, beside the same run on four times as many elements in a
-//! quarter of its steps: random swings, drags over rough ground, drops, slackenings, throws beside
-//! a post, and cables let go at an end.
+//! These tests compare the errors that a run in motion states with the same run on four times as
+//! many elements in a quarter of its steps: random swings, drags over rough ground, drops,
+//! slackenings, throws beside a post, and cables let go at an end.
 //!
 //! All: `cargo test --locked -p cable-core --test motion_errors -- --ignored --nocapture`;
 //! `FROM=60 TO=80` takes others of each family. Of each figure (greatest tension, supports,

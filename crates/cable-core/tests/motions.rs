@@ -20,7 +20,7 @@ use cable_core::{Model, Settings, Simulation};
 
 use self::dice::Dice;
 
-/// What is varied.
+/// The parameter that is varied.
 #[derive(Clone, Copy, Debug)]
 struct Way {
     model: Model,

@@ -1,4 +1,4 @@
-//! What a map of safe reach costs on the tank: printed, not asserted.
+//! The cost of a map of safe reach on the tank is printed, not asserted.
 //! `cargo test -p cable-core --test reach_cost -- --nocapture --ignored`.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)]
 

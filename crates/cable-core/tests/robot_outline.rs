@@ -4,6 +4,7 @@
 
 use cable_core::contact::distance::cross_properly;
 use cable_core::contact::outline::Outline;
+use cable_core::problem::robot_outline;
 use cable_core::record::Fingerprint;
 use cable_core::robot::{Going, RobotReport};
 use cable_core::scene::{Shape, catalog};
@@ -33,7 +34,7 @@ fn robot(simulation: &Simulation) -> RobotReport {
 /// Whether the cable crosses the outline, or has a node in it: by polygons alone, not by what the
 /// solver uses.
 fn crosses(simulation: &Simulation) -> Option<String> {
-    let outline: Outline = simulation.scene().robot_outline(0.5).unwrap();
+    let outline: Outline = robot_outline(simulation.scene(), 0.5).unwrap();
     let r = robot(simulation);
     let mut placement = outline.placement;
     (placement.at, placement.angle) = (Vec2::new(r.x_m, r.y_m), r.pitch_deg.to_radians());

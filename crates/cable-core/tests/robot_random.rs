@@ -6,6 +6,7 @@
 
 use cable_core::contact::distance::cross_properly;
 use cable_core::math::RigidPose;
+use cable_core::problem::robot_outline;
 use cable_core::record::Fingerprint;
 use cable_core::scene::{Shape, SupportKind, catalog, preset};
 use cable_core::{Model, Robot, Scene, Simulation, Vec2};
@@ -70,7 +71,7 @@ fn solids(simulation: &Simulation) -> Vec<(String, Vec<Vec2>)> {
     }
     let r = simulation.solution().robot.unwrap();
     let at = RigidPose { at: Vec2::new(r.x_m, r.y_m), angle: r.pitch_deg.to_radians() };
-    let outline = scene.robot_outline(0.5).unwrap();
+    let outline = robot_outline(scene, 0.5).unwrap();
     all.push(("robot".to_owned(), outline.edges(at).map(|[p, _]| p).collect()));
     all
 }

@@ -1,4 +1,4 @@
-//! What a family draws: a scene, the model that is asked, and what is known of the answer.
+//! A case is drawn by a family: a scene, the model that is asked, and what is known of the answer.
 
 use cable_core::scene::{Cable, Obstacle, Scene, Shape, Support, SupportKind, catalog};
 use cable_core::{Load, Model};

@@ -1,4 +1,4 @@
-//! What `auto` costs beside the cheapest setting that is as near as its tolerance asks.
+//! This campaign measures the cost of `auto` beside the cheapest setting that is as near as asked.
 
 use std::time::Instant;
 

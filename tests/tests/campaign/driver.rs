@@ -18,7 +18,7 @@ use crate::families::{FAMILIES, Family};
 use crate::judge;
 use crate::relations::{COUNT, end_forces, relation};
 
-/// What is asked.
+/// The questions of a campaign.
 pub struct Plan {
     pub first: u64,
     pub cases: usize,

@@ -39,8 +39,8 @@ const CONE: f64 = 2e-3;
 /// Way too long for the material, of the material.
 const TOO_LONG: f64 = 1e-6;
 
-/// What one obstacle is to a point: its signed distance, the direction away from it, and how much
-/// it rubs.
+/// The relation of an obstacle to a point: its signed distance, the direction away from it, and how
+/// much it rubs.
 struct Near {
     gap: f64,
     normal: V,

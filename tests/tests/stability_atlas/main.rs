@@ -28,7 +28,7 @@ pub const G: f64 = cable_core::scene::STANDARD_GRAVITY;
 /// Height of the centre line of a cable that lies on a floor, m.
 pub const ON_FLOOR: f64 = 0.01;
 
-/// What a model does in a regime.
+/// The outcome of a model in a regime.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// Right, to this relative error.

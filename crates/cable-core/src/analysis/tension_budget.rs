@@ -9,7 +9,7 @@
 //! T(place) = T(end) + Σ −q·Δx / ((1 + ε) θ) + what is left of each piece
 //! ```
 //!
-//! and what is left belongs to the contact, pulley, grip or load the piece lies on. What lies on
+//! and what is left belongs to the contact, pulley, grip or load the piece lies on. A piece on
 //! none of them is said as rest: inertia, shear of a stiff cable, the floor of a plan view, the
 //! mesh. The terms add up to the tension by construction; that each is what it is called is tested
 //! against the contacts of an answer.

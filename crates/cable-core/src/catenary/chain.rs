@@ -6,7 +6,8 @@
 //! however many loads there are.
 
 use super::kernel::{self, ChainPiece, DualEnergy, HorizontalForce};
-use super::{Catenary, Frame, Span, SpanError};
+use super::span::{Catenary, Frame, Span};
+use crate::error::SpanError;
 use crate::math::{Mat2, Vec2};
 
 /// A dead load at a material point.

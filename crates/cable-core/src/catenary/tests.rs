@@ -1,4 +1,6 @@
+use super::kernel::ChainPiece;
 use super::*;
+use crate::math::Vec2;
 use proptest::prelude::*;
 
 fn span(x: f64, z: f64, length: f64, w: f64, ea: f64) -> Span {

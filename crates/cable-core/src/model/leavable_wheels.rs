@@ -14,7 +14,7 @@ use crate::contact::distance::segment_segment;
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{RigidPose, Vec2};
 use crate::problem::wheels_as_posts::WheelPost;
-use crate::problem::{Problem, WheelsAsPosts};
+use crate::problem::{Problem, WheelsAsPosts, with_moved_posts};
 use crate::solution::{CableSolution, ModelReason, Node, SupportReaction, Warning, WarningCause};
 use crate::state::State;
 
@@ -159,7 +159,7 @@ impl LeavableWheels {
             Some(Some(Lead::Dragged(at))) if self.copy.replaced[k] => Some(*at),
             _ => None,
         };
-        self.copy.moved((0..self.copy.replaced.len()).map(place))
+        with_moved_posts(&self.copy, (0..self.copy.replaced.len()).map(place))
     }
 
     /// The warnings of a report, with one for each wheel of which the cable hangs clear.

@@ -6,7 +6,7 @@
 //! | `mechanics.rs` | the trait and its reports; `settings.rs`: [`Settings`]; `gauge.rs`: tensions of the inner steps |
 //! | `registry.rs` | one entry a model: name, capabilities, constructor; [`build`] |
 //! | `auto.rs`, `switching.rs` | the choice of a model, and two models that take turns |
-//! | `initial_equilibrium.rs`, `input_filter.rs`, `layered.rs`, `similar.rs`, `leavable_wheels.rs`, `arc_nodes.rs` | what several models share |
+//! | `initial_equilibrium.rs`, `input_filter.rs`, `layered.rs`, `similar.rs`, `leavable_wheels.rs`, `arc_nodes.rs`, `mobilised_friction.rs` | what several models share |
 //! | `catenary/`, `spans/`, `fem/`, `mass_spring/` | the models |
 //!
 //! A model answers two kinds of question: where does the cable rest ([`Mechanics::settle`]), and
@@ -24,6 +24,7 @@ mod layered;
 mod leavable_wheels;
 pub mod mass_spring;
 pub mod mechanics;
+mod mobilised_friction;
 pub mod registry;
 pub mod settings;
 mod similar;
@@ -31,7 +32,6 @@ pub mod spans;
 mod switching;
 
 pub use self::mechanics::{Inertia, Mechanics, OwnedResources, RobotContact, StepReport};
-use self::registry::refuse_mobilised;
 pub use self::registry::{Capabilities, ModelInfo, ModelSource, build};
 pub(crate) use self::settings::MIN_TOLERANCE;
 pub use self::settings::Settings;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::auto::{self, Question};
 use super::layered::Layered;
 use super::mechanics::{Constructor, Mechanics};
+use super::mobilised_friction::refuse_mobilised;
 use super::settings::Settings;
 use super::switching::SwitchingModel;
 use super::{catenary, fem, leavable_wheels, mass_spring, similar, spans};
@@ -200,19 +201,6 @@ impl ModelSource {
             }
         }
     }
-}
-
-/// Refuses friction that is fully mobilised towards one end for a model that finds its own.
-///
-/// # Errors
-/// `Unsupported`.
-pub(super) fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), SolveError> {
-    let mobilised = problem.cable.friction_mobilised;
-    if mobilised.is_default() || model.capabilities().mobilised_friction {
-        return Ok(());
-    }
-    let feature = Unsupported::MobilisedFriction { towards: mobilised.name() };
-    Err(SolveError::Unsupported { model, feature })
 }
 
 /// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it

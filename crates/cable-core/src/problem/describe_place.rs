@@ -1,7 +1,7 @@
 //! A place of a cable is described in the words of the scene: metres along it, and the name of what
 //! is near.
 
-use super::Problem;
+use super::definition::Problem;
 use crate::error::{Near, NearKind, Place};
 use crate::math::Vec2;
 

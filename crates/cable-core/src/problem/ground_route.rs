@@ -5,7 +5,7 @@
 //! where it goes in to where it comes out. Beams and posts have two sides; what leads through them
 //! is refused ([`super::route_check`]).
 
-use super::Problem;
+use super::definition::Problem;
 use super::route_check::allowed_depth;
 use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross};

@@ -9,16 +9,14 @@ use crate::scene::{Scene, View};
 /// Name of the outline among the obstacles of a cable.
 pub(crate) const OUTLINE_NAME: &str = "robot";
 
-impl Scene {
-    /// The outline of the robot that a cable of this friction meets; None where there is no robot,
-    /// and in a plan view.
-    #[must_use]
-    pub fn robot_outline(&self, cable_friction: f64) -> Option<Outline> {
-        let (robot, pose) = (self.robot.as_ref()?, self.robot_pose()?);
-        let preset = robot_preset(&robot.preset)?;
-        let corners = preset.meets_cable_m(robot.heading);
-        let hitch = vec2(Pose { heading: robot.heading, ..Pose::default() }.hitch_m(preset));
-        let outline = Outline::new(&corners, hitch, pose.placement(), cable_friction, OUTLINE_NAME.to_owned());
-        outline.filter(|_| self.view == View::Elevation)
-    }
+/// The outline of the robot that a cable of this friction meets; None where there is no robot, and
+/// in a plan view.
+#[must_use]
+pub fn robot_outline(scene: &Scene, cable_friction: f64) -> Option<Outline> {
+    let (robot, pose) = (scene.robot.as_ref()?, scene.robot_pose()?);
+    let preset = robot_preset(&robot.preset)?;
+    let corners = preset.meets_cable_m(robot.heading);
+    let hitch = vec2(Pose { heading: robot.heading, ..Pose::default() }.hitch_m(preset));
+    let outline = Outline::new(&corners, hitch, pose.placement(), cable_friction, OUTLINE_NAME.to_owned());
+    outline.filter(|_| scene.view == View::Elevation)
 }

@@ -1,7 +1,7 @@
 //! Rounding limits an answer without a mesh: lengths are off by units in the last place, and forces
 //! by that times the stiffness.
 
-use super::Problem;
+use super::definition::Problem;
 use crate::math::{Mat2, larger};
 use crate::solution::error_estimates::{ErrorEstimates, largest_force};
 use crate::solution::{CableSolution, Node};

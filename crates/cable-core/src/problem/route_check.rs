@@ -1,7 +1,7 @@
 //! A route is refused where it leads through a beam or a post, since it then does not say on which
 //! side the cable lies. The ground has one side only, and a route below it is lifted.
 
-use super::Problem;
+use super::definition::Problem;
 use crate::error::{SceneError, SceneFault};
 use crate::scene::read::path::Path;
 

@@ -6,7 +6,7 @@
 //! support is a radius off. A point further in is a slip of the scene, as nobody can tell on which
 //! side of the obstacle the cable was meant to be.
 
-use super::Problem;
+use super::definition::Problem;
 use crate::error::{SceneError, SceneFault};
 use crate::math::Vec2;
 use crate::scene::SupportKind;

@@ -6,9 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::choice::{NodeChoice, NodeInterval};
 use super::fingerprint::Fingerprint;
-use super::tables::{EVENTS, HISTORY, HistoryTable, NODES, NodeRow, ReadError, read_events, read_history, read_nodes};
+use super::tables::{
+    EVENTS, Event, HISTORY, HistoryTable, NODES, NodeRow, ReadError, read_events, read_history, read_nodes,
+};
 use super::whole::WholeRecords;
-use crate::record::Event;
 
 /// Progress of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

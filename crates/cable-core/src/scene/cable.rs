@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Support;
+use super::support::Support;
 use crate::math::Point;
 
 /// One cable, every number resolved (a preset has already filled what the file left out).
@@ -152,7 +152,7 @@ impl Cable {
         if self.bending_stiffness_n_m2 > 0.0 {
             return self.bending_stiffness_n_m2;
         }
-        let preset = self.preset.as_deref().and_then(super::preset::cable_preset);
+        let preset = self.preset.as_deref().and_then(super::library::preset::cable_preset);
         preset.map_or(0.0, |p| p.likely_bending_stiffness_n_m2.value)
     }
 }

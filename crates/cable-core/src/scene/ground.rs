@@ -1,6 +1,6 @@
 //! The ground is the highest terrain of a scene; a rigid track rests on it.
 
-use super::{Scene, Shape};
+use super::obstacle::{Obstacle, Shape};
 use crate::math::Point;
 
 /// The terrains of a scene.
@@ -100,10 +100,9 @@ pub struct Stand {
 }
 
 impl Ground {
-    /// That of a scene.
-    #[must_use]
-    pub fn of(scene: &Scene) -> Self {
-        let lines = scene.obstacles.iter().filter_map(|o| match &o.shape {
+    /// The terrains among some obstacles.
+    pub(super) fn of_obstacles(obstacles: &[Obstacle]) -> Self {
+        let lines = obstacles.iter().filter_map(|o| match &o.shape {
             Shape::Terrain { points_m } => Some(points_m.as_slice()),
             _ => None,
         });

@@ -3,10 +3,12 @@
 //!
 //! | room | content |
 //! |---|---|
+//! | `document.rs` | [`Scene`]: the parts of a scene file, and where the robot stands |
 //! | `cable.rs`, `support.rs`, `load.rs`, `motion.rs` | a cable, what holds and pulls it, how its supports move |
 //! | `obstacle.rs`, `environment.rs`, `robot.rs`, `ground.rs` | what surrounds it; the ground under the robot's tracks |
 //! | `read/` | files in and out, and the refusal of what cannot be solved |
 //! | `library/` | named scenes and presets |
+//! | `nearest.rs` | the known name that a mistyped one means |
 //! | `import.rs`, `scaled.rs` | lines from tables and drawings; a similar copy at another scale |
 //!
 //! A [`Scene`] is a plain document: every field is public, so that an editor can hold a half-typed
@@ -14,12 +16,14 @@
 //! that cannot.
 
 pub mod cable;
+mod document;
 pub mod environment;
 pub mod ground;
 pub mod import;
 pub mod library;
 pub mod load;
 pub mod motion;
+mod nearest;
 pub mod obstacle;
 pub(crate) mod read;
 pub mod robot;
@@ -27,6 +31,7 @@ pub mod scaled;
 pub mod support;
 
 pub use cable::{Cable, FrictionMobilised};
+pub use document::{Scene, VERSION};
 pub use environment::{Environment, STANDARD_GRAVITY, View};
 pub use library::{catalog, preset};
 pub use load::Load;
@@ -36,37 +41,3 @@ pub use obstacle::{Obstacle, Shape};
 pub use read::{file, schema, validate};
 pub use robot::{Heading, Robot, RobotTask};
 pub use support::{PulleySide, Support, SupportKind};
-
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-/// The file version this build writes, and the newest it reads.
-pub const VERSION: u32 = 1;
-
-/// A whole scene, as a scene file holds it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Scene {
-    /// File format version; always 1.
-    pub version: u32,
-    /// Shown in title bars and reports.
-    #[serde(default)]
-    pub name: String,
-    /// Side view or plan view.
-    #[serde(default)]
-    pub view: View,
-    /// Gravity, wind, temperature.
-    #[serde(default)]
-    pub environment: Environment,
-    /// The cables; at least one.
-    pub cables: Vec<Cable>,
-    /// Terrain, beams, posts.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub obstacles: Vec<Obstacle>,
-    /// Point loads on cables.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub loads: Vec<Load>,
-    /// The tracked vehicle, if there is one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub robot: Option<Robot>,
-}

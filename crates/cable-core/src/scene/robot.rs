@@ -4,8 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::ground::Ground;
-use super::preset::{RobotPreset, robot_preset};
-use super::{Scene, View};
+use super::library::preset::{RobotPreset, robot_preset};
 use crate::math::{Point, RigidPose, Vec2, vec2};
 
 /// A tracked vehicle standing on the terrain.
@@ -177,26 +176,5 @@ impl RobotPreset {
             Vec2::new(if heading == Heading::Left { -x } else { x }, if low { -BELOW_GROUND_M } else { y })
         };
         (0..n).map(corner).collect()
-    }
-}
-
-impl Scene {
-    /// Returns how the robot stands at the start: on the ground in a side view, as it was put where
-    /// there is none and in a plan view.
-    #[must_use]
-    pub fn robot_pose(&self) -> Option<Pose> {
-        let robot = self.robot.as_ref()?;
-        let as_put = Pose { at_m: robot.at_m, pitch: 0.0, heading: robot.heading };
-        let preset = robot_preset(&robot.preset)?;
-        match self.view {
-            View::Plan => Some(as_put),
-            View::Elevation => Some(robot.pose_on(&Ground::of(self), preset, robot.at_m[0]).unwrap_or(as_put)),
-        }
-    }
-
-    /// Returns where a cable hangs on the robot at the start, m.
-    #[must_use]
-    pub fn hitch_m(&self) -> Option<Point> {
-        Some(self.robot_pose()?.hitch_m(robot_preset(&self.robot.as_ref()?.preset)?))
     }
 }

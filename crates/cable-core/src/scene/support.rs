@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Motion;
+use super::motion::Motion;
 use crate::math::{Point, vec2};
 
 /// Kind of a support.

@@ -3,10 +3,14 @@
 //! | room | what is in it |
 //! |---|---|
 //! | `mod.rs` | [`Verifier`]: asks the laws of an answer; which and what was found is a [`Verification`] |
-//! | `laws.rs` | one function a law, over one cable |
+//! | `cable.rs` | one cable as the laws see it: its forces, bars, and what touches them |
+//! | `answer.rs` | every number is one, and nodes run along the material |
+//! | `penetration.rs` | nothing lies inside anything |
+//! | `balance.rs` | forces on each piece, contacts and their friction, momentum |
+//! | `flexible.rs`, `stiff.rs` | tension, length and bending moment from node to node |
 //! | `surroundings.rs` | obstacles and the robot as the checker sees them: distances by brute force, normals, friction |
 //! | `stability.rs` | whether a stiff cable holds what it pushes with |
-//! | `supports.rs` | what supports do to the cable, and whether it is where they hold it |
+//! | `supports.rs`, `support_hold.rs` | whether the cable is where its supports hold it; what each does to it |
 //! | `pulleys.rs` | what friction of eyes and wheels allows between the tensions beside them |
 //! | `tolerance.rs` | every tolerance, each with its reason |
 //!
@@ -18,9 +22,15 @@
 //! piece do not add up to nothing: there the momentum of each cable must change by the impulses
 //! that its account of the step names.
 
-mod laws;
+mod answer;
+mod balance;
+mod cable;
+mod flexible;
+mod penetration;
 mod pulleys;
 mod stability;
+mod stiff;
+mod support_hold;
 mod supports;
 mod surroundings;
 #[cfg(test)]
@@ -29,6 +39,7 @@ pub mod tolerance;
 
 use serde::{Deserialize, Serialize};
 
+use self::cable::CheckedCable;
 use self::surroundings::Obstacles;
 use crate::scene::Scene;
 use crate::solution::robot_report::RobotReport;
@@ -78,8 +89,47 @@ impl Verifier {
         let mut found = Verification::default();
         let surroundings = self.obstacles.at(robot);
         for (cable, answer) in scene.cables.iter().zip(answers) {
-            laws::check(&mut found, laws::CheckedCable::new(&surroundings, scene, cable, answer, time_s), depth);
+            check(&mut found, &CheckedCable::new(&surroundings, scene, cable, answer, time_s), depth);
         }
         found
+    }
+}
+
+/// Asks the laws of one cable.
+fn check(found: &mut Verification, checked: &CheckedCable<'_>, depth: Depth) {
+    let (cable, answer) = (checked.cable, checked.answer);
+    found.ask(Law::Finite);
+    if let Some(finding) = answer::not_finite(checked) {
+        found.report(finding);
+        return;
+    }
+    if !answer::check_material(checked, found) {
+        return;
+    }
+    let near = checked.near();
+    penetration::check_penetration(checked, found, &near);
+    balance::check_contacts(checked, found);
+    if answer.assumptions.inertia || !answer.breaks.is_empty() {
+        let cable = cable.name.clone();
+        found.not_checked.push(match answer.breaks.is_empty() {
+            true => NotChecked::MovingBalance { cable },
+            false => NotChecked::BrokenBalance { cable },
+        });
+        balance::check_momentum(checked, found);
+    } else {
+        supports::check_supports(checked, found);
+        balance::check_balance(checked, found, &near);
+        if answer.assumptions.bending_stiffness_n_m2 > 0.0 {
+            stiff::check_stiff(checked, found);
+            stability::check_stability(checked, found, &near);
+        } else {
+            flexible::check_flexible(checked, found, &near);
+            pulleys::check_pulleys(checked, found);
+        }
+    }
+    if cable.self_contact && depth == Depth::Full {
+        penetration::check_self_contact(checked, found);
+    } else if cable.self_contact {
+        found.not_checked.push(NotChecked::SelfContact { cable: cable.name.clone() });
     }
 }

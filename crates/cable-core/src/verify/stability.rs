@@ -7,51 +7,49 @@
 //! directions as there are conditions may lower the energy without being open to the cable; one
 //! more, and it leaves.
 
-use super::laws::CheckedCable;
-use super::supports::Role;
+use super::cable::CheckedCable;
+use super::support_hold::Role;
 use super::surroundings::Neighbours;
-use super::{Law, Verification};
 use crate::math::larger;
 use crate::scene::SupportKind;
+use crate::verification::{Law, Verification};
 
-impl CheckedCable<'_> {
-    /// Checks the stability of stretches in compression.
-    pub fn stability(&self, found: &mut Verification, near: &Neighbours) {
-        found.ask(Law::Stability);
-        let nodes = &self.answer.nodes;
-        let same = 1e-9 * self.cable.length_m;
-        // The support that holds a node, and whether it may turn there.
-        let mut holds = vec![None; nodes.len()];
-        for hold in self.holds.iter().filter(|h| !matches!(h.role, Role::Clear { .. } | Role::Load | Role::Released)) {
-            let node = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - same);
-            if let Some(held) = holds.get_mut(node) {
-                *held = Some(hold.support.kind == SupportKind::Clamped);
-            }
+/// Checks the stability of stretches in compression.
+pub(super) fn check_stability(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours) {
+    found.ask(Law::Stability);
+    let nodes = &checked.answer.nodes;
+    let same = 1e-9 * checked.cable.length_m;
+    // The support that holds a node, and whether it may turn there.
+    let mut holds = vec![None; nodes.len()];
+    for hold in checked.holds.iter().filter(|h| !matches!(h.role, Role::Clear { .. } | Role::Load | Role::Released)) {
+        let node = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - same);
+        if let Some(held) = holds.get_mut(node) {
+            *held = Some(hold.support.kind == SupportKind::Clamped);
         }
-        let mut bars = Vec::with_capacity(nodes.len());
-        let mut first_node = Vec::with_capacity(nodes.len());
-        for (k, pair) in nodes.windows(2).enumerate() {
-            let length = self.thermal * (pair[1].arc_length_m - pair[0].arc_length_m);
-            let Some(way) = (pair[1].at() - pair[0].at()).try_normalize(0.0).filter(|_| length > same) else {
-                // Two nodes of one material point: what holds either holds both.
-                holds[k + 1] = holds[k + 1].or(holds[k]);
-                continue;
-            };
-            let pulls = [pair[1].force(), self.force_before(k + 1)].map(|end| (pair[0].force() + end).dot(&way) * 0.5);
-            bars.push(CompressedBar {
-                length,
-                pull: larger(pulls[0], pulls[1]),
-                held: self.touches(near, k),
-                pinned: holds[k] == Some(false),
-                clamped: [holds[k] == Some(true), holds[k + 1] == Some(true)],
-            });
-            first_node.push(k);
-        }
-        let ends = [holds.first(), holds.last()].map(|h| h.copied().flatten().is_some());
-        let stiffness = self.answer.assumptions.bending_stiffness_n_m2 / self.thermal;
-        if let Some((bar, push, most)) = excess(&bars, stiffness, ends) {
-            found.report(self.finding(Law::Stability, first_node[bar], push, most));
-        }
+    }
+    let mut bars = Vec::with_capacity(nodes.len());
+    let mut first_node = Vec::with_capacity(nodes.len());
+    for (k, pair) in nodes.windows(2).enumerate() {
+        let length = checked.thermal * (pair[1].arc_length_m - pair[0].arc_length_m);
+        let Some(way) = (pair[1].at() - pair[0].at()).try_normalize(0.0).filter(|_| length > same) else {
+            // Two nodes of one material point: what holds either holds both.
+            holds[k + 1] = holds[k + 1].or(holds[k]);
+            continue;
+        };
+        let pulls = [pair[1].force(), checked.force_before(k + 1)].map(|end| (pair[0].force() + end).dot(&way) * 0.5);
+        bars.push(CompressedBar {
+            length,
+            pull: larger(pulls[0], pulls[1]),
+            held: checked.touches(near, k),
+            pinned: holds[k] == Some(false),
+            clamped: [holds[k] == Some(true), holds[k + 1] == Some(true)],
+        });
+        first_node.push(k);
+    }
+    let ends = [holds.first(), holds.last()].map(|h| h.copied().flatten().is_some());
+    let stiffness = checked.answer.assumptions.bending_stiffness_n_m2 / checked.thermal;
+    if let Some((bar, push, most)) = excess(&bars, stiffness, ends) {
+        found.report(checked.finding(Law::Stability, first_node[bar], push, most));
     }
 }
 

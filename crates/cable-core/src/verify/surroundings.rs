@@ -7,6 +7,7 @@
 use crate::contact::outline::Outline;
 use crate::math::RigidPose;
 use crate::math::{Vec2, cross, vec2};
+use crate::problem::robot_outline;
 use crate::robot::RobotReport;
 use crate::scene::{LineEnds, Obstacle, Scene, Shape};
 
@@ -159,7 +160,7 @@ impl Obstacles {
         let mut bodies: Vec<SolidBody> =
             scene.obstacles.iter().enumerate().map(|(k, o)| body(o, k, &mut edges)).collect();
         // A cable rubs on it by its own coefficient.
-        let outline = scene.robot_outline(0.0);
+        let outline = robot_outline(scene, 0.0);
         bodies.extend(outline.as_ref().map(|o| SolidBody { name: o.name.clone(), friction: None, kind: Kind::Inside }));
         Self { bodies, edges: Edges::new(edges), outline }
     }

@@ -6,6 +6,7 @@
 //! | `mod.rs` | [`WarningMonitor`]: warnings that persist |
 //! | `tension.rs` | tension limits, breaks, slack |
 //! | `bend.rs` | bend radii and sidewall pressure |
+//! | `guide.rs` | what leads the cable at a node |
 //! | `tangle.rs` | loops, curls and wraps |
 //! | `snag.rs` | an obstacle that holds the cable while the pull grows |
 //! | `energy_growth.rs` | energy that nothing has given |
@@ -16,6 +17,7 @@
 
 mod bend;
 mod energy_growth;
+mod guide;
 mod snag;
 mod tangle;
 mod tension;

@@ -1,6 +1,6 @@
-//! What an undamped swing loses in 100 periods: steps take (1 − 2β) ω⁴h³/4 of its amplitude a
-//! second and nothing else does (a light stiff cable stretches too little for its damping to
-//! matter), so of its energy 1 − e^{−50 (1 − 2β) ω⁴h³ · 2π/ω}.
+//! An undamped swing loses what the steps take in 100 periods: steps take (1 − 2β) ω⁴h³/4 of its
+//! amplitude a second and nothing else does (a light stiff cable stretches too little for its
+//! damping to matter), so of its energy 1 − e^{−50 (1 − 2β) ω⁴h³ · 2π/ω}.
 
 use cable_core::Vec2;
 use cable_core::scene::Support;

@@ -9,7 +9,7 @@
 
 use cable_core::Vec2;
 
-/// What the chain is and lies on. SI units.
+/// The chain and the ground that it lies on. SI units.
 #[derive(Clone, Debug)]
 pub struct Chain {
     pub density: f64,

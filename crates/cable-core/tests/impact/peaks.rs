@@ -1,4 +1,4 @@
-//! What is read off a history of tensions.
+//! These functions read peaks off a history of tensions.
 
 /// Tensions at fixed places of the material, N, over even steps.
 pub struct Tensions {

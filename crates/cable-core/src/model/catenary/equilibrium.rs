@@ -1,10 +1,10 @@
 //! This module solves for the equilibrium: which pulleys slip, where the material lies, where
 //! wheels are touched.
 
-use super::layout::{Anchor, Layout, angle_near, angle_of};
+use super::layout::Layout;
 use super::slide::{Arc, Mode, Slide, Stretches};
 use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError};
-use crate::math::{Vec2, larger};
+use crate::math::larger;
 use crate::model::Model;
 use crate::numerics::backtrack;
 use crate::problem::Problem;
@@ -52,41 +52,6 @@ const STEP_HALVINGS: usize = 40;
 const LEAVING_FRACTION: f64 = 1e-2;
 /// A pulley slips when friction is exceeded by this much (in ln T). Smaller: chatter of round-off.
 const CONE_TOLERANCE: f64 = 1e-10;
-
-/// Direction of the straight line that touches two anchors one after the other, rad. With t along
-/// it, n = perp t and the touch points c + f R n: (c₂ − c₁)·n = f₁R₁ − f₂R₂. None where they are in
-/// one place.
-fn tangent(from: &Anchor, to: &Anchor) -> Option<f64> {
-    let d = to.at - from.at;
-    let apart = d.norm();
-    let aside = (to.facing * to.radius - from.facing * from.radius) / apart;
-    // Wheels that overlap have no such line.
-    (apart > 0.0).then(|| angle_of(d) + aside.clamp(-1.0, 1.0).asin())
-}
-
-/// The arcs of straight ways from wheel to wheel.
-pub(super) fn first_arcs(layout: &Layout) -> Vec<Arc> {
-    let all = &layout.anchors;
-    let hang = |force: Vec2| angle_of(if force.norm() > 0.0 { force } else { layout.weight });
-    let arc = |k: usize, a: &Anchor| {
-        let before = k.checked_sub(1).and_then(|j| all.get(j));
-        let arrive = match before {
-            Some(b) => tangent(b, a),
-            None => Some(angle_of(-super::layout::direction(hang(layout.end_force[0] + layout.weight)))),
-        };
-        let leave = match all.get(k + 1) {
-            Some(b) => tangent(a, b),
-            None => Some(hang(layout.end_force[1] + layout.weight)),
-        };
-        let arrive = arrive.unwrap_or(0.0);
-        let leave = leave.unwrap_or(arrive);
-        // Between a quarter turn back and three quarters round.
-        let turn = angle_near(a.facing * (arrive - leave), std::f64::consts::FRAC_PI_2);
-        let turn = if turn > 0.0 { turn } else { 0.0 };
-        Arc { arrive, turn, mark: arrive - 0.5 * a.facing * turn, material: a.radius * turn }
-    };
-    all.iter().enumerate().map(|(k, a)| if a.radius == 0.0 { Arc::default() } else { arc(k, a) }).collect()
-}
 
 /// Finds the balance.
 pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Equilibrium, SolveError> {

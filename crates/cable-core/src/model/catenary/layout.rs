@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 
-use super::equilibrium::first_arcs;
 use crate::catenary::PointForce;
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, perp};
@@ -156,113 +155,6 @@ impl Layout {
         let inside = self.loads.iter().filter(|l| l.arc_length > from && l.arc_length < to);
         inside.fold(self.weight * (to - from), |sum, l| sum + l.force)
     }
-
-    /// Returns where each anchor sits on the cable when the material is spread evenly along the
-    /// way: m of arc length.
-    ///
-    /// Along the route the ends of the scene give, else straight from anchor to anchor; a dangling
-    /// end takes what a taut cable leaves over.
-    pub fn spread(&self, p: &Problem) -> Vec<f64> {
-        let way = self.way(p);
-        let (n, total) = (self.anchors.len(), way.1);
-        let way = way.0;
-        let last = way[n - 1];
-        let spare = if p.length > last - way[0] { p.length - (last - way[0]) } else { 0.05 * p.length };
-        // Known material points, as (way, s), the ends of the cable where they dangle included.
-        let mut known: Vec<(f64, f64)> = Vec::with_capacity(n + 2);
-        if self.free[0] {
-            let head = if p.route.len() > 1 {
-                way[0]
-            } else if self.free[1] {
-                0.5 * spare
-            } else {
-                spare
-            };
-            known.push((way[0] - head, 0.0));
-        }
-        known.extend(self.anchors.iter().zip(&way).filter_map(|(a, w)| a.held.map(|s| (*w, s))));
-        if self.free[1] {
-            let tail = if p.route.len() > 1 {
-                total - last
-            } else if self.free[0] {
-                0.5 * spare
-            } else {
-                spare
-            };
-            known.push((last + tail, p.length));
-        }
-        self.anchors
-            .iter()
-            .zip(&way)
-            .map(|(a, w)| {
-                a.held.unwrap_or_else(|| {
-                    let k = known.partition_point(|(kw, _)| kw <= w).clamp(1, known.len().max(2) - 1);
-                    match (known.get(k - 1), known.get(k)) {
-                        (Some(a), Some(b)) if b.0 > a.0 => a.1 + (b.1 - a.1) * (w - a.0) / (b.0 - a.0),
-                        _ => 0.5 * p.length,
-                    }
-                })
-            })
-            .collect()
-    }
-
-    /// Returns how far along the way each anchor lies, and the length of the whole way, m.
-    fn way(&self, p: &Problem) -> (Vec<f64>, f64) {
-        if p.route.len() > 1 {
-            let (mut from, mut total) = (0.0, 0.0);
-            let mut out = Vec::with_capacity(self.anchors.len());
-            for w in p.route.windows(2) {
-                total += (w[1] - w[0]).norm();
-            }
-            for a in &self.anchors {
-                from = nearest_along(&p.route, a.at, from);
-                out.push(from);
-            }
-            return (out, total);
-        }
-        let out = self.taut_way();
-        let total = out.last().copied().unwrap_or(0.0);
-        (out, total)
-    }
-
-    /// Returns how far along a taut cable each anchor lies: from tangent point to tangent point,
-    /// and round the wheels to their marks, m.
-    pub fn taut_way(&self) -> Vec<f64> {
-        let arcs = first_arcs(self);
-        let mut out = Vec::with_capacity(self.anchors.len());
-        let touches = |k: usize| {
-            let (a, arc) = (&self.anchors[k], &arcs[k]);
-            (a.touch(arc.arrive), a.touch(arc.arrive - a.facing * arc.turn), 0.5 * a.radius * arc.turn)
-        };
-        let mut sum = 0.0;
-        for k in 0..self.anchors.len() {
-            if k > 0 {
-                let (before, here) = (touches(k - 1), touches(k));
-                sum += before.2 + (here.0 - before.1).norm() + here.2;
-            }
-            out.push(sum);
-        }
-        out
-    }
-}
-
-/// Arc length along a polyline of its point nearest to `p`, not before `from`, m.
-pub(super) fn nearest_along(line: &[Vec2], p: Vec2, from: f64) -> f64 {
-    let (mut best, mut best_distance, mut sum) = (from, f64::INFINITY, 0.0);
-    for w in line.windows(2) {
-        let d = w[1] - w[0];
-        let l = d.norm();
-        if l > 0.0 {
-            let u = ((p - w[0]).dot(&d) / (l * l)).clamp(0.0, 1.0);
-            let at = sum + u * l;
-            let distance = (w[0] + d * u - p).norm();
-            if at >= from && distance < best_distance {
-                (best, best_distance) = (at, distance);
-            }
-        }
-        sum += l;
-    }
-    best
 }
 
 /// An angle brought to the 2π around `near`.

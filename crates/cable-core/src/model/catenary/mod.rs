@@ -7,6 +7,7 @@
 //! and lets it slip only where friction cannot hold it.
 
 mod equilibrium;
+mod first_guess;
 pub(super) mod layout;
 mod other_balances;
 pub(super) mod report;
@@ -17,8 +18,9 @@ mod wheel;
 use crate::numerics::HalvedSteps;
 use std::sync::Arc;
 
-use self::equilibrium::{Equilibrium, Start, first_arcs, solve};
-use self::layout::{Layout, nearest_along, unsupported};
+use self::equilibrium::{Equilibrium, Start, solve};
+use self::first_guess::{first_arcs, nearest_along, spread};
+use self::layout::{Layout, unsupported};
 pub(crate) use self::other_balances::other_balances;
 use self::report::{report, straight};
 use self::settings::CatenarySettings;
@@ -108,7 +110,7 @@ impl CatenaryModel {
         };
         // A cable that nothing holds has no route to show; `settle` says so.
         if let Ok(layout) = model.layout(0.0) {
-            model.nodes = straight(&model.problem, &layout, &layout.spread(&model.problem));
+            model.nodes = straight(&model.problem, &layout, &spread(&layout, &model.problem));
         } else {
             let at = model.problem.route.first().copied().unwrap_or_else(Vec2::zeros);
             let length = model.problem.length;
@@ -125,7 +127,7 @@ impl CatenaryModel {
 
     /// Balance of a layout.
     fn balance(&self, layout: &Layout, begin: Begin) -> Result<Equilibrium, SolveError> {
-        let spread = layout.spread(&self.problem);
+        let spread = spread(layout, &self.problem);
         let (mut sigma, mut arcs) = (spread, first_arcs(layout));
         let mut modes: Vec<Mode> = layout
             .anchors
@@ -273,7 +275,7 @@ fn laid(p: &Problem, layout: &Layout) -> State {
             state.position_m.push(*at);
         }
     } else {
-        for n in straight(p, layout, &layout.spread(p)) {
+        for n in straight(p, layout, &spread(layout, p)) {
             state.arc_length_m.push(n.arc_length_m);
             state.position_m.push(Vec2::new(n.x_m, n.y_m));
         }

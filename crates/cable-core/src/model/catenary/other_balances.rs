@@ -6,10 +6,12 @@
 
 use std::sync::Arc;
 
-use super::equilibrium::{Equilibrium, Start, first_arcs, solve};
+use super::CatenaryModel;
+use super::equilibrium::{Equilibrium, Start, solve};
+use super::first_guess::{first_arcs, taut_way};
+use super::layout::{Anchor, Layout};
 use super::report::report;
 use super::slide::Mode;
-use super::{CatenaryModel, Layout};
 use crate::math::{larger, smaller};
 use crate::model::Settings;
 use crate::problem::Problem;
@@ -38,7 +40,7 @@ fn tensions(nodes: &[Node]) -> [f64; 3] {
 /// The material at the anchors with the slack of one part of the cable in one of its spans, for
 /// each span, m.
 fn starts(problem: &Problem, layout: &Layout, sigma: &[f64]) -> Vec<Vec<f64>> {
-    let way: Vec<f64> = layout.taut_way().into_iter().map(|w| w / problem.thermal_stretch).collect();
+    let way: Vec<f64> = taut_way(layout).into_iter().map(|w| w / problem.thermal_stretch).collect();
     let last = sigma.len() - 1;
     let bounds: Vec<usize> = (0..=last).filter(|&k| k == 0 || k == last || layout.anchors[k].held.is_some()).collect();
     let mut out = Vec::new();
@@ -82,7 +84,7 @@ pub(crate) fn other_balances(problem: &Problem, answer: &CableSolution, time_s: 
         let held = sigma.clone();
         solve(problem, &layout, Start { held: &held, sigma, modes: modes.clone(), arcs: first_arcs(&layout) }).ok()
     };
-    let material = |a: &super::layout::Anchor| a.held.or(Some(answer.supports.get(a.support)?.arc_length_m));
+    let material = |a: &Anchor| a.held.or(Some(answer.supports.get(a.support)?.arc_length_m));
     let shown = from(layout.anchors.iter().map(material).collect::<Option<_>>()?)?;
     let mut found = vec![shown];
     for start in starts(problem, &layout, &found[0].sigma) {

@@ -292,7 +292,7 @@ impl FemModel {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let (off, s) = results::bending_error(&self.dynamics.cable);
+        let (off, s) = results::bending_error::bending_error(&self.dynamics.cable);
         self.unbent = Some(off);
         let limit = self.settings.tolerance;
         if off <= limit {

@@ -67,9 +67,10 @@ pub use crate::model::settings::Stepping;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
 use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost, Node, Warning, WarningKind};
+use crate::solution::{CableSolution, Node, Warning, WarningKind};
 use crate::state::State;
 use contact_memory::ContactMemory;
+use dynamics::chain_state::{ChainState, Report};
 use dynamics::momentum::Account;
 use dynamics::rollback::{Rollback, transaction};
 use dynamics::sub_step::integrate;
@@ -85,52 +86,13 @@ use mesh::nodes::{Mesh, first_support_arc_lengths};
 use settings::Tuning;
 use xpbd::sub_step::preview;
 
-part! {
-    /// The report of the present instant and of the last step.
-    #[derive(Default)]
-    Report {
-        /// Work of the last step.
-        cost: Cost,
-        /// Warnings that have not been given to the user yet.
-        warnings: Vec<Warning>,
-        /// Account of momentum since the caller's step began.
-        account: Account,
-        /// Errors, and the model beside which they are estimated.
-        estimate: Estimate,
-    }
-}
-
-part! {
-    /// The chain of masses and springs, in parts: all that a step changes, and that a rollback
-    /// keeps.
-    ChainState {
-        /// The time reached.
-        clock: Clock,
-        /// Nodes, springs and pulleys.
-        mesh: Mesh,
-        /// What leads the supports.
-        drives: SupportDrives,
-        /// The contacts of the last sub-step.
-        contacts: ContactMemory,
-        /// What is said of it.
-        report: Report,
-    }
-}
-
-impl ChainState {
-    /// Keeps the elements beside pulleys near the even length.
-    pub(in crate::model::mass_spring) fn remesh(&mut self) {
-        if mesh::edit::remesh(&mut self.mesh, self.clock.time_s) {
-            self.contacts.renew(self.mesh.rest_length.len());
-        }
-    }
-}
-
 /// The model's mechanics of one cable.
 #[derive(Clone, Debug)]
 pub struct MassSpringModel {
     settings: Settings,
     chain: ChainState,
+    /// Errors, and the model beside which they are estimated.
+    estimate: Estimate,
     /// True if it has left the route for a shape found by a solve, a step or another model.
     has_shape: bool,
     rollback: Rollback,
@@ -215,7 +177,7 @@ impl MassSpringModel {
         nodal::update(&mut mesh, clock.time_s);
         let contacts = ContactMemory::new(mesh.rest_length.len());
         let chain = ChainState { clock, mesh, drives, contacts, report: Report::default() };
-        Self { settings, chain, has_shape: false, rollback: Rollback::default() }
+        Self { settings, chain, estimate: Estimate::default(), has_shape: false, rollback: Rollback::default() }
     }
 
     /// The same cable along a shape, its supports at given arc lengths (m); None if the shape has
@@ -359,8 +321,8 @@ impl Mechanics for MassSpringModel {
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         let is_first = !self.has_shape && self.chain.clock.time_s == 0.0;
         self.settle_alone()?;
-        self.chain.report.estimate = Estimate::default();
-        self.chain.report.estimate = Estimate::at_rest(self, if is_first { Start::Scene } else { Start::Present });
+        self.estimate = Estimate::default();
+        self.estimate = Estimate::at_rest(self, if is_first { Start::Scene } else { Start::Present });
         Ok(self.step_report())
     }
 
@@ -383,7 +345,7 @@ impl Mechanics for MassSpringModel {
             });
         }
         // The model beside this one is not copied with each part of a step.
-        let estimate = std::mem::take(&mut self.chain.report.estimate);
+        let estimate = std::mem::take(&mut self.estimate);
         let settings = &self.settings;
         let done = transaction(&mut self.rollback, &mut self.chain, |chain| {
             chain.report.account = Account::default();
@@ -397,18 +359,18 @@ impl Mechanics for MassSpringModel {
             }
         });
         if let Err(error) = done {
-            self.chain.report.estimate = estimate;
+            self.estimate = estimate;
             return Err(error);
         }
         self.chain.clock.time_s = end_s;
         if inertia == Inertia::QuasiStatic {
-            self.chain.report.estimate = estimate.follow(self, dt_s);
+            self.estimate = estimate.follow(self, dt_s);
         }
         Ok(self.step_report())
     }
 
     fn state(&self) -> State {
-        results::state(self)
+        results::state(&self.chain)
     }
 
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
@@ -440,7 +402,7 @@ impl Mechanics for MassSpringModel {
     }
 
     fn solution(&self) -> CableSolution {
-        results::answer(self)
+        results::answer(&self.chain, &self.estimate.errors, self.settings.tolerance)
     }
 
     fn problem(&self) -> &Arc<Problem> {

@@ -10,7 +10,7 @@ use crate::model::spans::boundary::friction_memory::{Mode, TensionProfile};
 use crate::model::spans::boundary::segment_cursor::{Pivot, SegmentCursor};
 use crate::model::spans::boundary_conditions::CableEquilibrium;
 use crate::model::spans::boundary_conditions::Layout;
-use crate::model::spans::contact::point_load;
+use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
@@ -329,7 +329,7 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
         for (j, c) in strand.contacts.iter().enumerate() {
             add(match (c.wheel, c.is_load()) {
                 (Some(_), _) => -wheel_force(course, strand, j).0,
-                (None, true) => -point_load::load_balance(strand, course, j).sum,
+                (None, true) => -load_balance(strand, course, j).sum,
                 (None, false) => held_by(&course.track(c), c),
             });
             if let (Some([from, to]), None) = (loose(strand, j), c.wheel) {
@@ -343,7 +343,7 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
 /// The contact of the load that is contact j.
 fn load(strand: &CableRun, course: &Course, j: usize, track: &Track<'_>, name: &str) -> ContactReport {
     let c = &strand.contacts[j];
-    let load_balance = point_load::load_balance(strand, course, j);
+    let load_balance = load_balance(strand, course, j);
     let at = track.place(c.ends.p[0]).at;
     // The obstacle holds what all else does to the point.
     let held =

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::SceneFault;
 use crate::math::Point;
-use crate::scene::Obstacle;
-use crate::scene::read::deserialize::nearest;
+use crate::scene::nearest::nearest;
+use crate::scene::obstacle::Obstacle;
 
 /// Confidence in a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

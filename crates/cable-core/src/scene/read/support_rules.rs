@@ -1,9 +1,9 @@
 //! The rules of supports say which keys belong to which kind, and where along the cable each kind
 //! may sit.
 
+use super::checks::{Checked, MAX_POINTS_ON_CABLE, at_most, force, motion, number, point, unique};
 use super::path::Path;
 use super::range;
-use super::validate::{Checked, MAX_POINTS_ON_CABLE, at_most, force, motion, number, point, unique};
 use crate::error::{SceneFault, ShapeFault};
 use crate::scene::{Cable, Scene, Support, SupportKind};
 

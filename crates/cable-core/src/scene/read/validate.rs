@@ -4,28 +4,23 @@
 //! The ranges are wide: they keep out what is surely a slip or would hurt the program, not what is
 //! unusual.
 
+use super::checks::{
+    Checked, MAX_KNOTS, MAX_POINTS_ON_CABLE, apart, at_most, force, number, point, points, series, unique,
+};
 use super::path::Path;
-use super::range::{self, Range};
+use super::range;
 use super::self_touch::{SelfTouch, first_self_touch};
 use super::{length_check, support_rules};
 use crate::error::{SceneError, SceneFault, ShapeFault};
 use crate::math::Point;
-use crate::scene::{Cable, LineEnds, Load, Motion, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset};
+use crate::scene::{Cable, Environment, LineEnds, Load, Obstacle, Robot, RobotTask, Scene, Shape, VERSION, preset};
 
 /// Most cables. More would be solved, slowly; a file with more is surely a slip.
 const MAX_CABLES: usize = 1000;
-/// Most supports of a cable, and most loads of a scene.
-pub(super) const MAX_POINTS_ON_CABLE: usize = 10_000;
 /// Most corner points of all obstacles together: more than the longest text can hold.
 const MAX_OBSTACLE_POINTS: usize = 1_000_000;
-/// Most knots of a route, motion, series or robot path.
-const MAX_KNOTS: usize = 100_000;
-/// Longest name, bytes.
-const MAX_NAME: usize = 200;
 /// Longest name of a scene, bytes.
 const MAX_TITLE: usize = 1000;
-
-pub(super) type Checked = Result<(), SceneError>;
 
 impl Scene {
     /// Checks every number and name.
@@ -40,7 +35,7 @@ impl Scene {
         if self.name.len() > MAX_TITLE {
             return Err(root.key("name").shape(ShapeFault::LongName { most: MAX_TITLE }));
         }
-        self.check_environment()?;
+        check_environment(&self.environment)?;
         let at = root.key("cables");
         if self.cables.is_empty() {
             return Err(at.shape(ShapeFault::NoCable));
@@ -48,7 +43,7 @@ impl Scene {
         at_most(&at, self.cables.len(), MAX_CABLES)?;
         unique(&at, self.cables.iter().map(|c| c.name.as_str()))?;
         for (i, cable) in self.cables.iter().enumerate() {
-            self.check_cable(cable, &at.index(i))?;
+            check_cable(self, cable, &at.index(i))?;
         }
         let at = root.key("obstacles");
         unique(&at, self.obstacles.iter().map(|o| o.name.as_str()))?;
@@ -60,7 +55,7 @@ impl Scene {
         let at = root.key("loads");
         at_most(&at, self.loads.len(), MAX_POINTS_ON_CABLE)?;
         for (i, load) in self.loads.iter().enumerate() {
-            self.check_load(load, &at.index(i))?;
+            check_load(self, load, &at.index(i))?;
         }
         if let Some(robot) = &self.robot {
             check_robot(robot, &root.key("robot"))?;
@@ -71,128 +66,82 @@ impl Scene {
         }
         Ok(())
     }
-
-    fn check_environment(&self) -> Checked {
-        let (root, env) = (Path::Root, &self.environment);
-        let at = root.key("environment");
-        number(&at.key("gravity_m_per_s2"), env.gravity_m_per_s2, range::GRAVITY)?;
-        number(&at.key("temperature_change_k"), env.temperature_change_k, range::TEMPERATURE)?;
-        point(&at.key("wind_n_per_m"), env.wind_n_per_m, range::WIND)?;
-        if env.wind_times_s.is_empty() && env.winds_n_per_m.is_empty() {
-            return Ok(());
-        }
-        series(&at.key("wind_times_s"), &at.key("winds_n_per_m"), &env.wind_times_s, &env.winds_n_per_m, range::WIND)
-    }
-
-    fn check_cable(&self, cable: &Cable, at: &Path<'_>) -> Checked {
-        let numbers = [
-            ("length_m", cable.length_m, range::LENGTH),
-            ("linear_density_kg_per_m", cable.linear_density_kg_per_m, range::DENSITY),
-            ("axial_stiffness_n", cable.axial_stiffness_n, range::AXIAL_STIFFNESS),
-            ("bending_stiffness_n_m2", cable.bending_stiffness_n_m2, range::BENDING_STIFFNESS),
-            ("diameter_m", cable.diameter_m, range::DIAMETER),
-            ("damping_ratio", cable.damping_ratio, range::DAMPING),
-            ("thermal_expansion_per_k", cable.thermal_expansion_per_k, range::THERMAL),
-            ("service_tension_n", cable.service_tension_n, range::TENSION),
-            ("breaking_tension_n", cable.breaking_tension_n, range::TENSION),
-            ("breaking_time_s", cable.breaking_time_s, range::BREAKING_TIME),
-            ("min_bend_radius_m", cable.min_bend_radius_m, range::BEND_RADIUS),
-            ("friction", cable.friction, range::FRICTION),
-        ];
-        for (key, value, range) in numbers {
-            number(&at.key(key), value, range)?;
-        }
-        if let Some(limit) = cable.sidewall_limit_n_per_m {
-            number(&at.key("sidewall_limit_n_per_m"), limit, range::SIDEWALL)?;
-        }
-        if let Some(id) = &cable.preset
-            && preset::cable_preset(id).is_none()
-        {
-            let known = preset::cable_presets().iter().map(|p| p.id);
-            return Err(at.key("preset").fault(preset::unknown("cable preset", id, known)));
-        }
-        if cable.service_tension_n > cable.breaking_tension_n {
-            return Err(at.key("service_tension_n").fault(SceneFault::ServiceAboveBreaking {
-                service_n: cable.service_tension_n,
-                breaking_n: cable.breaking_tension_n,
-            }));
-        }
-        let factor = 1.0 + cable.thermal_expansion_per_k * self.environment.temperature_change_k;
-        let allowed = range::THERMAL_FACTOR;
-        if !(allowed[0]..=allowed[1]).contains(&factor) {
-            return Err(at.key("thermal_expansion_per_k").fault(SceneFault::ThermalFactor { factor, allowed }));
-        }
-        if let Some(n) = cable.segments {
-            #[expect(clippy::cast_precision_loss, reason = "only shown")]
-            number(&at.key("segments"), n as f64, range::SEGMENTS)?;
-        }
-        let route = at.key("route_m");
-        at_most(&route, cable.route_m.len(), MAX_KNOTS)?;
-        if cable.route_m.len() == 1 {
-            return Err(route.shape(ShapeFault::ShortRoute));
-        }
-        points(&route, &cable.route_m, range::COORDINATE)?;
-        apart(&route, &cable.route_m)?;
-        support_rules::check(self, cable, at)
-    }
-
-    fn check_load(&self, load: &Load, at: &Path<'_>) -> Checked {
-        let Some(cable) = self.cables.iter().find(|c| c.name == load.cable) else {
-            let known = self.cables.iter().map(|c| c.name.as_str());
-            return Err(at.key("cable").fault(preset::unknown("cable", &load.cable, known)));
-        };
-        number(&at.key("arc_length_m"), load.arc_length_m, range::ARC_LENGTH)?;
-        if load.arc_length_m > cable.length_m {
-            let fault = SceneFault::BeyondEnd { arc_length_m: load.arc_length_m, length_m: cable.length_m };
-            return Err(at.key("arc_length_m").fault(fault));
-        }
-        force(at, load.force_n, &load.times_s, &load.forces_n)
-    }
 }
 
-/// Either a constant force or a series.
-pub(super) fn force(at: &Path<'_>, constant: Option<Point>, times: &[f64], forces: &[Point]) -> Checked {
-    let given = !times.is_empty() || !forces.is_empty();
-    match constant {
-        Some(_) if given => Err(at.key("force_n").shape(ShapeFault::TwoForces)),
-        Some(f) => point(&at.key("force_n"), f, range::FORCE),
-        None if given => series(&at.key("times_s"), &at.key("forces_n"), times, forces, range::FORCE),
-        None => Err(at.key("force_n").shape(ShapeFault::NoForce)),
+fn check_environment(env: &Environment) -> Checked {
+    let at = Path::Root.key("environment");
+    number(&at.key("gravity_m_per_s2"), env.gravity_m_per_s2, range::GRAVITY)?;
+    number(&at.key("temperature_change_k"), env.temperature_change_k, range::TEMPERATURE)?;
+    point(&at.key("wind_n_per_m"), env.wind_n_per_m, range::WIND)?;
+    if env.wind_times_s.is_empty() && env.winds_n_per_m.is_empty() {
+        return Ok(());
     }
+    series(&at.key("wind_times_s"), &at.key("winds_n_per_m"), &env.wind_times_s, &env.winds_n_per_m, range::WIND)
 }
 
-/// A motion and that it starts where its support is.
-pub(super) fn motion(at: &Path<'_>, motion: &Motion, start: Point) -> Checked {
-    series(&at.key("times_s"), &at.key("points_m"), &motion.times_s, &motion.points_m, range::COORDINATE)?;
-    /// Further apart than this the first instant would be a jump, m.
-    const PLACE_TOLERANCE: f64 = 1e-6;
-    let p = motion.at(0.0).0;
-    if (p.x - start[0]).hypot(p.y - start[1]) <= PLACE_TOLERANCE {
-        Ok(())
-    } else {
-        Err(at.key("points_m").fault(SceneFault::MotionStartsElsewhere { motion_m: p.into(), support_m: start }))
+fn check_cable(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checked {
+    let numbers = [
+        ("length_m", cable.length_m, range::LENGTH),
+        ("linear_density_kg_per_m", cable.linear_density_kg_per_m, range::DENSITY),
+        ("axial_stiffness_n", cable.axial_stiffness_n, range::AXIAL_STIFFNESS),
+        ("bending_stiffness_n_m2", cable.bending_stiffness_n_m2, range::BENDING_STIFFNESS),
+        ("diameter_m", cable.diameter_m, range::DIAMETER),
+        ("damping_ratio", cable.damping_ratio, range::DAMPING),
+        ("thermal_expansion_per_k", cable.thermal_expansion_per_k, range::THERMAL),
+        ("service_tension_n", cable.service_tension_n, range::TENSION),
+        ("breaking_tension_n", cable.breaking_tension_n, range::TENSION),
+        ("breaking_time_s", cable.breaking_time_s, range::BREAKING_TIME),
+        ("min_bend_radius_m", cable.min_bend_radius_m, range::BEND_RADIUS),
+        ("friction", cable.friction, range::FRICTION),
+    ];
+    for (key, value, range) in numbers {
+        number(&at.key(key), value, range)?;
     }
+    if let Some(limit) = cable.sidewall_limit_n_per_m {
+        number(&at.key("sidewall_limit_n_per_m"), limit, range::SIDEWALL)?;
+    }
+    if let Some(id) = &cable.preset
+        && preset::cable_preset(id).is_none()
+    {
+        let known = preset::cable_presets().iter().map(|p| p.id);
+        return Err(at.key("preset").fault(preset::unknown("cable preset", id, known)));
+    }
+    if cable.service_tension_n > cable.breaking_tension_n {
+        return Err(at.key("service_tension_n").fault(SceneFault::ServiceAboveBreaking {
+            service_n: cable.service_tension_n,
+            breaking_n: cable.breaking_tension_n,
+        }));
+    }
+    let factor = 1.0 + cable.thermal_expansion_per_k * scene.environment.temperature_change_k;
+    let allowed = range::THERMAL_FACTOR;
+    if !(allowed[0]..=allowed[1]).contains(&factor) {
+        return Err(at.key("thermal_expansion_per_k").fault(SceneFault::ThermalFactor { factor, allowed }));
+    }
+    if let Some(n) = cable.segments {
+        #[expect(clippy::cast_precision_loss, reason = "only shown")]
+        number(&at.key("segments"), n as f64, range::SEGMENTS)?;
+    }
+    let route = at.key("route_m");
+    at_most(&route, cable.route_m.len(), MAX_KNOTS)?;
+    if cable.route_m.len() == 1 {
+        return Err(route.shape(ShapeFault::ShortRoute));
+    }
+    points(&route, &cable.route_m, range::COORDINATE)?;
+    apart(&route, &cable.route_m)?;
+    support_rules::check(scene, cable, at)
 }
 
-fn series(times_at: &Path<'_>, values_at: &Path<'_>, times: &[f64], values: &[Point], range: Range) -> Checked {
-    at_most(times_at, times.len(), MAX_KNOTS)?;
-    if times.is_empty() {
-        return Err(times_at.shape(ShapeFault::NoTime));
+fn check_load(scene: &Scene, load: &Load, at: &Path<'_>) -> Checked {
+    let Some(cable) = scene.cables.iter().find(|c| c.name == load.cable) else {
+        let known = scene.cables.iter().map(|c| c.name.as_str());
+        return Err(at.key("cable").fault(preset::unknown("cable", &load.cable, known)));
+    };
+    number(&at.key("arc_length_m"), load.arc_length_m, range::ARC_LENGTH)?;
+    if load.arc_length_m > cable.length_m {
+        let fault = SceneFault::BeyondEnd { arc_length_m: load.arc_length_m, length_m: cable.length_m };
+        return Err(at.key("arc_length_m").fault(fault));
     }
-    if times.len() != values.len() {
-        return Err(values_at.fault(SceneFault::UnequalCounts { values: values.len(), times: times.len() }));
-    }
-    for (i, &t) in times.iter().enumerate() {
-        number(&times_at.index(i), t, range::TIME)?;
-    }
-    for (i, pair) in times.windows(2).enumerate() {
-        // Closer knots than this make velocities overflow.
-        if !(pair[1] - pair[0] >= range::MIN_INTERVAL_S) {
-            let fault = SceneFault::TimesNotIncreasing { time_s: pair[1], before_s: pair[0] };
-            return Err(times_at.index(i + 1).fault(fault));
-        }
-    }
-    points(values_at, values, range)
+    force(at, load.force_n, &load.times_s, &load.forces_n)
 }
 
 fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneError> {
@@ -277,54 +226,6 @@ fn check_robot(robot: &Robot, at: &Path<'_>) -> Checked {
                 number(&leg.key("speed_m_per_s"), speed_m_per_s, range::ROBOT_SPEED)?;
             }
             RobotTask::Wait { wait_s } => number(&leg.key("wait_s"), wait_s, range::DURATION)?,
-        }
-    }
-    Ok(())
-}
-
-/// A finite number in its range.
-pub(super) fn number(at: &Path<'_>, value: f64, range: Range) -> Checked {
-    if range.holds(value) {
-        Ok(())
-    } else {
-        Err(at.fault(SceneFault::Range { value, allowed: range.limits(), quantity: range.quantity }))
-    }
-}
-
-pub(super) fn point(at: &Path<'_>, value: Point, range: Range) -> Checked {
-    number(&at.index(0), value[0], range)?;
-    number(&at.index(1), value[1], range)
-}
-
-fn points(at: &Path<'_>, values: &[Point], range: Range) -> Checked {
-    values.iter().enumerate().try_for_each(|(i, p)| point(&at.index(i), *p, range))
-}
-
-/// No two neighbours in the same place.
-fn apart(at: &Path<'_>, line: &[Point]) -> Checked {
-    match line.windows(2).position(|w| w[0] == w[1]) {
-        Some(i) => Err(at.index(i + 1).shape(ShapeFault::RepeatedPoint)),
-        None => Ok(()),
-    }
-}
-
-pub(super) fn at_most(at: &Path<'_>, count: usize, most: usize) -> Checked {
-    if count <= most { Ok(()) } else { Err(at.fault(SceneFault::TooMany { count, most })) }
-}
-
-/// Names that are there, short enough and each used once.
-pub(super) fn unique<'a>(at: &Path<'_>, names: impl Iterator<Item = &'a str>) -> Checked {
-    let mut seen = std::collections::BTreeSet::new();
-    for (i, name) in names.enumerate() {
-        let place = at.index(i);
-        if name.trim().is_empty() {
-            return Err(place.key("name").shape(ShapeFault::EmptyName));
-        }
-        if name.len() > MAX_NAME {
-            return Err(place.key("name").shape(ShapeFault::LongName { most: MAX_NAME }));
-        }
-        if !seen.insert(name) {
-            return Err(place.key("name").shape(ShapeFault::TakenName { name: name.to_owned() }));
         }
     }
     Ok(())

@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 
 use super::super::{STEP_S, UNREACHABLE_FACTOR, at_rest};
-use super::{Area, ReachQuery};
+use super::map::{Area, ReachQuery};
 use crate::contact::World;
 use crate::math::{Vec2, larger, vec2};
 use crate::simulation::Simulation;

@@ -1,6 +1,8 @@
 use super::*;
+use crate::math::Point;
 use crate::scene::catalog;
 use crate::scene::{Obstacle, Shape};
+use std::sync::Arc;
 
 fn look(query: &ReachQuery) -> Area {
     area(query, |_, _| ControlFlow::Continue(())).unwrap()

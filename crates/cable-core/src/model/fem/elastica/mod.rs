@@ -30,6 +30,7 @@ mod answer;
 mod band;
 mod boundary_value;
 mod chain_answer;
+mod flexible_answer;
 mod relax;
 mod start;
 

@@ -21,7 +21,7 @@ use crate::energy::{Curvature, Energy};
 use crate::linalg::{BandFactor, BandMatrix};
 use crate::math::{Mat2, Vec2, larger, perp};
 use crate::model::fem::elastica::band::Band;
-use crate::model::fem::elastica::start::{Curve, mobilised};
+use crate::model::fem::elastica::flexible_answer::{Curve, mobilised};
 use crate::model::fem::free::stations::place as support_place;
 use crate::model::fem::newton::initial_guess::{leaning_way, push_chain_out};
 use crate::problem::Problem;

@@ -37,7 +37,7 @@ pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoE
     if cable.problem.supports.iter().any(|s| s.at.is_some()) || cable.contacts.own.shape.is_on() {
         return None;
     }
-    let left = results::unbalanced(cable, &cable.motion.positions, cable.motion.time).norm();
+    let left = results::forces::unbalanced(cable, &cable.motion.positions, cable.motion.time).norm();
     let scale = load_scale(&cable.problem).1;
     (left > cable.mesh.tuning.equilibrium.unheld_load_fraction * scale)
         .then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })

@@ -124,7 +124,7 @@ fn force_errors(network: &mut Network) -> Vec<[Vec2; 2]> {
         errors[ends.first][1] = off;
         errors[ends.last][0] = off;
     }
-    if network.rubbing.is_empty() {
+    if network.pulley_states.is_empty() {
         let_pulleys_follow(network, &mut errors);
     } else {
         network.let_rubbing_follow(&mut errors);

@@ -6,6 +6,7 @@ pub(in crate::model::fem) mod dual_weighted_residual;
 pub mod element;
 pub(in crate::model::fem) mod pulley_balance;
 pub(in crate::model::fem) mod pulley_friction;
+pub(in crate::model::fem) mod pulley_state;
 pub(in crate::model::fem) mod pulley_wheels;
 pub(in crate::model::fem) mod results;
 pub(in crate::model::fem) mod span;

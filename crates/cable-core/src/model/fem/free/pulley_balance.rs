@@ -15,7 +15,7 @@
 
 use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
-use crate::model::fem::free::pulley_friction::Rubbing;
+use crate::model::fem::free::pulley_state::PulleyState;
 use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
 use crate::model::fem::free::stations::{Hold, Layout, SpanEnds, Wheel};
@@ -74,8 +74,8 @@ pub struct Network {
     held_at: Vec<f64>,
     warm: bool,
     /// Every pulley with what friction remembers of it, in order; empty until it was asked for
-    /// (`rubbing`).
-    pub rubbing: Vec<Rubbing>,
+    /// (`pulley_states`).
+    pub pulley_states: Vec<PulleyState>,
 }
 
 /// The law of a pulley at the present forces.
@@ -101,7 +101,7 @@ impl Network {
             steps: 0,
             residual: 0.0,
             warm: false,
-            rubbing: Vec::new(),
+            pulley_states: Vec::new(),
         };
         network.meet_wheels_straight();
         network

@@ -21,6 +21,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::fem::free::element::turn_between;
 use crate::model::fem::free::pulley_balance::{Failure, Network};
+use crate::model::fem::free::pulley_state::{FrictionState, PointFriction, PulleyState, Unknown};
 use crate::model::fem::free::stations::{Hold, Stop};
 use crate::model::spans::contact::wheel_friction::{OnWheel, WheelEnds, WheelFriction};
 use crate::solution::CableSolution;
@@ -51,67 +52,8 @@ const STEP_TOLERANCE: f64 = 1e-13;
 /// A node of an answer that is no farther than this from a wheel, of its radius, lies on it.
 const ON_WHEEL: f64 = 1e-9;
 
-/// State of a point pulley.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Point {
-    Holds,
-    Slides(f64),
-}
-
-/// State of friction at a pulley.
-#[derive(Clone, Debug)]
-#[allow(clippy::large_enum_variant)] // A handful of them in a scene.
-enum Law {
-    /// Of a wheel.
-    Wheel(WheelFriction),
-    /// Of a point: μ, how it stands and the material it held last, m.
-    Point { friction: f64, stands: Point, held: f64 },
-}
-
-/// A pulley and its memory.
-#[derive(Clone, Debug)]
-pub struct Rubbing {
-    support: Option<usize>,
-    law: Law,
-    p: [f64; 2],
-    s: [f64; 2],
-}
-
-/// An unknown at a pulley: the angle and the material at its side 0 or 1; the material of a point
-/// at both.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Unknown {
-    Angle(usize),
-    Material(usize),
-    Both,
-}
-
 /// Entries that a pulley changes: two indices and a force each.
 type Touched = Vec<(usize, usize, Vec2)>;
-
-impl Rubbing {
-    fn unknowns(&self) -> &'static [Unknown] {
-        use Unknown::{Angle, Both, Material};
-        match self.law {
-            Law::Wheel(_) => &[Angle(0), Material(0), Angle(1), Material(1)],
-            Law::Point { .. } => &[Both],
-        }
-    }
-
-    /// Tension and normal where its cable was at an angle in the last step; None for a point.
-    pub fn tension_at(&self, network: &Network, fraction: f64) -> Option<(f64, Vec2)> {
-        let Law::Wheel(w) = &self.law else { return None };
-        let p = self.p[0] + (self.p[1] - self.p[0]) * fraction;
-        Some((w.at(&network.on_wheel(), p).0, w.directions(p)[1]))
-    }
-
-    /// Material at a fraction of its arc, m.
-    pub fn material_at(&self, network: &Network, fraction: f64) -> Option<f64> {
-        let Law::Wheel(w) = &self.law else { return None };
-        let p = self.p[0] + (self.p[1] - self.p[0]) * fraction;
-        Some(w.at(&network.on_wheel(), p).1)
-    }
-}
 
 /// The equations of all pulleys at a state.
 struct Equations {
@@ -123,7 +65,7 @@ struct Equations {
 }
 
 impl Network {
-    fn on_wheel(&self) -> OnWheel {
+    pub fn on_wheel(&self) -> OnWheel {
         let m = &self.material;
         OnWheel { load: m.body, thermal: m.thermal_stretch, stiffness: m.axial_stiffness }
     }
@@ -137,19 +79,19 @@ impl Network {
     /// evenly.
     pub fn remember(&mut self) {
         let on = self.on_wheel();
-        self.rubbing = Vec::new();
+        self.pulley_states = Vec::new();
         for k in self.pulleys() {
             let Some(mut pulley) = self.blank(k) else { continue };
             let [before, after] = self.forces[k];
-            if let Law::Wheel(w) = &mut pulley.law {
+            if let FrictionState::Wheel(w) = &mut pulley.friction {
                 let first = w.angle(before, 0.0);
                 let last = w.angle(after, first);
                 let last = if last < first - 1e-6 { last + std::f64::consts::TAU } else { larger(last, first) };
-                pulley.p = [first, last];
-                let ends = [[first, pulley.s[0], before.norm()], [last, pulley.s[1], after.norm()]];
+                pulley.angles = [first, last];
+                let ends = [[first, pulley.material[0], before.norm()], [last, pulley.material[1], after.norm()]];
                 w.begin(&on, &ends);
             }
-            self.rubbing.push(pulley);
+            self.pulley_states.push(pulley);
         }
     }
 
@@ -161,8 +103,8 @@ impl Network {
         for k in self.pulleys() {
             let (Some(mut pulley), Some(wheel)) = (self.blank(k), self.wheel(k)) else { return false };
             let Some(said) = pulley.support.and_then(|i| answer.supports.get(i)) else { return false };
-            match &mut pulley.law {
-                Law::Wheel(w) => {
+            match &mut pulley.friction {
+                FrictionState::Wheel(w) => {
                     let mut points: Vec<[f64; 3]> = Vec::new();
                     for node in &answer.nodes {
                         let out = node.at() - wheel.center;
@@ -178,39 +120,45 @@ impl Network {
                         return false;
                     }
                     w.begin(&on, &points);
-                    (pulley.p, pulley.s) = ([a[0], b[0]], [a[1], b[1]]);
+                    (pulley.angles, pulley.material) = ([a[0], b[0]], [a[1], b[1]]);
                 }
-                Law::Point { held, .. } => {
+                FrictionState::Point { held, .. } => {
                     *held = said.arc_length_m;
-                    pulley.s = [*held; 2];
+                    pulley.material = [*held; 2];
                 }
             }
             found.push(pulley);
         }
-        self.rubbing = found;
+        self.pulley_states = found;
         true
     }
 
     /// A pulley that remembers nothing yet, where the layout has it.
-    fn blank(&self, k: usize) -> Option<Rubbing> {
+    fn blank(&self, k: usize) -> Option<PulleyState> {
         let wheel = self.wheel(k)?;
         let stop = &self.layout.stops[k];
-        let law = if wheel.radius > 0.0 {
-            Law::Wheel(WheelFriction::new(wheel.radius, wheel.friction, self.clockwise_at(k, &wheel)))
+        let friction = if wheel.radius > 0.0 {
+            FrictionState::Wheel(WheelFriction::new(wheel.radius, wheel.friction, self.clockwise_at(k, &wheel)))
         } else {
-            let stands = if wheel.friction > 0.0 { Point::Holds } else { Point::Slides(0.0) };
-            Law::Point { friction: wheel.friction, stands, held: stop.arc_length }
+            let mode = if wheel.friction > 0.0 { PointFriction::Holds } else { PointFriction::Slides(0.0) };
+            FrictionState::Point { friction: wheel.friction, mode, held: stop.arc_length }
         };
-        Some(Rubbing { support: stop.support, law, p: [0.0; 2], s: [stop.arc_length, stop.leaves()] })
+        Some(PulleyState {
+            support: stop.support,
+            friction,
+            angles: [0.0; 2],
+            material: [stop.arc_length, stop.leaves()],
+        })
     }
 
     /// True if another network has the same pulleys; then their memory is taken over.
     pub fn remember_from(&mut self, other: &Self) -> bool {
         let support = |n: &Self, k: usize| n.layout.stops[k].support;
         let own: Vec<Option<usize>> = self.pulleys().into_iter().map(|k| support(self, k)).collect();
-        let same = own.len() == other.rubbing.len() && own.iter().zip(&other.rubbing).all(|(a, b)| *a == b.support);
+        let same = own.len() == other.pulley_states.len()
+            && own.iter().zip(&other.pulley_states).all(|(a, b)| *a == b.support);
         if same {
-            self.rubbing.clone_from(&other.rubbing);
+            self.pulley_states.clone_from(&other.pulley_states);
         }
         same
     }
@@ -219,7 +167,7 @@ impl Network {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn rub(&mut self) -> Result<(), Failure> {
+    pub fn balance_with_friction(&mut self) -> Result<(), Failure> {
         self.steps = 0;
         let pulleys = self.pulleys();
         self.take_unknowns(&pulleys)?;
@@ -230,8 +178,8 @@ impl Network {
             let changed = self.change_modes(&pulleys, round >= most / 2);
             match (solved, changed) {
                 (Ok(()), false) => {
-                    for (&k, r) in pulleys.iter().zip(&self.rubbing) {
-                        if matches!(r.law, Law::Wheel(_)) && r.p[1] < r.p[0] {
+                    for (&k, r) in pulleys.iter().zip(&self.pulley_states) {
+                        if matches!(r.friction, FrictionState::Wheel(_)) && r.angles[1] < r.angles[0] {
                             return Err(Failure::LeavesWheel(k));
                         }
                     }
@@ -248,28 +196,28 @@ impl Network {
     /// Takes the state after a step into the memory of friction.
     pub fn commit_friction(&mut self) {
         let on = self.on_wheel();
-        let mut rubbing = std::mem::take(&mut self.rubbing);
-        for (k, r) in self.pulleys().into_iter().zip(&mut rubbing) {
+        let mut pulley_states = std::mem::take(&mut self.pulley_states);
+        for (k, r) in self.pulleys().into_iter().zip(&mut pulley_states) {
             let ends = self.ends_at(k, r);
-            match &mut r.law {
-                Law::Wheel(w) => w.commit(&on, &ends),
-                Law::Point { held, .. } => *held = r.s[0],
+            match &mut r.friction {
+                FrictionState::Wheel(w) => w.commit(&on, &ends),
+                FrictionState::Point { held, .. } => *held = r.material[0],
             }
         }
-        self.rubbing = rubbing;
+        self.pulley_states = pulley_states;
     }
 
-    fn ends_at(&self, k: usize, r: &Rubbing) -> WheelEnds {
-        WheelEnds { p: r.p, s: r.s, t: self.forces[k].map(|f| f.norm()) }
+    fn ends_at(&self, k: usize, r: &PulleyState) -> WheelEnds {
+        WheelEnds { p: r.angles, s: r.material, t: self.forces[k].map(|f| f.norm()) }
     }
 
     /// Lays the stops where the unknowns are and solves the spans between.
     fn take_unknowns(&mut self, pulleys: &[usize]) -> Result<(), Failure> {
-        for (&k, r) in pulleys.iter().zip(&self.rubbing) {
+        for (&k, r) in pulleys.iter().zip(&self.pulley_states) {
             let stop: &mut Stop = &mut self.layout.stops[k];
-            (stop.arc_length, stop.lap) = (r.s[0], r.s[1] - r.s[0]);
-            if let (Hold::Pulley(wheel), Law::Wheel(w)) = (&mut stop.hold, &r.law) {
-                wheel.contact = r.p.map(|p| w.directions(p)[1]);
+            (stop.arc_length, stop.lap) = (r.material[0], r.material[1] - r.material[0]);
+            if let (Hold::Pulley(wheel), FrictionState::Wheel(w)) = (&mut stop.hold, &r.friction) {
+                wheel.contact = r.angles.map(|p| w.directions(p)[1]);
             }
         }
         let stops = &self.layout.stops;
@@ -286,24 +234,24 @@ impl Network {
 
     fn equations(&mut self, pulleys: &[usize]) -> Equations {
         let on = self.on_wheel();
-        let count: usize = self.rubbing.iter().map(|r| r.unknowns().len()).sum();
+        let count: usize = self.pulley_states.iter().map(|r| r.unknowns().len()).sum();
         let mut e = Equations {
             residual: DVector::zeros(count),
             own: DMatrix::zeros(count, count),
             by_force: Vec::with_capacity(4 * count),
         };
         let unit = 1.0 / (MATERIAL * self.layout.length);
-        let mut rubbing = std::mem::take(&mut self.rubbing);
+        let mut pulley_states = std::mem::take(&mut self.pulley_states);
         let mut row = 0;
-        for (&k, r) in pulleys.iter().zip(&mut rubbing) {
+        for (&k, r) in pulleys.iter().zip(&mut pulley_states) {
             let [before, after] = self.forces[k];
             let ends = self.ends_at(k, r);
             let unit_vectors = [before / before.norm(), after / after.norm()];
-            match &mut r.law {
-                Law::Wheel(w) => {
+            match &mut r.friction {
+                FrictionState::Wheel(w) => {
                     // Rows and unknowns in the order of `Unknown`.
                     for side in 0..2 {
-                        let ([t, n], u) = (w.directions(r.p[side]), unit_vectors[side]);
+                        let ([t, n], u) = (w.directions(r.angles[side]), unit_vectors[side]);
                         let (i, off) = (row + 2 * side, cross(t, u));
                         e.residual[i] = off;
                         e.own[(i, i)] = -cross(n, u);
@@ -323,11 +271,11 @@ impl Network {
                         }
                     }
                 }
-                Law::Point { stands: Point::Holds, held, .. } => {
-                    e.residual[row] = (r.s[0] - *held) * unit;
+                FrictionState::Point { mode: PointFriction::Holds, held, .. } => {
+                    e.residual[row] = (r.material[0] - *held) * unit;
                     e.own[(row, row)] = unit;
                 }
-                Law::Point { stands: Point::Slides(m), .. } => {
+                FrictionState::Point { mode: PointFriction::Slides(m), .. } => {
                     let turn = turn_between(before, after);
                     e.residual[row] = (ends.t[1] / ends.t[0]).ln() - *m * turn.abs();
                     for (side, sign) in [(0, -1.0), (1, 1.0)] {
@@ -339,12 +287,12 @@ impl Network {
             }
             row += r.unknowns().len();
         }
-        self.rubbing = rubbing;
+        self.pulley_states = pulley_states;
         e
     }
 
     /// Changes of the forces beside the stops with an unknown of pulley `k`: stop, side, slope.
-    fn force_slopes(&self, k: usize, r: &Rubbing, unknown: Unknown) -> Vec<(usize, usize, Vec2)> {
+    fn force_slopes(&self, k: usize, r: &PulleyState, unknown: Unknown) -> Vec<(usize, usize, Vec2)> {
         let mut out = Vec::with_capacity(4);
         let both = unknown == Unknown::Both;
         for side in 0..2 {
@@ -360,10 +308,10 @@ impl Network {
             let slopes = if material {
                 self.spans[i].force_rates(&self.material, &self.layout, ends, side == 0)
             } else if unknown == Unknown::Angle(side)
-                && let (Law::Wheel(w), Some(wheel)) = (&r.law, self.wheel(k))
+                && let (FrictionState::Wheel(w), Some(wheel)) = (&r.friction, self.wheel(k))
             {
                 // The end of the span goes along the cable, dx/dp = R t.
-                let moved = w.directions(r.p[side])[0] * wheel.radius * if side == 0 { 1.0 } else { -1.0 };
+                let moved = w.directions(r.angles[side])[0] * wheel.radius * if side == 0 { 1.0 } else { -1.0 };
                 let stiffness = self.spans[i].walk.compliance.try_inverse();
                 [stiffness.map_or(Vec2::repeat(f64::NAN), |s| s * moved); 2]
             } else {
@@ -379,7 +327,7 @@ impl Network {
     fn tangent(&self, pulleys: &[usize], e: &Equations) -> (DMatrix<f64>, Vec<Touched>) {
         let mut matrix = e.own.clone();
         let mut slopes = Vec::with_capacity(matrix.ncols());
-        for (&k, r) in pulleys.iter().zip(&self.rubbing) {
+        for (&k, r) in pulleys.iter().zip(&self.pulley_states) {
             for &unknown in r.unknowns() {
                 let column = slopes.len();
                 let of = self.force_slopes(k, r, unknown);
@@ -408,7 +356,7 @@ impl Network {
             let (matrix, _) = self.tangent(pulleys, &e);
             let step = matrix.lu().solve(&-&e.residual).filter(|s| s.iter().all(|v| v.is_finite()));
             let Some(step) = step else { return Err(failure) };
-            let (from, norm) = (self.rubbing.clone(), e.residual.norm_squared());
+            let (from, norm) = (self.pulley_states.clone(), e.residual.norm_squared());
             let better = backtrack(self.longest_step(pulleys, &step), MAX_HALVINGS, |part| {
                 self.move_unknowns(&from, &step, part);
                 self.steps += 1;
@@ -435,7 +383,7 @@ impl Network {
                 alpha = if most / by < alpha { most / by } else { alpha };
             }
         };
-        for (&k, r) in pulleys.iter().zip(&self.rubbing) {
+        for (&k, r) in pulleys.iter().zip(&self.pulley_states) {
             for &unknown in r.unknowns() {
                 let by = step[column];
                 column += 1;
@@ -457,16 +405,16 @@ impl Network {
         alpha
     }
 
-    fn move_unknowns(&mut self, from: &[Rubbing], step: &DVector<f64>, alpha: f64) {
+    fn move_unknowns(&mut self, from: &[PulleyState], step: &DVector<f64>, alpha: f64) {
         let mut column = 0;
-        for (r, old) in self.rubbing.iter_mut().zip(from) {
+        for (r, old) in self.pulley_states.iter_mut().zip(from) {
             for &unknown in old.unknowns() {
                 let by = alpha * step[column];
                 column += 1;
                 match unknown {
-                    Unknown::Angle(side) => r.p[side] = old.p[side] + by,
-                    Unknown::Material(side) => r.s[side] = old.s[side] + by,
-                    Unknown::Both => r.s = [old.s[0] + by; 2],
+                    Unknown::Angle(side) => r.angles[side] = old.angles[side] + by,
+                    Unknown::Material(side) => r.material[side] = old.material[side] + by,
+                    Unknown::Both => r.material = [old.material[0] + by; 2],
                 }
             }
         }
@@ -476,35 +424,39 @@ impl Network {
     fn change_modes(&mut self, pulleys: &[usize], one: bool) -> bool {
         let on = self.on_wheel();
         let mut changed = false;
-        let mut rubbing = std::mem::take(&mut self.rubbing);
-        for (&k, r) in pulleys.iter().zip(&mut rubbing) {
+        let mut pulley_states = std::mem::take(&mut self.pulley_states);
+        for (&k, r) in pulleys.iter().zip(&mut pulley_states) {
             if changed && one {
                 break;
             }
             let ends = self.ends_at(k, r);
             let [before, after] = self.forces[k];
-            changed |= match &mut r.law {
-                Law::Wheel(w) => w.change_mode(&on, &ends, MODE_CHANGE_ROUNDINGS),
-                Law::Point { friction, stands, held } if *friction > 0.0 => {
+            changed |= match &mut r.friction {
+                FrictionState::Wheel(w) => w.change_mode(&on, &ends, MODE_CHANGE_ROUNDINGS),
+                FrictionState::Point { friction, mode, held } if *friction > 0.0 => {
                     let ratio = (ends.t[1] / ends.t[0]).ln();
                     let over = ratio.abs() - *friction * turn_between(before, after).abs();
-                    let slid = r.s[0] - *held;
-                    let next = match *stands {
-                        Point::Holds if over > CONE_ROUNDING => Point::Slides(*friction * ratio.signum()),
+                    let slid = r.material[0] - *held;
+                    let next = match *mode {
+                        PointFriction::Holds if over > CONE_ROUNDING => {
+                            PointFriction::Slides(*friction * ratio.signum())
+                        }
                         // With m = +μ material goes on to the side after: less of it lies before.
-                        Point::Slides(m) if m * slid > 0.0 && slid.abs() > STEP_TOLERANCE * self.layout.length => {
-                            Point::Holds
+                        PointFriction::Slides(m)
+                            if m * slid > 0.0 && slid.abs() > STEP_TOLERANCE * self.layout.length =>
+                        {
+                            PointFriction::Holds
                         }
                         same => same,
                     };
-                    let differs = next != *stands;
-                    *stands = next;
+                    let differs = next != *mode;
+                    *mode = next;
                     differs
                 }
-                Law::Point { .. } => false,
+                FrictionState::Point { .. } => false,
             };
         }
-        self.rubbing = rubbing;
+        self.pulley_states = pulley_states;
         changed
     }
 

@@ -168,9 +168,8 @@ fn anchor(network: &Network, k: usize, cable_radius: f64, out: &mut Vec<Point>) 
 /// friction remembers them.
 fn remembered(network: &Network, stop: usize, fraction: f64) -> Option<(Vec2, f64, f64)> {
     let k = network.pulleys().iter().position(|&k| k == stop)?;
-    let pulley = network.rubbing.get(k)?;
-    let (tension, normal) = pulley.tension_at(network, fraction)?;
-    Some((normal, pulley.material_at(network, fraction)?, tension))
+    let (tension, normal, material) = network.pulley_states.get(k)?.on_arc(&network.on_wheel(), fraction)?;
+    Some((normal, material, tension))
 }
 
 /// Force of the cable on a stop, N: it is pulled back along the cable before it and on along the

@@ -63,7 +63,7 @@ fn solve_smooth(network: &mut Network) -> Result<bool, Failure> {
     if network.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.radius > 0.0)) {
         let mut exact = network.clone();
         exact.remember();
-        if exact.rub().is_ok() {
+        if exact.balance_with_friction().is_ok() {
             *network = exact;
         }
     }
@@ -247,7 +247,7 @@ impl Statics {
             let factor = (estimate / (ESTIMATE_FRACTION * self.settings.tolerance)).powf(1.0 / ORDER);
             segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
             network.layout.cut(segments);
-            if network.rubbing.is_empty() { network.solve() } else { network.rub() }
+            if network.pulley_states.is_empty() { network.solve() } else { network.balance_with_friction() }
                 .map_err(|f| self.error(&network, f))?;
             iterations += network.steps;
             estimate = dual_weighted_residual::relative_error(&mut network);
@@ -283,21 +283,21 @@ impl Statics {
         if let Some(old) = &self.network
             && network.remember_from(old)
         {
-            return network.rub().map(|()| false);
+            return network.balance_with_friction().map(|()| false);
         }
         if self.time == 0.0
             && !self.adopted
             && let Ok(Some(lay)) = initial_equilibrium(&self.problem, self.settings, dragged, None)
         {
             let mut laid = network.clone();
-            if laid.remember_answer(&lay.answer) && laid.rub().is_ok() {
+            if laid.remember_answer(&lay.answer) && laid.balance_with_friction().is_ok() {
                 *network = laid;
                 return Ok(true);
             }
         }
         network.solve()?;
         network.remember();
-        network.rub().map(|()| true)
+        network.balance_with_friction().map(|()| true)
     }
 
     /// Goes the same way with bars half as long in steps half as long and with a memory of its own:
@@ -332,7 +332,7 @@ impl Statics {
             if !step.remember_from(old) {
                 return None;
             }
-            step.rub().ok()?;
+            step.balance_with_friction().ok()?;
             step.commit_friction();
             half = Some(step);
         }
@@ -346,10 +346,10 @@ impl Statics {
             }
             None => {
                 finer.start_from(network);
-                finer.rubbing.clone_from(&network.rubbing);
+                finer.pulley_states.clone_from(&network.pulley_states);
             }
         }
-        finer.rub().ok()?;
+        finer.balance_with_friction().ok()?;
         finer.commit_friction();
         Some(finer)
     }

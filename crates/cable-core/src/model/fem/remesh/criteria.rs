@@ -39,8 +39,8 @@ impl Share {
     }
 }
 
-/// What the criteria read of a cable: its mesh among obstacles, how that was divided, and how it
-/// moves.
+/// The parts of a cable that the criteria read: its mesh among obstacles, how that was divided, and
+/// how it moves.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Criteria<'a> {
     step: StepContext<'a>,

@@ -1,6 +1,8 @@
 //! These modules take one explicit sub-step: supports and hands that move, material that slides
-//! over pulleys, impacts, the account of momentum, limits and rollback.
+//! over pulleys, impacts, the account of momentum, limits and rollback. `chain_state` has the parts
+//! that a step changes.
 
+pub(in crate::model::mass_spring) mod chain_state;
 pub(in crate::model::mass_spring) mod hands;
 pub(in crate::model::mass_spring) mod impacts;
 pub(in crate::model::mass_spring) mod momentum;

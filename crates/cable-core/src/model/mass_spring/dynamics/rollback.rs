@@ -1,7 +1,7 @@
 //! A rollback keeps the state before a step, in the same memory step after step, to return to it
 //! where the step fails.
 
-use crate::model::mass_spring::ChainState;
+use crate::model::mass_spring::dynamics::chain_state::ChainState;
 
 /// A copy of the state, if one was made; copies of the model make their own.
 #[derive(Debug, Default)]

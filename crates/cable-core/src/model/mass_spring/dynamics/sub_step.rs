@@ -5,7 +5,7 @@ use crate::error::{FailureCause, SolveError};
 use crate::math::smaller;
 use crate::model::Settings;
 use crate::model::gauge::TensionGauge;
-use crate::model::mass_spring::ChainState;
+use crate::model::mass_spring::dynamics::chain_state::ChainState;
 use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;
 use crate::model::mass_spring::dynamics::sliding::slide;
 use crate::model::mass_spring::dynamics::supports::HandSettings;

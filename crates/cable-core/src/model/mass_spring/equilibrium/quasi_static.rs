@@ -3,7 +3,7 @@
 
 use crate::error::{NoEquilibrium, SolveError};
 use crate::math::Vec2;
-use crate::model::mass_spring::ChainState;
+use crate::model::mass_spring::dynamics::chain_state::ChainState;
 use crate::model::mass_spring::equilibrium::contact_energy::Anchors;
 use crate::model::mass_spring::equilibrium::newton::EquilibriumSolver;
 use crate::model::mass_spring::forces::nodal;

@@ -4,15 +4,17 @@ pub(in crate::model::mass_spring) mod contacts;
 pub(in crate::model::mass_spring) mod nodes;
 
 use crate::math::Vec2;
-use crate::model::mass_spring::ChainState;
-use crate::model::mass_spring::MassSpringModel;
-use crate::solution::{Assumptions, CableSolution};
+use crate::model::mass_spring::dynamics::chain_state::ChainState;
+use crate::solution::{Assumptions, CableSolution, ErrorEstimates};
 use crate::state::State;
 use nodes::NodeReader;
 
-/// The answer of the present state.
-pub(in crate::model::mass_spring) fn answer(model: &MassSpringModel) -> CableSolution {
-    let MassSpringModel { settings, chain, .. } = model;
+/// The answer of the present state, with its errors where `tolerance` (relative) was asked for.
+pub(in crate::model::mass_spring) fn answer(
+    chain: &ChainState,
+    errors: &ErrorEstimates,
+    tolerance: f64,
+) -> CableSolution {
     let ChainState { clock, mesh, drives, contacts, report } = chain;
     let reader = NodeReader { mesh, time_s: clock.time_s };
     let answer = CableSolution {
@@ -28,16 +30,15 @@ pub(in crate::model::mass_spring) fn answer(model: &MassSpringModel) -> CableSol
         contacts: contacts::read(mesh, contacts, &report.cost).into_iter().map(|contact| contact.report).collect(),
         ..CableSolution::default()
     };
-    let errors = report.estimate.errors;
-    let by_contacts = || contacts::tension_uncertainty(mesh, contacts, &report.cost, settings.tolerance);
+    let by_contacts = || contacts::tension_uncertainty(mesh, contacts, &report.cost, tolerance);
     let error_estimate = errors.relative(&answer).or_else(by_contacts);
-    CableSolution { error_estimate, errors, ..answer }
+    CableSolution { error_estimate, errors: *errors, ..answer }
 }
 
 /// Positions and velocities as every model reads them.
-pub(in crate::model::mass_spring) fn state(model: &MassSpringModel) -> State {
-    let time_s = model.chain.clock.time_s;
-    let nodes = NodeReader { mesh: &model.chain.mesh, time_s }.nodes();
+pub(in crate::model::mass_spring) fn state(chain: &ChainState) -> State {
+    let time_s = chain.clock.time_s;
+    let nodes = NodeReader { mesh: &chain.mesh, time_s }.nodes();
     State {
         time_s,
         arc_length_m: nodes.iter().map(|n| n.arc_length_m).collect(),

@@ -18,7 +18,7 @@ use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::Settings;
 use crate::model::gauge::TensionGauge;
-use crate::model::mass_spring::ChainState;
+use crate::model::mass_spring::dynamics::chain_state::ChainState;
 use crate::model::mass_spring::dynamics::hands;
 use crate::model::mass_spring::dynamics::impacts;
 use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;

@@ -7,7 +7,7 @@
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::friction_memory::{Knot, Mode, TensionProfile};
-use crate::model::spans::contact::point_load::{LoadBalance, load_balance};
+use crate::model::spans::contact::load_balance::{LoadBalance, load_balance};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::run::{CableRun, Contact, Course, Kink, RestingLoad};
 

@@ -2,6 +2,7 @@
 
 pub(in crate::model::spans) mod equations;
 pub(in crate::model::spans) mod kink_load;
+pub(in crate::model::spans) mod load_balance;
 pub(in crate::model::spans) mod load_landing;
 pub(in crate::model::spans) mod point_load;
 pub(in crate::model::spans) mod release_below;

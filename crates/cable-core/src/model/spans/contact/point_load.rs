@@ -20,6 +20,7 @@ use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::contact::kink_load;
+use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie};
@@ -33,59 +34,6 @@ const MATERIAL_ROUNDING: f64 = 1e-15;
 pub(in crate::model::spans) const LIFT_FRACTION: f64 = 1e-9;
 /// Equations must hold to this part of the forces; the solver stops at 1e-11.
 const BALANCE_TOLERANCE: f64 = 1e-7;
-
-/// Forces on a load.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct LoadBalance {
-    /// V, N, and what of it does not turn with the boundary.
-    pub sum: Vec2,
-    pub fixed: Vec2,
-    pub tangent: Vec2,
-    pub normal: Vec2,
-    /// Greatest of the forces in V, N.
-    pub size: f64,
-}
-
-impl LoadBalance {
-    /// N.
-    pub fn press(&self) -> f64 {
-        -self.sum.dot(&self.normal)
-    }
-}
-
-/// Forces on the load that is contact j.
-pub(in crate::model::spans) fn load_balance(strand: &CableRun, course: &Course, j: usize) -> LoadBalance {
-    let c = &strand.contacts[j];
-    let place = course.track(c).place(c.ends.p[0]);
-    let own = load(strand, course, j);
-    let (mut fixed, mut along, mut size) = (own, 0.0, own.norm());
-    for (side, sign) in [(0, -1.0), (1, 1.0)] {
-        if let Some(force) = strand.force_at_contact(course, j, side) {
-            fixed += force * sign;
-            size = larger(size, force.norm());
-        } else if strand.is_joined(j, side) {
-            let (tension, beside) = (strand.forces[j + side].x, &strand.contacts[j + 2 * side - 1]);
-            size = larger(size, tension.abs());
-            if beside.chain_range == c.chain_range {
-                along += tension * sign;
-            } else {
-                fixed += course.track(beside).place(beside.ends.p[1 - side]).tangent * (tension * sign);
-            }
-        }
-    }
-    LoadBalance { sum: fixed + place.tangent * along, fixed, tangent: place.tangent, normal: place.normal, size }
-}
-
-/// P of the load that is contact j, N.
-fn load(strand: &CableRun, course: &Course, j: usize) -> Vec2 {
-    let s = strand.contacts[j].ends.s[0];
-    for (side, end) in [(0, 0), (1, strand.contacts.len() - 1)] {
-        if let (true, Tie::Loose(force)) = (j == end, strand.ties[side]) {
-            return force;
-        }
-    }
-    course.load_at(s)
-}
 
 /// The mode that the load that is contact j asks for.
 pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: usize, patience: f64) -> Mode {

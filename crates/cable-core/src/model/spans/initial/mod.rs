@@ -4,6 +4,7 @@
 pub(in crate::model::spans) mod contacts;
 pub(in crate::model::spans) mod drained_route;
 pub(in crate::model::spans) mod from_solution;
+pub(in crate::model::spans) mod material;
 pub(in crate::model::spans) mod route;
 pub(in crate::model::spans) mod shortest_path;
 pub(in crate::model::spans) mod tension;

@@ -1,7 +1,7 @@
 //! This module lays a run along its shortest path.
 
 use crate::model::spans::boundary::friction_memory::TensionProfile;
-use crate::model::spans::initial::contacts::{measure, spread};
+use crate::model::spans::initial::material::{measure, spread};
 use crate::model::spans::run::{CableRun, Contact, Course};
 
 /// Length of the taut string through what it touches, m.

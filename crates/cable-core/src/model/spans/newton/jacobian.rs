@@ -6,6 +6,7 @@ use crate::model::spans::boundary::curve::Place;
 use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::boundary::segment_cursor::Pivot;
 use crate::model::spans::contact::equations;
+use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::numerics::band_lu::Band;
 use crate::model::spans::run::{CableRun, Contact, Course, Tie};
@@ -199,7 +200,7 @@ fn load_rows(strand: &CableRun, course: &Course, j: usize, system: &mut System) 
         b.add(row + 1, row, scale);
         return;
     };
-    let load_balance = point_load::load_balance(strand, course, j);
+    let load_balance = load_balance(strand, course, j);
     let size = 1.0 / larger(load_balance.size, 1e-9 * course.law.load.norm());
     let across = load_balance.tangent + load_balance.normal * m;
     r[row + 1] = load_balance.sum.dot(&across) * size;

@@ -9,7 +9,9 @@ use crate::model::spans::boundary::curve::Place;
 use crate::model::spans::boundary::loose::{Borne, Heap, Line, Part, Stretch};
 use crate::model::spans::initial::drained_route::Frame;
 use crate::model::spans::run::Course;
-use crate::model::spans::slack::CREST_CONE_ROUNDING;
+
+/// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
+pub(super) const CREST_CONE_ROUNDING: f64 = 1e-9;
 
 /// The lowest place that holds a heap drawn by a force (N), and before which part that is.
 pub(super) fn heap(parts: &[Part], course: &Course, frame: Frame, force: Vec2) -> Option<(usize, Heap)> {

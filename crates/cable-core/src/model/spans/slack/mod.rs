@@ -36,11 +36,9 @@ use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout};
 use crate::model::spans::initial::drained_route::{Drained, Frame, Leg, NONE_M, Roofs};
 use crate::model::spans::initial::route::way;
 use crate::model::spans::run::{CableRun, Course, Tie};
-use crate::model::spans::slack::heap::heap;
+use crate::model::spans::slack::heap::{CREST_CONE_ROUNDING, heap};
 use crate::numerics::bisect;
 
-/// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
-const CREST_CONE_ROUNDING: f64 = 1e-9;
 /// Part of the cable that there must be too much of: what is as long as its way lies along it, and
 /// remembers what friction does.
 const EXCESS_CABLE_FRACTION: f64 = 1e-9;

@@ -1,0 +1,62 @@
+//! A pulley holds its cable by friction or lets it slide, and remembers where it held it.
+
+use crate::math::Vec2;
+use crate::model::spans::contact::wheel_friction::{OnWheel, WheelFriction};
+
+/// State of friction at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum PointFriction {
+    /// The material there stays.
+    Holds,
+    /// It slides with this coefficient, signed.
+    Slides(f64),
+}
+
+/// State of friction at a pulley.
+#[derive(Clone, Debug)]
+#[allow(clippy::large_enum_variant)] // A handful of them in a scene.
+pub(super) enum FrictionState {
+    /// Of a wheel.
+    Wheel(WheelFriction),
+    /// Of a point: μ, whether it holds, and the material it held last, m.
+    Point { friction: f64, mode: PointFriction, held: f64 },
+}
+
+/// A pulley and its memory.
+#[derive(Clone, Debug)]
+pub struct PulleyState {
+    pub(super) support: Option<usize>,
+    pub(super) friction: FrictionState,
+    /// Angles at which the cable meets and leaves a wheel, rad.
+    pub(super) angles: [f64; 2],
+    /// Material there, m.
+    pub(super) material: [f64; 2],
+}
+
+/// An unknown at a pulley: the angle and the material at its side 0 or 1; the material of a point
+/// at both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Unknown {
+    Angle(usize),
+    Material(usize),
+    Both,
+}
+
+impl PulleyState {
+    pub(super) fn unknowns(&self) -> &'static [Unknown] {
+        use Unknown::{Angle, Both, Material};
+        match self.friction {
+            FrictionState::Wheel(_) => &[Angle(0), Material(0), Angle(1), Material(1)],
+            FrictionState::Point { .. } => &[Both],
+        }
+    }
+
+    /// Tension (N), normal and material (m) at a fraction of its arc, where its cable was in the
+    /// last step; None for a point.
+    pub fn on_arc(&self, on: &OnWheel, fraction: f64) -> Option<(f64, Vec2, f64)> {
+        let FrictionState::Wheel(wheel) = &self.friction else { return None };
+        let angle = self.angles[0] + (self.angles[1] - self.angles[0]) * fraction;
+        let (tension, material) = wheel.at(on, angle);
+        Some((tension, wheel.directions(angle)[1], material))
+    }
+}

@@ -1,0 +1,46 @@
+//! The tension of a stiff cable that bends round something is off by what sliding nodes leave out.
+
+use crate::energy::bending::turn;
+use crate::math::larger;
+use crate::model::fem::results::forces::bar_tensions;
+use crate::model::fem::state::cable::CableState;
+use crate::model::fem::system::friction_state::ContactPair;
+
+/// Error of the tension of a stiff cable where it bends round obstacles and pulleys, in parts
+/// of the greatest tension, and the arc length (m) where it is greatest. A sliding node carries
+/// no moment: tension there is off by EI/2ρ² where the cable lies on the round, and by no more
+/// than T(1 − cos ½φ), φ its turn, where it touches in a point. At a node that turns by ψ the
+/// normal force of a contact has any direction in between: along the cable that is ½ψ of it.
+pub(in crate::model::fem) fn bending_error(cable: &CableState) -> (f64, f64) {
+    let (mesh, x) = (&cable.mesh, &cable.motion.positions);
+    let tension = bar_tensions(cable, x);
+    let most = tension.iter().map(|t| t.abs()).fold(0.0, larger);
+    let (mut off, mut at) = (0.0, 0.0);
+    let mut take = |force: f64, node: usize| {
+        if force > off {
+            (off, at) = (force, mesh.arc_length[node]);
+        }
+    };
+    for k in 1..mesh.nodes().saturating_sub(1) {
+        let (Some(sliding), Some(load)) = (&mesh.sliding[k], cable.load(k)) else { continue };
+        let point = 0.5 * (load.tension[0] + load.tension[1]) * (1.0 - (0.5 * load.turn).cos());
+        let radius = sliding.end.radius;
+        let lying = if radius > 0.0 { 0.5 * mesh.bending_stiffness / (radius * radius) } else { point };
+        take(if lying < point { lying } else { point }, k);
+    }
+    let mut touches: Vec<ContactPair> = Vec::new();
+    cable.contacts.find(&cable.problem, mesh, x, &mut touches);
+    for t in touches.iter().filter(|t| !t.on_segment && t.node > 0 && t.node + 1 < mesh.nodes()) {
+        let bend = turn(mesh.path(t.node - 1, x).direction, mesh.path(t.node, x).direction);
+        take(0.5 * bend.abs() * t.load(&cable.contacts.barrier), t.node);
+    }
+    for t in touches.iter().filter(|t| t.on_segment) {
+        // The next node the cable could have touched with.
+        let ends = [t.node, t.node + 1].into_iter().filter(|&k| k > 0 && k + 1 < mesh.nodes());
+        for k in ends {
+            let bend = turn(mesh.path(k - 1, x).direction, mesh.path(k, x).direction);
+            take(0.5 * bend.abs() * t.load(&cable.contacts.barrier), k);
+        }
+    }
+    (if most > 0.0 { off / most } else { 0.0 }, at)
+}

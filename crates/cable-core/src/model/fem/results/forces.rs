@@ -1,0 +1,199 @@
+//! Forces in the cable, and those that the ground and loads exert on its ends and nodes, follow
+//! from a state.
+
+use crate::contact::friction;
+use crate::energy::bending::turn;
+use crate::math::{Vec2, larger, perp};
+use crate::model::fem::state::cable::CableState;
+use crate::model::fem::system::bar_weight;
+use crate::model::fem::system::bar_weight::Weight;
+use crate::model::fem::system::friction_state::ContactPair;
+use crate::model::fem::system::mesh::Mesh;
+use crate::model::fem::time::branches;
+
+/// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than
+/// zero.
+pub(super) fn bar_tensions(d: &CableState, x: &[Vec2]) -> Vec<f64> {
+    (0..d.mesh.rest_length.len()).map(|e| bar_tension(d, x, e)).collect()
+}
+
+pub(super) fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
+    let path = d.mesh.path(e, x);
+    let t = d.mesh.bar(e).tension(path.length);
+    let flexible = d.mesh.is_flexible();
+    if d.mesh.sliding[e].is_some() || d.mesh.sliding[e + 1].is_some() {
+        let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
+        return Weight::of(&d.mesh, e, &path, d.input.body).in_the_middle(t, material, flexible);
+    }
+    let t = if t > 0.0 || !flexible { t + branches::force(d, e) } else { t };
+    if t < 0.0 && flexible { 0.0 } else { t }
+}
+
+/// Arc length from a node to the middle of the straight part of the bar before it (`side` 0) or
+/// after it (1), m.
+pub(super) fn half(d: &CableState, node: usize, side: usize, x: &[Vec2]) -> f64 {
+    let e = node + side - 1;
+    let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
+    Weight::of(&d.mesh, e, &d.mesh.path(e, x), d.input.body).carried(material)[1 - side]
+}
+
+/// The force of the ground on the half bar at a held end that lies on it.
+pub(super) struct LyingEnd {
+    /// The end, and the node beside it.
+    pub node: usize,
+    pub next: usize,
+    pub obstacle: usize,
+    /// Along the cable, unit vector.
+    pub along: Vec2,
+    pub normal: Vec2,
+    /// On the cable, N.
+    pub force: Vec2,
+}
+
+/// Tension force (N) at the start of the first bar and at the end of the last: what hangs there on
+/// a free end, else that of the middle plus what acts on the half between. On the ground what acts
+/// on the half is guessed from the next node. With it what the ground does to the halves that lie
+/// along an edge.
+pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2; 2], [Option<LyingEnd>; 2]) {
+    let n = x.len();
+    let mut lying_ends = [None, None];
+    let mut end = |node: usize, next: usize, e: usize, sign: f64| {
+        let ground = d.problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach);
+        if let Some(hung) = free_end(d, node) {
+            // The ground carries the normal force there, and friction a part: at the tip itself no
+            // more than its cone.
+            let taken = ground.map_or(Vec2::zeros(), |g| {
+                let pressed = hung.dot(&g.normal).min(0.0);
+                let along = perp(g.normal);
+                let half = d.problem.body_force(d.time()) * d.mesh.share(node);
+                let most = -pressed * g.friction;
+                let rubbed = (ground_force(d, node, x) + half).dot(&along).clamp(-most, most);
+                g.normal * pressed - along * rubbed
+            });
+            return (taken - hung) * sign;
+        }
+        let middle = d.mesh.path(e, x).direction * tension[e];
+        let half = half(d, node, usize::from(sign > 0.0), x);
+        let body = d.problem.body_force(d.time()) * half;
+        let Some(ground) = ground else { return middle + body * sign };
+        let grounded = ground_force(d, next, x) * (half / d.mesh.share(next));
+        let force = middle + (body + grounded) * sign;
+        // A cable that lies on an edge up to its end presses on the edge alone; the barrier's width
+        // would tilt the last bar.
+        let beyond = d.problem.world.signed_gap(x[next], 3.0 * d.contacts.barrier.reach);
+        let along = ground.feature % 2 == 0 && beyond.is_some_and(|g| g.feature == ground.feature);
+        // No more than what presses: beyond that the support is pulled off the edge.
+        let pressed = larger(grounded.dot(&ground.normal), 0.0);
+        let tilt = force.dot(&ground.normal) * sign;
+        let lift = if along { if tilt < pressed { tilt } else { pressed } } else { 0.0 };
+        // The next node presses more by what the tilt lifts here, and rubs more: with less normal
+        // force this half rubs less.
+        let kept = if pressed > 0.0 { (1.0 - lift / pressed).clamp(0.0, 1.0) } else { 1.0 };
+        let rubbed = (grounded - ground.normal * pressed) * (1.0 - kept);
+        let lift = ground.normal * (lift * sign);
+        let (grounded, force) = (grounded - rubbed, force - rubbed * sign);
+        // The ground carries the normal force of a point mass as well: its node tells.
+        lying_ends[usize::from(sign < 0.0)] = d.mesh.held[node].then(|| LyingEnd {
+            node,
+            next,
+            obstacle: ground.obstacle,
+            along: d.mesh.path(e, x).direction,
+            normal: ground.normal,
+            force: grounded - lift * sign,
+        });
+        force - lift
+    };
+    if n < 3 {
+        return ([Vec2::zeros(); 2], lying_ends);
+    }
+    ([end(0, 1, 0, 1.0), end(n - 1, n - 2, n - 2, -1.0)], lying_ends)
+}
+
+/// The load on a free end, N; None for other nodes, and where a point mass moves, whose inertia
+/// pulls as well.
+fn free_end(d: &CableState, node: usize) -> Option<Vec2> {
+    let k = d.meshing.support_node.iter().position(|n| *n == Some(node)).filter(|_| !d.mesh.held[node])?;
+    if d.motion.hands[k].is_some() {
+        return Some(d.problem.hung_on(k, d.time()) - d.answers.reaction[node]);
+    }
+    let rests = d.problem.supports.get(k)?.mass == 0.0 || !d.motion.inertia_counts();
+    rests.then(|| d.problem.hung_on(k, d.time()))
+}
+
+/// Normal and friction force of edges and floor on a node, N.
+fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
+    let mut sum = Vec2::zeros();
+    for rub in d.contacts.friction_contacts.iter().filter(|r| r.touch.node == node && !r.touch.on_segment) {
+        sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + d.contacts.friction_force(rub, x);
+    }
+    if let Some(&limit) = d.input.floor_limit.get(node) {
+        sum -= friction::at_plane(d.contacts.floor_slid[node], limit, d.contacts.slip).1;
+    }
+    sum
+}
+
+/// Sum of all forces on a cable that no support holds, N: weight, loads, and what obstacles and
+/// floor do to it. Between its bars nothing is left, whatever their tension: this has none of the
+/// rounding of their forces, and tells what slides from what rests where each node alone is let off
+/// with a little.
+pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64) -> Vec2 {
+    let problem = &d.problem;
+    let hung: Vec2 = (0..problem.supports.len()).map(|k| problem.hung_on(k, time_s)).sum();
+    let at_support =
+        |s: f64| problem.supports.iter().any(|p| p.arc_length.is_some_and(|a| (a - s).abs() <= 1e-9 * problem.length));
+    let loads: Vec2 = problem.loads.iter().filter(|l| !at_support(l.arc_length)).map(|l| l.force.at(time_s)).sum();
+    let mut sum = problem.body_force(time_s) * problem.length + hung + loads;
+    let mut touches: Vec<ContactPair> = Vec::new();
+    d.contacts.find(problem, &d.mesh, x, &mut touches);
+    for touch in &touches {
+        sum += touch.pair.gap.normal * touch.load(&d.contacts.barrier);
+    }
+    for rub in &d.contacts.friction_contacts {
+        sum += d.contacts.friction_force(rub, x);
+    }
+    for k in 0..x.len() {
+        let floor =
+            d.input.floor_limit.get(k).map(|&l| friction::at_plane(d.contacts.floor_slid[k], l, d.contacts.slip).1);
+        if d.mesh.sliding[k].is_some() && k > 0 && k + 1 < x.len() {
+            let [before, after] = [k - 1, k].map(|e| {
+                let path = d.mesh.path(e, x);
+                path.direction * d.mesh.bar(e).tension(path.length)
+            });
+            sum += before - after - bar_weight::on_node(&d.mesh, k, x, problem.body_force(time_s));
+        } else {
+            sum -= floor.unwrap_or_default();
+        }
+    }
+    sum
+}
+
+/// d(angle)/d(arc length) at a node, 1/m.
+pub(super) fn curvature_at(mesh: &Mesh, k: usize, x: &[Vec2]) -> f64 {
+    if k > 0 && k + 1 < x.len() {
+        let rest = 0.5 * (mesh.arc_length[k + 1] - mesh.arc_length[k - 1]);
+        return turn(mesh.path(k - 1, x).direction, mesh.path(k, x).direction) / rest;
+    }
+    let Some(clamp) = mesh.clamps.iter().find(|c| c.node == k) else { return 0.0 };
+    let e = if k == 0 { 0 } else { k - 1 };
+    let sign = if k == 0 { 1.0 } else { -1.0 };
+    sign * turn(clamp.direction, x[e + 1] - x[e]) / (0.5 * (mesh.arc_length[e + 1] - mesh.arc_length[e]))
+}
+
+/// Bending moment at each node, N·m; empty for a flexible cable.
+pub(super) fn moments(d: &CableState, x: &[Vec2]) -> Vec<f64> {
+    let mesh = &d.mesh;
+    if !(mesh.bending_stiffness > 0.0) {
+        return Vec::new();
+    }
+    let slides = |k: usize| mesh.sliding.get(k).is_some_and(Option::is_some);
+    let carries = |k: usize| !(slides(k) || slides(k + 1) || k > 0 && slides(k - 1));
+    let stiffness = mesh.bending_stiffness / mesh.thermal_stretch;
+    (0..x.len()).map(|k| if carries(k) { stiffness * curvature_at(mesh, k, x) } else { 0.0 }).collect()
+}
+
+/// Shear force of bar e, N: what balances the moments at its nodes.
+pub(super) fn shear(mesh: &Mesh, moments: &[f64], e: usize, x: &[Vec2]) -> Vec2 {
+    let (Some(before), Some(after)) = (moments.get(e), moments.get(e + 1)) else { return Vec2::zeros() };
+    let path = mesh.path(e, x);
+    if path.length > 0.0 { perp(path.direction) * ((before - after) / path.length) } else { Vec2::zeros() }
+}

@@ -1,0 +1,83 @@
+//! These modules read the answer out of a state.
+//!
+//! | room | content |
+//! |---|---|
+//! | `mod.rs` | the answer as a whole, and the tension of inner steps |
+//! | `forces.rs` | tensions of bars, forces on ends and nodes, moments |
+//! | `nodes.rs`, `supports.rs`, `contacts.rs` | those parts of the answer |
+//! | `bending_error.rs` | the part of the error that is bending round obstacles |
+
+pub(in crate::model::fem) mod bending_error;
+mod contacts;
+pub(in crate::model::fem) mod forces;
+mod nodes;
+mod supports;
+
+use self::forces::{bar_tension, bar_tensions, end_forces};
+use crate::math::larger;
+use crate::model::fem::state::cable::CableState;
+use crate::model::fem::time::branches;
+use crate::solution::{Assumptions, CableSolution};
+
+/// The answer of a cable at this instant: that of the last step as it was balanced, else that of
+/// the mesh as it is.
+#[must_use]
+pub fn solution(cable: &CableState) -> CableSolution {
+    cable.answers.stepped.as_ref().map_or_else(|| solution_now(cable), |s| CableSolution::clone(s))
+}
+
+/// The answer with the mesh as it is.
+fn solution_now(d: &CableState) -> CableSolution {
+    let (problem, x, v) = (&d.problem, &d.motion.positions, &d.motion.velocities);
+    let tension = bar_tensions(d, x);
+    let (ends, lying_ends) = end_forces(d, x, &tension);
+    CableSolution {
+        name: problem.cable.name.clone(),
+        nodes: nodes::nodes(d, x, v, &tension, &ends),
+        supports: supports::supports(d, x, &ends, &tension),
+        contacts: contacts::contacts(d, x, &tension, &lying_ends),
+        assumptions: Assumptions {
+            bending_stiffness_n_m2: problem.bending_stiffness,
+            self_contact: problem.cable.self_contact,
+            inertia: d.motion.inertia_counts(),
+        },
+        momentum: d.motion.account.report(d.motion.inertia_counts()),
+        ..CableSolution::default()
+    }
+}
+
+/// Keeps the answer of a step before the first change of its mesh.
+pub(in crate::model::fem) fn keep_answer(cable: &mut CableState) {
+    if cable.answers.keeps && cable.answers.kept.is_none() {
+        cable.answers.kept = Some(Box::new(solution_now(cable)));
+    }
+}
+
+/// Reads the tension at each node, as [`nodes::nodes`] has it.
+pub(in crate::model::fem) fn gauge_tension(cable: &mut CableState) {
+    let mut gauged = std::mem::take(&mut cable.answers.gauged);
+    let x = &cable.motion.positions;
+    gauged.arc_length.clone_from(&cable.mesh.arc_length);
+    gauged.bars.clear();
+    if cable.meshing.never_slides {
+        let mesh = &cable.mesh;
+        gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| {
+            let t = mesh.bar(e).tension((pair[1] - pair[0]).norm());
+            let t = if t > 0.0 { t + branches::force(cable, e) } else { t };
+            if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
+        }));
+    } else {
+        gauged.bars.extend((0..cable.mesh.rest_length.len()).map(|e| bar_tension(cable, x, e)));
+    }
+    let ends = end_forces(cable, x, &gauged.bars).0.map(|f| f.norm());
+    gauged.tension.clear();
+    gauged.tension.push(ends[0]);
+    gauged.tension.extend(gauged.bars.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])));
+    gauged.tension.push(ends[1]);
+    for (k, _) in cable.mesh.sliding.iter().enumerate().filter(|(_, s)| s.is_some()) {
+        if let (Some(t), Some(load)) = (gauged.tension.get_mut(k), cable.load(k)) {
+            *t = larger(load.tension[0], load.tension[1]);
+        }
+    }
+    cable.answers.gauged = gauged;
+}

@@ -1,0 +1,73 @@
+//! Each support reports where it is and what the cable does to it.
+
+use crate::math::Vec2;
+use crate::model::fem::mesh::sliding_node::SlideOver;
+use crate::model::fem::results::forces::half;
+use crate::model::fem::state::cable::CableState;
+use crate::problem::Problem;
+use crate::solution::SupportReaction;
+
+/// The force of the cable on a pulley with its tensions and arc length.
+fn pulley(d: &CableState, support: usize, x: &[Vec2], tension: &[f64]) -> Option<SupportReaction> {
+    let slide_over = SlideOver::Pulley(support);
+    let on = |k: &usize| d.mesh.sliding[*k].is_some_and(|s| s.slide_over == slide_over);
+    let first = (1..x.len() - 1).find(on)?;
+    let last = (1..x.len() - 1).rev().find(on)?;
+    let (before, after) = (d.load(first)?, d.load(last)?);
+    let inner = d.mesh.arc_length[last] - d.mesh.arc_length[first];
+    let share = half(d, first, 0, x) + inner + half(d, last, 1, x);
+    let directions = [d.mesh.path(first - 1, x).direction, d.mesh.path(last, x).direction];
+    let force = directions[1] * tension[last] - directions[0] * tension[first - 1] + d.input.body * share;
+    let center = d.mesh.sliding[first]?.end.center;
+    Some(SupportReaction {
+        name: d.problem.supports.get(support)?.name.clone(),
+        x_m: center.x,
+        y_m: center.y,
+        reaction_x_n: force.x,
+        reaction_y_n: force.y,
+        arc_length_m: 0.5 * (d.mesh.arc_length[first] + d.mesh.arc_length[last]),
+        tension_before_n: Some(before.tension[0]),
+        tension_after_n: Some(after.tension[1]),
+        hand: None,
+    })
+}
+
+pub(super) fn supports(d: &CableState, x: &[Vec2], ends: &[Vec2; 2], tension: &[f64]) -> Vec<SupportReaction> {
+    let problem: &Problem = &d.problem;
+    problem
+        .supports
+        .iter()
+        .zip(&d.meshing.support_node)
+        .enumerate()
+        .filter_map(|(k, (s, node))| {
+            let Some(node) = *node else { return pulley(d, k, x, tension) };
+            let last = x.len() - 1;
+            let on_ground = problem.world.signed_gap(x[node], 3.0 * d.contacts.barrier.reach).is_some();
+            let hand = d.motion.hands[k];
+            let reaction = match node {
+                _ if hand.is_some() => d.answers.reaction[node],
+                // A dead load is what hangs there: the cable pulls it the other way; a lump it may
+                // pull faster. Of one that lies the ground takes a part, which is the contact's.
+                _ if !d.mesh.held[node] && on_ground => -problem.hung_on(k, d.time()),
+                0 if !d.mesh.held[node] => ends[0],
+                k if k == last && !d.mesh.held[node] => -ends[1],
+                _ if !d.mesh.held[node] => -problem.hung_on(k, d.time()),
+                // On the ground the end's own share of weight and friction is the ground's, not the
+                // support's.
+                0 if on_ground => ends[0],
+                k if k == last && on_ground => -ends[1],
+                _ => d.answers.reaction[node],
+            };
+            Some(SupportReaction {
+                name: s.name.clone(),
+                x_m: x[node].x,
+                y_m: x[node].y,
+                reaction_x_n: reaction.x,
+                reaction_y_n: reaction.y,
+                arc_length_m: d.mesh.arc_length[node],
+                hand: hand.map(|hand| hand.report(-reaction)),
+                ..SupportReaction::default()
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,18 @@
+//! Friction that is fully mobilised towards one end is refused where a model finds its own.
+
+use crate::error::{SolveError, Unsupported};
+use crate::model_id::Model;
+use crate::problem::Problem;
+
+/// Refuses friction that is fully mobilised towards one end for a model that finds its own.
+///
+/// # Errors
+/// `Unsupported`.
+pub(super) fn refuse_mobilised(model: Model, problem: &Problem) -> Result<(), SolveError> {
+    let mobilised = problem.cable.friction_mobilised;
+    if mobilised.is_default() || model.capabilities().mobilised_friction {
+        return Ok(());
+    }
+    let feature = Unsupported::MobilisedFriction { towards: mobilised.name() };
+    Err(SolveError::Unsupported { model, feature })
+}

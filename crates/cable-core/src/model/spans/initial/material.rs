@@ -1,0 +1,101 @@
+//! These functions lay the material of a cable along its taut string.
+
+use crate::math::smaller;
+use crate::model::spans::boundary::capstan::Track;
+use crate::model::spans::boundary::friction_memory::{Ends, Knot, TensionProfile};
+use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+
+/// Rounds of moving a free end to where the material ends. What is off is in each the strain times
+/// what it was: six leave 1e-12 of it at a strain of 1 %, which is rounding.
+const END_FIT_ROUNDS: usize = 6;
+
+/// Material as it lies along the taut string, strained by `stretch`, from the end that is held;
+/// from the first contact as the route has it where none is.
+pub(in crate::model::spans) fn measure(strand: &mut CableRun, course: &Course, loose: [bool; 2], stretch: f64) {
+    let n = strand.contacts.len();
+    let point = |strand: &CableRun, k: usize, side: usize| strand.ends_of(course, k)[side];
+    let chord = |strand: &CableRun, k: usize| match (point(strand, k, 0), point(strand, k, 1)) {
+        (Some(a), Some(b)) => (b - a).norm() / stretch,
+        _ => 0.0,
+    };
+    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.chain_range) / stretch;
+    if loose[1] {
+        let mut s = if loose[0] { strand.contacts.first().map_or(0.0, |c| c.ends.s[0]) } else { strand.from };
+        for j in 0..n {
+            s += if loose[0] && j == 0 { 0.0 } else { chord(strand, j) };
+            let length = own(&strand.contacts[j]);
+            let last = j + 1 == n && !strand.ties[1].has_span();
+            strand.contacts[j].ends.s = [s, if last { strand.to } else { s + length }];
+            s += length;
+        }
+    } else {
+        let mut s = strand.to;
+        for j in (0..n).rev() {
+            s -= chord(strand, j + 1);
+            let length = own(&strand.contacts[j]);
+            let first = j == 0 && !strand.ties[0].has_span();
+            strand.contacts[j].ends.s = [if first { strand.from } else { s - length }, s];
+            s -= length;
+        }
+    }
+}
+
+/// Keeps material in order, and some of it in each span.
+pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
+    let least = course.settings.initial.contact_spacing_fraction * (strand.to - strand.from);
+    let n = strand.contacts.len();
+    let mut before = strand.from;
+    for j in 0..n {
+        let is_end = j == 0 && !strand.ties[0].has_span();
+        let room = strand.to - least * (n - j) as f64;
+        let e = &mut strand.contacts[j].ends;
+        if !is_end && e.s[0] < before + least {
+            let shift = before + least - e.s[0];
+            e.s = [e.s[0] + shift, e.s[1] + shift];
+        }
+        let last = j + 1 == n && !strand.ties[1].has_span();
+        if !last && e.s[1] > room {
+            let shift = room - e.s[1];
+            e.s = [e.s[0] + shift, e.s[1] + shift];
+        }
+        before = e.s[1];
+    }
+    let loose = [0, 1].map(|side| matches!(strand.ties[side], Tie::Loose(_)));
+    let tied = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
+    for (j, c) in strand.contacts.iter_mut().enumerate() {
+        let track = course.track(c);
+        let free = [loose[0] && j == 0, loose[1] && j + 1 == n];
+        let held = [tied[0] && j == 0, tied[1] && j + 1 == n];
+        for side in 0..2 {
+            if let Tie::Loose(force) = strand.ties[side] {
+                c.ends.t[side] = if free[side] { course.pull(c, side, force) } else { c.ends.t[side] };
+            }
+        }
+        c.history = lay_down(&track, &c.ends, [free, held]);
+        // A free end lies where the material ends.
+        for side in (0..2).filter(|&side| free[side]) {
+            for _ in 0..END_FIT_ROUNDS {
+                // Laid from a free end it is the other end that does not fit.
+                let other = if free[1 - side] { side } else { 1 - side };
+                let (tension, s) = c.history.at(&track, c.ends.p[other]);
+                let off = (s - c.ends.s[other]) * course.law.stretch(tension);
+                c.ends.p[side] += if other == side { -off } else { off };
+                c.history = lay_down(&track, &c.ends, [free, held]);
+            }
+        }
+    }
+}
+
+/// A contact as it is laid: from its end that is free, where its tension is known, or held, where
+/// its material is; else from its middle. With two free ends it is laid with the tension of the one
+/// that draws less.
+fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> TensionProfile {
+    let end = |side: usize| Knot { coordinate: e.p[side], arc_length: e.s[side], tension: e.t[side], mobilised: 0.0 };
+    let start = match (free, held) {
+        ([true, false], _) | ([false, false], [true, false]) => end(0),
+        ([false, true], _) | ([false, false], [false, true]) => end(1),
+        ([true, true], _) => return TensionProfile::laid_from_middle(track, e, smaller(e.t[0], e.t[1])),
+        ([false, false], _) => return TensionProfile::laid_from_middle(track, e, 0.5 * (e.t[0] + e.t[1])),
+    };
+    TensionProfile::laid(track, start, e.p)
+}

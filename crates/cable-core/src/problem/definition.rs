@@ -1,0 +1,214 @@
+//! A problem is one cable, resolved and validated: all that a model needs to know of a scene.
+
+use std::sync::Arc;
+
+use super::series::{Series, TIME_TOLERANCE_S, turn_between};
+use super::wheels_as_posts::WheelPost;
+use crate::contact::World;
+use crate::contact::outline::Outline;
+use crate::math::{Vec2, vec2};
+use crate::scene::scaled::Similarity;
+use crate::scene::{Cable, Motion, PulleySide, Scene, SupportKind};
+use crate::solution::{CableSolution, Warning};
+
+/// One cable, resolved and validated.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    /// The scene's cable.
+    pub cable: Cable,
+    /// Index of the cable in the scene.
+    pub cable_index: usize,
+    /// Unstretched length at rest temperature, m.
+    pub length: f64,
+    /// Length of the whole cable, m, of whose first axial mode the damping ratio is where loss is
+    /// viscous.
+    pub damped_length: f64,
+    /// Times of this problem in parts of those of the scene (see `similar`).
+    pub time_scale: f64,
+    /// 1 + αΔT.
+    pub thermal_stretch: f64,
+    /// Mass per metre of arc length, kg/m.
+    pub linear_density: f64,
+    /// Weight per metre, N/m, a vector (zero in plan view).
+    pub weight: Vec2,
+    /// Wind per metre as a function of time, N/m.
+    pub wind: Series,
+    /// EA, N.
+    pub axial_stiffness: f64,
+    /// EI, N·m².
+    pub bending_stiffness: f64,
+    /// Cable radius, m.
+    pub radius: f64,
+    /// Supports in order along the cable.
+    pub supports: Vec<SupportPoint>,
+    /// Point loads in order along the cable (those of load supports are in `supports`).
+    pub loads: Vec<PointLoad>,
+    /// Obstacles that it can touch and that stay where they are.
+    pub world: Arc<World>,
+    /// The moving obstacle that it can touch: the robot.
+    pub outline: Option<Arc<Outline>>,
+    /// Plan view: friction coefficient with the floor and normal force per metre, N/m.
+    pub floor_friction: Option<(f64, f64)>,
+    /// The way it is first laid, m (empty: straight from support to support, lifted over what is in
+    /// the way).
+    pub route: Vec<Vec2>,
+    /// Notes on places that differ from the scene: supports on a surface, routes below the ground.
+    pub notes: Vec<Warning>,
+    /// The same cable at the scale solvers are made for, where this one is much shorter, longer or
+    /// farther away.
+    pub similar: Option<(Similarity, Arc<Problem>)>,
+    /// The same cable with posts in place of its wheels, where it has wheels that stand still.
+    pub(crate) wheels_as_posts: Option<Arc<WheelsAsPosts>>,
+}
+
+/// A support, resolved.
+#[derive(Clone, Debug)]
+pub struct SupportPoint {
+    /// Its name.
+    pub name: String,
+    /// Its kind.
+    pub kind: SupportKind,
+    /// Place on the cable, m; 0 and length at the ends; None = slides (pulley).
+    pub arc_length: Option<f64>,
+    /// Position at t = 0, m (a pulley's centre); None for load and free.
+    pub at: Option<Vec2>,
+    /// Its motion.
+    pub motion: Option<Motion>,
+    /// Clamp direction of growing arc length, rad.
+    pub angle: Option<f64>,
+    /// Pulley: radius of the cable's centre line round its wheel, m (0 for a point).
+    pub wheel_radius: f64,
+    /// Pulley: on which side.
+    pub side: PulleySide,
+    /// Pulley friction.
+    pub friction: f64,
+    /// Load: force as a function of time, N.
+    pub force: Series,
+    /// Lumped mass, kg.
+    pub mass: f64,
+    /// When it lets go, s.
+    pub release: Option<f64>,
+}
+
+impl SupportPoint {
+    /// Position and velocity at a time, m and m/s; None if it does not hold the cable then.
+    #[must_use]
+    pub fn position_at(&self, time_s: f64) -> Option<(Vec2, Vec2)> {
+        if self.release.is_some_and(|r| time_s >= r) {
+            return None;
+        }
+        self.place_at(time_s)
+    }
+
+    /// Returns whether it holds the cable in a step that begins at a time, s.
+    #[must_use]
+    pub fn holds_from(&self, time_s: f64) -> bool {
+        self.release.is_none_or(|r| time_s < r - TIME_TOLERANCE_S)
+    }
+
+    /// Returns whether it lets go after `from` and before `to` (s), and when.
+    #[must_use]
+    pub fn release_between(&self, from: f64, to: f64) -> Option<f64> {
+        self.release.filter(|&r| r > from + TIME_TOLERANCE_S && r < to - TIME_TOLERANCE_S)
+    }
+
+    /// Position and velocity at a time, m and m/s, whether it holds the cable then or not.
+    #[must_use]
+    pub fn place_at(&self, time_s: f64) -> Option<(Vec2, Vec2)> {
+        match (&self.motion, self.at) {
+            (Some(m), Some(_)) => Some(m.at(time_s)),
+            (None, Some(p)) => Some((p, Vec2::zeros())),
+            _ => None,
+        }
+    }
+}
+
+/// A dead point load.
+#[derive(Clone, Debug)]
+pub struct PointLoad {
+    /// Place on the cable, m.
+    pub arc_length: f64,
+    /// Force as a function of time, N.
+    pub force: Series,
+}
+
+/// A cable with posts in place of its wheels.
+#[derive(Clone, Debug)]
+pub(crate) struct WheelsAsPosts {
+    /// The cable without those supports.
+    pub problem: Arc<Problem>,
+    /// The wheels.
+    pub wheels: Vec<WheelPost>,
+    /// For each support of the scene, true if it is one of them.
+    pub replaced: Vec<bool>,
+    /// The scene with wheels, and the cable in it.
+    pub(super) source: Arc<(Scene, usize, Cable)>,
+}
+
+impl Problem {
+    /// The first time after `from` and before `to` (s) at which a support, a load or the wind turns
+    /// back or stops. Friction remembers it, so a step may not pass it.
+    #[must_use]
+    pub fn turn_between(&self, from: f64, to: f64) -> Option<f64> {
+        let series = |s: &Series| turn_between(&s.times, &s.values, from, to, |v| *v);
+        let moves = |s: &SupportPoint| {
+            let m = s.motion.as_ref()?;
+            turn_between(&m.times_s, &m.points_m, from, to, |p| vec2(*p))
+        };
+        let supports = self.supports.iter().flat_map(|s| [moves(s), series(&s.force)]);
+        let all = supports.chain(self.loads.iter().map(|l| series(&l.force))).chain([series(&self.wind)]);
+        all.flatten().fold(None, |least: Option<f64>, t| Some(least.map_or(t, |l| if t < l { t } else { l })))
+    }
+
+    /// The same for a model that knows nothing of obstacles that move.
+    #[must_use]
+    pub fn without_outline(this: Arc<Self>) -> Arc<Self> {
+        if this.outline.is_none() {
+            return this;
+        }
+        Arc::new(Self { outline: None, ..Self::clone(&this) })
+    }
+
+    /// Distributed force per metre of arc length at a time, N/m: weight + wind.
+    #[must_use]
+    pub fn body_force(&self, time_s: f64) -> Vec2 {
+        self.weight + self.wind.at(time_s)
+    }
+
+    /// Returns whether friction takes part in where an answer of this cable rests, and the scene
+    /// does not say how much of it.
+    #[must_use]
+    pub fn rubs(&self, answer: &CableSolution) -> bool {
+        let bodies = self.world.geometry().bodies();
+        let touches =
+            |name: &str| bodies.iter().any(|b| b.friction > 0.0 && self.world.obstacle_name(b.obstacle) == name);
+        let given = self.cable.friction_mobilised.is_default();
+        given
+            && (self.floor_friction.is_some_and(|(friction, _)| friction > 0.0)
+                || self.supports.iter().any(|s| s.friction > 0.0)
+                || answer.contacts.iter().any(|c| touches(&c.obstacle)))
+    }
+
+    /// Returns what hangs on a free support at a time, N: its load, the weight of its lump, point
+    /// loads at the same place. At rest the tension just inside a free end is the size of it, and
+    /// the cable pulls at it with the opposite of it.
+    #[must_use]
+    pub fn hung_on(&self, support: usize, time_s: f64) -> Vec2 {
+        let Some(s) = self.supports.get(support) else { return Vec2::zeros() };
+        let gravity = if self.linear_density > 0.0 { self.weight / self.linear_density } else { Vec2::zeros() };
+        let here = |l: &&PointLoad| s.arc_length.is_some_and(|a| (l.arc_length - a).abs() <= 1e-9 * self.length);
+        let points: Vec2 = self.loads.iter().filter(here).map(|l| l.force.at(time_s)).sum();
+        s.force.at(time_s) + gravity * s.mass + points
+    }
+
+    /// A force that says how large forces are here, N: the whole distributed load, point loads and
+    /// the weight of lumps, or EA·1e-6 without one.
+    #[must_use]
+    pub fn force_scale(&self) -> f64 {
+        let loads: f64 = self.loads.iter().map(|l| l.force.at(0.0).norm()).sum::<f64>()
+            + self.supports.iter().map(|s| s.force.at(0.0).norm()).sum::<f64>();
+        let gravity = if self.linear_density > 0.0 { self.weight.norm() / self.linear_density } else { 0.0 };
+        let lumps: f64 = self.supports.iter().map(|s| s.mass * gravity).sum();
+        (self.body_force(0.0).norm() * self.length + loads + lumps).max(1e-6 * self.axial_stiffness)
+    }
+}

@@ -1,0 +1,182 @@
+//! A problem is made of a scene in steps: numbers in place of words, supports and routes clear of
+//! what is solid, posts in place of wheels, and a similar copy.
+
+use std::sync::Arc;
+
+use super::definition::{PointLoad, Problem, SupportPoint, WheelsAsPosts};
+use super::robot_outline::robot_outline;
+use super::series::Series;
+use super::wheels_as_posts::{self, WithPosts};
+use super::{ground_route, route_check, support_clearance};
+use crate::contact::World;
+use crate::error::SceneError;
+use crate::math::{Vec2, vec2};
+use crate::scene::scaled::Similarity;
+use crate::scene::{Cable, FrictionMobilised, Scene, SupportKind, View};
+use crate::solution::Warning;
+
+/// Checks a scene as [`crate::Simulation::new`] does, without a model: what is put elsewhere than
+/// the scene says is handed back.
+///
+/// # Errors
+/// The first thing wrong with the scene.
+pub fn check(scene: &Scene) -> Result<Vec<Warning>, SceneError> {
+    Ok(problems(scene)?.iter().flat_map(|p| p.notes.iter().cloned()).collect())
+}
+
+/// Resolves every cable of a scene. The scene is validated first.
+///
+/// # Errors
+/// The first thing wrong with the scene.
+pub fn problems(scene: &Scene) -> Result<Vec<Arc<Problem>>, SceneError> {
+    scene.validate()?;
+    let mut out = Vec::with_capacity(scene.cables.len());
+    for (index, cable) in scene.cables.iter().enumerate() {
+        let problem = placed(scene, index, cable)?;
+        route_check::check_route(&problem)?;
+        out.push(Arc::new(problem));
+    }
+    Ok(out)
+}
+
+/// A cable with its supports and route clear of what is solid, and its similar copy where it needs
+/// one.
+fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneError> {
+    let mut this = problem(scene, index, cable)?;
+    support_clearance::clear_supports(&mut this)?;
+    ground_route::lift_route(&mut this);
+    this.wheels_as_posts = with_posts(scene, index, cable);
+    let origin = this.supports.iter().find_map(|s| s.at).or(this.route.first().copied()).unwrap_or_else(Vec2::zeros);
+    if scene.robot.is_none()
+        && let Some(by) = Similarity::to_natural(cable.length_m, origin)
+    {
+        let scaled = by.scaled(scene);
+        if let Some(cable) = scaled.cables.get(index) {
+            let mut copy = problem(&scaled, index, cable)?;
+            copy.time_scale = by.time;
+            support_clearance::clear_supports(&mut copy)?;
+            ground_route::lift_route(&mut copy);
+            copy.wheels_as_posts = with_posts(&scaled, index, cable);
+            this.similar = Some((by, Arc::new(copy)));
+        }
+    }
+    Ok(this)
+}
+
+/// A cable with posts in place of its wheels, which are elsewhere: for each support its new place,
+/// m, or None where it stays; None where the cable cannot be laid round the posts there.
+pub(crate) fn with_moved_posts(
+    posts: &WheelsAsPosts,
+    places: impl IntoIterator<Item = Option<Vec2>>,
+) -> Option<Arc<WheelsAsPosts>> {
+    let (scene, index, mut cable) = posts.source.as_ref().clone();
+    for (support, place) in cable.supports.iter_mut().zip(places) {
+        support.at_m = place.map(Into::into).or(support.at_m);
+    }
+    with_posts(&scene, index, &cable)
+}
+
+/// A cable with posts in place of its wheels; None where it has none that stand still, or cannot be
+/// laid round the posts.
+fn with_posts(scene: &Scene, index: usize, cable: &Cable) -> Option<Arc<WheelsAsPosts>> {
+    let source = || Arc::new((scene.clone(), index, cable.clone()));
+    let WithPosts { scene: with_posts, cables, wheels, replaced } = wheels_as_posts::with_posts(scene, cable)?;
+    let lay = |cable: &Cable| -> Result<Problem, SceneError> {
+        let mut this = problem(&with_posts, index, cable)?;
+        support_clearance::clear_supports(&mut this)?;
+        ground_route::lift_route(&mut this);
+        route_check::check_route(&this)?;
+        Ok(this)
+    };
+    let problem = Arc::new(cables.iter().find_map(|cable| lay(cable).ok())?);
+    Some(Arc::new(WheelsAsPosts { problem, wheels, replaced, source: source() }))
+}
+
+fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, SceneError> {
+    let env = &scene.environment;
+    let radius = cable.diameter_m / 2.0;
+    let weight_per_m = cable.linear_density_kg_per_m * env.gravity_m_per_s2;
+    let (weight, floor_friction) = match scene.view {
+        View::Elevation => (Vec2::new(0.0, -weight_per_m), None),
+        View::Plan => (Vec2::zeros(), Some((cable.friction, weight_per_m))),
+    };
+    let last = cable.supports.len().saturating_sub(1);
+    let supports: Vec<SupportPoint> = cable
+        .supports
+        .iter()
+        .enumerate()
+        .map(|(k, s)| SupportPoint {
+            name: s.name.clone(),
+            kind: s.kind,
+            arc_length: match (k, s.kind) {
+                (0, _) => Some(0.0),
+                (k, _) if k == last => Some(cable.length_m),
+                (_, SupportKind::Pulley) => None,
+                _ => s.arc_length_m,
+            },
+            at: match s.kind {
+                SupportKind::Load | SupportKind::Free => None,
+                SupportKind::Robot => scene.hitch_m().map(vec2),
+                _ => s.at_m.map(vec2),
+            },
+            motion: s.motion.clone(),
+            angle: s.angle_deg.map(f64::to_radians),
+            wheel_radius: match s.radius_m {
+                Some(r) if r > 0.0 => r + radius,
+                _ => 0.0,
+            },
+            side: s.side.unwrap_or_default(),
+            friction: s.friction.unwrap_or(0.0),
+            force: force_series(s.force_n, &s.times_s, &s.forces_n),
+            mass: s.mass_kg.unwrap_or(0.0),
+            release: s.release_s,
+        })
+        .collect();
+    let mut loads: Vec<PointLoad> = scene
+        .loads
+        .iter()
+        .filter(|l| l.cable == cable.name)
+        .map(|l| PointLoad { arc_length: l.arc_length_m, force: force_series(l.force_n, &l.times_s, &l.forces_n) })
+        .collect();
+    loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
+    let world = World::new(&scene.obstacles, cable.friction, radius);
+    let mut cable = cable.clone();
+    let rubs = world.geometry().bodies().iter().any(|b| b.friction > 0.0)
+        || supports.iter().any(|s| s.friction > 0.0)
+        || floor_friction.is_some_and(|(friction, _)| friction > 0.0);
+    // Of friction that is not there nothing can be mobilised.
+    if !rubs {
+        cable.friction_mobilised = FrictionMobilised::default();
+    }
+    Ok(Problem {
+        cable_index,
+        length: cable.length_m,
+        damped_length: cable.length_m,
+        time_scale: 1.0,
+        thermal_stretch: 1.0 + cable.thermal_expansion_per_k * env.temperature_change_k,
+        linear_density: cable.linear_density_kg_per_m,
+        weight,
+        wind: force_series(Some(env.wind_n_per_m), &env.wind_times_s, &env.winds_n_per_m),
+        axial_stiffness: cable.axial_stiffness_n,
+        bending_stiffness: cable.bending_stiffness_n_m2,
+        radius,
+        supports,
+        loads,
+        world: Arc::new(world),
+        outline: robot_outline(scene, cable.friction).map(Arc::new),
+        floor_friction,
+        route: cable.route_m.iter().map(|p| vec2(*p)).collect(),
+        notes: Vec::new(),
+        similar: None,
+        wheels_as_posts: None,
+        cable,
+    })
+}
+
+fn force_series(force: Option<[f64; 2]>, times: &[f64], forces: &[[f64; 2]]) -> Series {
+    if times.is_empty() {
+        force.map_or_else(Series::default, |f| Series::constant(vec2(f)))
+    } else {
+        Series::new(times, forces)
+    }
+}

@@ -1,0 +1,73 @@
+//! A scene is a plain document: every part of it is public, and may be half typed.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::cable::Cable;
+use super::environment::{Environment, View};
+use super::ground::Ground;
+use super::library::preset::robot_preset;
+use super::load::Load;
+use super::obstacle::Obstacle;
+use super::robot::{Pose, Robot};
+use crate::math::Point;
+
+/// The file version this build writes, and the newest it reads.
+pub const VERSION: u32 = 1;
+
+/// A whole scene, as a scene file holds it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// File format version; always 1.
+    pub version: u32,
+    /// Shown in title bars and reports.
+    #[serde(default)]
+    pub name: String,
+    /// Side view or plan view.
+    #[serde(default)]
+    pub view: View,
+    /// Gravity, wind, temperature.
+    #[serde(default)]
+    pub environment: Environment,
+    /// The cables; at least one.
+    pub cables: Vec<Cable>,
+    /// Terrain, beams, posts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub obstacles: Vec<Obstacle>,
+    /// Point loads on cables.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub loads: Vec<Load>,
+    /// The tracked vehicle, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub robot: Option<Robot>,
+}
+
+impl Scene {
+    /// Returns how the robot stands at the start: on the ground in a side view, as it was put where
+    /// there is none and in a plan view.
+    #[must_use]
+    pub fn robot_pose(&self) -> Option<Pose> {
+        let robot = self.robot.as_ref()?;
+        let as_put = Pose { at_m: robot.at_m, pitch: 0.0, heading: robot.heading };
+        let preset = robot_preset(&robot.preset)?;
+        match self.view {
+            View::Plan => Some(as_put),
+            View::Elevation => Some(robot.pose_on(&Ground::of(self), preset, robot.at_m[0]).unwrap_or(as_put)),
+        }
+    }
+
+    /// Returns where a cable hangs on the robot at the start, m.
+    #[must_use]
+    pub fn hitch_m(&self) -> Option<Point> {
+        Some(self.robot_pose()?.hitch_m(robot_preset(&self.robot.as_ref()?.preset)?))
+    }
+}
+
+impl Ground {
+    /// Of a scene.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        Self::of_obstacles(&scene.obstacles)
+    }
+}

@@ -1,0 +1,157 @@
+//! A flexible cable pulls along its way, with the force in it as its tension, and its way is its
+//! material.
+
+use super::cable::{CheckedBar, CheckedCable};
+use super::surroundings::{Neighbours, distance};
+use super::tolerance::{
+    BALANCE_FRACTION, COMPRESSION, CONTACT_SHIFT_DIAMETERS, FOLD_TURN, LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE,
+    REPORTED_BALANCE, TURN,
+};
+use crate::math::{Vec2, larger, smaller};
+use crate::verification::{Law, Verification};
+
+/// Difference of a piece's way from what it should be, its tolerance, and the material beyond its
+/// way, m.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lengths {
+    pub value: f64,
+    pub limit: f64,
+    pub folded: f64,
+}
+
+/// The laws of a flexible cable from node to node: its tension is the force in it, it pulls
+/// along its way, and its way is its material.
+pub(super) fn check_flexible(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours) {
+    [Law::Length, Law::Tension, Law::Compression].into_iter().for_each(|law| found.ask(law));
+    let mut before = None;
+    for bar in checked.bars() {
+        check_tension(checked, found, before, &bar);
+        check_compression(checked, found, &bar);
+        check_length(checked, found, near, &bar);
+        before = Some(bar);
+    }
+    if let Some(bar) = before {
+        let (k, from, forces) = (bar.k + 1, bar.to, [bar.forces[1]; 2]);
+        check_tension(checked, found, before, &CheckedBar { k, from, forces, length: 0.0, way: Vec2::zeros(), ..bar });
+    }
+}
+
+/// The tension of a flexible cable is the size of the force in it: at the node between two bars
+/// one of those between just before and just beyond it.
+fn check_tension(
+    checked: &CheckedCable<'_>,
+    found: &mut Verification,
+    before: Option<CheckedBar<'_>>,
+    bar: &CheckedBar<'_>,
+) {
+    let tension = bar.from.tension_n;
+    let limit = REPORTED_BALANCE * checked.scale;
+    // Most nodes have it from the bar that begins there.
+    if (tension - bar.forces[0]).abs() <= limit {
+        return;
+    }
+    // `fem` reads it off the middles of the bars beside a node: half of their weight, or of the
+    // floor's friction on them, is in between.
+    let beside = bar.length + before.map_or(0.0, |b| b.length);
+    let limit = limit + LUMPED_WEIGHT_TURN * checked.spread_load() * beside;
+    let after = bar.from.force();
+    let before = before.map_or(after, |_| checked.force_before(bar.k));
+    let most = larger(before.norm(), bar.forces[0]);
+    let least = distance(before, after, Vec2::zeros(), Vec2::zeros());
+    let value = larger(tension - most, least - tension);
+    if !(value <= limit) {
+        found.report(checked.finding(Law::Tension, bar.k, value, limit));
+    }
+}
+
+/// A flexible cable pulls along its way.
+fn check_compression(checked: &CheckedCable<'_>, found: &mut Verification, bar: &CheckedBar<'_>) {
+    // Nodes of one material point have no way between them.
+    if bar.length <= MATERIAL_TOLERANCE * checked.cable.length_m {
+        return;
+    }
+    let pulls = checked.forces_at_end(bar).map(|end| (bar.from.force() + end).dot(&bar.way));
+    let most = if pulls[0] >= 0.0 { pulls[0] } else { larger(pulls[0], pulls[1]) };
+    let least = smaller(bar.from.tension_n, bar.to.tension_n);
+    if most >= 0.0 && least >= 0.0 {
+        return;
+    }
+    let pushes = if most < 0.0 { -0.5 * most / bar.way.norm() } else { 0.0 };
+    let (value, limit) = (larger(pushes, -least), COMPRESSION * checked.scale);
+    if !(value <= limit) {
+        found.report(checked.finding(Law::Compression, bar.k, value, limit));
+    }
+}
+
+/// The way of a bar is what its material and force make of it.
+fn check_length(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours, bar: &CheckedBar<'_>) {
+    let touches = checked.touches(near, bar.k);
+    let [spread, at_end] = checked.forces_at_end(bar);
+    let spread = strained(checked, bar, spread, bar.forces[1], touches);
+    if spread.is_some_and(|(off, limit)| off.norm_squared() <= limit * limit) {
+        return;
+    }
+    let lengths = |strained: Option<(Vec2, f64)>, q: f64| match strained {
+        Some((off, limit)) => Lengths { value: off.norm(), limit, folded: 0.0 },
+        None => folded(checked, bar, q, touches),
+    };
+    let spread = lengths(spread, bar.forces[1]);
+    if spread.value <= spread.limit && spread.folded == 0.0 {
+        return;
+    }
+    let at_end = lengths(strained(checked, bar, at_end, at_end.norm(), touches), at_end.norm());
+    let off = |l: &Lengths| l.value / l.limit;
+    report_length(checked, found, bar, if off(&at_end) < off(&spread) { at_end } else { spread });
+}
+
+pub(super) fn report_length(
+    checked: &CheckedCable<'_>,
+    found: &mut Verification,
+    bar: &CheckedBar<'_>,
+    lengths: Lengths,
+) {
+    found.folded_m += lengths.folded;
+    if !(lengths.value <= lengths.limit) {
+        found.report(checked.finding(Law::Length, bar.k, lengths.value, lengths.limit));
+    }
+}
+
+/// The most (m) by which a way may be from what it should be by rounding, and beside what
+/// touches.
+fn length_slack(checked: &CheckedCable<'_>, material: f64, touches: bool) -> f64 {
+    let aside = if touches { CONTACT_SHIFT_DIAMETERS * checked.cable.diameter_m } else { 0.0 };
+    checked.length_rounding(material) + aside
+}
+
+/// Returns how far the way of a bar of a flexible cable, whose internal force is `end` (N) of
+/// size `q` (N) at its end, is from what it should be, and how far it may, m; None where the
+/// force has no direction.
+#[inline]
+fn strained(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, end: Vec2, q: f64, touches: bool) -> Option<(Vec2, f64)> {
+    let (compliance, start, p) = (1.0 / checked.cable.axial_stiffness_n, bar.from.force(), bar.forces[0]);
+    let (least, most) = if p < q { (p, q) } else { (q, p) };
+    let turn = (end - start).norm_squared() / (least * least);
+    // A force no greater than what is let pass unbalanced has no direction, and may be none.
+    if !(turn < FOLD_TURN * FOLD_TURN && least > BALANCE_FRACTION * checked.scale) {
+        return None;
+    }
+    // Simpson's rule for ∫ F/|F| (1 + |F|/EA) ds with F linear in s.
+    let middle = (start + end) * 0.5;
+    let rates = start * (1.0 / p + compliance)
+        + middle * (4.0 * (1.0 / middle.norm() + compliance))
+        + end * (1.0 / q + compliance);
+    let material = checked.thermal * bar.length;
+    // Weight that a bar carries beyond its straight part turns it by as much.
+    let lumped = if touches { LUMPED_WEIGHT_TURN * checked.weight_beside(bar.k) / most } else { 0.0 };
+    let limit = length_slack(checked, material, touches) + (TURN * turn + lumped) * material;
+    Some((bar.way - rates * (material / 6.0), limit))
+}
+
+/// A bar whose force, of size `q` (N) at its end, has no direction: it is no longer than its
+/// material.
+fn folded(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, q: f64, touches: bool) -> Lengths {
+    let material = checked.thermal * bar.length;
+    let stretched = material * (1.0 + larger(bar.forces[0], q) / checked.cable.axial_stiffness_n);
+    let (way, limit) = (bar.way.norm(), length_slack(checked, material, touches));
+    Lengths { value: way - stretched, limit, folded: larger(stretched - way, 0.0) }
+}
