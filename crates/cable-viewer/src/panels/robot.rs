@@ -19,8 +19,9 @@ use crate::widgets::{field, readout};
 
 /// Width of a number, points: “12.34 m/s” fits.
 const WIDTH: f32 = 72.0;
-/// Help of the button that stops the robot. A lever of a hydraulic travel drive is eased back within
-/// about a second, and the brake holds once the robot stands; an emergency stop is not modelled.
+/// Help of the button that stops the robot. A lever of a hydraulic travel drive is eased back
+/// within about a second, and the brake holds once the robot stands; an emergency stop is not
+/// modelled.
 const STOP_HELP: &str = "Brakes as a lever that is eased back: at most 1 m/s², without a jerk. From 0.5 m/s it stands after 1 s \
                          and 0.25 m. An emergency stop is sharper, and is not modelled";
 /// Room for “1  To”, “at” and the button of a leg with the gaps between, points.

@@ -179,15 +179,16 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     // The name only where there is a choice.
     let of = if answer.cables.len() > 1 { format!(" of {}", warning.cable) } else { String::new() };
     let figures = figures(warning);
-    let told = figures.as_ref().map_or_else(String::new, |f| format!(": {}", f.words()));
+    let told = figures.as_ref().map_or_else(String::new, |f| format!(": {}", f.words));
     let along = along.replace(' ', "\u{a0}");
     let whole = format!("{title} at {along}{of}{told}{since}");
     Entry {
         severity,
         kind: format!("{title} {}", warning.cable),
         parts: Some([
-            title.to_owned(),
-            format!("{}at {along}{of}{since}", figures.map_or_else(String::new, |f| f.short() + " ")),
+            // The long name leaves no room for the limit.
+            if warning.kind == WarningKind::ServiceTension { "Above service" } else { title }.to_owned(),
+            format!("{}at {along}{of}{since}", figures.map_or_else(String::new, |f| f.short + " ")),
         ]),
         title: whole,
         text: sentence(warning),
@@ -197,60 +198,48 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     }
 }
 
-/// A value and the limit that it is beyond, as texts with units.
-#[derive(Debug)]
+/// What a warning's figures are, in words and as short as they can be: a line of the panel has room
+/// for a value, its limit and the place.
 struct Figures {
-    value: String,
-    /// What the limit is called, the sign between both in a short line, and the limit.
-    limit: Option<[String; 3]>,
+    words: String,
+    short: String,
 }
 
 impl Figures {
-    fn bare(value: String) -> Option<Self> {
-        Some(Self { value, limit: None })
+    fn bare(value: String) -> Self {
+        Self { words: value.clone(), short: value }
     }
 
-    fn above(value: String, limit: String) -> Option<Self> {
-        Some(Self { value, limit: Some(["limit".to_owned(), ">".to_owned(), limit]) })
+    fn above(value: &str, limit: &str) -> Self {
+        Self { words: format!("{value}, limit {limit}"), short: format!("{value} > {limit}") }
     }
 
-    fn below(value: String, limit: String) -> Option<Self> {
-        Some(Self { value, limit: Some(["min".to_owned(), "<".to_owned(), limit]) })
-    }
-
-    fn words(&self) -> String {
-        let Self { value, limit } = self;
-        limit.as_ref().map_or_else(|| value.clone(), |[word, _, limit]| format!("{value}, {word} {limit}"))
-    }
-
-    /// As short as it can be: the panel has room for a value, its limit and the place.
-    fn short(&self) -> String {
-        let Self { value, limit } = self;
-        limit.as_ref().map_or_else(|| value.clone(), |[_, sign, limit]| format!("{value} {sign} {limit}"))
+    fn below(value: &str, limit: &str) -> Self {
+        Self { words: format!("{value}, min {limit}"), short: format!("{value} < {limit}") }
     }
 }
 
 /// The value and its limit, in the warning's own unit.
 fn figures(warning: &Warning) -> Option<Figures> {
     let Warning { value, limit, .. } = *warning;
-    match warning.kind {
-        WarningKind::ServiceTension | WarningKind::BreakingTension => {
-            Figures::above(format::force(value), format::force(limit))
-        }
-        WarningKind::MayBreak => Figures::bare(format!("{}, limit {}", format::force(value), format::force(limit))),
-        WarningKind::Broken => Figures::bare(format!("breaking tension {}", format::force(limit))),
-        WarningKind::BendRadius | WarningKind::Kink => Figures::below(format::length(value), format::length(limit)),
+    let [force, most] = [value, limit].map(format::force);
+    Some(match warning.kind {
+        WarningKind::ServiceTension | WarningKind::BreakingTension => Figures::above(&force, &most),
+        WarningKind::MayBreak => Figures::bare(format!("{force}, limit {most}")),
+        WarningKind::Broken => Figures { words: format!("breaking tension {most}"), short: format!("limit {most}") },
+        WarningKind::BendRadius | WarningKind::Kink => Figures::below(&format::length(value), &format::length(limit)),
         WarningKind::Slack => Figures::bare(format!("{} of cable", format::length(value))),
         WarningKind::SidewallPressure => {
             let per_metre = |v| unit::Unit { decimals: Some(0), ..unit::Unit::N_PER_M }.text(v).replace(' ', "\u{a0}");
-            Figures::above(per_metre(value), per_metre(limit))
+            Figures::above(&per_metre(value), &per_metre(limit))
         }
         WarningKind::Wrapped => Figures::bare(format!("{value:.2} turns")),
         WarningKind::Curl => Figures::bare(format!("{value:.0}°")),
         WarningKind::Snag => Figures::bare(format!("tension ratio {value:.2}")),
         WarningKind::EnergyGrows => Figures::bare(format!("{} too much", format::energy(value))),
         WarningKind::Accuracy => {
-            Figures::bare(format!("{} estimated, target {}", format::percent(value), format::percent(limit)))
+            let [value, limit] = [value, limit].map(format::percent);
+            Figures { words: format!("{value} estimated, target {limit}"), short: format!("{value} > {limit}") }
         }
         WarningKind::Loop
         | WarningKind::InitialPenetration
@@ -258,8 +247,8 @@ fn figures(warning: &Warning) -> Option<Figures> {
         | WarningKind::SupportHeld
         | WarningKind::ClearOfWheel
         | WarningKind::ThroughRobot
-        | WarningKind::Stabilised => None,
-    }
+        | WarningKind::Stabilised => return None,
+    })
 }
 
 fn position(answer: &Solution, warning: &Warning) -> Option<[f64; 2]> {
