@@ -53,8 +53,11 @@ struct Entry {
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let entries = entries(state);
-    // Whether the rest is the only one is not known yet.
-    let seeking = state.is_current() && state.live.snapshot.seeks_histories;
+    // Whether the rest is the only one is not known yet; a cable that touches nothing remembers
+    // none.
+    let touches = |answer: &Solution| answer.cables.iter().any(|c| !c.contacts.is_empty());
+    let answer = state.live.snapshot.solution.as_deref().filter(|_| state.live.snapshot.seeks_histories);
+    let seeking = state.is_current() && answer.is_some_and(touches);
     let seeking_row = |ui: &mut Ui| {
         ui.weak("Looking for other resting places…")
             .on_hover_text("The figures hold for the shape shown; friction may allow others, which are being sought");

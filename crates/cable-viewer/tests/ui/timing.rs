@@ -3,6 +3,7 @@
 //!
 //! The figures: `cargo test --workspace --test ui timed -- --nocapture --test-threads 1`.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use cable_core::math::Point;
@@ -257,18 +258,22 @@ fn a_rest_is_shown_before_other_histories_of_it_are_sought() {
 }
 
 /// While it is being sought whether the rest is the only one, the window neither says that there
-/// are no warnings nor that there are others.
+/// are no warnings nor that there are others. A cable that touches nothing has no other history.
 #[test]
 fn while_other_histories_are_sought_the_window_says_so() {
-    let mut harness = threaded(catalog::hanging_span(), 60);
-    let said = |h: &Harness<'_, ViewerApp>| {
-        ["Looking for other resting places…", "No warnings"].map(|text| h.query_by_label(text).is_some())
+    let said = |scene: Scene, seeks: bool| {
+        let mut harness = threaded(scene, 60);
+        let snapshot = &mut harness.state_mut().state.live.snapshot;
+        snapshot.seeks_histories = seeks;
+        let mut solution = (**snapshot.solution.as_ref().unwrap()).clone();
+        solution.warnings.clear();
+        snapshot.solution = Some(Arc::new(solution));
+        harness.step();
+        ["Looking for other resting places…", "No warnings"].map(|text| harness.query_by_label(text).is_some())
     };
-    harness.step();
-    assert_eq!(said(&harness), [false, true]);
-    harness.state_mut().state.live.snapshot.seeks_histories = true;
-    harness.step();
-    assert_eq!(said(&harness), [true, false]);
+    assert_eq!(said(catalog::over_beam(), true), [true, false]);
+    assert_eq!(said(catalog::over_beam(), false), [false, true]);
+    assert_eq!(said(catalog::hanging_span(), true), [false, true]);
 }
 
 fn undimmed(what: &str, scene: Scene, item: Item, at: Point) {
