@@ -1,8 +1,8 @@
 //! The open dialog is drawn over everything else.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use egui::{Context, Id, Modal, Ui};
+use egui::{Button, Context, Id, Modal, Ui};
 
 use crate::app::path_picker::{self, Purpose};
 use crate::command::{Command, FileCommand};
@@ -11,10 +11,9 @@ use crate::state::dialog::{Dialog, Replacement};
 
 /// Draws the dialog, if one is open.
 pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
-    let panels = state.ui.panels;
-    let Some(dialog) = &mut state.ui.dialog else { return };
-    let name = state.document.scene.name.clone();
-    let recent = state.ui.recent.clone();
+    // It is put back below: meanwhile the state can be read.
+    let Some(mut open) = state.ui.dialog.take() else { return };
+    let dialog = &mut open;
     let response = Modal::new(Id::unique("dialog")).show(ctx, |ui| {
         ui.set_max_width(460.0);
         match dialog {
@@ -22,8 +21,11 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
             Dialog::Open { path } => ask_path(ui, "Open a scene", path, Purpose::Open, commands),
             Dialog::SaveAs { path } => ask_path(ui, "Save the scene as", path, Purpose::Save, commands),
             Dialog::Export { path, sheet } => {
+                ui.heading("Export the part of the graph in view");
+                ui.add_space(6.0);
+                format(ui, path);
                 let note = "CSV has every sample in view in SI units; SVG and PNG are drawings of it";
-                if let Some(path) = ask(ui, ("Export what is in view", "Save"), ("Ends in .csv, .svg or .png", note), path, commands) {
+                if let Some(path) = ask(ui, ("", "Save"), ("Ends in .csv, .svg or .png", note), path, commands) {
                     commands.push(Command::File(FileCommand::Export(path, sheet.clone())));
                 }
             }
@@ -42,15 +44,16 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                 }
             }
             Dialog::Feedback { answers, path } => crate::app::feedback_form::ui(ui, answers, path, commands),
-            Dialog::StartHere => crate::app::start_here::ui(ui, &recent, commands),
+            Dialog::StartHere => crate::app::start_here::ui(ui, &state.ui.recent, commands),
             Dialog::About => about(ui, commands),
-            Dialog::Palette { text } => crate::app::palette::ui(ui, text, panels, commands),
+            Dialog::Palette { text } => crate::app::palette::ui(ui, text, state, commands),
             Dialog::ImportMap { path, text, unit_m } => import_map(ui, [path, text, unit_m], commands),
-            Dialog::Unsaved { then } => unsaved(ui, &name, then, commands),
+            Dialog::Unsaved { then } => unsaved(ui, &state.document.scene.name, then, commands),
             Dialog::Recover { scene } => recover(ui, scene, commands),
             Dialog::Help => help(ui, commands),
         }
     });
+    state.ui.dialog = Some(open);
     if response.should_close() {
         commands.push(close());
     }
@@ -77,6 +80,25 @@ fn typed_at_once(ui: &Ui, field: &egui::Response) {
     }
 }
 
+/// The format of an exported graph, which is the ending of its path.
+fn format(ui: &mut Ui, path: &mut String) {
+    ui.horizontal(|ui| {
+        ui.label("Format");
+        for (name, ending, help) in [
+            ("CSV", "csv", "A table of numbers"),
+            ("SVG", "svg", "A drawing that stays sharp at any size"),
+            ("PNG", "png", "A picture"),
+        ] {
+            let typed = Path::new(path.trim());
+            let on = typed.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
+            let named = typed.file_stem().is_some();
+            if ui.add_enabled(named, Button::selectable(on, name)).on_hover_text(help).clicked() {
+                *path = typed.with_extension(ending).display().to_string();
+            }
+        }
+    });
+}
+
 /// A path to type; some once it is entered.
 fn ask(
     ui: &mut Ui,
@@ -85,8 +107,10 @@ fn ask(
     path: &mut String,
     commands: &mut Vec<Command>,
 ) -> Option<PathBuf> {
-    ui.heading(title);
-    ui.add_space(6.0);
+    if !title.is_empty() {
+        ui.heading(title);
+        ui.add_space(6.0);
+    }
     let mut done = false;
     ui.horizontal(|ui| {
         let label = ui.label("Path");

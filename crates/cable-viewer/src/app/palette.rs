@@ -6,13 +6,15 @@ use egui::{Key, ScrollArea, TextEdit, Ui};
 
 use crate::app::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
+use crate::panels::scene::{loads, obstacles, supports};
+use crate::plot::{along, time};
 use crate::render::colour::{ColourScale, Quantity};
 use crate::state::dialog::Dialog;
-use crate::state::{Item, OpenPanels};
+use crate::state::{AppState, Item, OpenPanels};
 use crate::units::system::System;
 
 /// Other words that people look for, and a part of the name that they mean.
-const SYNONYMS: [(&str, &str); 24] = [
+const SYNONYMS: [(&str, &str); 26] = [
     ("start here", "learn guide tutorial welcome introduction"),
     ("pin this result", "hold keep compare reference remember"),
     ("pin a recorded run", "hold compare"),
@@ -20,6 +22,8 @@ const SYNONYMS: [(&str, &str); 24] = [
     ("unpin all", "let go clear compare"),
     ("save run", "export record csv table"),
     ("save as", "export write"),
+    ("export the graph", "save plot chart picture image csv svg png"),
+    ("add obstacle", "insert create ground terrain pipe wall"),
     ("open a file", "load read"),
     ("import map", "terrain ground svg csv"),
     ("fit scene", "zoom all view extents home"),
@@ -40,7 +44,8 @@ const SYNONYMS: [(&str, &str); 24] = [
 ];
 
 /// Everything, with the words it is found by.
-fn entries(panels: OpenPanels) -> Vec<(String, Command)> {
+fn entries(state: &AppState) -> Vec<(String, Command)> {
+    let panels = state.ui.panels;
     let show = |panels| Command::View(ViewCommand::ShowPanels(panels));
     let file = |dialog| Command::File(FileCommand::SetDialog(Some(dialog)));
     let select = |item| Command::View(ViewCommand::Select(Some(item)));
@@ -101,6 +106,17 @@ fn entries(panels: OpenPanels) -> Vec<(String, Command)> {
     ];
     let colour = |quantity| Command::View(ViewCommand::SetColour(ColourScale { quantity, ..ColourScale::default() }));
     let mut all: Vec<(String, Command)> = fixed.map(|(name, command)| (name.to_owned(), command)).into();
+    let graphs = [time::TITLE, along::TITLE].map(|title| {
+        let name = format!("Export the graph {}…", title.to_lowercase());
+        (name, Command::View(ViewCommand::ExportGraph(title)))
+    });
+    all.extend(graphs);
+    let added =
+        [("Add waypoint", supports::new_waypoint(state, state.current_cable())), ("Add load", loads::new_load(state))];
+    all.extend(added.into_iter().filter_map(|(name, command)| Some((name.to_owned(), Command::Scene(command?)))));
+    let obstacles = obstacles::new_obstacles(state)
+        .map(|(name, _, command)| (format!("Add obstacle: {}", name.to_lowercase()), Command::Scene(command)));
+    all.extend(obstacles);
     let models = [Model::Auto].into_iter().chain(Model::SOLVERS);
     all.extend(models.map(|m| (format!("Solve with {m}"), Command::SetModel(m))));
     all.extend(Quantity::ALL.map(|q| (format!("Colour by {}", q.name().to_lowercase()), colour(q))));
@@ -114,9 +130,9 @@ fn entries(panels: OpenPanels) -> Vec<(String, Command)> {
 }
 
 /// Those that have every word of a text in their name.
-fn found(text: &str, panels: OpenPanels) -> Vec<(String, Command)> {
+fn found(text: &str, state: &AppState) -> Vec<(String, Command)> {
     let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
-    let mut all = entries(panels);
+    let mut all = entries(state);
     let matches = |name: &str, also: bool| {
         let mut text = name.to_lowercase();
         if also {
@@ -132,7 +148,7 @@ fn found(text: &str, panels: OpenPanels) -> Vec<(String, Command)> {
 }
 
 /// Draws it; Enter does the first found.
-pub fn ui(ui: &mut Ui, text: &mut String, panels: OpenPanels, commands: &mut Vec<Command>) {
+pub fn ui(ui: &mut Ui, text: &mut String, state: &AppState, commands: &mut Vec<Command>) {
     let field = TextEdit::singleline(text).hint_text("Type a command…").desired_width(f32::INFINITY);
     let field = ui.add(field);
     crate::widgets::field::name(&field, "Command");
@@ -140,7 +156,7 @@ pub fn ui(ui: &mut Ui, text: &mut String, panels: OpenPanels, commands: &mut Vec
     if !entered {
         field.request_focus();
     }
-    let found = found(text, panels);
+    let found = found(text, state);
     let mut chosen = found.first().filter(|_| entered).map(|(_, command)| command.clone());
     ScrollArea::vertical().max_height(320.0).min_scrolled_height(320.0).auto_shrink([false, true]).show(ui, |ui| {
         for (k, (name, command)) in found.iter().enumerate() {
@@ -165,13 +181,16 @@ mod tests {
 
     #[test]
     fn words_are_found_in_any_order_and_case() {
-        let found = |text: &str| found(text, OpenPanels::default());
+        let state = AppState::new(catalog::tank(), None);
+        let found = |text: &str| found(text, &state);
         assert_eq!(found("THEME dark")[0].0, "Dark theme");
         assert!(found("tank out")[0].0.starts_with("Open scene: Tank"));
         assert!(found("no such thing").is_empty());
-        assert_eq!(found("").len(), entries(OpenPanels::default()).len());
+        assert_eq!(found("").len(), entries(&state).len());
         assert!(found("comp").iter().any(|(name, _)| name == "Compare all models"));
         assert!(found("export").iter().any(|(name, _)| name == "Save run…"));
+        assert!(found("export")[0].0.starts_with("Export the graph"));
+        assert!(found("add").iter().any(|(name, _)| name == "Add obstacle: beam"));
         assert_eq!(found("hold this")[0].0, "Pin this result");
         assert_eq!(found("hold")[0].0, "Pin a recorded run…");
     }

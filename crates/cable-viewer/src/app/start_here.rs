@@ -14,17 +14,17 @@ const MAX_RECENT: usize = 4;
 /// Draws it.
 pub fn ui(ui: &mut Ui, recent: &[PathBuf], commands: &mut Vec<Command>) {
     ui.heading("Start here");
-    ui.label("Each guide opens a scene, points at what it speaks of, and goes on once it was done.");
+    ui.label("Each guide opens a scene, points at what it speaks of, and moves on when you have done it.");
     ui.add_space(6.0);
     for (k, guide) in TUTORIALS.iter().enumerate() {
-        ui.horizontal(|ui| {
+        ui.horizontal_top(|ui| {
             let title = format!("{}. {}", k + 1, guide.title);
             let button = egui::Button::new(title).min_size(egui::vec2(160.0, 0.0));
             if ui.add(button).on_hover_text("Opens its scene; asks first if this one is not saved").clicked() {
                 commands.push(Command::File(tutorials::open(k)));
             }
             let first = guide.steps.first().map_or("", |s| s.text);
-            ui.add(egui::Label::new(egui::RichText::new(first).weak()).truncate()).on_hover_text(first);
+            ui.add(egui::Label::new(egui::RichText::new(first).weak()).wrap());
         });
     }
     ui.add_space(8.0);

@@ -88,6 +88,11 @@ pub fn apply(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
     carry_out(state, command, effects);
 }
 
+/// Closes the dialog and says what was written.
+fn written(state: &mut AppState, path: PathBuf) {
+    (state.ui.dialog, state.ui.written) = (None, Some(path));
+}
+
 fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
     match command {
         FileCommand::New => open(state, new_scene(), None, effects),
@@ -112,7 +117,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
         },
         FileCommand::SaveAs(path) => save(state, &path),
         FileCommand::Export(path, sheet) => match graph_file::save(&path, &sheet) {
-            Ok(()) => state.ui.dialog = None,
+            Ok(()) => written(state, path),
             Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
         },
         FileCommand::ImportMap { path, text, unit_m } => {
@@ -130,7 +135,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
         },
         FileCommand::SaveRun(path) => match save_run(state, &path) {
-            Ok(()) => state.ui.dialog = None,
+            Ok(()) => written(state, path),
             Err(text) => complain(state, &format!("The run was not written to “{}”", path.display()), text),
         },
         FileCommand::OpenRun(path) => match read_run(&path) {
@@ -146,6 +151,9 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
         },
         FileCommand::SetDialog(dialog) => {
+            if dialog.is_some() {
+                (state.ui.written, state.ui.graph_to_export) = (None, None);
+            }
             let message = matches!(state.ui.dialog, Some(Dialog::Message { .. }));
             let then = state.ui.after_message.take().filter(|_| message && dialog.is_none());
             state.ui.dialog = dialog.or(then);
@@ -246,7 +254,7 @@ fn hold(state: &mut AppState, path: &Path, opened: SavedRun) {
     if let (Some(solution), true) =
         (opened.answers.into_iter().next_back(), state.analysis.references.len() < Reference::MAX_COUNT)
     {
-        let name = format!("{}, {}, {:.2} s", opened.scene.name, path.display(), solution.time_s);
+        let name = format!("{}, {}, {:.2}\u{a0}s", opened.scene.name, path.display(), solution.time_s);
         let (scene, solution) = (Arc::new(opened.scene), Arc::new(solution));
         state.analysis.references.push(Reference { name, scene, solution, wall_s: f64::NAN, run });
     }

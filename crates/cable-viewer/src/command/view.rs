@@ -52,6 +52,8 @@ pub enum ViewCommand {
     ZoomOn(Point),
     /// Opens and folds parts of the window.
     ShowPanels(OpenPanels),
+    /// Asks where to export the graph of this title to.
+    ExportGraph(&'static str),
     /// How the cable is coloured.
     SetColour(ColourScale),
     /// What is drawn.
@@ -143,6 +145,10 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             }
         }
         ViewCommand::ShowPanels(panels) => state.ui.panels = panels,
+        ViewCommand::ExportGraph(title) => {
+            state.ui.panels.graphs = true;
+            state.ui.graph_to_export = Some(title);
+        }
         ViewCommand::SetColour(colour) => state.view.colour = colour,
         ViewCommand::SetLayers(layers) => state.view.layers = layers,
         ViewCommand::SetTheme(theme) => state.view.theme = theme,
@@ -194,7 +200,8 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 (state.live.snapshot.solution.clone(), state.live.snapshot.scene.clone())
                 && state.analysis.references.len() < Reference::MAX_COUNT
             {
-                let name = format!("{}, {} model, {:.2} s", scene.name, labels::model(solution.model), solution.time_s);
+                let name =
+                    format!("{}, {} model, {:.2}\u{a0}s", scene.name, labels::model(solution.model), solution.time_s);
                 let recording = &state.live.recording;
                 let run = Run::of(state.live.history.samples.iter(), recording.answers(), recording.events().len());
                 let (run, wall_s) = (run.map(Arc::new), state.live.snapshot.solve_wall_s);

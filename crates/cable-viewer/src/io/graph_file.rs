@@ -30,7 +30,12 @@ pub fn csv(sheet: &Sheet) -> String {
     let name = |text: &str| text.to_lowercase().replace([' ', ',', '"', '\n', '\r'], "_");
     let mut out = sheet.across[1].clone();
     for line in &sheet.lines {
-        let _ = write!(out, ",{}_{}", name(&line.name), sheet.up[1]);
+        let (line, quantity) = (name(&line.name), &sheet.up[1]);
+        // A line that is called as the quantity says nothing beside it.
+        let _ = match quantity.strip_prefix(&line) {
+            Some(unit) if unit.starts_with('_') => write!(out, ",{quantity}"),
+            _ => write!(out, ",{line}_{quantity}"),
+        };
     }
     out.push('\n');
     // Lines of a graph have the same places; one that has fewer leaves its cells empty.
@@ -54,6 +59,14 @@ pub fn csv(sheet: &Sheet) -> String {
 mod tests {
     use super::*;
     use crate::io::graph_sheet::sample as sheet;
+
+    #[test]
+    fn a_line_named_as_its_quantity_is_named_once() {
+        let mut sheet = sheet();
+        sheet.lines.truncate(1);
+        sheet.lines[0].name = "Tension".to_owned();
+        assert_eq!(csv(&sheet).lines().next(), Some("time_s,tension_n"));
+    }
 
     #[test]
     fn the_table_has_what_is_in_view_bit_for_bit() {

@@ -119,6 +119,13 @@ fn status(ui: &mut Ui, state: &AppState) {
             ui.label(solved);
         }
     }
+    if let Some(path) = &state.ui.written {
+        ui.separator();
+        let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+        let whole = std::path::absolute(path).unwrap_or_else(|_| path.clone());
+        let label = ui.add(egui::Label::new(format!("Saved {name}")).truncate());
+        label.on_hover_text(whole.display().to_string());
+    }
     if let Some(fault) = &state.ui.autosave_fault {
         ui.separator();
         ui.colored_label(ui.visuals().warn_fg_color, "changes are not kept for recovery").on_hover_text(fault);

@@ -33,6 +33,7 @@ const WINDOWS: [(Option<f64>, &str); 4] =
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let id = Id::unique("plot view");
     let mut view: GraphView = ui.data(|d| d.get_temp(id)).unwrap_or_default();
+    view.export = state.ui.graph_to_export;
     let restart = if state.live.earlier_run.is_some() { UNDO_RESTART } else { 0.0 };
     if ui.available_width() >= ONE_ROW + restart {
         ui.horizontal(|ui| {

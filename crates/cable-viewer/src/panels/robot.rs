@@ -19,6 +19,11 @@ use crate::widgets::{field, readout};
 
 /// Width of a number, points: “12.34 m/s” fits.
 const WIDTH: f32 = 72.0;
+/// Help of the button that stops the robot. A lever of a hydraulic travel drive is eased back
+/// within about a second, and the brake holds once the robot stands; an emergency stop is not
+/// modelled.
+const STOP_HELP: &str = "Brakes as a lever that is eased back: at most 1 m/s², without a jerk. From 0.5 m/s it stands after 1 s \
+                         and 0.25 m. An emergency stop is sharper, and is not modelled";
 /// Room for “1  To”, “at” and the button of a leg with the gaps between, points.
 const LEG_WORDS: f32 = 74.0;
 /// Speed of a new leg, m/s, and its wait, s.
@@ -66,7 +71,7 @@ fn by_hand(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 Some(-speed),
                 order.is_some_and(|v| v < 0.0),
             ),
-            ("Stop", "Brakes", Some(0.0), order == Some(0.0)),
+            ("Stop", STOP_HELP, Some(0.0), order == Some(0.0)),
             (
                 "Drive right",
                 "Drives to the right until it is stopped (hold D)",

@@ -9,6 +9,7 @@ use egui::Ui;
 
 use crate::command::{Command, SceneCommand, ViewCommand};
 use crate::geometry::handles;
+use crate::geometry::supports::{is_broken, support_position};
 use crate::panels::readouts::DIMMED;
 use crate::panels::scene::{self, loads, obstacles, supports};
 use crate::panels::{cable, environment, robot, solver};
@@ -98,7 +99,7 @@ type Figure = (&'static str, String, &'static str);
 
 fn figures(state: &AppState, answer: &Solution, item: Item) -> Vec<Figure> {
     match item {
-        Item::Support { cable, support } => of_support(answer, cable, support),
+        Item::Support { cable, support } => of_support(state, answer, cable, support),
         Item::Obstacle(k) | Item::Corner { obstacle: k, .. } => {
             let name = state.document.scene.obstacles.get(k).map_or("", |o| o.name.as_str());
             of_obstacle(answer, name)
@@ -109,15 +110,24 @@ fn figures(state: &AppState, answer: &Solution, item: Item) -> Vec<Figure> {
     }
 }
 
-fn of_support(answer: &Solution, cable: usize, support: usize) -> Vec<Figure> {
+fn of_support(state: &AppState, answer: &Solution, cable: usize, support: usize) -> Vec<Figure> {
     let Some(s) = answer.cables.get(cable).and_then(|c| c.supports.get(support)) else { return Vec::new() };
+    // The answer leaves one that no piece hangs on where the run began.
+    let torn_off = is_broken(state, cable) && s.reaction_x_n == 0.0 && s.reaction_y_n == 0.0;
+    let now = [s.x_m, s.y_m];
+    let place = if torn_off { support_position(state, cable, support).unwrap_or(now) } else { now };
     let mut rows = vec![
         ("Force on it", format::force(s.reaction_x_n.hypot(s.reaction_y_n)), "Force of the cable on the support"),
         ("  to the right", format::force(s.reaction_x_n), "Its horizontal component"),
         ("  upwards", format::force(s.reaction_y_n), "Its vertical component"),
-        ("Place", format::position([s.x_m, s.y_m]), "Where it is now"),
-        ("On the cable", Unit::COORDINATE.text(s.arc_length_m), "Unstretched length from the start of the cable"),
+        ("Place", format::position(place), "Where it is now"),
     ];
+    if torn_off {
+        rows.push(("Holds", "nothing, torn off".to_owned(), "The cable broke away from it"));
+        return rows;
+    }
+    let help = "Unstretched length from the start of the cable";
+    rows.push(("On the cable", Unit::COORDINATE.text(s.arc_length_m), help));
     for (name, tension, help) in [
         ("Tension before", s.tension_before_n, "On the side of the start of the cable"),
         ("Tension after", s.tension_after_n, "On the side of the end of the cable"),

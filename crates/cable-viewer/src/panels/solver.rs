@@ -91,6 +91,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.label(format!("Solved with {}{why}", model_name(answer.model)));
         if let Some(next) = &answer.next_cheaper {
             ui.weak(format!("Next cheaper: {}", sentence(next)));
+        } else if state.live.snapshot.seeks_histories {
+            // The row keeps its place until it is known.
+            ui.weak("Next cheaper: …");
         }
     }
     if worker::engine::is_quasi_static(state.solver.model) {

@@ -53,9 +53,20 @@ struct Entry {
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let entries = entries(state);
+    // Whether the rest is the only one is not known yet; a cable that touches nothing remembers
+    // none.
+    let touches = |answer: &Solution| answer.cables.iter().any(|c| !c.contacts.is_empty());
+    let answer = state.live.snapshot.solution.as_deref().filter(|_| state.live.snapshot.seeks_histories);
+    let seeking = state.is_current() && answer.is_some_and(touches);
+    let seeking_row = |ui: &mut Ui| {
+        ui.weak("Looking for other resting places…")
+            .on_hover_text("The figures hold for the shape shown; friction may allow others, which are being sought");
+    };
     if entries.is_empty() {
         ui.horizontal(|ui| {
-            if state.is_current() {
+            if seeking {
+                seeking_row(ui);
+            } else if state.is_current() {
                 icon::sign(ui, Icon::Check, ui.visuals().text_color());
                 ui.weak("No warnings");
             } else {
@@ -73,6 +84,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         }
         if entries.len() > MAX_ROWS {
             ui.weak(format!("and {} more", entries.len() - MAX_ROWS));
+        }
+        if seeking {
+            seeking_row(ui);
         }
     });
 }
@@ -160,7 +174,7 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
         WarningKind::ThroughRobot => (Severity::Caution, "Lies through the robot"),
         WarningKind::Stabilised => (Severity::Caution, "Motion was stabilised"),
         WarningKind::EnergyGrows => (Severity::Stop, "Energy error"),
-        WarningKind::NotUnique => (Severity::Note, "Rest shape depends on how the cable was laid"),
+        WarningKind::NotUnique => (Severity::Note, "Rest shape is not unique"),
     };
     let index = state.document.scene.cables.iter().position(|c| c.name == warning.cable);
     let since = warning.since_s.map_or_else(String::new, |t| format!(", since {t:.2}\u{a0}s"));
@@ -168,15 +182,16 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     // The name only where there is a choice.
     let of = if answer.cables.len() > 1 { format!(" of {}", warning.cable) } else { String::new() };
     let figures = figures(warning);
-    let told = figures.as_ref().map_or_else(String::new, |f| format!(": {f}"));
+    let told = figures.as_ref().map_or_else(String::new, |f| format!(": {}", f.words));
     let along = along.replace(' ', "\u{a0}");
     let whole = format!("{title} at {along}{of}{told}{since}");
     Entry {
         severity,
         kind: format!("{title} {}", warning.cable),
         parts: Some([
-            title.to_owned(),
-            format!("{}at {along}{of}{since}", figures.map_or_else(String::new, |f| f + " ")),
+            // The long name leaves no room for the limit.
+            if warning.kind == WarningKind::ServiceTension { "Above service" } else { title }.to_owned(),
+            format!("{}at {along}{of}{since}", figures.map_or_else(String::new, |f| f.short + " ")),
         ]),
         title: whole,
         text: sentence(warning),
@@ -186,37 +201,57 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     }
 }
 
+/// What a warning's figures are, in words and as short as they can be: a line of the panel has room
+/// for a value, its limit and the place.
+struct Figures {
+    words: String,
+    short: String,
+}
+
+impl Figures {
+    fn bare(value: String) -> Self {
+        Self { words: value.clone(), short: value }
+    }
+
+    fn above(value: &str, limit: &str) -> Self {
+        Self { words: format!("{value}, limit {limit}"), short: format!("{value} > {limit}") }
+    }
+
+    fn below(value: &str, limit: &str) -> Self {
+        Self { words: format!("{value}, min {limit}"), short: format!("{value} < {limit}") }
+    }
+}
+
 /// The value and its limit, in the warning's own unit.
-fn figures(warning: &Warning) -> Option<String> {
+fn figures(warning: &Warning) -> Option<Figures> {
     let Warning { value, limit, .. } = *warning;
-    match warning.kind {
-        WarningKind::ServiceTension | WarningKind::BreakingTension | WarningKind::MayBreak => {
-            Some(format!("{}, limit {}", format::force(value), format::force(limit)))
-        }
-        WarningKind::Broken => Some(format!("breaking tension {}", format::force(limit))),
-        WarningKind::BendRadius | WarningKind::Kink => {
-            Some(format!("{}, min {}", format::length(value), format::length(limit)))
-        }
-        WarningKind::Slack => Some(format!("{} of cable", format::length(value))),
+    let [force, most] = [value, limit].map(format::force);
+    Some(match warning.kind {
+        WarningKind::ServiceTension | WarningKind::BreakingTension => Figures::above(&force, &most),
+        WarningKind::MayBreak => Figures::bare(format!("{force}, limit {most}")),
+        WarningKind::Broken => Figures { words: format!("breaking tension {most}"), short: format!("limit {most}") },
+        WarningKind::BendRadius | WarningKind::Kink => Figures::below(&format::length(value), &format::length(limit)),
+        WarningKind::Slack => Figures::bare(format!("{} of cable", format::length(value))),
         WarningKind::SidewallPressure => {
             let per_metre = |v| unit::Unit { decimals: Some(0), ..unit::Unit::N_PER_M }.text(v).replace(' ', "\u{a0}");
-            Some(format!("{}, limit {}", per_metre(value), per_metre(limit)))
+            Figures::above(&per_metre(value), &per_metre(limit))
         }
-        WarningKind::Wrapped => Some(format!("{value:.2} turns")),
-        WarningKind::Curl => Some(format!("{value:.0}°")),
-        WarningKind::Snag => Some(format!("tension ratio {value:.2}")),
-        WarningKind::EnergyGrows => Some(format!("{} too much", format::energy(value))),
-        WarningKind::Loop => None,
+        WarningKind::Wrapped => Figures::bare(format!("{value:.2} turns")),
+        WarningKind::Curl => Figures::bare(format!("{value:.0}°")),
+        WarningKind::Snag => Figures::bare(format!("tension ratio {value:.2}")),
+        WarningKind::EnergyGrows => Figures::bare(format!("{} too much", format::energy(value))),
         WarningKind::Accuracy => {
-            Some(format!("{} estimated, target {}", format::percent(value), format::percent(limit)))
+            let [value, limit] = [value, limit].map(format::percent);
+            Figures { words: format!("{value} estimated, target {limit}"), short: format!("{value} > {limit}") }
         }
-        WarningKind::InitialPenetration
+        WarningKind::Loop
+        | WarningKind::InitialPenetration
         | WarningKind::NotUnique
         | WarningKind::SupportHeld
         | WarningKind::ClearOfWheel
         | WarningKind::ThroughRobot
-        | WarningKind::Stabilised => None,
-    }
+        | WarningKind::Stabilised => return None,
+    })
 }
 
 fn position(answer: &Solution, warning: &Warning) -> Option<[f64; 2]> {

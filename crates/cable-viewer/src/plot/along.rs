@@ -10,6 +10,8 @@ use crate::record::measure::{Measure, per_newton, tension_limits};
 use crate::record::series::{Series, thin};
 use crate::units::unit::Unit;
 
+/// Its title.
+pub const TITLE: &str = "Along the cable";
 /// The group of graphs along the cable.
 pub const GROUP: &str = "along";
 
@@ -26,7 +28,7 @@ pub fn ui(
     let all = || solved.nodes.iter().map(|n| [n.arc_length_m, quantity.of(n)]);
     let line = |points| vec![Series { name: quantity.name().to_owned(), points, ..Series::default() }];
     let graph = Graph {
-        title: "Along the cable",
+        title: TITLE,
         group: GROUP,
         measure: Measure::Cable(quantity),
         across: ("Arc length", Unit::M),
@@ -40,6 +42,7 @@ pub fn ui(
             ribbon.iter().map(|b| [b.at, b.low_n * scale, b.high_n * scale]).collect()
         },
         mark: None,
+        export: view.export == Some(TITLE),
     };
     let mut touched = show(ui, &graph, &line(thin(all(), columns)));
     if let Some(sheet) = &mut touched.export {

@@ -80,11 +80,19 @@ pub struct GraphView {
     pub follow: bool,
     /// How much of the past is followed, s; None = all of it.
     pub window_s: Option<f64>,
+    /// The graph (by its title) whose export was asked for elsewhere than beside it.
+    pub export: Option<&'static str>,
 }
 
 impl Default for GraphView {
     fn default() -> Self {
-        Self { measure: Measure::Cable(Quantity::Tension), second: None, follow: true, window_s: Some(10.0) }
+        Self {
+            measure: Measure::Cable(Quantity::Tension),
+            second: None,
+            follow: true,
+            window_s: Some(10.0),
+            export: None,
+        }
     }
 }
 
@@ -113,6 +121,8 @@ pub struct Graph<'a> {
     pub ribbon: Vec<[f64; 3]>,
     /// A time to mark, where one is shown that is not the present.
     pub mark: Option<f64>,
+    /// Its export was asked for elsewhere than beside it.
+    pub export: bool,
 }
 
 /// What the user did to a graph.
@@ -182,7 +192,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         .allow_axis_zoom_drag(!follow)
         .x_grid_spacer(|input| grid_marks(input, columns))
         .y_grid_spacer(|input| grid_marks(input, rows))
-        .x_axis_formatter(|mark, shown| tick_with_unit(mark, shown, across_symbol))
+        .x_axis_formatter(|mark, shown| tick_across(mark, shown, across_symbol))
         .y_axis_formatter(|mark, shown| tick_with_unit(mark, shown, symbol))
         .label_formatter(|at| {
             let (HoverPosition::NearDataPoint { position, .. } | HoverPosition::Elsewhere { position }) = at;
@@ -248,7 +258,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let dragged = follow && graph.group == TIME && figure.dragged_by(egui::PointerButton::Primary);
     let at = figure.interact_pointer_pos().filter(|_| dragged);
     let scrubbed_s = at.map(|at| response.transform.value_from_position(at).x * x_si);
-    GraphResponse { zoomed: asked.zoomed, scrubbed_s, export: export.then(|| Box::new(sheet())) }
+    GraphResponse { zoomed: asked.zoomed, scrubbed_s, export: (export || graph.export).then(|| Box::new(sheet())) }
 }
 
 /// The time to mark, if it is another than in the frame before: a graph that was zoomed goes to it.
@@ -391,6 +401,12 @@ fn tick_with_unit(mark: GridMark, shown: &RangeInclusive<f64>, symbol: &str) -> 
     if last { format!("{} {symbol}", tick(mark)) } else { tick(mark) }
 }
 
+/// As [`tick_with_unit`] on the horizontal axis, whose end cuts a number that stands there.
+fn tick_across(mark: GridMark, shown: &RangeInclusive<f64>, symbol: &str) -> String {
+    let end = shown.end() - UNIT_MARGIN * (shown.end() - shown.start());
+    if mark.value > end { String::new() } else { tick_with_unit(mark, shown, symbol) }
+}
+
 /// What the colours mean, on one line above the graph, where it hides nothing. Limits out of view
 /// are not drawn and so not named; what finds no room is told on hover.
 fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> (Id, bool) {
@@ -477,6 +493,13 @@ mod tests {
         assert!(near[1] > 800.0 && near[1] < 1000.0, "{near:?}");
         let wide = vertical_range(&[line(&[10.0, 80.0])], &[[0.0, 5.0, 200.0]], [800.0, 10_000.0]);
         assert!(wide[1] > 200.0, "the ribbon is in view: {wide:?}");
+    }
+
+    /// The 3.0 at the end of a cable of 3 m was cut in half by the edge of its graph.
+    #[test]
+    fn no_number_stands_where_the_end_of_its_axis_cuts_it() {
+        let texts = [2.0, 2.5, 3.0].map(|value| tick_across(GridMark { value, step_size: 0.5 }, &(0.0..=3.0), "m"));
+        assert_eq!(texts, ["2.0", "2.5 m", ""]);
     }
 
     #[test]

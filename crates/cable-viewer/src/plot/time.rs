@@ -17,8 +17,8 @@ use crate::units::unit::Unit;
 /// Less: twice the triangles for the same picture; more: peaks look blunt.
 const COLUMN: f32 = 2.0;
 
-/// Names the graph.
-const TITLE: &str = "Over time";
+/// Title of the first graph.
+pub const TITLE: &str = "Over time";
 /// Shortest time axis, s: the first frames would otherwise jump.
 const SHORTEST_S: f64 = 1.0;
 
@@ -71,6 +71,7 @@ fn graph(ui: &mut Ui, state: &AppState, view: GraphView, title: &str, height: f3
         height,
         ribbon: ribbon(state, cable, measure),
         mark: state.live.recording.shown_s,
+        export: view.export == Some(title),
     };
     let mut touched = show(ui, &graph, &lines(state, scene, measure, seen, Some(columns)));
     if let Some(sheet) = &mut touched.export {

@@ -227,6 +227,8 @@ pub struct Snapshot {
     pub stale: bool,
     /// `solution` has few segments, to follow the hand; the answer comes once the hand rests.
     pub draft: bool,
+    /// `solution` says nothing yet of what other histories would have left: they are being sought.
+    pub seeks_histories: bool,
     /// Simulated seconds per second actually reached; None while paused.
     pub real_speed: Option<f64>,
     /// Number of the last edit it includes.

@@ -42,6 +42,10 @@ pub struct Ui {
     pub tutorial: Option<TutorialPlace>,
     /// Why unsaved changes could not be kept for recovery.
     pub autosave_fault: Option<String>,
+    /// The file or folder that was exported or saved last, until another dialog opens.
+    pub written: Option<PathBuf>,
+    /// The graph (by its title) whose export was asked for elsewhere than beside it.
+    pub graph_to_export: Option<&'static str>,
     /// The user agreed to close the window without saving.
     pub closing: bool,
 }

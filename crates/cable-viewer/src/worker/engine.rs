@@ -6,6 +6,7 @@ use std::time::Instant;
 use cable_core::math::{Point, vec2};
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
+use cable_core::solution::Histories;
 use cable_core::timeline::{RunMonitor, RunPeaks};
 use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 
@@ -45,6 +46,9 @@ pub struct Engine {
     /// What is known of the run so far; None where it does not go on from a start that has settled:
     /// a change while time runs begins another.
     monitor: Option<RunMonitor>,
+    /// The rest was laid without asking what other histories would have left, so that it is on
+    /// screen sooner; [`Self::refine`] asks once the hand rests.
+    histories_due: bool,
     /// Wall time of the last answer to an edit, s.
     solve_s: f64,
     /// Number of a drag while time runs that no frame shows yet.
@@ -131,6 +135,7 @@ impl Default for Engine {
             history_restarts: false,
             drafts: false,
             monitor: None,
+            histories_due: false,
             solve_s: 0.0,
             dragged: 0,
             tick_s: 0.0,
@@ -268,13 +273,37 @@ impl Engine {
         self.report(false)
     }
 
-    /// Replaces a draft by the answer.
+    /// An answer at rest is shown whose other histories have not been sought yet.
+    #[must_use]
+    pub fn seeks_histories(&self) -> bool {
+        let at_start = self.simulation.as_ref().is_some_and(|s| s.time_s() <= 0.0);
+        let rests = self.playback.paused && matches!(self.phase, Phase::Answer { start_kept: true });
+        self.histories_due && rests && at_start
+    }
+
+    /// Replaces a draft by the answer, or asks of an answer what other histories would have left.
     pub fn refine(&mut self) -> Report {
+        if self.seeks_histories() {
+            self.seek_histories();
+            return self.report(false);
+        }
         let began = Instant::now();
         let result = self.solve_draft();
         self.snapshot.solve_wall_s = began.elapsed().as_secs_f64();
         self.show(result);
         self.report(false)
+    }
+
+    /// Lays the scene on screen once more and asks what other histories would have left. The rest
+    /// is a function of the scene alone, so no figure changes.
+    fn seek_histories(&mut self) {
+        self.histories_due = false;
+        let sought = self.edit.as_ref().and_then(|e| laid(&e.scene, e.model, e.settings).ok());
+        if let Some(sought) = sought {
+            self.simulation = Some(sought);
+        }
+        self.sample();
+        self.show(Ok(()));
     }
 
     /// Lets one frame (1/60 s of wall time) pass.
@@ -390,6 +419,10 @@ impl Engine {
         let at_rest = from.is_none_or(|o| o.time_s() <= 0.0);
         self.routes.clear();
         let mut edit = edit;
+        // Only without a mesh do other histories take longer than the rest itself: the cable is
+        // laid anew for each. Where nobody refines the answer they are asked for at once.
+        let meshless = old.as_ref().is_some_and(|o| is_quasi_static(o.model()));
+        self.histories_due = self.drafts && at_rest && meshless && edit.settings.histories;
         let rebuilt = if at_rest { self.lay(&mut edit, from).map(|s| (s, true)) } else { self.rebuild(&edit, from) };
         self.edit = Some(edit);
         self.solve_s = began.elapsed().as_secs_f64();
@@ -415,11 +448,9 @@ impl Engine {
     /// and reset give the same answer for the same scene. Where that would move a cable through an
     /// obstacle that stays where it is, the way the cable takes now becomes part of the scene.
     fn lay(&mut self, edit: &mut Edit, old: Option<&Simulation>) -> Result<Simulation, Error> {
-        let of = |scene: &Scene| -> Result<Simulation, Error> {
-            let mut fresh = Simulation::for_question(scene.clone(), edit.model, edit.settings, Question::Rest)?;
-            fresh.settle()?;
-            Ok(fresh)
-        };
+        let histories = edit.settings.histories && !self.histories_due;
+        let settings = Settings { histories, ..edit.settings };
+        let of = |scene: &Scene| laid(scene, edit.model, settings);
         let laid = of(&edit.scene);
         let Some(old) = old.filter(|o| !edit.as_laid && draft::same_cables(edit, o)) else { return laid };
         let jumped = match &laid {
@@ -509,6 +540,7 @@ impl Engine {
         self.simulation = Some(then);
         self.monitor = None;
         self.before_motion = None;
+        self.histories_due = false;
         self.edit = Some(edit);
         self.phase = Phase::Answer { start_kept: false };
         self.hand = None;
@@ -559,6 +591,7 @@ impl Engine {
             simulation.reset();
         } else if let Some(edit) = self.edit.clone() {
             let mut edit = edit;
+            self.histories_due = false;
             self.simulation = Some(self.lay(&mut edit, None)?);
             self.before_motion = None;
             self.phase = Phase::Answer { start_kept: true };
@@ -605,15 +638,26 @@ impl Engine {
         if let Some(simulation) = &self.simulation
             && self.answers.len() < MAX_ANSWERS
         {
-            self.answers.push(simulation.solution());
+            self.answers.push(self.solution_of(simulation));
         }
+    }
+
+    /// The answer without what it says of other histories while these are being sought.
+    fn solution_of(&self, simulation: &Simulation) -> Solution {
+        let mut solution = simulation.solution();
+        if self.seeks_histories() {
+            solution.warnings.retain(|w| w.cause.histories() != Some(&Histories::NotSought));
+        }
+        solution
     }
 
     fn show(&mut self, result: Result<(), Error>) {
         let scene: Option<Arc<Scene>> = self.edit.as_ref().map(|e| Arc::new(e.scene.clone()));
         match (result, &self.simulation) {
             (Ok(()), Some(simulation)) => {
-                self.snapshot.solution = Some(Arc::new(simulation.solution()));
+                let solution = self.solution_of(simulation);
+                self.snapshot.solution = Some(Arc::new(solution));
+                self.snapshot.seeks_histories = self.seeks_histories();
                 self.snapshot.peaks = self.monitor.as_ref().map_or_else(Vec::new, |m| m.peaks().to_vec());
                 self.snapshot.error = match &self.phase {
                     Phase::Refused { reason } => Some(reason.clone()),
@@ -657,6 +701,7 @@ impl Engine {
     /// A draft of a scene is no answer, least of all to another one.
     fn show_last_answer(&mut self) {
         self.snapshot.draft = false;
+        self.snapshot.seeks_histories = false;
         if let Some(last) = &self.last_answer {
             self.snapshot.solution = Some(Arc::clone(&last.solution));
             self.snapshot.scene.clone_from(&last.scene);
@@ -673,6 +718,13 @@ impl Engine {
             paused_itself,
         }
     }
+}
+
+/// A scene laid at rest.
+fn laid(scene: &Scene, model: Model, settings: Settings) -> Result<Simulation, Error> {
+    let mut laid = Simulation::for_question(scene.clone(), model, settings, Question::Rest)?;
+    laid.settle()?;
+    Ok(laid)
 }
 
 /// Whether a model that was asked for by name lets time run without inertia: it has none.

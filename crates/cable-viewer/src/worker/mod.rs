@@ -69,8 +69,10 @@ struct Solve {
     began: Instant,
     /// The engine as it was before.
     engine: Box<Engine>,
-    /// What it solves; None: the answer to a draft.
+    /// What it solves; None: the answer to a draft, or other histories of an answer.
     request: Option<Request>,
+    /// It seeks other histories of an answer that is on screen.
+    seeks_histories: bool,
 }
 
 /// How long a request waits for a solve that it makes worthless.
@@ -131,7 +133,9 @@ impl Worker {
             Kind::Thread { shared, .. } => {
                 let mut slots = shared.lock();
                 let mut request = request;
-                request.hurried = request.edit.is_some() && slots.solve.is_some();
+                // An edit that comes while other histories are sought has waited for no answer.
+                let answers = slots.solve.as_ref().is_some_and(|s| !s.seeks_histories);
+                request.hurried = request.edit.is_some() && answers;
                 slots.asked_at.get_or_insert_with(Instant::now);
                 match &mut slots.request {
                     Some(waiting) => waiting.merge(request),
@@ -170,9 +174,10 @@ impl Worker {
         }
         let Some(asked_at) = slots.asked_at else { return };
         let Some(waiting) = slots.request.as_ref().filter(|r| r.solves() || r.cancel) else { return };
-        // The next draft goes on from the one on screen: its answer may be given up at once.
-        let of_draft = slots.solve.as_ref().is_some_and(|s| s.request.is_none());
-        let wait = if waiting.cancel || of_draft { Duration::ZERO } else { patience.wait };
+        // The next draft goes on from the one on screen: its answer may be given up at once, and so
+        // may other histories of a scene that has changed.
+        let refines = slots.solve.as_ref().is_some_and(|s| s.request.is_none());
+        let wait = if waiting.cancel || refines { Duration::ZERO } else { patience.wait };
         let old = slots.solve.as_ref().is_some_and(|s| s.began.elapsed() >= wait);
         if !old || asked_at.elapsed() < wait || Arc::strong_count(shared) > MAX_THREADS {
             return;
@@ -249,7 +254,8 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
     let frame = Duration::from_secs_f64(FRAME_S);
     let mut next_tick = Instant::now();
     let mut last_tick = next_tick;
-    // When a draft has stood long enough to be replaced by the answer.
+    // When a draft has stood long enough to be replaced by the answer, and an answer to be asked
+    // for other histories.
     let mut refine_at = next_tick;
     let mut edited_at: Option<Instant> = None;
     loop {
@@ -267,7 +273,7 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
                     (true, _, _) => Some(next_tick),
                     (false, true, true) => Some(next_tick.min(refine_at)),
                     (false, true, false) => Some(refine_at),
-                    (false, false, _) => None,
+                    (false, false, _) => engine.seeks_histories().then_some(refine_at),
                 };
                 if slots.request.is_some() || due.is_some_and(|at| now >= at) {
                     break;
@@ -286,14 +292,16 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
         };
         let refines = request.is_none() && !engine.playing() && (!engine.settling() || Instant::now() >= refine_at);
         if refines || request.as_ref().is_some_and(Request::solves) {
-            let solve = Solve { began: Instant::now(), engine: Box::new(engine.spare()), request: request.clone() };
+            let seeks_histories = request.is_none() && engine.seeks_histories();
+            let (began, engine) = (Instant::now(), Box::new(engine.spare()));
+            let solve = Solve { began, engine, request: request.clone(), seeks_histories };
             shared.lock().solve = Some(solve);
         }
         let report = match request {
             Some(request) => {
                 let drag = request.drag.is_some();
                 // A single edit is answered at once, a hand that goes on is waited for.
-                let pause_s = if engine.draft() || request.hurried {
+                let draft_s = if engine.draft() || request.hurried {
                     let between = edited_at.map_or(QUIET_S, |at| at.elapsed().as_secs_f64());
                     (QUIET_EDITS * between).clamp(LEAST_QUIET_S, QUIET_S)
                 } else {
@@ -311,6 +319,7 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
                     next_tick = last_tick + frame;
                     report.merge(guarded(&mut engine, |e| e.tick_part(passed.min(1.0))));
                 }
+                let pause_s = if engine.draft() { draft_s } else { LEAST_QUIET_S };
                 refine_at = Instant::now() + Duration::from_secs_f64(pause_s);
                 if engine.draft() {
                     next_tick = Instant::now() + frame;

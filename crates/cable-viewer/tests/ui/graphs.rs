@@ -2,8 +2,9 @@
 //! the same instant.
 
 use cable_viewer::ViewerApp;
-use cable_viewer::command::{Command, PlaybackCommand};
+use cable_viewer::command::{Command, PlaybackCommand, ViewCommand};
 use cable_viewer::plot;
+use cable_viewer::state::dialog::Dialog;
 use egui::Vec2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -25,6 +26,43 @@ fn played(seconds: u32) -> Harness<'static, ViewerApp> {
     harness.run_steps(60 * seconds as usize);
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
     harness
+}
+
+/// The format of an export had to be typed as an ending, and nothing said that a file was written.
+#[test]
+fn an_export_has_formats_to_choose_and_is_said_once_written() {
+    let mut harness = played(1);
+    let folder = std::env::temp_dir().join(format!("cable-viewer-export-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let typed = |h: &Harness<'_, ViewerApp>| match &h.state().state.ui.dialog {
+        Some(Dialog::Export { path, .. }) => path.clone(),
+        other => panic!("{other:?}"),
+    };
+    // The palette leads there as well as the button beside the graph.
+    apply(&mut harness, Command::View(ViewCommand::ExportGraph("Along the cable")));
+    harness.run_steps(3);
+    assert_eq!(typed(&harness), "along-the-cable.csv");
+    harness.get_by_label("SVG").click();
+    harness.run_steps(2);
+    assert_eq!(typed(&harness), "along-the-cable.svg");
+    for (format, ending) in [("PNG", "png"), ("CSV", "csv"), ("SVG", "svg")] {
+        let file = folder.join(format!("along.{ending}"));
+        if let Some(Dialog::Export { path, .. }) = &mut harness.state_mut().state.ui.dialog {
+            *path = folder.join("along.txt").display().to_string();
+        }
+        harness.run_steps(2);
+        harness.get_by_label(format).click();
+        harness.run_steps(2);
+        harness.get_by_label("Save").click();
+        harness.run_steps(3);
+        assert!(file.exists(), "{}", file.display());
+        harness.get_by_label(&format!("Saved along.{ending}"));
+        harness.get_by_label("Export Along the cable").click();
+        harness.run_steps(3);
+        assert_eq!(typed(&harness), "along-the-cable.csv");
+        assert!(harness.query_by_label_contains("Saved along").is_none());
+    }
+    std::fs::remove_dir_all(&folder).unwrap();
 }
 
 #[test]

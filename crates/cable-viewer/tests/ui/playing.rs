@@ -1,6 +1,6 @@
 //! Time: play, pause, step, reset, and dragging a support while time runs.
 
-use cable_core::scene::catalog;
+use cable_core::scene::{Shape, catalog};
 use cable_core::solution::WarningKind;
 use cable_core::{Model, Scene, Solution};
 use cable_viewer::ViewerApp;
@@ -9,6 +9,7 @@ use cable_viewer::geometry::supports::{hand_spring, support_position};
 use cable_viewer::state::{Item, WorkerStatus};
 use egui::Key;
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 
 use crate::{apply, open, open_span, support};
 
@@ -293,4 +294,36 @@ fn u18_every_catalogue_scene_plays_five_frames_or_says_why_not() {
         }
     }
     println!("{refused:#?}");
+}
+
+/// The help of the button that stops the robot says what stopping from 0.5 m/s takes.
+#[test]
+fn the_robot_stops_as_the_help_of_its_button_says() {
+    // On level ground, where its power suffices for that speed.
+    let mut scene = catalog::tank_robot();
+    scene.obstacles.truncate(1);
+    scene.obstacles[0].shape = Shape::Terrain { points_m: vec![[-11.0, 0.0], [11.0, 0.0]] };
+    let mut harness = open(scene);
+    let robot = |h: &Harness<'_, ViewerApp>| solution(h).robot.expect("a robot");
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetRobotSpeed(0.5)));
+    apply(&mut harness, Command::Playback(PlaybackCommand::DriveRobot(Some(-0.5))));
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    while robot(&harness).speed_m_per_s > -0.4999 {
+        harness.step();
+        assert!(solution(&harness).time_s < 4.0, "{} m/s", robot(&harness).speed_m_per_s);
+    }
+    apply(&mut harness, Command::Playback(PlaybackCommand::DriveRobot(Some(0.0))));
+    let began = solution(&harness);
+    while robot(&harness).speed_m_per_s.abs() > 1e-6 {
+        harness.step();
+        assert!(solution(&harness).time_s < began.time_s + 3.0, "it does not stop");
+    }
+    let (took_s, from_m) = (solution(&harness).time_s - began.time_s, began.robot.unwrap().x_m);
+    let way_m = (robot(&harness).x_m - from_m).abs();
+    assert!((took_s - 1.0).abs() < 0.04 && (way_m - 0.25).abs() < 0.02, "{took_s} s, {way_m} m");
+    crate::select(&mut harness, Item::Robot);
+    harness.run_steps(3);
+    harness.get_by_label("Stop").hover();
+    harness.run_steps(60);
+    harness.get_by_label_contains("From 0.5 m/s it stands after 1 s and 0.25 m");
 }

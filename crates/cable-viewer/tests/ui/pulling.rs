@@ -96,6 +96,11 @@ fn s15_a_pull_past_the_length_pulls_harder_and_harder_until_the_cable_breaks() {
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
     apply(&mut harness, Command::View(ViewCommand::Select(Some(Item::Support { cable: 0, support: 1 }))));
     harness.run_steps(3);
+    // One that is torn off stands where the canvas has it, and says so.
+    let [x, y] = geometry::supports::support_position(&harness.state().state, 0, 1).unwrap();
+    let place = format!("({x:.3}, {y:.3}) m");
+    assert_eq!(harness.query_all_by_label_contains(&place).count(), 1, "{place}");
+    harness.get_by_label_contains("nothing, torn off");
     let said = |h: &Harness<'_, ViewerApp>| h.query_all_by_label_contains("(14.000, 5.000) m").count() > 0;
     assert!(!said(&harness), "it is where the form says");
     let live = &mut harness.state_mut().state.live;

@@ -3,16 +3,19 @@
 //!
 //! The figures: `cargo test --workspace --test ui timed -- --nocapture --test-threads 1`.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use cable_core::math::Point;
 use cable_core::scene::catalog;
+use cable_core::solution::Histories;
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, PlaybackCommand, SceneCommand};
 use cable_viewer::state::Item;
 use egui::Vec2;
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 
 /// Longer than any answer takes on a loaded machine; only a dead worker reaches it.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -204,6 +207,73 @@ fn timed_edits_to_undimmed_figures() {
             undimmed(&format!("{id}, {what}"), scene.clone(), item, at);
         }
     }
+}
+
+/// The rest is shown as soon as it is known; what other histories would have left in it is sought
+/// afterwards, said to be sought meanwhile, and changes no figure.
+#[test]
+fn a_rest_is_shown_before_other_histories_of_it_are_sought() {
+    let build = |scene: Scene| {
+        Harness::builder()
+            .with_size(Vec2::new(1280.0, 800.0))
+            .with_step_dt(1.0 / 60.0)
+            .build_eframe(|cc| ViewerApp::new(&cc.egui_ctx, scene, None))
+    };
+    let sought = |h: &Harness<'_, ViewerApp>| {
+        let warnings = &h.state().state.live.snapshot.solution.as_ref().unwrap().warnings;
+        warnings.iter().filter_map(|w| w.cause.histories()).cloned().collect::<Vec<Histories>>()
+    };
+    let figures = |h: &Harness<'_, ViewerApp>| {
+        let cables = &h.state().state.live.snapshot.solution.as_ref().unwrap().cables;
+        format!("{:?}", cables.iter().map(|c| (&c.nodes, &c.supports, &c.contacts)).collect::<Vec<_>>())
+    };
+    let wait_for_histories = |h: &mut Harness<'_, ViewerApp>| {
+        let began = Instant::now();
+        while !h.state().settled() || h.state().state.live.snapshot.seeks_histories {
+            assert!(began.elapsed() < PATIENCE, "other histories are sought for ever");
+            h.step();
+        }
+    };
+    let mut harness = build(catalog::tank());
+    wait_for_histories(&mut harness);
+    let item = Item::Support { cable: 0, support: 1 };
+    let at: Point = harness.state().state.document.scene.cables[0].supports[1].at_m.expect("held");
+    submit(&mut harness, Command::Scene(SceneCommand::Move { item, to_m: [at[0] - 0.05, at[1]] }));
+    // The first frame with the answer; the search begins 60 ms later.
+    while !harness.state().settled() {
+        harness.step();
+    }
+    let state = &harness.state().state;
+    assert!(state.live.snapshot.seeks_histories && state.is_current() && !state.live.snapshot.draft);
+    assert!(sought(&harness).is_empty(), "what is not known yet is not said");
+    let first = figures(&harness);
+    wait_for_histories(&mut harness);
+    assert_eq!(first, figures(&harness));
+    let then = sought(&harness);
+    assert!(!then.is_empty() && !then.contains(&Histories::NotSought), "{then:?}");
+    // The scene as it is, opened anew, says the same.
+    let mut anew = build(harness.state().state.document.scene.clone());
+    wait_for_histories(&mut anew);
+    assert_eq!((figures(&harness), then), (figures(&anew), sought(&anew)));
+}
+
+/// While it is being sought whether the rest is the only one, the window neither says that there
+/// are no warnings nor that there are others. A cable that touches nothing has no other history.
+#[test]
+fn while_other_histories_are_sought_the_window_says_so() {
+    let said = |scene: Scene, seeks: bool| {
+        let mut harness = threaded(scene, 60);
+        let snapshot = &mut harness.state_mut().state.live.snapshot;
+        snapshot.seeks_histories = seeks;
+        let mut solution = (**snapshot.solution.as_ref().unwrap()).clone();
+        solution.warnings.clear();
+        snapshot.solution = Some(Arc::new(solution));
+        harness.step();
+        ["Looking for other resting places…", "No warnings"].map(|text| harness.query_by_label(text).is_some())
+    };
+    assert_eq!(said(catalog::over_beam(), true), [true, false]);
+    assert_eq!(said(catalog::over_beam(), false), [false, true]);
+    assert_eq!(said(catalog::hanging_span(), true), [false, true]);
 }
 
 fn undimmed(what: &str, scene: Scene, item: Item, at: Point) {

@@ -33,17 +33,23 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let about = load.force_n.map_or("changes with time".to_owned(), |[x, y]| format::force(x.hypot(y)));
         ui.push_id(k, |ui| rows::row(ui, state, Item::Load(k), &format!("load {}", k + 1), &about, commands));
     }
-    let Some(cable) = state.document.scene.cables.get(state.current_cable()) else { return };
+    let Some(load) = new_load(state) else { return };
     if ui.button("Add load").on_hover_text("A force on the middle of the cable, 100 N down").clicked() {
-        let load = Load {
-            cable: cable.name.clone(),
-            arc_length_m: cable.length_m / 2.0,
-            force_n: Some(FIRST_LOAD_N),
-            times_s: Vec::new(),
-            forces_n: Vec::new(),
-        };
-        commands.push(Command::Scene(SceneCommand::AddLoad(load)));
+        commands.push(Command::Scene(load));
     }
+}
+
+/// A load on the middle of the current cable.
+#[must_use]
+pub fn new_load(state: &AppState) -> Option<SceneCommand> {
+    let cable = state.document.scene.cables.get(state.current_cable())?;
+    Some(SceneCommand::AddLoad(Load {
+        cable: cable.name.clone(),
+        arc_length_m: cable.length_m / 2.0,
+        force_n: Some(FIRST_LOAD_N),
+        times_s: Vec::new(),
+        forces_n: Vec::new(),
+    }))
 }
 
 /// Place and strength of the load.

@@ -6,13 +6,13 @@
 //! - `supports`, `obstacles`, `loads`: a list each, and a form for everything of one
 //! - `rows`: the rows of the outline, and the cells and fields that forms are made of
 
-pub(super) mod loads;
+pub(crate) mod loads;
 mod map;
-pub(super) mod obstacles;
+pub(crate) mod obstacles;
 pub mod outline;
 pub(super) mod robot;
 pub mod rows;
-pub(super) mod supports;
+pub(crate) mod supports;
 
 use cable_core::scene::catalog;
 use egui::{ComboBox, Ui};

@@ -28,8 +28,19 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     menu.response.on_hover_text("Ground, a beam, a post or a sheet, in the middle of the picture");
 }
 
-/// New obstacles stand in the middle of the picture, where the user looks.
 fn add(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    for (name, help, command) in new_obstacles(state) {
+        if ui.button(name).on_hover_text(help).clicked() {
+            commands.push(Command::Scene(command));
+            ui.close();
+        }
+    }
+}
+
+/// The obstacles that can be added, each with its name and what it is. They stand in the middle of
+/// the picture, where the user looks.
+#[must_use]
+pub fn new_obstacles(state: &AppState) -> [(&'static str, &'static str, SceneCommand); 4] {
     let [x, y] = state.view.camera.centre_m.map(|v| (v * 10.0).round() / 10.0);
     let forms = [
         ("Floor", "Ground, solid below", Shape::Terrain { points_m: vec![[x - 10.0, y], [x + 10.0, y]] }),
@@ -47,13 +58,10 @@ fn add(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             Shape::Polyline { points_m: vec![[x - 1.0, y], [x + 1.0, y]], thickness_m: 0.02 },
         ),
     ];
-    for (name, help, shape) in forms {
-        if ui.button(name).on_hover_text(help).clicked() {
-            let obstacle = Obstacle { name: name.to_lowercase(), shape, friction: None };
-            commands.push(Command::Scene(SceneCommand::AddObstacle(obstacle)));
-            ui.close();
-        }
-    }
+    forms.map(|(name, help, shape)| {
+        let obstacle = Obstacle { name: name.to_lowercase(), shape, friction: None };
+        (name, help, SceneCommand::AddObstacle(obstacle))
+    })
 }
 
 fn shape_name(shape: &Shape) -> (&'static str, &'static str) {

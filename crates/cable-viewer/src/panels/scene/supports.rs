@@ -56,10 +56,16 @@ pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
     }
     let help = "A frictionless point the cable slides through, in the middle of the cable; drag it, or change its kind";
     if ui.button("Add waypoint").on_hover_text(help).clicked() {
-        let arc_length_m = cable.length_m / 2.0;
-        let at_m = position_at(state, index, arc_length_m).unwrap_or([0.0; 2]);
-        commands.push(Command::Scene(SceneCommand::AddWaypoint { cable: index, arc_length_m, at_m }));
+        commands.extend(new_waypoint(state, index).map(Command::Scene));
     }
+}
+
+/// A waypoint in the middle of a cable.
+#[must_use]
+pub fn new_waypoint(state: &AppState, cable: usize) -> Option<SceneCommand> {
+    let arc_length_m = state.document.scene.cables.get(cable)?.length_m / 2.0;
+    let at_m = position_at(state, cable, arc_length_m).unwrap_or([0.0; 2]);
+    Some(SceneCommand::AddWaypoint { cable, arc_length_m, at_m })
 }
 
 fn kind_name(kind: SupportKind) -> &'static str {
