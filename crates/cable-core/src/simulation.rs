@@ -437,7 +437,8 @@ impl Simulation {
         }
     }
 
-    /// Other histories of a cable for which `spans` has no answer; None where they cannot be sought.
+    /// Other histories of a cable for which `spans` has no answer; None where they cannot be
+    /// sought.
     fn other_histories(&self, k: usize) -> Option<Histories> {
         let cable = self.cables.get(k)?.to_explore()?;
         Some(cable.histories(|other| {

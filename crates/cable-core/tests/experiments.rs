@@ -210,8 +210,8 @@ fn a_second_turn_rubs_by_what_the_first_tells() {
 }
 
 /// The fall of the standard for climbing ropes, without its edge: a mass held 2 m above the anchor
-/// falls past it by 4.6 m on 2.6 m of rope (factor 1.77). The greatest pull on the anchor, N, of the
-/// mass held so far aside, m.
+/// falls past it by 4.6 m on 2.6 m of rope (factor 1.77). The greatest pull on the anchor, N, of
+/// the mass held so far aside, m.
 fn caught([mass, strands, stiffness]: [f64; 3], aside: f64, (segments, h): (usize, f64), model: Model) -> f64 {
     let (length, tail) = (2.6, 2e-3);
     let weight = Support {

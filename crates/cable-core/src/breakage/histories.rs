@@ -26,8 +26,8 @@ const MAX_ELEMENTS: usize = 100;
 /// What was found until then stands; a step that has begun is finished.
 const MAX_WORK: usize = 200_000;
 
-/// Change of the greatest tension, of itself, below which a longer way of an end made no difference:
-/// less than an engineer would act on.
+/// Change of the greatest tension, of itself, below which a longer way of an end made no
+/// difference: less than an engineer would act on.
 const SAME_TENSION: f64 = 0.01;
 
 /// Time in which an end moves, s: none that counts for what else moves.

@@ -95,8 +95,8 @@ impl CableEquilibrium {
     ) -> Result<(Self, StepStats), Unfound> {
         let curves = layout.curves();
         let course = layout.course(curves, instant);
-        // As it is laid; else where it needs no friction; where it would push there, some of it lies
-        // loose; each may have to begin taut.
+        // As it is laid; else where it needs no friction; where it would push there, some of it
+        // lies loose; each may have to begin taut.
         let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
         let taut = [
             None,
