@@ -95,7 +95,7 @@ impl TryFrom<TaskKeys> for RobotTask {
 
 impl Robot {
     /// Returns where the cable hangs on it on level ground, m; None for an unknown preset. See
-    /// [`Scene::robot_pose`] for the ground of a scene.
+    /// [`Scene::robot_pose`](crate::scene::Scene::robot_pose) for the ground of a scene.
     #[must_use]
     pub fn hitch_m(&self) -> Option<Point> {
         Some(Pose { at_m: self.at_m, pitch: 0.0, heading: self.heading }.hitch_m(robot_preset(&self.preset)?))
