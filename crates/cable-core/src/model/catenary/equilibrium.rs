@@ -268,11 +268,12 @@ fn runs_away(j: &[Row]) -> Option<Vec<f64>> {
     None
 }
 
-/// Leaves a balance that runs away to where its energy is less; None where it is nowhere.
-fn leave(slide: &Slide<'_>, sigma: &[f64], s: &Stretches, way: &[f64]) -> Option<(Vec<f64>, Stretches)> {
+/// Leaves a balance that runs away to where its energy is less, along its way (1) or back (−1)
+/// first; None where it is nowhere.
+fn leave(slide: &Slide<'_>, sigma: &[f64], s: &Stretches, way: &[f64], first: f64) -> Option<(Vec<f64>, Stretches)> {
     let largest = way.iter().fold(0.0f64, |m, w| larger(m, w.abs()));
     backtrack(LEAVING_FRACTION * slide.problem.length / largest, STEP_HALVINGS, |far| {
-        [far, -far].into_iter().find_map(|far| {
+        [far * first, -far * first].into_iter().find_map(|far| {
             let step: Vec<f64> = way.iter().map(|w| far * w).collect();
             let part = room(slide, s, &step);
             let there: Vec<f64> = sigma.iter().zip(&step).map(|(a, b)| a + part * b).collect();
@@ -311,15 +312,19 @@ fn newton(
     modes: &[Mode],
 ) -> Result<Equilibrium, SolveError> {
     let mut left = None;
-    descend(slide, sigma, near, modes, &mut left).or_else(|why| left.ok_or(why))
+    let mut from = |sigma: Vec<f64>, first: f64| descend(slide, sigma, near, modes, first, &mut left);
+    let found = from(sigma.clone(), 1.0).or_else(|_| from(sigma, -1.0));
+    found.or_else(|why| left.ok_or(why))
 }
 
-/// The same; `left` is the balance that was left last as it runs away.
+/// The same; `left` is the balance that was left last as it runs away, `first` the direction in
+/// which that is tried first.
 fn descend(
     slide: &Slide<'_>,
     sigma: Vec<f64>,
     near: Option<&Stretches>,
     modes: &[Mode],
+    first: f64,
     left: &mut Option<Equilibrium>,
 ) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
@@ -359,7 +364,7 @@ fn descend(
         if !smooth {
             return Err(lost(iterations));
         }
-        let next = leave(slide, &sigma, &s, &way);
+        let next = leave(slide, &sigma, &s, &way, first);
         *left = Some(Equilibrium { runs_away: true, ..end(sigma, s, newtons) });
         (sigma, s) = next.ok_or_else(|| lost(iterations))?;
         iterations += s.iterations;
