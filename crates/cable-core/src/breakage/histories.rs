@@ -18,8 +18,8 @@ use super::BreakableCable;
 /// and it takes longer.
 const END_TRAVEL_FRACTIONS: [f64; 3] = [0.01, 0.02, 0.04];
 
-/// Most elements of a cable that is drawn to and fro. More: the same to a percent, in a time that
-/// grows with their square (540 elements on a slope took 38 s).
+/// Most elements of a cable that is drawn to and fro. More: a finer range, in a time that grows
+/// with their square (540 elements on a slope took 38 s); fewer: a rest that may be another.
 const MAX_ELEMENTS: usize = 100;
 
 /// Most work for an end in one direction, in iterations times elements: a few tenths of a second.
@@ -78,8 +78,8 @@ impl BreakableCable {
         Histories::EndsMoved { greatest_n, moves, start_n, end_n, range_n }
     }
 
-    /// What is left after a support has been moved from its place (m) in a direction and put back,
-    /// further each time, until that makes no difference to what was left before.
+    /// Returns the tensions that are left after a support has been moved from its place (m) in a
+    /// direction and put back, further each time, until that makes no difference any more.
     fn moved_and_put_back(
         &self,
         support: usize,
@@ -120,7 +120,7 @@ impl BreakableCable {
     }
 }
 
-/// What a history left in the cable.
+/// The tensions that a history left in the cable.
 struct Left {
     /// Way of the end, m.
     way_m: f64,
