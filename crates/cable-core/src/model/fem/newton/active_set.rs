@@ -90,10 +90,11 @@ impl PredictedContacts {
         }
     }
 
-    /// Finds all that a step of this size could touch.
+    /// Finds all that each bar could touch if it went as far as in this step, whichever way.
     fn look(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &[f64]) {
         let StepContext { problem, mesh, contacts, .. } = *step;
-        contacts.find_within(problem, mesh, x, contacts.barrier.reach + longest(direction), &mut self.touches);
+        let reach = |e: usize| contacts.barrier.reach + longest(direction.get(2 * e..2 * e + 4).unwrap_or(direction));
+        contacts.find_within_each(problem, mesh, x, reach, &mut self.touches);
     }
 
     /// Solves again, with contacts ahead as constraints; `system` is pinned, and `direction` the

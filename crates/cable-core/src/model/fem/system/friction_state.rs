@@ -244,6 +244,19 @@ impl ContactSet {
 
     /// The same for contacts nearer than `reach` (m).
     pub fn find_within(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], reach: f64, out: &mut Vec<ContactPair>) {
+        self.find_within_each(problem, mesh, x, |_| reach, out);
+    }
+
+    /// The same where contacts of each bar, and of the node at its start, are nearer than its own
+    /// `reach` (m).
+    pub fn find_within_each(
+        &self,
+        problem: &Problem,
+        mesh: &Mesh,
+        x: &[Vec2],
+        reach: impl Fn(usize) -> f64,
+        out: &mut Vec<ContactPair>,
+    ) {
         out.clear();
         if problem.world.is_empty() {
             return;
@@ -251,6 +264,7 @@ impl ContactSet {
         let (geometry, last) = (problem.world.geometry(), x.len().saturating_sub(1));
         let plain = |e: usize| mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none();
         for node in 0..x.len() {
+            let reach = reach(if node < last { node } else { last.saturating_sub(1) });
             if node < last && plain(node) && self.near.is_clear(node, [[x[node], x[node + 1]]], reach) {
                 continue;
             }
