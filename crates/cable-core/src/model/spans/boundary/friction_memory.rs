@@ -455,13 +455,17 @@ impl TensionProfile {
                     false => None,
                 };
                 self.clear();
-                let Some((p, material)) = loose else {
+                let Some(loose) = loose else {
                     self.knots.extend([Knot { mobilised: m, ..first }, last]);
                     return;
                 };
-                // Loose from there to the end that is not drawn, as even as friction keeps it:
-                // without tension.
-                let end = Knot { coordinate: p, arc_length: from.arc_length + material, tension: 0.0, mobilised: m };
+                // Loose from there to the end that is not drawn, as even as friction keeps it.
+                let end = Knot {
+                    coordinate: loose.coordinate,
+                    arc_length: from.arc_length + loose.material,
+                    tension: loose.tension,
+                    mobilised: m,
+                };
                 let [a, b] = if drawn == 1 { [first, end] } else { [end, last] };
                 let bed = Track { friction: track.friction_of_loose, ..*track };
                 let laid = Self::laid(

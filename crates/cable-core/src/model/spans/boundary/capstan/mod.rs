@@ -158,6 +158,15 @@ impl Step {
     }
 }
 
+/// Where cable that is drawn ends and cable that lies loose begins: the place, the material (m)
+/// from the end that is drawn, and the tension (N).
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct LooseEnd {
+    pub coordinate: f64,
+    pub material: f64,
+    pub tension: f64,
+}
+
 /// A chain of a boundary and what the cable on it obeys.
 #[derive(Clone, Copy)]
 pub(in crate::model::spans) struct Track<'a> {
@@ -241,31 +250,54 @@ impl Track<'_> {
         }
     }
 
-    /// Slides with m from p₀, the end that is drawn, to p₁; from where no tension is left on an
-    /// edge the cable lies loose to p₁. Where that is, and the material up to there.
-    pub fn slide_floored(&self, p0: f64, p1: f64, t: f64, m: f64) -> (Step, Option<(f64, f64)>) {
-        let (mut at, mut sum, mut loose) = (p0, Step::none(t), None);
-        while at != p1 {
-            let next = self.next_border(at, p1);
+    /// Slides with m from p₀, the end that is drawn, to p₁; from where on an edge the tension is no
+    /// more than that of cable that lies there loose, the cable lies so to p₁. Returns where that
+    /// begins, too.
+    pub fn slide_floored(&self, p0: f64, p1: f64, t: f64, m: f64) -> (Step, Option<LooseEnd>) {
+        let bed = Self { friction: self.friction_of_loose, ..*self };
+        let lying = bed.lying(p1, p0);
+        let (mut sum, mut loose) = (Step::none(t), None);
+        for ends in lying.windows(2).rev() {
+            let [(next, under), (at, under_here)] = [ends[0], ends[1]];
             let edge = !self.turns(0.5 * (at + next));
             let way = self.slide(at, next, sum.tension, m);
-            if !(edge && way.tension < 0.0) {
+            if !(edge && way.tension < under) {
                 sum = sum.then(way);
                 // Drawn down a slope it has tension again.
-                loose = loose.filter(|_| !(sum.tension > 0.0));
+                loose = loose.filter(|_| !(sum.tension > under));
             } else {
-                let thetas = [self.law.theta(sum.tension), self.law.theta(way.tension)];
-                let q = at + (next - at) * (thetas[0] / (thetas[0] - thetas[1])).clamp(0.0, 1.0);
+                // Along an edge Θ is linear.
+                let above = |t: f64, under: f64| self.law.theta(t) - self.law.theta(under);
+                let [here, there] = [above(sum.tension, under_here), above(way.tension, under)];
+                let q = at + (next - at) * (here / (here - there)).clamp(0.0, 1.0);
                 sum = sum.then(self.slide(at, q, sum.tension, m));
-                loose = loose.or(Some((q, sum.material)));
-                let rest = Step::none(0.0);
-                let bed = Self { friction: self.friction_of_loose, ..*self };
-                let material = self.slide(q, next, 0.0, bed.even(0.5 * (q + next))).material;
-                sum = sum.then(Step { material, by_tension: 0.0, ..rest });
+                let even = bed.even(0.5 * (q + next));
+                let tension = bed.slide(next, q, under, even).tension;
+                loose = loose.or(Some(LooseEnd { coordinate: q, material: sum.material, tension }));
+                let material = bed.slide(q, next, tension, even).material;
+                sum = sum.then(Step { material, by_tension: 0.0, ..Step::none(under) });
             }
-            at = next;
         }
         (sum, loose)
+    }
+
+    /// Where stretches of one law begin and end, with the tensions there of cable that lies loose
+    /// from p₁, where it has none, to p₀: none where friction holds it, and what is missing of
+    /// friction on slopes beyond its cone.
+    fn lying(&self, p1: f64, p0: f64) -> Vec<(f64, f64)> {
+        let mut out = vec![(p1, 0.0)];
+        let (mut at, mut tension) = (p1, 0.0);
+        while at != p0 {
+            let next = self.next_border(at, p0);
+            let m = self.even(0.5 * (at + next));
+            // Within its cone it keeps what tension it has.
+            if !(m.abs() < self.friction) {
+                tension = self.slide(at, next, tension, m).tension;
+            }
+            out.push((next, tension));
+            at = next;
+        }
+        out
     }
 
     /// The m that keeps tension even where p is, as far as friction can: −b·t − m b·n = 0 on an
