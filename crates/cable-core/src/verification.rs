@@ -29,6 +29,8 @@ pub enum Law {
     Stability,
     /// Tension is strain times axial stiffness, and the nodes' way is the stretched material.
     Length,
+    /// Slack that hangs in the air pulls with its bow.
+    Slack,
     /// Nothing is inside an obstacle.
     Penetration,
     /// A contact pushes.
@@ -56,6 +58,7 @@ impl Law {
             Self::Compression => "no compression",
             Self::Stability => "stability",
             Self::Length => "length",
+            Self::Slack => "slack in the air pulls",
             Self::Penetration => "nothing inside obstacles",
             Self::Push => "contacts push",
             Self::Friction => "friction within its cone",
@@ -77,6 +80,7 @@ impl Law {
             Self::Compression => "a flexible cable pushes",
             Self::Stability => "a stiff cable pushes with more than would bend it aside",
             Self::Length => "the way drawn is not as long as the cable",
+            Self::Slack => "segments too long for slack that hangs in the air leave out its pull",
             Self::Penetration => "the cable lies inside an obstacle",
             Self::Push => "a contact pulls",
             Self::Friction => "friction exceeds its cone",
@@ -93,9 +97,13 @@ impl Law {
             Self::Material | Self::Support | Self::Length | Self::Penetration | Self::SelfContact => Quantity::Length,
             Self::Moment => Quantity::Moment,
             Self::Momentum => Quantity::Impulse,
-            Self::Balance | Self::Tension | Self::Compression | Self::Stability | Self::Push | Self::Friction => {
-                Quantity::Force
-            }
+            Self::Balance
+            | Self::Tension
+            | Self::Compression
+            | Self::Stability
+            | Self::Slack
+            | Self::Push
+            | Self::Friction => Quantity::Force,
         }
     }
 }

@@ -1,5 +1,5 @@
-//! A flexible cable pulls along its way, with the force in it as its tension, and its way is its
-//! material.
+//! A flexible cable pulls along its way, with the force in it as its tension, its way is its
+//! material, and what is slack in the air pulls, too.
 
 use super::cable::{CheckedBar, CheckedCable};
 use super::surroundings::{Neighbours, distance};
@@ -22,7 +22,7 @@ pub(super) struct Lengths {
 /// The laws of a flexible cable from node to node: its tension is the force in it, it pulls
 /// along its way, and its way is its material.
 pub(super) fn check_flexible(checked: &CheckedCable<'_>, found: &mut Verification, near: &Neighbours) {
-    [Law::Length, Law::Tension, Law::Compression].into_iter().for_each(|law| found.ask(law));
+    [Law::Length, Law::Slack, Law::Tension, Law::Compression].into_iter().for_each(|law| found.ask(law));
     let mut before = None;
     for bar in checked.bars() {
         check_tension(checked, found, before, &bar);
@@ -101,7 +101,9 @@ fn check_length(checked: &CheckedCable<'_>, found: &mut Verification, near: &Nei
     }
     let at_end = lengths(strained(checked, bar, at_end, at_end.norm(), touches), at_end.norm());
     let off = |l: &Lengths| l.value / l.limit;
-    report_length(checked, found, bar, if off(&at_end) < off(&spread) { at_end } else { spread });
+    let lengths = if off(&at_end) < off(&spread) { at_end } else { spread };
+    check_slack(checked, found, near, bar, lengths);
+    report_length(checked, found, bar, lengths);
 }
 
 pub(super) fn report_length(
@@ -125,7 +127,7 @@ fn length_slack(checked: &CheckedCable<'_>, material: f64, touches: bool) -> f64
 
 /// Returns how far the way of a bar of a flexible cable, whose internal force is `end` (N) of
 /// size `q` (N) at its end, is from what it should be, and how far it may, m; None where the
-/// force has no direction.
+/// force has no direction, or the bar's own weight turns it that far.
 #[inline]
 fn strained(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, end: Vec2, q: f64, touches: bool) -> Option<(Vec2, f64)> {
     let (compliance, start, p) = (1.0 / checked.cable.axial_stiffness_n, bar.from.force(), bar.forces[0]);
@@ -143,6 +145,9 @@ fn strained(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, end: Vec2, q: f64,
     let material = checked.thermal * bar.length;
     // Weight that a bar carries beyond its straight part turns it by as much.
     let lumped = if touches { LUMPED_WEIGHT_TURN * checked.weight_beside(bar.k) / most } else { 0.0 };
+    if lumped > FOLD_TURN {
+        return None;
+    }
     let limit = length_slack(checked, material, touches) + (TURN * turn + lumped) * material;
     Some((bar.way - rates * (material / 6.0), limit))
 }
@@ -154,4 +159,62 @@ fn folded(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, q: f64, touches: boo
     let stretched = material * (1.0 + larger(bar.forces[0], q) / checked.cable.axial_stiffness_n);
     let (way, limit) = (bar.way.norm(), length_slack(checked, material, touches));
     Lengths { value: way - stretched, limit, folded: larger(stretched - way, 0.0) }
+}
+
+/// Slack pulls where it hangs in the air: a shallow bow of weight w and chord c, m longer than that,
+/// with w c √(c / 24 m). No more of it may be left out than of the bar's own weight.
+fn check_slack(
+    checked: &CheckedCable<'_>,
+    found: &mut Verification,
+    near: &Neighbours,
+    bar: &CheckedBar<'_>,
+    Lengths { limit, folded, .. }: Lengths,
+) {
+    if !(folded > limit) {
+        return;
+    }
+    let (weight, chord) = (checked.body.norm(), bar.way.norm());
+    let pull = weight * chord * (chord / (24.0 * folded)).sqrt();
+    let allowed = larger(LUMPED_WEIGHT_TURN * weight * bar.length, REPORTED_BALANCE * checked.scale);
+    if pull > allowed && (bar.way - bow(checked, bar)).norm() > limit && hangs_in_air(checked, bar, near, folded) {
+        found.report(checked.finding(Law::Slack, bar.k, pull, allowed));
+    }
+}
+
+/// Straight parts in which the bow of a loose bar is looked at.
+const BOW_PARTS: usize = 8;
+
+/// Returns whether a bar, with so much of its material (m) beside its chord, hangs without anything
+/// to lie on: drawn as its chord c, a loose bar hangs below that by √(3/8 c · missing).
+fn hangs_in_air(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, near: &Neighbours, missing: f64) -> bool {
+    let at_wheel = || checked.wheels.iter().any(|w| [bar.k, bar.k + 1].iter().any(|&k| checked.is_led(k, w.0, w.1)));
+    let on_itself = || checked.foreign().next().is_some();
+    let Some(down) = checked.body.try_normalize(0.0) else { return false };
+    if checked.floor_rubs() || !near.of(bar.k).is_empty() || at_wheel() || on_itself() {
+        return false;
+    }
+    let depth = (0.375 * bar.way.norm() * missing).sqrt();
+    let at = |part: usize| {
+        let u = part as f64 / BOW_PARTS as f64;
+        bar.from.at() + bar.way * u + down * (4.0 * depth * u * (1.0 - u))
+    };
+    let mut met = Vec::new();
+    for part in 0..BOW_PARTS {
+        checked.surroundings.near(at(part), at(part + 1), checked.reach(), &mut met);
+    }
+    met.is_empty()
+}
+
+/// Returns the way (m) of a bar as it hangs from its first node with the force there.
+fn bow(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>) -> Vec2 {
+    let (load, length) = (checked.body.norm(), bar.length);
+    let (start, end) = (bar.from.force(), bar.from.force() - checked.body * length);
+    let up = -checked.body / load;
+    let aside = Vec2::new(-up.y, up.x);
+    let (level, low, high) = (start.dot(&aside), start.dot(&up), end.dot(&up));
+    let rise = (high.hypot(level) - low.hypot(level)) / load;
+    let span =
+        if level == 0.0 { 0.0 } else { level / load * ((high / level.abs()).asinh() - (low / level.abs()).asinh()) };
+    let stretch = (start + end) * (0.5 * length / checked.cable.axial_stiffness_n);
+    (up * rise + aside * span + stretch) * checked.thermal
 }

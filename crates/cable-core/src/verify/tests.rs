@@ -3,7 +3,7 @@
 use super::{Depth, Law, Verification, Verifier};
 use crate::scene::{Scene, Shape};
 use crate::solution::{CableSolution, ContactReport, Solution};
-use crate::{Model, Simulation};
+use crate::{Model, Simulation, SolveError};
 
 const SPAN: &str = r#"
 version = 1
@@ -162,6 +162,43 @@ name = "floor"
 kind = "terrain"
 points_m = [[-50.0, 0.0], [50.0, 0.0]]
 "#;
+
+/// Over a valley between two crests, in bars nearly as long as the valley is wide.
+const OVER_VALLEY: &str = r#"
+version = 1
+[[cables]]
+name = "cable"
+length_m = 23.9
+linear_density_kg_per_m = 0.0638
+axial_stiffness_n = 3e7
+diameter_m = 0.02
+service_tension_n = 1e6
+breaking_tension_n = 1e6
+min_bend_radius_m = 0.0
+supports = [ { name = "a", kind = "fixed", at_m = [0.0, 0.259] }, { name = "b", kind = "fixed", at_m = [22.1, 0.152] } ]
+[[obstacles]]
+name = "ground"
+kind = "terrain"
+friction = 1.16
+points_m = [[-99.0, 0.0], [0.0, 0.0], [1.73, 0.01], [3.44, -0.79], [6.53, -0.5], [8.21, 0.0], [10.5, 0.23], [11.8, 0.15],
+    [13.7, 0.45], [15.6, -0.54], [17.6, 0.42], [20.3, -0.04], [22.1, 0.0], [99.0, 0.0]]
+"#;
+
+#[test]
+fn slack_in_the_air_that_does_not_pull_is_seen() {
+    let scene = Scene::from_toml(OVER_VALLEY).unwrap();
+    let by_fem = |segments: usize| {
+        let mut scene = scene.clone();
+        scene.cables[0].segments = Some(segments);
+        Simulation::new(scene, Model::Fem).unwrap().settle()
+    };
+    let refused = by_fem(18).unwrap_err();
+    assert!(
+        matches!(&refused, SolveError::Unsound { finding, .. } if finding.law == Law::Slack),
+        "a bar of 1.3 m hangs 0.2 m below its chord, and pulls with 0.6 N: {refused:?}"
+    );
+    assert_eq!(check(&scene, &by_fem(144).unwrap()).findings, []);
+}
 
 #[test]
 fn a_contact_that_pulls_is_seen() {
