@@ -380,3 +380,20 @@ fn what_friction_holds_of_a_lying_load_does_not_push() {
         assert!(tip.tension_n < 0.5, "{end_first}: {} N", tip.tension_n);
     }
 }
+
+/// A stretched bar weighs less by the metre: read without that, a cable that hangs plumb past a
+/// corner had friction there without any normal force, and one over a post more than its cone.
+#[test]
+fn friction_of_a_stretched_cable_is_within_its_cone() {
+    for stiffness in [1e3, 1e4, 1e6] {
+        let mut scene = span(11.0, [10.0, -1.0], 20.0, stiffness);
+        let shape = Shape::Circle { center_m: [5.0, 0.0], radius_m: 0.5 };
+        scene.obstacles = vec![Obstacle { name: "post".to_owned(), shape, friction: Some(1e-6) }];
+        scene.cables[0].route_m = vec![[0.0, 0.0], [5.0, 0.6], [10.0, -1.0]];
+        let (cable, _) = solve(&scene, 20).unwrap();
+        let [contact] = &cable.contacts[..] else { panic!("{:?}", cable.contacts) };
+        let (cone, scale) = (1e-6 * contact.normal_n, cable.supports[0].reaction_y_n.abs());
+        println!("{stiffness:e}: {:.1e} of {:.1} N", contact.friction_n, contact.normal_n);
+        assert!(contact.friction_n.abs() <= 1.001 * cone + 1e-6 * scale, "{stiffness:e}: {contact:?}");
+    }
+}

@@ -70,7 +70,13 @@ impl StepContext<'_> {
         let at_material = slide.map_or(load.pull, |slide| {
             [k - 1, k].map(|e| bar_energy::pull_at_slide(mesh, self.input, e, k - e, x, slide))
         });
-        let lifted = [0, 1].map(|j| tension[j] + body.dot(&(weight[j].center - x[k])));
+        // Without friction Θ = T + T²/(2 EA) changes by what lifts the weight: what is stretched
+        // weighs less by the metre.
+        let compliance = 1.0 / mesh.axial_stiffness;
+        let lifted = [0, 1].map(|j| {
+            let theta = tension[j] * (1.0 + 0.5 * compliance * tension[j]) + body.dot(&(weight[j].center - x[k]));
+            2.0 * theta / (1.0 + larger(1.0 + 2.0 * compliance * theta, 0.0).sqrt())
+        });
         Some(Load { floor, lifted, at_material, ..load })
     }
 }
