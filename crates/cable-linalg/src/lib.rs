@@ -76,6 +76,7 @@ impl BandMatrix {
         self.half_bandwidth
     }
 
+    #[inline]
     fn index(&self, i: usize, j: usize) -> usize {
         let (i, j) = (i.min(j), i.max(j));
         debug_assert!(j - i <= self.half_bandwidth && j < self.rows, "({i}, {j}) lies outside the band");
@@ -88,18 +89,21 @@ impl BandMatrix {
     }
 
     /// The entry in row `i`, column `j` (either triangle), which must lie in the band.
+    #[inline]
     #[must_use]
     pub fn get(&self, i: usize, j: usize) -> f64 {
         self.values[self.index(i, j)]
     }
 
     /// Adds `value` to entry (i, j) and, by symmetry, (j, i). Call once for each pair.
+    #[inline]
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
         let k = self.index(i, j);
         self.values[k] += value;
     }
 
     /// Adds `value` to the entries (i, i) and (i + 1, i + 1).
+    #[inline]
     pub fn add_diagonal(&mut self, i: usize, value: f64) {
         let b = self.half_bandwidth;
         let Some(w) = self.values.get_mut((i + 1) * b + i..).and_then(|w| w.get_mut(..b + 2)) else { return };
@@ -109,6 +113,7 @@ impl BandMatrix {
 
     /// Adds a 2×2 block in rows i, i + 1 and columns j, j + 1 with i ≤ j and, by symmetry, its
     /// mirror; of a block on the diagonal (i = j) the entry below it is not read.
+    #[inline]
     pub fn add_block(&mut self, i: usize, j: usize, block: [[f64; 2]; 2]) {
         for c in 0..2 {
             let first = (j + c + 1) * self.half_bandwidth + i;
@@ -121,6 +126,7 @@ impl BandMatrix {
 
     /// Adds the 2×2 block [xx, xy; xy, yy] in rows i, i + 1 and again in rows i + 2, i + 3 on the
     /// diagonal, and its negative between them: a spring between two neighbouring nodes.
+    #[inline]
     pub fn add_spring(&mut self, i: usize, [xx, xy, yy]: [f64; 3]) {
         let b = self.half_bandwidth;
         let Some(w) = self.values.get_mut((i + 1) * b + i..).and_then(|w| w.get_mut(..3 * b + 4)) else { return };
@@ -137,6 +143,7 @@ impl BandMatrix {
     }
 
     /// Makes row and column `i` those of the identity: unknown `i` is prescribed.
+    #[inline]
     pub fn pin(&mut self, i: usize) {
         let b = self.half_bandwidth;
         for j in i.saturating_sub(b)..(i + b + 1).min(self.rows) {
@@ -161,15 +168,41 @@ impl BandMatrix {
     }
 }
 
+/// Rows of a factor, one after the other.
+#[derive(Clone, Debug)]
+struct Chain {
+    /// Rows of L, b numbers each up to the diagonal of ones, after b rows of zeros.
+    lower: Vec<f64>,
+    /// 1/d of each row, after b zeros.
+    inverse: Vec<f64>,
+}
+
+impl Chain {
+    /// Room for so many rows; None where there is no memory for it.
+    fn new(rows: usize, b: usize) -> Option<Self> {
+        let (mut lower, mut inverse) = (Vec::new(), Vec::new());
+        let size = rows.checked_add(b)?.checked_mul(b)?;
+        lower.try_reserve_exact(size).ok()?;
+        inverse.try_reserve_exact(rows + b).ok()?;
+        lower.resize(size, 0.0);
+        inverse.resize(rows + b, 0.0);
+        Some(Self { lower, inverse })
+    }
+}
+
 /// The factor of a [`BandMatrix`], with everything needed to factorise again and again.
 #[derive(Clone, Debug)]
 pub struct BandFactor {
     rows: usize,
     half_bandwidth: usize,
-    /// Rows of L, b numbers each up to the diagonal of ones, after b rows of zeros.
-    lower: Vec<f64>,
-    /// 1/d of each row, after b zeros.
-    inverse: Vec<f64>,
+    /// From the first row to the last.
+    whole: Chain,
+    /// From both ends to the b rows in the middle, which are the last of each.
+    halves: [Chain; 2],
+    /// L of the rows in the middle, and 1/d on its diagonal.
+    middle: [[f64; WIDEST]; WIDEST],
+    /// True if the last factor is the one from both ends.
+    from_both_ends: bool,
 }
 
 impl BandFactor {
@@ -183,13 +216,16 @@ impl BandFactor {
         if b > WIDEST {
             return Err(too_large);
         }
-        let (mut lower, mut inverse) = (Vec::new(), Vec::new());
-        let size = rows.checked_add(b).and_then(|n| n.checked_mul(b)).ok_or(too_large)?;
-        lower.try_reserve_exact(size).map_err(|_| too_large)?;
-        inverse.try_reserve_exact(rows + b).map_err(|_| too_large)?;
-        lower.resize(size, 0.0);
-        inverse.resize(rows + b, 0.0);
-        Ok(Self { rows, half_bandwidth: b, lower, inverse })
+        let chain = |rows| Chain::new(rows, b).ok_or(too_large);
+        let [first, second] = rows_beside_middle(rows, b);
+        Ok(Self {
+            rows,
+            half_bandwidth: b,
+            whole: chain(rows)?,
+            halves: [chain(first + b)?, chain(second + b)?],
+            middle: [[0.0; WIDEST]; WIDEST],
+            from_both_ends: false,
+        })
     }
 
     /// Number of rows it was made for.
@@ -206,11 +242,12 @@ impl BandFactor {
     /// or NaN pivot it is not.
     pub fn factor(&mut self, a: &BandMatrix) -> Result<(), FactorError> {
         debug_assert!(a.rows == self.rows && a.half_bandwidth == self.half_bandwidth);
+        self.from_both_ends = false;
         // With the band known when this is compiled its loops are unrolled: three times as fast.
         match self.half_bandwidth {
-            BARS_HALF_BANDWIDTH => factor(BARS_HALF_BANDWIDTH, &a.values, &mut self.lower, &mut self.inverse),
-            BENDING_HALF_BANDWIDTH => factor(BENDING_HALF_BANDWIDTH, &a.values, &mut self.lower, &mut self.inverse),
-            b => factor(b, &a.values, &mut self.lower, &mut self.inverse),
+            BARS_HALF_BANDWIDTH => factor(BARS_HALF_BANDWIDTH, &a.values, &mut self.whole),
+            BENDING_HALF_BANDWIDTH => factor(BENDING_HALF_BANDWIDTH, &a.values, &mut self.whole),
+            b => factor(b, &a.values, &mut self.whole),
         }
     }
 
@@ -218,41 +255,65 @@ impl BandFactor {
     /// down in.
     #[must_use]
     pub fn negative_pivots(&self) -> usize {
-        self.inverse.iter().skip(self.half_bandwidth).filter(|&&d| !(d > 0.0)).count()
+        self.whole.inverse.iter().skip(self.half_bandwidth).filter(|&&d| !(d > 0.0)).count()
     }
 
-    /// Factorises `a` and solves `a x = b`; `b` becomes `x`. The same as [`Self::factor`] and
-    /// [`Self::solve_in_place`], but the processor substitutes while it waits for the pivots.
+    /// Factorises `a` and solves `a x = b`; `b` becomes `x`. The elimination goes from both ends to
+    /// the middle, and substitutes on the way: each pivot waits for the one before it, and while
+    /// one end waits the processor works at the other (the "burn at both ends" of LINPACK's
+    /// tridiagonal solvers: J. Dongarra and others, LINPACK Users' Guide, SIAM 1979, chapter 7).
     ///
     /// # Errors
-    /// `NotPositive` with the first row whose pivot is not positive; then neither the factor nor
+    /// `NotPositive` with the first row whose pivot was not positive; then neither the factor nor
     /// `b` is of use.
     pub fn factor_and_solve(&mut self, a: &BandMatrix, b: &mut [f64]) -> Result<(), FactorError> {
         debug_assert!(a.rows == self.rows && a.half_bandwidth == self.half_bandwidth && b.len() == self.rows);
-        let (lower, inverse) = (&mut self.lower, &mut self.inverse);
+        self.from_both_ends = self.rows >= 4 * self.half_bandwidth;
+        let (halves, middle) = (&mut self.halves, &mut self.middle);
         match self.half_bandwidth {
-            BARS_HALF_BANDWIDTH => factor_and_solve(BARS_HALF_BANDWIDTH, &a.values, lower, inverse, b),
-            BENDING_HALF_BANDWIDTH => factor_and_solve(BENDING_HALF_BANDWIDTH, &a.values, lower, inverse, b),
-            half => factor_and_solve(half, &a.values, lower, inverse, b),
+            BARS_HALF_BANDWIDTH if self.from_both_ends => {
+                meet_in_the_middle::<BARS_HALF_BANDWIDTH>(&a.values, halves, middle, b)
+            }
+            BENDING_HALF_BANDWIDTH if self.from_both_ends => {
+                meet_in_the_middle::<BENDING_HALF_BANDWIDTH>(&a.values, halves, middle, b)
+            }
+            _ => {
+                self.factor(a)?;
+                self.solve_in_place(b);
+                Ok(())
+            }
         }
     }
 
     /// Solves `A x = b` with the last factorisation; `b` becomes `x`.
     pub fn solve_in_place(&mut self, b: &mut [f64]) {
+        let (halves, middle) = (&self.halves, &self.middle);
         match self.half_bandwidth {
-            BARS_HALF_BANDWIDTH => solve(BARS_HALF_BANDWIDTH, &self.lower, &self.inverse, b),
-            BENDING_HALF_BANDWIDTH => solve(BENDING_HALF_BANDWIDTH, &self.lower, &self.inverse, b),
-            half => solve(half, &self.lower, &self.inverse, b),
+            BARS_HALF_BANDWIDTH if self.from_both_ends => {
+                solve_from_both_ends::<BARS_HALF_BANDWIDTH>(halves, middle, b);
+            }
+            BENDING_HALF_BANDWIDTH if self.from_both_ends => {
+                solve_from_both_ends::<BENDING_HALF_BANDWIDTH>(halves, middle, b);
+            }
+            BARS_HALF_BANDWIDTH => solve::<BARS_HALF_BANDWIDTH>(&self.whole, b),
+            BENDING_HALF_BANDWIDTH => solve::<BENDING_HALF_BANDWIDTH>(&self.whole, b),
+            0 => solve::<0>(&self.whole, b),
+            1 => solve::<1>(&self.whole, b),
+            2 => solve::<2>(&self.whole, b),
+            4 => solve::<4>(&self.whole, b),
+            6 => solve::<6>(&self.whole, b),
+            7 => solve::<7>(&self.whole, b),
+            _ => solve::<WIDEST>(&self.whole, b),
         }
     }
 }
 
 /// L and 1/d of a matrix of half-bandwidth `b`.
 #[inline(always)]
-fn factor(b: usize, values: &[f64], lower: &mut [f64], inverse: &mut [f64]) -> Result<(), FactorError> {
+fn factor(b: usize, values: &[f64], chain: &mut Chain) -> Result<(), FactorError> {
     let mut done = Ok(());
     for (j, column) in values.chunks_exact(b + 1).enumerate() {
-        let d = eliminate(b, j, column, lower, inverse);
+        let d = eliminate(b, j, column, column[b], chain);
         if !(d > 0.0) {
             done = done.and(Err(FactorError::NotPositive { row: j, pivot: d }));
             if !(d < 0.0) {
@@ -263,11 +324,12 @@ fn factor(b: usize, values: &[f64], lower: &mut [f64], inverse: &mut [f64]) -> R
     done
 }
 
-/// Row `j` of L and of 1/d from column `j` of the matrix and the rows before it; returns d.
+/// Row `j` of L and of 1/d from the `b` entries of column `j` of the matrix above the diagonal, the
+/// one on it, and the rows before it; returns d.
 #[inline(always)]
-fn eliminate(b: usize, j: usize, column: &[f64], lower: &mut [f64], inverse: &mut [f64]) -> f64 {
-    let (before, here) = lower[j * b..].split_at_mut(b * b);
-    let (scales, pivot) = inverse[j..].split_at_mut(b);
+fn eliminate(b: usize, j: usize, column: &[f64], diagonal: f64, chain: &mut Chain) -> f64 {
+    let (before, here) = chain.lower[j * b..].split_at_mut(b * b);
+    let (scales, pivot) = chain.inverse[j..].split_at_mut(b);
     let row = &mut here[..b];
     // Into `row` first v, then L.
     for i in 0..b {
@@ -277,7 +339,7 @@ fn eliminate(b: usize, j: usize, column: &[f64], lower: &mut [f64], inverse: &mu
         }
         row[i] = v;
     }
-    let mut d = column[b];
+    let mut d = diagonal;
     for i in 0..b {
         let l = row[i] * scales[i];
         d -= row[i] * l;
@@ -287,66 +349,224 @@ fn eliminate(b: usize, j: usize, column: &[f64], lower: &mut [f64], inverse: &mu
     d
 }
 
-/// What the rows of a lower triangle with ones take from the `b` unknowns before them.
+/// Takes from an unknown what its row of L takes of the B before it.
 #[inline(always)]
-fn substitute(b: usize, row: &[f64], x: &mut f64, last: &mut [f64; WIDEST]) {
+fn substitute<const B: usize>(row: &[f64], x: &mut f64, last: &mut [f64; B]) {
     let mut sum = *x;
-    for k in 0..b {
+    for k in 0..B {
         sum -= row[k] * last[k];
     }
     *x = sum;
-    for k in 1..b {
+    for k in 1..B {
         last[k - 1] = last[k];
     }
-    if b > 0 {
-        last[b - 1] = sum;
+    if B > 0 {
+        last[B - 1] = sum;
     }
 }
 
-/// Factorises and solves in one pass, and one back.
+/// Adds what row `j` of a chain, whose unknown is `found`, takes from the B before it, nearest
+/// first.
 #[inline(always)]
-fn factor_and_solve(
-    b: usize,
+fn pass_back<const B: usize>(j: usize, chain: &Chain, found: f64, taken: &mut [f64; B]) {
+    let row = &chain.lower[(j + B) * B..][..B];
+    for k in 0..B {
+        let before = if k + 1 < B { taken[k + 1] } else { 0.0 };
+        taken[k] = before + row[B - 1 - k] * found;
+    }
+}
+
+/// The unknown of row `j` of a chain from Lᵀ, when those after it are known.
+#[inline(always)]
+fn substitute_back<const B: usize>(j: usize, chain: &Chain, x: &mut f64, taken: &mut [f64; B]) {
+    let found = *x * chain.inverse[j + B] - taken.first().unwrap_or(&0.0);
+    *x = found;
+    pass_back(j, chain, found, taken);
+}
+
+/// Solves L D Lᵀ x = x for a half-bandwidth B. What the next row needs stays in registers.
+#[inline(always)]
+fn solve<const B: usize>(chain: &Chain, x: &mut [f64]) {
+    let mut last = [0.0; B];
+    for (j, x) in x.iter_mut().enumerate() {
+        substitute(&chain.lower[(j + B) * B..][..B], x, &mut last);
+    }
+    let mut taken = [0.0; B];
+    for (j, x) in x.iter_mut().enumerate().rev() {
+        substitute_back(j, chain, x, &mut taken);
+    }
+}
+
+/// Rows before and after the `b` rows in the middle.
+fn rows_beside_middle(rows: usize, b: usize) -> [usize; 2] {
+    let outside = rows.saturating_sub(b);
+    [outside / 2, outside - outside / 2]
+}
+
+/// Column `j` of a matrix of half-bandwidth B, as it is read from the last row to the first.
+#[inline(always)]
+fn column_from_below<const B: usize>(values: &[f64], j: usize) -> [f64; B] {
+    let mut column = [0.0; B];
+    for i in 0..B {
+        column[i] = values.get((j + B - i) * (B + 1) + i).copied().unwrap_or(0.0);
+    }
+    column
+}
+
+/// Factorises from both ends and solves.
+///
+/// With the unknowns of the first part T, of the middle M and of the last part B,
+/// ```text
+/// S = A_MM − L_MT D_T L_MTᵀ − L_MB D_B L_MBᵀ,      S x_M = f_M − L_MT y_T − L_MB y_B
+/// ```
+/// where L y = f in T and B, which do not see each other.
+#[inline(always)]
+fn meet_in_the_middle<const B: usize>(
     values: &[f64],
-    lower: &mut [f64],
-    inverse: &mut [f64],
+    halves: &mut [Chain; 2],
+    middle: &mut [[f64; WIDEST]; WIDEST],
     x: &mut [f64],
 ) -> Result<(), FactorError> {
-    let mut last = [0.0; WIDEST];
-    for ((j, column), x) in values.chunks_exact(b + 1).enumerate().zip(x.iter_mut()) {
-        let d = eliminate(b, j, column, lower, inverse);
+    let rows = x.len();
+    let [first, second] = rows_beside_middle(rows, B);
+    let [top, bottom] = halves;
+    let (mut above, mut below) = ([0.0; B], [0.0; B]);
+    // The last part has as many rows as the first, or one more.
+    for r in 0..second {
+        let j = rows - 1 - r;
+        let column = column_from_below::<B>(values, j);
+        let d = eliminate(B, r, &column, values[j * (B + 1) + B], bottom);
         if !(d > 0.0) {
             return Err(FactorError::NotPositive { row: j, pivot: d });
         }
-        substitute(b, &lower[(j + b) * b..][..b], x, &mut last);
+        substitute(&bottom.lower[(r + B) * B..][..B], &mut x[j], &mut below);
+        if r < first {
+            let column = &values[r * (B + 1)..][..B + 1];
+            let d = eliminate(B, r, column, column[B], top);
+            if !(d > 0.0) {
+                return Err(FactorError::NotPositive { row: r, pivot: d });
+            }
+            substitute(&top.lower[(r + B) * B..][..B], &mut x[r], &mut above);
+        }
     }
-    substitute_back(b, lower, inverse, x);
+    // S, its upper triangle; row t of the middle is row B − 1 − t as seen from below.
+    for t in 0..B {
+        let column = &values[(first + t) * (B + 1)..][..B + 1];
+        for u in 0..=t {
+            middle[u][t] = column[B - t + u];
+        }
+    }
+    for t in 0..B {
+        let column = &values[(first + t) * (B + 1)..][..B + 1];
+        let scaled = eliminate_middle::<B>(first, t, column, top);
+        for u in 0..=t {
+            middle[u][t] -= share(&scaled, t, &top.lower[(first + u + B) * B..][..B], u);
+        }
+        let j = first + B - 1 - t;
+        let scaled = eliminate_middle::<B>(second, t, &column_from_below::<B>(values, j), bottom);
+        for u in 0..=t {
+            middle[B - 1 - t][B - 1 - u] -= share(&scaled, t, &bottom.lower[(second + u + B) * B..][..B], u);
+        }
+    }
+    for t in 0..B {
+        for u in 0..=t {
+            let mut v = middle[u][t];
+            for k in 0..u {
+                v -= middle[k][t] * middle[k][u] / middle[k][k];
+            }
+            middle[u][t] = v;
+        }
+        if !(middle[t][t] > 0.0) {
+            return Err(FactorError::NotPositive { row: first + t, pivot: middle[t][t] });
+        }
+    }
+    solve_middle([first, second], halves, middle, [above, below], x);
     Ok(())
 }
 
-/// Solves L D Lᵀ x = x for a half-bandwidth `b`. What the next row needs stays in registers.
+/// Row `t` of the middle in the `rows` before it: L, and v = L D, which it returns.
 #[inline(always)]
-fn solve(b: usize, lower: &[f64], inverse: &[f64], x: &mut [f64]) {
-    let mut last = [0.0; WIDEST];
-    for (j, x) in x.iter_mut().enumerate() {
-        substitute(b, &lower[(j + b) * b..][..b], x, &mut last);
+fn eliminate_middle<const B: usize>(rows: usize, t: usize, column: &[f64], chain: &mut Chain) -> [f64; B] {
+    let j = rows + t;
+    let mut v = [0.0; B];
+    for i in 0..B - t {
+        v[i] = column[i];
+        for k in 0..i {
+            v[i] -= v[k] * chain.lower[(j + i) * B + B + k - i];
+        }
     }
-    substitute_back(b, lower, inverse, x);
+    let (scales, row) = (&chain.inverse[j..j + B], &mut chain.lower[(j + B) * B..][..B]);
+    for i in 0..B {
+        row[i] = v[i] * scales[i];
+    }
+    v
 }
 
-/// Solves D Lᵀ x = x.
+/// The part of an entry of S: v of row `t` of the middle times L of row `u` ≤ `t`.
 #[inline(always)]
-fn substitute_back(b: usize, lower: &[f64], inverse: &[f64], x: &mut [f64]) {
-    // What the rows after take from the b rows before them, nearest first.
-    let mut taken = [0.0; WIDEST];
-    for (j, (x, scale)) in x.iter_mut().zip(&inverse[b..]).enumerate().rev() {
-        let row = &lower[(j + b) * b..][..b];
-        let found = *x * scale - taken[0];
-        *x = found;
-        for k in 0..b {
-            let before = if k + 1 < b { taken[k + 1] } else { 0.0 };
-            taken[k] = before + row[b - 1 - k] * found;
+fn share<const B: usize>(v: &[f64; B], t: usize, row: &[f64], u: usize) -> f64 {
+    // The row of t begins t − u columns after that of u.
+    (0..B - t).map(|i| v[i] * row[i + t - u]).sum()
+}
+
+/// Solves with a factor from both ends.
+#[inline(always)]
+fn solve_from_both_ends<const B: usize>(halves: &[Chain; 2], middle: &[[f64; WIDEST]; WIDEST], x: &mut [f64]) {
+    let rows = x.len();
+    let [first, second] = rows_beside_middle(rows, B);
+    let [top, bottom] = halves;
+    let (mut above, mut below) = ([0.0; B], [0.0; B]);
+    for r in 0..second {
+        substitute(&bottom.lower[(r + B) * B..][..B], &mut x[rows - 1 - r], &mut below);
+        if r < first {
+            substitute(&top.lower[(r + B) * B..][..B], &mut x[r], &mut above);
         }
+    }
+    solve_middle([first, second], halves, middle, [above, below], x);
+}
+
+/// The rest of a solution, when L is solved before and after the middle: `above` and `below` are
+/// the unknowns beside it.
+#[inline(always)]
+fn solve_middle<const B: usize>(
+    [first, second]: [usize; 2],
+    halves: &[Chain; 2],
+    middle: &[[f64; WIDEST]; WIDEST],
+    [above, below]: [[f64; B]; 2],
+    x: &mut [f64],
+) {
+    let rows = x.len();
+    let [top, bottom] = halves;
+    for t in 0..B {
+        // L of the middle ends with columns of the middle, which are zeros.
+        let row = &top.lower[(first + t + B) * B..][..B];
+        let up: f64 = (0..B - t).map(|i| row[i] * above[i + t]).sum();
+        x[first + t] -= up;
+        let row = &bottom.lower[(second + t + B) * B..][..B];
+        let down: f64 = (0..B - t).map(|i| row[i] * below[i + t]).sum();
+        x[first + B - 1 - t] -= down;
+    }
+    for t in 0..B {
+        for k in 0..t {
+            x[first + t] -= middle[k][t] / middle[k][k] * x[first + k];
+        }
+    }
+    for t in (0..B).rev() {
+        x[first + t] /= middle[t][t];
+        for k in t + 1..B {
+            x[first + t] -= middle[t][k] / middle[t][t] * x[first + k];
+        }
+    }
+    let mut taken = [[0.0; B]; 2];
+    for t in (0..B).rev() {
+        pass_back(first + t, top, x[first + t], &mut taken[0]);
+        pass_back(second + t, bottom, x[first + B - 1 - t], &mut taken[1]);
+    }
+    for r in (0..second).rev() {
+        if r < first {
+            substitute_back(r, top, &mut x[r], &mut taken[0]);
+        }
+        substitute_back(r, bottom, &mut x[rows - 1 - r], &mut taken[1]);
     }
 }
 
@@ -417,7 +637,11 @@ mod tests {
                 }
                 let mut at_once = b.clone();
                 factor.factor_and_solve(&a, &mut at_once).unwrap();
-                prop_assert_eq!(at_once, y);
+                let mut again = b.clone();
+                factor.solve_in_place(&mut again);
+                for ((x, y), z) in x.iter().zip(&at_once).zip(&again) {
+                    prop_assert!((x - y).abs() < 1e-12 && (x - z).abs() < 1e-12, "{} {} {}", x, y, z);
+                }
             }
         }
 
@@ -432,11 +656,15 @@ mod tests {
             let mut factor = BandFactor::new(rows, band).unwrap();
             let definite = factor.factor(&a).is_ok();
             prop_assert_eq!(definite, solve_coupled(&a, &[], &mut expected).is_ok());
+            let mut at_once = x.clone();
+            prop_assert_eq!(definite, factor.factor_and_solve(&a, &mut at_once).is_ok());
             if definite {
+                factor.factor(&a).unwrap();
                 factor.solve_in_place(&mut x);
                 let size = expected.iter().fold(1.0, |m: f64, e| m.max(e.abs()));
-                for (x, e) in x.iter().zip(&expected) {
+                for ((x, y), e) in x.iter().zip(&at_once).zip(&expected) {
                     prop_assert!((x - e).abs() < 1e-9 * size * size, "{} {}", x, e);
+                    prop_assert!((y - e).abs() < 1e-9 * size * size, "{} {}", y, e);
                 }
             }
         }
