@@ -7,7 +7,7 @@ use super::tolerance::{
     BALANCE_FRACTION, COMPRESSION, CONTACT_SHIFT_DIAMETERS, FOLD_TURN, LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE,
     REPORTED_BALANCE, TURN,
 };
-use crate::math::{Vec2, larger, smaller};
+use crate::math::{Vec2, cross, larger, smaller};
 use crate::verification::{Law, Verification};
 
 /// Difference of a piece's way from what it should be, its tolerance, and the material beyond its
@@ -162,7 +162,8 @@ fn folded(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, q: f64, touches: boo
 }
 
 /// Slack pulls where it hangs in the air: a shallow bow of weight w and chord c, m longer than that,
-/// with w c √(c / 24 m). No more of it may be left out than of the bar's own weight.
+/// with H = w a² / c · √(c / 24 m) across the load, where a is what the chord goes across it. A bar
+/// without tension in its middle may leave out no more of it than of its own weight.
 fn check_slack(
     checked: &CheckedCable<'_>,
     found: &mut Verification,
@@ -170,14 +171,20 @@ fn check_slack(
     bar: &CheckedBar<'_>,
     Lengths { limit, folded, .. }: Lengths,
 ) {
-    if !(folded > limit) {
+    let (weight, chord) = (checked.body.norm(), bar.way.norm());
+    if !(folded > limit && weight > 0.0 && chord > 0.0) {
         return;
     }
-    let (weight, chord) = (checked.body.norm(), bar.way.norm());
-    let pull = weight * chord * (chord / (24.0 * folded)).sqrt();
-    let allowed = larger(LUMPED_WEIGHT_TURN * weight * bar.length, REPORTED_BALANCE * checked.scale);
-    if pull > allowed && (bar.way - bow(checked, bar)).norm() > limit && hangs_in_air(checked, bar, near, folded) {
-        found.report(checked.finding(Law::Slack, bar.k, pull, allowed));
+    let lumped = LUMPED_WEIGHT_TURN * weight * bar.length;
+    if (bar.from.force() - checked.body * (0.5 * bar.length)).norm() > lumped {
+        return;
+    }
+    let across = |v: Vec2| cross(checked.body, v).abs() / weight;
+    let bow = weight * across(bar.way).powi(2) / chord * (chord / (24.0 * folded)).sqrt();
+    let left_out = bow - across(bar.from.force());
+    let allowed = larger(lumped, REPORTED_BALANCE * checked.scale);
+    if left_out > allowed && hangs_in_air(checked, bar, near, folded) {
+        found.report(checked.finding(Law::Slack, bar.k, left_out, allowed));
     }
 }
 
@@ -203,18 +210,4 @@ fn hangs_in_air(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, near: &Neighbo
         checked.surroundings.near(at(part), at(part + 1), checked.reach(), &mut met);
     }
     met.is_empty()
-}
-
-/// Returns the way (m) of a bar as it hangs from its first node with the force there.
-fn bow(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>) -> Vec2 {
-    let (load, length) = (checked.body.norm(), bar.length);
-    let (start, end) = (bar.from.force(), bar.from.force() - checked.body * length);
-    let up = -checked.body / load;
-    let aside = Vec2::new(-up.y, up.x);
-    let (level, low, high) = (start.dot(&aside), start.dot(&up), end.dot(&up));
-    let rise = (high.hypot(level) - low.hypot(level)) / load;
-    let span =
-        if level == 0.0 { 0.0 } else { level / load * ((high / level.abs()).asinh() - (low / level.abs()).asinh()) };
-    let stretch = (start + end) * (0.5 * length / checked.cable.axial_stiffness_n);
-    (up * rise + aside * span + stretch) * checked.thermal
 }
