@@ -102,7 +102,7 @@ fn check_length(checked: &CheckedCable<'_>, found: &mut Verification, near: &Nei
     let at_end = lengths(strained(checked, bar, at_end, at_end.norm(), touches), at_end.norm());
     let off = |l: &Lengths| l.value / l.limit;
     let lengths = if off(&at_end) < off(&spread) { at_end } else { spread };
-    check_slack(checked, found, near, bar, lengths);
+    check_slack(checked, found, near, bar, lengths.limit);
     report_length(checked, found, bar, lengths);
 }
 
@@ -161,18 +161,19 @@ fn folded(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, q: f64, touches: boo
     Lengths { value: way - stretched, limit, folded: larger(stretched - way, 0.0) }
 }
 
-/// Slack pulls where it hangs in the air: a shallow bow of weight w and chord c, m longer than that,
-/// with H = w a² / c · √(c / 24 m) across the load, where a is what the chord goes across it. A bar
-/// without tension in its middle may leave out no more of it than of its own weight.
+/// Slack pulls where it hangs in the air: a shallow bow of weight w and chord c, m longer than
+/// that, with H = w a² / c · √(c / 24 m) across the load, where a is what the chord goes across it.
+/// A bar without tension in its middle may leave out no more of it than of its own weight.
 fn check_slack(
     checked: &CheckedCable<'_>,
     found: &mut Verification,
     near: &Neighbours,
     bar: &CheckedBar<'_>,
-    Lengths { limit, folded, .. }: Lengths,
+    limit: f64,
 ) {
     let (weight, chord) = (checked.body.norm(), bar.way.norm());
-    if !(folded > limit && weight > 0.0 && chord > 0.0) {
+    let missing = checked.thermal * bar.length - chord;
+    if !(missing > limit && weight > 0.0 && chord > 0.0) {
         return;
     }
     let lumped = LUMPED_WEIGHT_TURN * weight * bar.length;
@@ -180,10 +181,10 @@ fn check_slack(
         return;
     }
     let across = |v: Vec2| cross(checked.body, v).abs() / weight;
-    let bow = weight * across(bar.way).powi(2) / chord * (chord / (24.0 * folded)).sqrt();
+    let bow = weight * across(bar.way).powi(2) / chord * (chord / (24.0 * missing)).sqrt();
     let left_out = bow - across(bar.from.force());
     let allowed = larger(lumped, REPORTED_BALANCE * checked.scale);
-    if left_out > allowed && hangs_in_air(checked, bar, near, folded) {
+    if left_out > allowed && hangs_in_air(checked, bar, near, missing) {
         found.report(checked.finding(Law::Slack, bar.k, left_out, allowed));
     }
 }
@@ -191,12 +192,19 @@ fn check_slack(
 /// Straight parts in which the bow of a loose bar is looked at.
 const BOW_PARTS: usize = 8;
 
-/// Returns whether a bar, with so much of its material (m) beside its chord, hangs without anything
-/// to lie on: drawn as its chord c, a loose bar hangs below that by √(3/8 c · missing).
+/// Returns whether a bar, with so much of its material (m) beside its chord, hangs between two
+/// places that are held without anything to lie on: drawn as its chord c, a loose bar hangs below
+/// that by √(3/8 c · missing).
 fn hangs_in_air(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, near: &Neighbours, missing: f64) -> bool {
     let at_wheel = || checked.wheels.iter().any(|w| [bar.k, bar.k + 1].iter().any(|&k| checked.is_led(k, w.0, w.1)));
     let on_itself = || checked.foreign().next().is_some();
     let Some(down) = checked.body.try_normalize(0.0) else { return false };
+    // What hangs free beside it would give way.
+    let held = |end: bool, beside: usize| end || !near.of(beside).is_empty();
+    let last = bar.k + 2 == checked.answer.nodes.len();
+    if !held(bar.k == 0, bar.k.wrapping_sub(1)) || !held(last, bar.k + 1) {
+        return false;
+    }
     if checked.floor_rubs() || !near.of(bar.k).is_empty() || at_wheel() || on_itself() {
         return false;
     }
