@@ -242,7 +242,7 @@ impl Layout {
             law,
             drag: 0.0,
             mobilised: self.problem.cable.friction_mobilised.way(),
-            lies_loose: false,
+            loose_where_tension_ends: false,
             loads: loads.collect(),
             settings: self.settings.clone(),
         };
