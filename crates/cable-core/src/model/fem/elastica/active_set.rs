@@ -8,9 +8,6 @@ use crate::model::fem::elastica::boundary_value::{
 use crate::model::fem::elastica::guess::contacts::contact_at;
 use crate::problem::Problem;
 
-/// Changes of the set of contacts before it is given up. 1 to 4 are usual.
-const MAX_CHANGES: usize = 60;
-
 /// Part of the cable's radius by which a cable may lie in an obstacle: what elements are off
 /// between their ends.
 const OVERLAP_TOLERANCE: f64 = 1e-3;
@@ -60,10 +57,8 @@ impl Elastica {
     pub(super) fn settle(&mut self, problem: &Problem) -> bool {
         // Contacts that were stretches and became points.
         let mut points = Vec::new();
-        for _ in 0..MAX_CHANGES {
-            if self.work > MOST_WORK {
-                return false;
-            }
+        // Each change costs work, 1 to 4 are usual.
+        while self.work <= MOST_WORK {
             let saved = self.clone();
             let solved = self.newton();
             if let Some(k) = self.shrinking.take().or_else(|| self.shortest_stretch(problem)) {

@@ -4,14 +4,14 @@
 use crate::math::{bounded, larger};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::SolverMemory;
-use crate::model::fem::state::step_setup::{StickSlipChanges, update_grips};
+use crate::model::fem::state::stick_slip::{ChangedNodes, StickSlipChanges, update_stick_slip};
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 
-/// A solution with refreshed normal forces, grips and factors.
+/// A solution with refreshed normal forces, changes and factors.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Lagged {
     pub(in crate::model::fem) done: Converged,
-    grips: StickSlipChanges,
+    changes: StickSlipChanges,
     /// Change of the friction of a contact in the last round, N.
     off: f64,
 }
@@ -19,12 +19,12 @@ pub(in crate::model::fem) struct Lagged {
 impl Lagged {
     /// True if friction is what the normal forces allow, at sliding nodes and elsewhere.
     pub(in crate::model::fem) fn is_lawful(&self, cable: &CableState) -> bool {
-        self.grips.hold() && self.off <= cable.mesh.tuning.newton.stretch_residual * cable.input.tolerance
+        self.changes.are_lawful() && self.off <= cable.mesh.tuning.newton.stretch_residual * cable.input.tolerance
     }
 }
 
 impl SolverMemory {
-    /// Minimises again and again with refreshed normal forces, grips and factors until nothing
+    /// Minimises again and again with refreshed normal forces, changes and factors until nothing
     /// changes.
     pub(in crate::model::fem) fn lag(
         &mut self,
@@ -43,7 +43,7 @@ impl SolverMemory {
         rounds: usize,
     ) -> Result<Lagged, Failure> {
         let tuning = cable.mesh.tuning.equilibrium;
-        let (mut total, mut grips) = (Converged::default(), StickSlipChanges::FOUND);
+        let (mut total, mut changes) = (Converged::default(), StickSlipChanges::NONE);
         let (mut fewest, mut spare) = (usize::MAX, tuning.whole_lag_rounds);
         let (mut off, mut part) = (0.0, 1.0);
         let mut before = Vec::with_capacity(cable.contacts.friction_contacts.capacity());
@@ -66,19 +66,20 @@ impl SolverMemory {
             cable.input.shift = cable.meshing.soft_shift();
             let done = self.minimise(cable, unknowns)?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
-            grips = update_grips(cable, unknowns, spare == 0);
-            if grips.wrong < fewest {
-                (fewest, spare) = (grips.wrong, tuning.whole_lag_rounds);
+            let nodes = if spare == 0 { ChangedNodes::One } else { ChangedNodes::All };
+            changes = update_stick_slip(cable, unknowns, nodes);
+            if changes.wrong < fewest {
+                (fewest, spare) = (changes.wrong, tuning.whole_lag_rounds);
             } else {
                 spare = spare.saturating_sub(1);
             }
             // A round that needed no iteration found the normal forces it had used.
             let found = done.iterations == 0 && off <= cable.input.tolerance;
-            if (found || cable.contacts.friction_contacts.is_empty()) && grips.wrong == 0 && grips.same {
-                return Ok(Lagged { done: total, grips, off: 0.0 });
+            if (found || cable.contacts.friction_contacts.is_empty()) && changes.wrong == 0 && changes.same {
+                return Ok(Lagged { done: total, changes, off: 0.0 });
             }
         }
-        Ok(Lagged { done: total, grips, off })
+        Ok(Lagged { done: total, changes, off })
     }
 
     /// The same, until the law holds at every sliding node.
