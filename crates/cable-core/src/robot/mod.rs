@@ -284,7 +284,8 @@ impl Vehicle {
         let (pull, weight) = (felt.x * cos + felt.y * sin, -self.weight * sin);
         let force = pull + weight;
         let sense = [drive.wanted, self.speed, -force].into_iter().find(|s| *s != 0.0).map_or(1.0, f64::signum);
-        let step = StepForces { mass: self.preset.mass_kg.value, h: drive.h, speed: self.speed * sense, force: force * sense };
+        let step =
+            StepForces { mass: self.preset.mass_kg.value, h: drive.h, speed: self.speed * sense, force: force * sense };
         let along = self.grip(drive, normal, sense).balance(step);
         let [speed, tracks, rolling] = [along.speed, along.tracks, along.rolling].map(|x| x * sense);
         SpeedBalance { speed, tracks, rolling, normal, pull, weight, ..along }

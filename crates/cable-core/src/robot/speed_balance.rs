@@ -1,5 +1,5 @@
-//! The speed of the vehicle at the end of a step balances inertia, drive, tracks, rolling resistance
-//! and the pull of the cable: this is where the cable holds the vehicle back.
+//! The speed of the vehicle at the end of a step balances inertia, drive, tracks, rolling
+//! resistance and the pull of the cable: this is where the cable holds the vehicle back.
 
 use crate::math::{bounded, larger, smaller};
 use crate::solution::robot_report::Going;

@@ -217,8 +217,8 @@ impl FemModel {
         Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
     }
 
-    /// Finds the equilibrium of a cable that can touch nothing. The continuation of a stiff cable up
-    /// in EI ends where its shape snaps over, as clamps against which it sags turn it upwards: a
+    /// Finds the equilibrium of a cable that can touch nothing. The continuation of a stiff cable
+    /// up in EI ends where its shape snaps over, as clamps against which it sags turn it upwards: a
     /// chain of bars that is let go follows it there, as it does in contact.
     fn equilibrium_without_contact(&mut self) -> Result<StepReport, SolveError> {
         self.make_present(Part::Statics)?;
@@ -240,11 +240,8 @@ impl FemModel {
     /// Finds the equilibrium of a cable that can touch something.
     fn equilibrium_in_contact(&mut self) -> Result<StepReport, SolveError> {
         let begins = !self.dynamics.rested && self.dynamics.cable.time() == 0.0;
-        let (start, spans) = if begins && self.starts_from_spans {
-            self.start_from_spans()
-        } else {
-            (SpansStart::Unknown, None)
-        };
+        let (start, spans) =
+            if begins && self.starts_from_spans { self.start_from_spans() } else { (SpansStart::Unknown, None) };
         if begins && !matches!(start, SpansStart::Accepted(_)) {
             if self.statics.settle(&self.dragged).is_ok() {
                 self.dynamics.begin_at(&self.statics.state(), &self.dragged);
@@ -345,8 +342,8 @@ impl FemModel {
         }
     }
 
-    /// Finds the equilibrium of a stiff cable as an elastica, from that of a flexible one; None where
-    /// there is none.
+    /// Finds the equilibrium of a stiff cable as an elastica, from that of a flexible one; None
+    /// where there is none.
     fn elastica_from_flexible(&mut self) -> Option<StepReport> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
@@ -372,7 +369,8 @@ impl FemModel {
         let cost = self.accept_elastica(found)?;
         // A shape that differs by more than the error of a mesh is another equilibrium.
         let near = |n: &Node| {
-            let at = self.elastica_answer.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
+            let at =
+                self.elastica_answer.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
             at.is_some_and(|at| (at - n.at()).norm() <= STIFF_SHIFT_LIMIT * self.problem.length)
         };
         if !answer.nodes.iter().all(near) {

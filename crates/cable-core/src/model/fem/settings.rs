@@ -120,8 +120,8 @@ pub struct NewtonTuning {
     /// Smaller: they land too hard. Larger: they are let down in more steps.
     pub landing_gap_fraction: f64,
     /// Part of the room that constraints and step bound leave to each other: contacts within the
-    /// reach are held to this part of the loss that the bound lets them, and wider gaps are bound to
-    /// this part of where foreseen contacts land. Smaller: more steps. Larger: rounding lets the
+    /// reach are held to this part of the loss that the bound lets them, and wider gaps are bound
+    /// to this part of where foreseen contacts land. Smaller: more steps. Larger: rounding lets the
     /// bound cut a step that lands.
     pub bound_margin: f64,
     /// Stiffness of a constraint, in the largest stiffness at its nodes. Softer: nodes still run

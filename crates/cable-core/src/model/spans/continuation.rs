@@ -16,7 +16,7 @@ use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::slip_predictor::predict_slip;
 use crate::model::spans::newton::{Solved, Work};
 use crate::model::spans::run::CableRun;
-use crate::model::spans::slack::{self, Sought};
+use crate::model::spans::slack::{self, LooseShapes};
 use crate::model::spans::verify::clearance;
 use crate::model::spans::verify::equilibrium;
 use crate::model::spans::verify::tension_loss;
@@ -77,7 +77,7 @@ impl CableEquilibrium {
         work.before.clone_from(&self.strands);
         work.instants[0].clone_from(&self.instant);
         self.instant.clone_from(to);
-        layout.give(&mut self.course, to);
+        layout.set_course(&mut self.course, to);
         for k in 0..self.strands.len() {
             match self.solve_strand(layout, k, routes.get(k).map(Vec::as_slice), work) {
                 Ok(one) => taken = taken.and(one),
@@ -98,7 +98,7 @@ impl CableEquilibrium {
     fn undo(&mut self, layout: &Layout, work: &Work) {
         self.strands.clone_from(&work.before);
         self.instant.clone_from(&work.instants[0]);
-        layout.give(&mut self.course, &self.instant);
+        layout.set_course(&mut self.course, &self.instant);
     }
 
     /// Solves one strand for the present instant; on an error it is where it was. `route` is the
@@ -223,11 +223,11 @@ impl CableEquilibrium {
         }
         let [old, new] = &mut work.shapes;
         if other {
-            layout.give(&mut self.course, &work.instants[0]);
+            layout.set_course(&mut self.course, &work.instants[0]);
         }
         tunnelling::shape(start, &self.course, old);
         if other {
-            layout.give(&mut self.course, &self.instant);
+            layout.set_course(&mut self.course, &self.instant);
         }
         tunnelling::shape(&self.strands[k], &self.course, new);
         match swept_corners::through(&layout.corners, old, new, &mut work.turns) {
@@ -239,7 +239,7 @@ impl CableEquilibrium {
     /// Lays a strand that lies loose anew while its supports stay where they are. Supports that
     /// move draw its folds over the ground, and the force for that is not modelled.
     fn lay_loose_again(&mut self, layout: &Layout, k: usize) -> Result<StepStats, Failure> {
-        let found = slack::lay(layout, k, &self.course, &self.instant, Sought::AnyTension);
+        let found = slack::loose_strand(layout, k, &self.course, &self.instant, LooseShapes::AnyTension);
         let strand = &mut self.strands[k];
         let Some(found) = found.filter(|f| f.ties == strand.ties) else {
             return Err(Failure::Drawn { s: strand.from });
@@ -304,7 +304,7 @@ impl CableEquilibrium {
             }
         }
         self.strands = before;
-        layout.give(&mut self.course, &old);
+        layout.set_course(&mut self.course, &old);
         self.instant = old;
         Err(pushed.unwrap_or(Failure::Restless { s: 0.0 }))
     }

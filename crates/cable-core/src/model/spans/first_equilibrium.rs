@@ -29,7 +29,7 @@ use crate::model::spans::initial::tension;
 use crate::model::spans::newton::Work;
 use crate::model::spans::run::CableRun;
 use crate::model::spans::settings::ContinuationSettings;
-use crate::model::spans::slack::{self, Sought};
+use crate::model::spans::slack::{self, LooseShapes};
 use crate::solution::Node;
 
 /// A first shape from which an equilibrium is sought.
@@ -223,7 +223,7 @@ impl CableEquilibrium {
     /// The cable in heaps where it comes down, hanging over crests, without tension where it lies.
     pub fn in_heaps(layout: &Layout, instant: &BoundaryConditions) -> Option<Self> {
         let course = layout.course(layout.curves(), instant);
-        let strand = |k: usize| slack::lay(layout, k, &course, instant, Sought::AnyTension);
+        let strand = |k: usize| slack::loose_strand(layout, k, &course, instant, LooseShapes::AnyTension);
         let strands = (0..layout.strands.len()).map(strand).collect::<Option<Vec<CableRun>>>()?;
         Some(Self { strands, course, instant: instant.clone() })
     }
@@ -241,7 +241,9 @@ impl CableEquilibrium {
         let mut first = None;
         for unused in layout.settings.continuation.unused_cone_fractions {
             let course = layout.course(layout.curves(), instant);
-            let Some(strands) = from_solution::take(layout, &course, instant, nodes, 1.0 - unused) else { continue };
+            let Some(strands) = from_solution::strands_of(layout, &course, instant, nodes, 1.0 - unused) else {
+                continue;
+            };
             let mut network = Self { strands, course, instant: instant.clone() };
             match network.step(layout, instant, work) {
                 Ok(_) => return Ok(network),
@@ -275,13 +277,13 @@ impl CableEquilibrium {
         let tuned = &layout.settings.continuation;
         let taut = shape.length.tension_weights(tuned);
         let mut begin = goal.clone();
-        layout.give(&mut self.course, &begin);
+        layout.set_course(&mut self.course, &begin);
         let routes = self.lay_strands(layout, &begin, shape)?;
         if let Some(taut) = taut {
             begin.thermal = self.shrunk_thermal(layout, goal, taut);
             begin.load *= tuned.first_load_fraction;
             begin.forces.iter_mut().for_each(|f| *f *= tuned.first_load_fraction);
-            layout.give(&mut self.course, &begin);
+            layout.set_course(&mut self.course, &begin);
             for (strand, part) in self.strands.iter_mut().zip(&layout.strands) {
                 if part.supports.iter().all(Option::is_some) {
                     tension::tighten(strand, &self.course);
@@ -312,14 +314,17 @@ impl CableEquilibrium {
         self.strands.clear();
         let mut routes = Vec::new();
         for k in 0..layout.strands.len() {
-            let loose =
-                if may_lie_loose { slack::lay(layout, k, &self.course, begin, Sought::NoTension) } else { None };
+            let loose = if may_lie_loose {
+                slack::loose_strand(layout, k, &self.course, begin, LooseShapes::NoTension)
+            } else {
+                None
+            };
             if let Some(strand) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
                 self.strands.push(strand);
                 routes.push(Vec::new());
                 continue;
             }
-            let laid = contacts::lay(layout, k, &self.course, begin, shape.posts);
+            let laid = contacts::strand_along_route(layout, k, &self.course, begin, shape.posts);
             let no_way = Failure::ContactImpossible { s: layout.strands[k].material[0], at: begin.places[0] };
             let (strand, route) = laid.ok_or(no_way)?;
             self.strands.push(strand);
@@ -366,7 +371,7 @@ impl CableEquilibrium {
         goal: &BoundaryConditions,
         work: &mut Work,
     ) -> Result<StepStats, Failure> {
-        layout.give(&mut self.course, goal);
+        layout.set_course(&mut self.course, goal);
         for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
             if self.course.friction(c) > 0.0 {
                 c.mode = Mode::Hold;

@@ -12,7 +12,7 @@
 //! | `run` | free spans and contacts in a row between two grips: the unknowns |
 //! | `boundary_conditions` | supports and loads at an instant, and how a cable falls into runs |
 //! | `newton`, `numerics` | all unknowns of a run at once; band LU, root finding |
-//! | `changes` | contacts that come, go, join and part |
+//! | `changes` | contacts that are released, merged and made, until none is needed |
 //! | `initial` | the first shape: route, shortest path, contacts, tension; or another answer |
 //! | `first_equilibrium` | the search for the first equilibrium, from several first shapes |
 //! | `continuation` | from one instant to the next, in steps that are halved |

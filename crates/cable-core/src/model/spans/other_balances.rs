@@ -42,7 +42,7 @@ impl CableEquilibrium {
         let before = self.clone();
         self.slide_from(layout, to, |_| by, work).inspect_err(|_| {
             *self = before;
-            layout.give(&mut self.course, to);
+            layout.set_course(&mut self.course, to);
         })
     }
 

@@ -147,8 +147,8 @@ impl Dynamics {
             return true;
         }
         // A cable that cannot get out of the way of the robot holds it.
-        let waits = progress.depth >= self.cable.mesh.tuning.step.halvings_before_robot_waits
-            && outline_waits(&mut self.cable);
+        let waits =
+            progress.depth >= self.cable.mesh.tuning.step.halvings_before_robot_waits && outline_waits(&mut self.cable);
         if waits {
             (progress.depth, progress.size) = (0, progress.left);
         }

@@ -105,8 +105,7 @@ impl Relaxation {
     /// Goes on, with exact rounds, after a search without resistance that failed.
     fn go_on_exactly(&mut self) {
         self.exact_rounds = true;
-        self.resistance =
-            (self.resistance.max(LEAST_RESISTANCE * self.first) * RETURNED_RESISTANCE).min(self.first);
+        self.resistance = (self.resistance.max(LEAST_RESISTANCE * self.first) * RETURNED_RESISTANCE).min(self.first);
     }
 }
 
@@ -118,9 +117,9 @@ impl Dynamics {
         self.rollback.save(&self.cable);
         let squeezed = self.cable.mesh.tuning.equilibrium.squeezed_residual;
         let mut found = self.relax_within(f64::INFINITY, to, dragged);
-        if found.is_err_and(|f| {
-            f.cause != FailureCause::WorkSpent && f.residual > squeezed * self.cable.input.tolerance
-        }) {
+        if found
+            .is_err_and(|f| f.cause != FailureCause::WorkSpent && f.residual > squeezed * self.cable.input.tolerance)
+        {
             self.rollback.restore(&mut self.cable);
             found = self.relax_within(squeezed, to, dragged);
         }

@@ -1,5 +1,5 @@
-//! The number of bars of a cable: that which the scene or the settings give, else one that suits its
-//! length and surroundings.
+//! The number of bars of a cable: that which the scene or the settings give, else one that suits
+//! its length and surroundings.
 
 use crate::model::Settings;
 use crate::model::fem::settings::StartTuning;

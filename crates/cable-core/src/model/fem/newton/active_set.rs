@@ -112,7 +112,12 @@ impl PredictedContacts {
         let reach = contacts.barrier.reach;
         self.stops.clear();
         for touch in self.touches.iter().filter(|t| t.pair.weight > 0.0) {
-            self.stops.push(Stop::of(touch, mesh, system, landing_gap(&mesh.tuning.newton, touch.pair.gap.gap_m, reach)));
+            self.stops.push(Stop::of(
+                touch,
+                mesh,
+                system,
+                landing_gap(&mesh.tuning.newton, touch.pair.gap.gap_m, reach),
+            ));
         }
         if contacts.own.shape.is_on() {
             let within = reach + 2.0 * longest(direction);

@@ -247,8 +247,8 @@ impl<'a> OutlineStep<'a> {
         }
     }
 
-    /// The part of a gap that the sweep asks for: half of what is given back, so that rounding stops
-    /// nothing.
+    /// The part of a gap that the sweep asks for: half of what is given back, so that rounding
+    /// stops nothing.
     fn swept_gap_fraction(&self) -> f64 {
         0.5 * self.step.mesh.tuning.outline.kept_gap_fraction
     }

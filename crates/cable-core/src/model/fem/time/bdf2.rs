@@ -18,8 +18,8 @@ use crate::model::fem::system::loss::damping_time;
 use crate::model::fem::system::step_input::Unknowns;
 use crate::model::fem::time::branches;
 
-/// Part β of BDF3 in a step of a cable that can touch nothing. It is A-stable up to ½; 0.48 is V. N.
-/// Vatsa's, M. H. Carpenter's and D. P. Lockard's ("Re-evaluation of an optimized second order
+/// Part β of BDF3 in a step of a cable that can touch nothing. It is A-stable up to ½; 0.48 is V.
+/// N. Vatsa's, M. H. Carpenter's and D. P. Lockard's ("Re-evaluation of an optimized second order
 /// backward difference (BDF2OPT) scheme for unsteady flow applications", AIAA 2010-122). Less:
 /// vibrations are slower, up to twice, and damped, up to 25 times; more: what bars ring is not
 /// damped at all.
@@ -47,7 +47,12 @@ impl Weights {
     /// The third of steps of `h` (s) with a part of BDF3.
     fn blended(h: f64) -> Self {
         let alpha = 1.5 + BDF3_PART / 3.0;
-        Self { now: (2.0 + BDF3_PART) / alpha, past: (0.5 + BDF3_PART) / alpha, older: BDF3_PART / 3.0 / alpha, a: alpha / h }
+        Self {
+            now: (2.0 + BDF3_PART) / alpha,
+            past: (0.5 + BDF3_PART) / alpha,
+            older: BDF3_PART / 3.0 / alpha,
+            a: alpha / h,
+        }
     }
 
     pub(in crate::model::fem) fn place(self, m: &Motion, k: usize) -> Vec2 {

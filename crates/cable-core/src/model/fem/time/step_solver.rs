@@ -66,7 +66,11 @@ impl SolverMemory {
     /// All grips that are wrong are changed at once while that makes them fewer; then one at a time
     /// (J. Júdice, F. Pires, "A block principal pivoting algorithm for large-scale strictly
     /// monotone linear complementarity problems", Computers & Operations Research 21, 1994).
-    fn minimise_with_stick_slip(&mut self, cable: &mut CableState, unknowns: &mut Unknowns) -> Result<Converged, Failure> {
+    fn minimise_with_stick_slip(
+        &mut self,
+        cable: &mut CableState,
+        unknowns: &mut Unknowns,
+    ) -> Result<Converged, Failure> {
         let mut done = self.minimise(cable, unknowns)?;
         let sliding = cable.mesh.sliding.iter().flatten().count();
         let (mut fewest, mut spare) = (usize::MAX, cable.mesh.tuning.step.grip_rounds);
