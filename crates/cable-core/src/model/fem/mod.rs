@@ -244,7 +244,7 @@ impl FemModel {
             if begins && self.starts_from_spans { self.start_from_spans() } else { (SpansStart::Unknown, None) };
         if begins && !matches!(start, SpansStart::Accepted(_)) {
             if self.statics.settle(&self.dragged).is_ok() {
-                self.dynamics.begin_at(&self.statics.state(), &self.dragged);
+                self.dynamics.start_from_shape(&self.statics.state(), &self.dragged);
             }
             self.start_from_coarse_mesh();
         }

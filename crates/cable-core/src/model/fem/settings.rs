@@ -339,11 +339,11 @@ pub struct EquilibriumTuning {
     /// little friction 3e-4 and more.
     pub unheld_load_fraction: f64,
     /// Unbalanced force of a polished rest in its stages, in tolerances. Smaller: nothing but
-    /// rounding is gained. Larger: what is left at a hundred nodes of a lay that all but slides is
-    /// seen in the balance of the whole.
+    /// rounding is gained. Larger: the forces left at a hundred nodes of a cable that all but
+    /// slides show in the balance of the whole.
     pub polish_residuals: [f64; 3],
-    /// Newton iterations of the stages. The first has what the search left by coming to its last
-    /// iteration. Fewer: what slides as a whole on smooth ground is left as it slides.
+    /// Newton iterations of the stages. The first continues a search that came to its last
+    /// iteration. Fewer: a cable that slides as a whole on smooth ground does not come to rest.
     pub polish_iterations: [usize; 3],
     /// Times a rest is sought again because corners were met or left on the way to it. Fewer: it is
     /// refused. More: a cycle costs more.

@@ -125,7 +125,7 @@ impl Dynamics {
         let to = start + piece;
         let mut aims = std::mem::take(&mut self.hand_drive.aims);
         self.cable.aim(&mut aims, request.dragged, piece / (request.due - start));
-        let tried = self.quiet_step(to, &aims).or_else(|failure| {
+        let tried = self.step_without_pull(to, &aims).or_else(|failure| {
             let tuning = &self.cable.mesh.tuning.equilibrium;
             if failure.cause == FailureCause::CornerPulls || depth < tuning.halvings_before_relaxation {
                 return Err(failure);

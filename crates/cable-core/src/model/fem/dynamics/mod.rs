@@ -184,7 +184,7 @@ impl Dynamics {
         let weights = Weights::of_step(&self.cable.motion, h);
         set_inertia(&mut self.cable, weights, h, &mut self.solver.decay);
         let (m, input, mesh) = (&self.cable.motion, &self.cable.input, &self.cable.mesh);
-        self.cable.contacts.look_around(&self.cable.problem, mesh, &m.positions, |k| {
+        self.cable.contacts.list_neighbours(&self.cable.problem, mesh, &m.positions, |k| {
             if mesh.held[k] { (input.target[k] - m.positions[k]).norm() } else { m.velocities[k].norm() * h }
         });
         weights

@@ -7,7 +7,7 @@ use crate::model::fem::state::control::SolverMemory;
 use crate::model::fem::state::stick_slip::{ChangedNodes, StickSlipChanges, update_stick_slip};
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 
-/// A solution with refreshed normal forces, changes and factors.
+/// A solution in which normal forces and stick-slip states were renewed.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Lagged {
     pub(in crate::model::fem) done: Converged,
@@ -24,19 +24,19 @@ impl Lagged {
 }
 
 impl SolverMemory {
-    /// Minimises again and again with refreshed normal forces, changes and factors until nothing
-    /// changes.
-    pub(in crate::model::fem) fn lag(
+    /// Minimises in rounds, with normal forces and stick-slip states renewed after each, until
+    /// nothing changes.
+    pub(in crate::model::fem) fn solve_with_lag(
         &mut self,
         cable: &mut CableState,
         unknowns: &mut Unknowns,
         rounds: usize,
     ) -> Result<Converged, Failure> {
-        self.lag_until(cable, unknowns, rounds).map(|found| found.done)
+        self.solve_rounds(cable, unknowns, rounds).map(|found| found.done)
     }
 
-    /// The same; says what was found.
-    pub(in crate::model::fem) fn lag_until(
+    /// The same; returns the state of friction, too.
+    pub(in crate::model::fem) fn solve_rounds(
         &mut self,
         cable: &mut CableState,
         unknowns: &mut Unknowns,
@@ -48,12 +48,12 @@ impl SolverMemory {
         let (mut off, mut part) = (0.0, 1.0);
         let mut before = Vec::with_capacity(cable.contacts.friction_contacts.capacity());
         for round in 0..rounds {
-            cable.contacts.look_around(&cable.problem, &cable.mesh, &unknowns.positions, |_| 0.0);
+            cable.contacts.list_neighbours(&cable.problem, &cable.mesh, &unknowns.positions, |_| 0.0);
             std::mem::swap(&mut before, &mut cable.contacts.friction_contacts);
             cable.contacts.prepare(&cable.problem, &cable.mesh, &unknowns.positions, &cable.motion.positions);
             if round > 0 {
-                let now = cable.contacts.ease(&before, part);
-                // Forces that go to and fro get no nearer by steps as long as before.
+                let now = cable.contacts.blend_friction(&before, part);
+                // Forces that oscillate come no nearer to each other by steps as long as before.
                 if round >= tuning.whole_lag_rounds {
                     part = if now < (1.0 - 0.5 * part) * off {
                         bounded(tuning.lag_growth * part, 0.0, 1.0)
@@ -83,13 +83,13 @@ impl SolverMemory {
     }
 
     /// The same, until the law holds at every sliding node.
-    pub(in crate::model::fem) fn lag_wholly(
+    pub(in crate::model::fem) fn solve_lawfully(
         &mut self,
         cable: &mut CableState,
         unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
         let sliding = cable.mesh.sliding.iter().flatten().count();
-        let found = self.lag_until(
+        let found = self.solve_rounds(
             cable,
             unknowns,
             cable.mesh.tuning.equilibrium.lag_rounds + cable.mesh.tuning.step.grip_rounds_each * sliding,

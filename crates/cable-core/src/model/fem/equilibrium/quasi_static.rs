@@ -54,7 +54,7 @@ fn crosses_itself(x: &[Vec2]) -> bool {
 }
 
 impl Dynamics {
-    /// A step without inertia to the time `to`; friction remembers.
+    /// A step without inertia to the time `to` (s); friction remembers.
     pub(in crate::model::fem) fn rest_step(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         self.rest_rounds(to, dragged, f64::INFINITY)
     }
@@ -64,7 +64,7 @@ impl Dynamics {
     /// # Errors
     /// `CornerPulls` where a corner would have to pull, before anything is accepted: what slides
     /// meanwhile would keep what that did.
-    pub(in crate::model::fem) fn quiet_step(
+    pub(in crate::model::fem) fn step_without_pull(
         &mut self,
         to: f64,
         dragged: &[Option<Vec2>],
@@ -82,7 +82,7 @@ impl Dynamics {
             self.cable.input.most_noise =
                 self.cable.mesh.tuning.equilibrium.squeezed_residual * self.cable.input.tolerance;
             let mut unknowns = self.solver.present_unknowns(&self.cable);
-            let mut done = self.solver.lag_wholly(&mut self.cable, &mut unknowns);
+            let mut done = self.solver.solve_lawfully(&mut self.cable, &mut unknowns);
             if done.is_err_and(|f| f.cause != FailureCause::WorkSpent)
                 && self.cable.contacts.slip < self.cable.contacts.tuning.slip_m
             {
@@ -90,7 +90,7 @@ impl Dynamics {
                 // more easily on ground that gives way.
                 self.cable.contacts.set_slip(self.cable.contacts.tuning.slip_m);
                 unknowns = self.solver.present_unknowns(&self.cable);
-                done = self.solver.lag_wholly(&mut self.cable, &mut unknowns);
+                done = self.solver.solve_lawfully(&mut self.cable, &mut unknowns);
             }
             if round == 0
                 && pull.is_finite()
@@ -131,7 +131,7 @@ impl Dynamics {
             (self.cable.input.tolerance, self.cable.input.max_iterations) =
                 (larger(part * exact, rounding), iterations);
             let mut unknowns = self.solver.present_unknowns(&self.cable);
-            let Ok(done) = self.solver.lag(&mut self.cable, &mut unknowns, tuning.lag_rounds) else {
+            let Ok(done) = self.solver.solve_with_lag(&mut self.cable, &mut unknowns, tuning.lag_rounds) else {
                 self.rollback.restore(&mut self.cable);
                 break;
             };
@@ -210,7 +210,7 @@ impl Dynamics {
             self.cable.motion.positions = x;
             self.forget_history();
         }
-        match self.find_rest(dragged)? {
+        match self.find_equilibrium(dragged)? {
             Ok(done) => {
                 self.rested = true;
                 let done = self.polish(done, dragged);
@@ -247,7 +247,7 @@ impl Dynamics {
     /// Begins at `shape`, a rest without contact, if the cable gets there from its lay without
     /// coming near to anything. The way down with contact takes as many rounds as a cable that
     /// hangs has bars.
-    pub(in crate::model::fem) fn begin_at(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
+    pub(in crate::model::fem) fn start_from_shape(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
         let touched = self.cable.problem.floor_friction.is_some() || self.cable.contacts.own.shape.is_on();
         let alone = self.cable.outline.is_none() && !touched && !self.cable.problem.world.is_empty();
         if self.rested || !alone || self.cable.mesh.sliding.iter().any(Option::is_some) {
@@ -286,9 +286,9 @@ impl Dynamics {
         self.cable.input.tolerance = exact;
     }
 
-    /// The resting place; one that the cable reaches without ever touching itself is found as if it
-    /// could pass itself, for its first lay is no shape it could have.
-    fn find_rest(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
+    /// Finds the equilibrium. One in which the cable does not touch itself is sought first as if it
+    /// could pass itself: its first shape may cross itself.
+    fn find_equilibrium(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
         let time = self.cable.motion.time;
         let shape = self.cable.contacts.own.shape;
         if !shape.is_on() {
@@ -303,7 +303,7 @@ impl Dynamics {
             }
             self.rollback.restore(&mut self.cable);
             self.rollback.save(&self.cable);
-            self.begin_on_a_bow();
+            self.start_on_an_arc();
         }
         let overlap = self.cable.contacts.own.smallest_gap(&self.cable.mesh, &self.cable.motion.positions, 0.0);
         if overlap.is_some() || crosses_itself(&self.cable.motion.positions) {
@@ -316,7 +316,7 @@ impl Dynamics {
 
     /// A cable with much to spare for which no route is drawn begins on an arc, where it does not
     /// touch itself: along a straight line it would, or stand on itself as a row of beads does.
-    fn begin_on_a_bow(&mut self) {
+    fn start_on_an_arc(&mut self) {
         let cable = &mut self.cable;
         let way: f64 = cable.motion.positions.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
         if !cable.problem.cable.route_m.is_empty()

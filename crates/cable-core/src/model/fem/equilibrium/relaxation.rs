@@ -209,7 +209,7 @@ impl Dynamics {
         // would slide as if on ice.
         let mut unknowns = self.solver.present_unknowns(&self.cable);
         let rounds = self.cable.mesh.tuning.equilibrium.whole_lag_rounds;
-        let solved = self.solver.lag_until(&mut self.cable, &mut unknowns, rounds);
+        let solved = self.solver.solve_rounds(&mut self.cable, &mut unknowns, rounds);
         self.cable.input.tolerance = exact;
         (unknowns, solved)
     }

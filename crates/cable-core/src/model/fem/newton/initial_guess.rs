@@ -9,7 +9,7 @@ use crate::problem::Problem;
 use crate::problem::ground_route::above_ground;
 use crate::scene::SupportKind;
 
-/// Passes of pushing the first lay out of obstacles. Ten are enough for routes drawn within a
+/// Passes of pushing the first shape out of obstacles. Ten are enough for routes drawn within a
 /// diameter.
 const MAX_PASSES: usize = 60;
 

@@ -23,7 +23,7 @@ pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a
     let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
     let mass = |k: usize| cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, k);
     let m = &mut cable.motion;
-    for (touch, load) in cable.contacts.pressing() {
+    for (touch, load) in cable.contacts.loaded_contacts() {
         let n = touch.pair.gap.normal;
         let carried = cable.contacts.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
         let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.positions)) / h);
@@ -44,7 +44,7 @@ pub(in crate::model::fem) fn land_on_obstacles(cable: &mut CableState, h: f64, a
             continue;
         }
         let change = touch.interpolate(&m.velocities) - touch.interpolate(&m.previous_velocities);
-        let acted = n * made + touch.tangent() * (cable.contacts.rubs(touch, &m.positions) / a);
+        let acted = n * made + touch.tangent() * (cable.contacts.tangential_force(touch, &m.positions) / a);
         let over = acted - lasting_impulse(acted - change / sum, n, touch.pair.gap.friction);
         for j in 0..2 {
             if free[j] > 0.0 {

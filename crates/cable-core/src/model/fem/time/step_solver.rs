@@ -50,8 +50,12 @@ impl SolverMemory {
             let same = |change: f64, most: f64| {
                 change <= larger(cable.mesh.tuning.step.friction_change * most, cable.meshing.bar_weight)
             };
-            if !cable.contacts.renew(&cable.problem, &cable.mesh, [&unknowns.positions, &cable.motion.positions], same)
-            {
+            if !cable.contacts.renew_normal_forces(
+                &cable.problem,
+                &cable.mesh,
+                [&unknowns.positions, &cable.motion.positions],
+                same,
+            ) {
                 break;
             }
             let more = self.minimise_with_stick_slip(cable, unknowns)?;
