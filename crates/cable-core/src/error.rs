@@ -394,8 +394,8 @@ pub enum SolveError {
 }
 
 impl SolveError {
-    /// Of two models' reasons for one cable the one that a user can act on: what is so whatever the
-    /// model is told alone; where neither says that, both are.
+    /// Of two models' reasons for one cable the one that a user can act on: one that holds for
+    /// every model stands alone; where neither does, both are reported.
     #[must_use]
     pub(crate) fn clearer(first: Self, second: Self) -> Self {
         let certain = |e: &Self| matches!(e, Self::NoRestingPlace { .. } | Self::Buried { .. });

@@ -41,7 +41,7 @@ const MAX_STEP_S: f64 = 1e3;
 /// The same without inertia, s.
 const MAX_QUASI_STATIC_STEP_S: f64 = 1e6;
 
-/// Fewer elements than this say nothing of how wrong others are.
+/// Least number of elements of a coarser run: the errors of fewer say nothing about those of more.
 const MIN_ELEMENTS: usize = 4;
 
 /// A scene being solved.
@@ -50,9 +50,9 @@ pub struct Simulation {
     scene: Scene,
     /// The model that the user asked for.
     requested: Model,
-    /// As it was built: `Auto` where two models may take turns.
+    /// The model that was built: `Auto` where two may take turns.
     source: ModelSource,
-    /// The one in use: of several cables the one that takes on most.
+    /// The model in use: the most general one that any of the cables uses.
     model: Model,
     reason: ModelReason,
     settings: Settings,
@@ -100,8 +100,8 @@ impl Simulation {
     }
 
     /// As [`Self::with_settings`]; `Model::Auto` is resolved for the question that will be asked.
-    /// One model serves the whole scene: the highest rung any cable needs, and the next one up
-    /// where a model lacks a feature.
+    /// One model serves the whole scene: the most general one that any cable needs, and a more
+    /// general one where that lacks a feature.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -138,7 +138,7 @@ impl Simulation {
         Self::by_source(scene, settings, ModelSource::External(Arc::new(constructor)))
     }
 
-    /// As [`Self::with_settings`], by a model wherever it comes from.
+    /// As [`Self::with_settings`], by a model of the program or of the user.
     fn by_source(scene: Scene, settings: Settings, source: ModelSource) -> Result<Self, Error> {
         if let ModelSource::Registered(model) = source {
             return Self::with_settings(scene, model, settings);
@@ -147,7 +147,7 @@ impl Simulation {
         Self::from_source(scene, &problems, settings, source.model(), source, ModelReason::Requested)
     }
 
-    /// Builds every cable by one source, said to be that model for that reason.
+    /// Builds every cable by one source; model and reason are those that answers report.
     fn from_source(
         scene: Scene,
         problems: &[Arc<Problem>],
@@ -181,7 +181,7 @@ impl Simulation {
         })
     }
 
-    /// Reads the present instant: answers, and what is to be said of them.
+    /// Reads the present instant: the answers and their warnings.
     fn refresh(&mut self, instant: Instant) {
         self.answers = self.cables.iter().map(BreakableCable::answer).collect();
         if instant == Instant::AtRest {
@@ -216,13 +216,13 @@ impl Simulation {
         self.next_cheaper = None;
     }
 
-    /// Returns what the laws say of answers for the cables, with the robot as it is.
+    /// Verifies answers for the cables, with the robot as it is.
     fn verify(&self, answers: &[CableSolution]) -> Verification {
         let robot = self.vehicle.as_ref().map(Vehicle::report);
         self.verifier.check_cables(&self.scene, answers, robot.as_ref(), self.time_s(), Depth::Always)
     }
 
-    /// Says where an answer lies through the robot: models other than `fem` know nothing of it.
+    /// Warns where an answer lies through the robot: models other than `fem` do not see it.
     fn warn_through_robot(&mut self) {
         self.warnings.retain(|w| w.kind != WarningKind::ThroughRobot);
         let Some(at) = self.vehicle.as_ref().map(|v| v.pose().placement()) else { return };
@@ -246,7 +246,7 @@ impl Simulation {
         &mut self.cables
     }
 
-    /// With what it was built.
+    /// The settings with which it was built.
     #[must_use]
     pub fn settings(&self) -> Settings {
         self.settings
@@ -277,7 +277,7 @@ impl Simulation {
         self.model
     }
 
-    /// Why that model.
+    /// The reason for that model.
     #[must_use]
     pub fn reason(&self) -> &ModelReason {
         self.cables.iter().find_map(BreakableCable::reason).unwrap_or(&self.reason)
@@ -343,10 +343,11 @@ impl Simulation {
         }
     }
 
-    /// Returns what the laws say of the present answers.
+    /// Verifies the present answers.
     fn check_sound(&self) -> Result<(), SolveError> {
-        // Masses and springs are a quick look and a second opinion, asked for by name: their coarse
-        // meshes are told, not refused. A cable that broke at rest is where it was when it broke.
+        // The answer of a model that is a second opinion, asked for by name, is reported with the
+        // laws that it breaks, and not refused. A cable that broke at rest is where it was when it
+        // broke.
         let told =
             self.requested.capabilities().findings_are_told || self.cables.iter().any(|c| !c.breaks().is_empty());
         match self.verification.worst().filter(|_| !told) {
@@ -355,8 +356,8 @@ impl Simulation {
         }
     }
 
-    /// Gives the scene to the next model, where the user left the choice; returns whether there was
-    /// one.
+    /// Gives the scene to the next more general model, where the user left the choice; returns
+    /// whether there was one.
     fn switch_model(&mut self, why: &SolveError) -> bool {
         if self.requested != Model::Auto {
             return false;
@@ -377,9 +378,9 @@ impl Simulation {
         true
     }
 
-    /// With friction a resting place is one of many: said of every cable that rubs where it rests,
-    /// whichever model answered, with what other histories would have left in it where `spans`
-    /// knows. Without, it may be one of several where the cable slides over pulleys.
+    /// Warns of equilibria that are one of many: of every cable that friction holds, whichever
+    /// model answered, with the tensions that other histories leave where `spans` finds them; and
+    /// of cables without friction that slide over pulleys, where there are several.
     fn warn_not_unique(&mut self) {
         for (k, (cable, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
             let problem = cable.problem();
@@ -516,9 +517,9 @@ impl Simulation {
         Ok(taken)
     }
 
-    /// The same scene by the same model at its start, on so many times as many elements in inner
-    /// steps so many times as short; None where a cable would have too few of them to say anything.
-    /// It has not settled.
+    /// A new simulation of the same scene by the same model at its start, with so many times as
+    /// many elements and inner steps so many times as short; None where a cable would have too few
+    /// elements for an error estimate. It has not settled.
     ///
     /// # Errors
     /// As [`Self::new`]; what the settings then ask for is out of range.
@@ -560,8 +561,8 @@ impl Simulation {
         Ok(next)
     }
 
-    /// Asks every cable the same. Where one of several fails, all are as before: never some of them
-    /// a step ahead. (A cable alone stays where it came, see [`Mechanics::advance`].)
+    /// Advances every cable. Where one of several fails, all go back to where they were, so that
+    /// none is a step ahead. (A single cable stays where it came to, see [`Mechanics::advance`].)
     fn for_each_cable(
         &mut self,
         mut f: impl FnMut(&mut BreakableCable) -> Result<StepReport, SolveError>,
@@ -606,12 +607,12 @@ impl Simulation {
         MaxTension::of(&self.answers)
     }
 
-    /// Returns what is to be said of this instant.
+    /// The warnings of this instant.
     pub fn warnings(&self) -> impl Iterator<Item = &Warning> {
         self.warnings.iter().chain(self.warning_monitor.warnings())
     }
 
-    /// The answer at this instant, with what the cables cannot stand among its warnings.
+    /// The answer at this instant; its warnings include limits that the cables exceed.
     #[must_use]
     pub fn solution(&self) -> Solution {
         let warnings = self.warnings().cloned().collect();
@@ -629,7 +630,7 @@ impl Simulation {
         }
     }
 
-    /// Leads a support to a place (m) whatever that takes: see [`Mechanics::drag_support`].
+    /// Drags a support to a place (m), whatever force that takes: see [`Mechanics::drag_support`].
     pub fn drag_support(&mut self, cable: usize, support: usize, target_m: Vec2) {
         if let Some(c) = self.cables.get_mut(cable) {
             c.drag_support(support, target_m);
@@ -653,7 +654,7 @@ impl Simulation {
         Some(at)
     }
 
-    /// Back to the first settled state, bit for bit.
+    /// Goes back to the first settled state, bit for bit.
     pub fn reset(&mut self) {
         if let Some(start) = &self.start {
             self.cables.clone_from(start);

@@ -28,9 +28,9 @@ pub struct Settings {
     /// of [`input_filter::default_hand_stiffness`].
     #[serde(default)]
     pub hand_stiffness_n_per_m: Option<f64>,
-    /// True if a rest that friction makes one of many is told with what other histories would have
-    /// left in it: `spans` lays the cable anew for each, which takes some times as long as the
-    /// rest. No figure of the answer hangs on it.
+    /// True if an equilibrium that friction makes one of many is reported with the tensions that
+    /// other histories leave: `spans` seeks an equilibrium for each, which takes some times as long
+    /// as the first one. No figure of the answer depends on it.
     #[serde(default = "yes")]
     pub histories: bool,
     /// True if a cable breaks where its tension reaches its breaking tension; a whole one is only

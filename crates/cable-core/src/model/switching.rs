@@ -403,7 +403,7 @@ impl Mechanics for SwitchingModel {
             settings: self.settings,
             problem: self.problem.clone(),
             spans: self.spans.clone(),
-            fem: self.fem.as_ref().map(FemModel::kept),
+            fem: self.fem.as_ref().map(FemModel::copy_for_rollback),
             adopted: self.adopted.clone(),
             dragged: self.dragged.clone(),
             pulled: self.pulled.clone(),

@@ -31,16 +31,19 @@
 //! [`RobotWork::ground_j`] is that.
 //!
 //! The speed that the governor asks for is planned in `governor.rs`, with limits on acceleration
-//! and jerk.
+//! and jerk; `speed_balance.rs` solves for the speed that drive, tracks and cable leave of it.
 //!
 //! Robot and cable are one system: how their steps are brought together stands in
 //! `simulation/coupling.rs`.
 
 mod governor;
+mod speed_balance;
 
 use std::sync::Arc;
 
 use self::governor::{MAX_ACCELERATION, PlannedMotion, SpeedOrder};
+pub use self::speed_balance::SpeedBalance;
+use self::speed_balance::{StepForces, TrackGrip};
 use crate::math::{RigidPose, Vec2, bounded, larger, smaller, vec2};
 use crate::scene::ground::Ground;
 use crate::scene::preset::{RobotPreset, robot_preset};
@@ -73,9 +76,6 @@ const MAX_TIP_RAD_PER_S2: f64 = 10.0;
 /// a machine of a tonne is off by 100 N. Less: more trials; more: the hitch lags behind the
 /// vehicle.
 const BALANCE_TOLERANCE: f64 = 5e-3;
-
-/// Slower than this it stands, m/s.
-const STANDSTILL_M_PER_S: f64 = 1e-4;
 
 /// The vehicle.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,7 +137,7 @@ impl Vehicle {
         };
         let (sin, cos) = pose.pitch.sin_cos();
         let forces = Forces { normal: vehicle.weight * cos, thrust: vehicle.weight * sin };
-        vehicle.tell([Vec2::zeros(); 2], forces, 0.0, Going::Standing);
+        vehicle.update_report(Pulls::default(), forces, 0.0, Going::Standing);
         Some(vehicle)
     }
 
@@ -159,7 +159,7 @@ impl Vehicle {
             let forces = Forces { normal: old.report.normal_n, thrust: old.report.thrust_n };
             let hitch = Vec2::new(old.report.hitch_x_n, old.report.hitch_y_n);
             let push = Vec2::new(old.report.push_x_n, old.report.push_y_n);
-            self.tell([hitch, push], forces, old.report.commanded_m_per_s, old.report.going);
+            self.update_report(Pulls { hitch, outline: push }, forces, old.report.commanded_m_per_s, old.report.going);
         }
     }
 
@@ -174,7 +174,7 @@ impl Vehicle {
             let forces = Forces { normal: then.normal_n, thrust: then.thrust_n };
             let hitch = Vec2::new(then.hitch_x_n, then.hitch_y_n);
             let push = Vec2::new(then.push_x_n, then.push_y_n);
-            self.tell([hitch, push], forces, then.commanded_m_per_s, then.going);
+            self.update_report(Pulls { hitch, outline: push }, forces, then.commanded_m_per_s, then.going);
         }
     }
 
@@ -246,8 +246,8 @@ impl Vehicle {
         self.balance(drive, pulls).speed
     }
 
-    /// Returns where it is at the end of a step in which it comes to this speed (m/s); None where
-    /// it cannot stand there.
+    /// Returns its pose at the end of a step in which it comes to this speed (m/s); None where it
+    /// cannot stand there.
     #[must_use]
     pub(crate) fn come_to(&self, drive: Drive, speed: f64) -> Option<Pose> {
         let way = 0.5 * drive.h * (self.speed + speed);
@@ -259,6 +259,7 @@ impl Vehicle {
         if ground.pitch * way.signum() <= MAX_SLOPE { self.tipped(x_m, drive.h) } else { None }
     }
 
+    /// Its pose at a place, tipped towards the ground as far as it can in a step of `h` (s).
     fn tipped(&self, x_m: f64, h: f64) -> Option<Pose> {
         let pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
         let left = pose.pitch - self.pose.pitch;
@@ -272,17 +273,22 @@ impl Vehicle {
         Some(Pose { pitch: self.pose.pitch + tipping * h, ..pose })
     }
 
-    /// Returns what its balance makes of the forces of the cable at the end of a step.
+    /// Returns the balance of a step that ends with these forces of the cable.
     #[must_use]
     pub fn balance(&self, drive: Drive, pulls: Pulls) -> SpeedBalance {
         let (sin, cos) = self.pose.pitch.sin_cos();
         let felt = self.mean(pulls) + pulls.outline;
         let normal = self.weight * cos - (felt.y * cos - felt.x * sin);
-        // Lifted off the ground its tracks find no hold at all.
+        // Tracks that are lifted off the ground have no grip.
         let normal = if normal > 0.0 { normal } else { 0.0 };
         let (pull, weight) = (felt.x * cos + felt.y * sin, -self.weight * sin);
-        let done = self.solve(drive, normal, pull + weight);
-        SpeedBalance { normal, pull, weight, ..done }
+        let force = pull + weight;
+        let sense = [drive.wanted, self.speed, -force].into_iter().find(|s| *s != 0.0).map_or(1.0, f64::signum);
+        let step =
+            StepForces { mass: self.preset.mass_kg.value, h: drive.h, speed: self.speed * sense, force: force * sense };
+        let along = self.grip(drive, normal, sense).balance(step);
+        let [speed, tracks, rolling] = [along.speed, along.tracks, along.rolling].map(|x| x * sense);
+        SpeedBalance { speed, tracks, rolling, normal, pull, weight, ..along }
     }
 
     /// Mean pull on its hitch in a step that ends with `pulls`, N.
@@ -312,10 +318,10 @@ impl Vehicle {
         self.rate = (pulls.hitch - self.pulls.hitch) / drive.h;
         self.pulls = pulls;
         let forces = Forces { normal: balance.normal, thrust: tracks };
-        self.tell([pulls.hitch, pulls.outline], forces, drive.wanted, balance.going);
+        self.update_report(pulls, forces, drive.wanted, balance.going);
     }
 
-    /// It cannot go on: it stays where it is.
+    /// Ends a step in which it cannot go on: it stays where it is.
     pub fn stop(&mut self, drive: Drive, pulls: Pulls, going: Going) {
         let balance = self.balance(drive, pulls);
         self.report.work.impact_j -= self.kinetic_j();
@@ -339,50 +345,6 @@ impl Vehicle {
     #[must_use]
     pub fn speed(&self) -> f64 {
         self.speed
-    }
-
-    /// The speed v' at which m (v' − v)/h is what acts: `pull` (N) along the ground, and what the
-    /// tracks and rolling resistance add to it.
-    fn solve(&self, drive: Drive, normal: f64, pull: f64) -> SpeedBalance {
-        let sense = [drive.wanted, self.speed, -pull].into_iter().find(|s| *s != 0.0).map_or(1.0, f64::signum);
-        let (v, pull, mass) = (self.speed * sense, pull * sense, self.preset.mass_kg.value);
-        let grip = self.grip(drive, normal, sense);
-        let needed = |q: f64| mass * (q - v) / drive.h - pull;
-        let edges = if grip.asked < 0.0 { [grip.asked, 0.0] } else { [0.0, grip.asked] };
-        let middle = 0.5 * (edges[0] + edges[1]);
-        let mut found = None;
-        for (edge, before) in edges.into_iter().zip([edges[0] - 1.0, middle]) {
-            if needed(edge) > grip.total(edge, Limit::Below) {
-                found = Some((before, None));
-            } else if needed(edge) >= grip.total(edge, Limit::Above) {
-                found = Some((edge, Some(edge)));
-            }
-            if found.is_some() {
-                break;
-            }
-        }
-        let (near, edge) = found.unwrap_or((edges[1] + 1.0, None));
-        let (speed, tracks, rolling, traction) = if let Some(q) = edge {
-            let total = needed(q);
-            let tracks = grip.share(q, total);
-            let slips = q == 0.0 && grip.drives && grip.drive >= grip.hold;
-            (q, tracks, total - tracks, if slips { Traction::Slips } else { Traction::Holds })
-        } else {
-            let rolls = grip.rolls(near, Limit::Above);
-            let reached =
-                |force: f64, falls: f64| (mass * v / drive.h + pull + rolls + force) / (mass / drive.h + falls);
-            let tracks = grip.tracks(near, Limit::Above);
-            let slid = reached(if tracks < 0.0 { -grip.hold } else { grip.hold }, 0.0);
-            let driven = reached(grip.drive, grip.falls);
-            if grip.is_driven(near, Limit::Above) && driven <= slid {
-                (driven, grip.tracks(driven, Limit::Above), rolls, Traction::Holds)
-            } else {
-                (slid, if tracks < 0.0 { -grip.hold } else { grip.hold }, rolls, Traction::Slips)
-            }
-        };
-        let going = grip.going(v, speed, traction);
-        let [speed, tracks, rolling] = [speed, tracks, rolling].map(|x| x * sense);
-        SpeedBalance { speed, tracks, rolling, slips: traction == Traction::Slips, going, ..SpeedBalance::default() }
     }
 
     /// Returns what tracks and rolling resistance can do in a step, in the `sense` in which it is
@@ -444,7 +406,8 @@ impl Vehicle {
         SpeedOrder::default()
     }
 
-    fn tell(&mut self, [hitch, push]: [Vec2; 2], forces: Forces, commanded: f64, going: Going) {
+    fn update_report(&mut self, pulls: Pulls, forces: Forces, commanded: f64, going: Going) {
+        let Pulls { hitch, outline: push } = pulls;
         self.report = RobotReport {
             x_m: self.pose.at_m[0],
             y_m: self.pose.at_m[1],
@@ -484,111 +447,6 @@ pub struct Drive {
     asked: PlannedMotion,
     /// Its length, s.
     h: f64,
-}
-
-/// The balance of forces of a step; along the ground to the right.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct SpeedBalance {
-    /// Speed at the end, m/s.
-    pub speed: f64,
-    /// Force of the tracks, N.
-    tracks: f64,
-    /// Rolling resistance, N.
-    rolling: f64,
-    /// Of the cable, N.
-    pull: f64,
-    /// Of its weight, N.
-    weight: f64,
-    /// Across the ground, N.
-    normal: f64,
-    /// True if the tracks slip.
-    slips: bool,
-    going: Going,
-}
-
-/// State of the tracks on the ground.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Traction {
-    Holds,
-    Slips,
-}
-
-/// Tracks and rolling resistance in a step, as functions of the speed at its end. Below a speed of
-/// 0 the tracks give all their hold (brakes), up to the speed asked for the pull of the drive, and
-/// beyond that they brake with all their hold. Where that jumps it may be anything between.
-#[derive(Clone, Copy, Debug)]
-struct TrackGrip {
-    /// Speed that the governor asks for at the end, m/s.
-    asked: f64,
-    /// True if it is to go; else it comes to a stand.
-    drives: bool,
-    /// Most that the tracks can transmit, N.
-    hold: f64,
-    /// Rolling resistance, N.
-    rolling: f64,
-    /// Pull of the drive in the mean of the step at a last speed of 0, N, and how much it falls by
-    /// that speed, N s/m.
-    drive: f64,
-    falls: f64,
-}
-
-/// The side from which a speed is come to where forces jump.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Limit {
-    Below,
-    Above,
-}
-
-impl TrackGrip {
-    /// Returns whether a speed is beyond an edge, in the limit from below or above.
-    fn is_beyond(q: f64, edge: f64, limit: Limit) -> bool {
-        q > edge || (q == edge && limit == Limit::Above)
-    }
-
-    fn is_driven(&self, q: f64, limit: Limit) -> bool {
-        self.drives && Self::is_beyond(q, 0.0, limit) && !Self::is_beyond(q, self.asked, limit)
-    }
-
-    /// Force of the tracks, N.
-    fn tracks(&self, q: f64, limit: Limit) -> f64 {
-        if Self::is_beyond(q, self.asked, limit) {
-            -self.hold
-        } else if self.is_driven(q, limit) {
-            smaller(larger(self.drive - self.falls * q, 0.0), self.hold)
-        } else {
-            self.hold
-        }
-    }
-
-    /// Rolling resistance, N.
-    fn rolls(&self, q: f64, limit: Limit) -> f64 {
-        if Self::is_beyond(q, 0.0, limit) { -self.rolling } else { self.rolling }
-    }
-
-    fn total(&self, q: f64, limit: Limit) -> f64 {
-        self.tracks(q, limit) + self.rolls(q, limit)
-    }
-
-    /// Returns what the tracks give of a `total` (N) at a speed where forces jump: rolling
-    /// resistance is against the drive.
-    fn share(&self, q: f64, total: f64) -> f64 {
-        let own = if q == 0.0 && !self.drives { total } else { total - self.rolls(q, Limit::Above) };
-        bounded(own, self.tracks(q, Limit::Above), self.tracks(q, Limit::Below))
-    }
-
-    /// Why it comes from one speed to another, m/s.
-    fn going(&self, from: f64, to: f64, traction: Traction) -> Going {
-        let against = if self.drives { -to } else { to.abs() };
-        match (self.drives, traction) {
-            (_, Traction::Slips) if against > STANDSTILL_M_PER_S => Going::Dragged,
-            (_, Traction::Slips) => Going::Slipping,
-            (false, _) if to.abs() < STANDSTILL_M_PER_S => Going::Standing,
-            (true, _) if to < self.asked && to < STANDSTILL_M_PER_S => Going::Stalled,
-            // While it gains speed with its full drive it is on its way.
-            (true, _) if to < self.asked && to - from < STANDSTILL_M_PER_S => Going::Slowed,
-            _ => Going::Driving,
-        }
-    }
 }
 
 /// The force of the ground on it, N.

@@ -39,8 +39,7 @@ impl RunMonitor {
         monitor
     }
 
-    /// The same is done to the coarser runs as to the run: its ends are dragged, its robot is told
-    /// to drive.
+    /// Does to the coarser runs what was done to the run: drags ends, commands the robot.
     pub fn steer(&mut self, how: impl FnMut(&mut Simulation)) {
         if let Some(coarse) = &mut self.coarse {
             coarse.steer(how);

@@ -10,10 +10,10 @@
 //! | a load, wind, current | mean force of both ends of the step times the way, and half of how much it changed times the size of that |
 //! | the outline of a robot | its force before and after and the impulse of all contacts, at the greatest speed of the cable |
 //!
-//! So what is led by a support is not told before it has more than the support can have given, and
-//! what is led by none at once. An integrator that is unstable multiplies energy without end, and
-//! work only grows with the tension, the root of it: it is told in both. E is a figure of an answer
-//! and not added up over steps, so what it is wrong by does not grow with time either.
+//! So a cable that a support drives is warned of once it has more energy than the support can have
+//! given, and one that nothing drives at once. An unstable integrator multiplies energy without
+//! end, and work only grows with the tension, the root of it: both are warned of. E is a figure of
+//! an answer and not added up over steps, so its error does not grow with time either.
 
 use std::collections::VecDeque;
 
@@ -35,7 +35,8 @@ const MIN_GROWTH_FRACTION: f64 = 3e-4;
 
 /// Length of the moving window, s, whose greatest energy may become the least of the motion; it
 /// holds [`RECENT_INSTANTS`] instants at least. Shorter: a velocity that an integrator swings
-/// beyond its own for a few steps after an impact and back is growth; longer: growth is told later.
+/// beyond its own for a few steps after an impact and back is growth; longer: growth is warned of
+/// later.
 const RECENT_S: f64 = 0.05;
 
 /// See [`RECENT_S`].

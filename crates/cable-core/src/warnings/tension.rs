@@ -1,4 +1,4 @@
-//! Tension warnings tell of tension above a limit, of breaks, and of slack.
+//! Tension warnings report tension above a limit, breaks, and slack.
 
 use crate::breakage::Break;
 use crate::math::Vec2;

@@ -269,13 +269,19 @@ fn runs_away(j: &[Row]) -> Option<Vec<f64>> {
 }
 
 /// Leaves a balance that runs away to where its energy is less, along its way (1) or back (−1)
-/// first; None where it is nowhere.
-fn leave(slide: &Slide<'_>, sigma: &[f64], s: &Stretches, way: &[f64], first: f64) -> Option<(Vec<f64>, Stretches)> {
+/// first; None where it is less at neither.
+fn leave_unstable(
+    slide: &Slide<'_>,
+    sigma: &[f64],
+    s: &Stretches,
+    way: &[f64],
+    first: f64,
+) -> Option<(Vec<f64>, Stretches)> {
     let largest = way.iter().fold(0.0f64, |m, w| larger(m, w.abs()));
     backtrack(LEAVING_FRACTION * slide.problem.length / largest, STEP_HALVINGS, |far| {
         [far * first, -far * first].into_iter().find_map(|far| {
             let step: Vec<f64> = way.iter().map(|w| far * w).collect();
-            let part = room(slide, s, &step);
+            let part = part_that_fits(slide, s, &step);
             let there: Vec<f64> = sigma.iter().zip(&step).map(|(a, b)| a + part * b).collect();
             let t = slide.stretches(&there, Some(s)).filter(|t| t.energy < s.energy)?;
             Some((there, t))
@@ -284,7 +290,7 @@ fn leave(slide: &Slide<'_>, sigma: &[f64], s: &Stretches, way: &[f64], first: f6
 }
 
 /// Largest part of a step that keeps some of every stretch.
-fn room(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
+fn part_that_fits(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
     let (mut alpha, kept) = (1.0f64, slide.layout.settings.kept_stretch_fraction);
     for (i, stretch) in s.all.iter().enumerate() {
         let Some(stretch) = stretch else { continue };
@@ -364,7 +370,7 @@ fn descend(
         if !smooth {
             return Err(lost(iterations));
         }
-        let next = leave(slide, &sigma, &s, &way, first);
+        let next = leave_unstable(slide, &sigma, &s, &way, first);
         *left = Some(Equilibrium { runs_away: true, ..end(sigma, s, newtons) });
         (sigma, s) = next.ok_or_else(|| lost(iterations))?;
         iterations += s.iterations;
@@ -388,7 +394,7 @@ fn search(
     let slope: f64 = r.iter().zip(p).map(|(a, b)| a * b).sum();
     let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
     let (energy, norm) = (s.energy, size(r));
-    let found = backtrack(room(slide, s, p), STEP_HALVINGS, |alpha| {
+    let found = backtrack(part_that_fits(slide, s, p), STEP_HALVINGS, |alpha| {
         let trial: Vec<f64> = sigma.iter().zip(p).map(|(a, b)| a + alpha * b).collect();
         let t = slide.stretches(&trial, Some(s))?;
         spent += t.iterations;

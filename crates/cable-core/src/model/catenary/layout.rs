@@ -52,8 +52,8 @@ const HINT_OF_LOADS: f64 = 1e-15;
 /// The same in parts of EA where nothing is loaded: far below the strain that rounding hides.
 const HINT_OF_STIFFNESS: f64 = 1e-18;
 /// Tension that such a weight can make, in weights: a slack of 1e-9 of the length gives 6e3.
-/// Smaller: a trace of tension is told where there is none. Larger: tensions that loads make are
-/// told to be none.
+/// Smaller: a trace of tension is reported where there is none. Larger: tensions that loads make
+/// are reported as none.
 const HINT_TENSION_FACTOR: f64 = 1e4;
 
 /// The hint of weight (N/m) of a weightless cable with dead loads of a size (N), and the force up

@@ -25,7 +25,7 @@ use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::solution::ErrorEstimates;
 
-/// Fewer bars than this have no half of use.
+/// Least number of bars that is halved: half of fewer shows no shape.
 const LEAST_BARS: usize = 8;
 /// Part of what the coarser two of three meshes differ by that the error of the finest is at least:
 /// that of the first order.
@@ -50,8 +50,8 @@ pub enum Refinement {
 }
 
 impl TwoMeshes {
-    /// Looks at a cable that came to rest, beside the answer without a mesh where there is one;
-    /// makes its mesh finer where that is allowed and comes nearer.
+    /// Estimates the errors of a cable that came to rest, beside the answer without a mesh where
+    /// there is one; refines its mesh where that is allowed and makes them smaller.
     pub fn compare(
         &mut self,
         problem: &Arc<Problem>,
@@ -69,8 +69,10 @@ impl TwoMeshes {
             self.errors = match exact {
                 // A cable that touches itself nowhere rests as one that cannot; once it moves it
                 // may.
-                Some(exact) if !fine.cable.touches_itself() => beside(&fine.solution(), &exact.answer, problem),
-                _ => coarser(problem, settings, fine, dragged).map(|found| found.0).unwrap_or_default(),
+                Some(exact) if !fine.cable.touches_itself() => errors_beside(&fine.solution(), &exact.answer, problem),
+                _ => {
+                    errors_by_coarser_meshes(problem, settings, fine, dragged).map(|found| found.0).unwrap_or_default()
+                }
             };
             return;
         }
@@ -79,15 +81,17 @@ impl TwoMeshes {
         }
         if let Some(exact) = exact {
             let mut answer = fine.solution();
-            self.errors = beside(&answer, &exact.answer, problem);
+            self.errors = errors_beside(&answer, &exact.answer, problem);
             while refinement == Refinement::Allowed
                 && exceeds(&self.errors, &answer, settings)
                 && 2 * fine.cable.meshing.even_bars <= fine.cable.mesh.tuning.start.max_refined_bars
             {
                 let bars = 2 * fine.cable.meshing.even_bars;
-                let Some(finer) = laid_over(problem, settings, fine, bars, &exact.answer, dragged) else { break };
+                let Some(finer) = at_rest_with_bars(problem, settings, fine, bars, &exact.answer, dragged) else {
+                    break;
+                };
                 let next = finer.solution();
-                let errors = beside(&next, &exact.answer, problem);
+                let errors = errors_beside(&next, &exact.answer, problem);
                 if !(errors.relative(&next) < self.errors.relative(&answer)) {
                     break;
                 }
@@ -97,12 +101,12 @@ impl TwoMeshes {
             self.exact = Some(exact.spans);
             return;
         }
-        if let Some((errors, coarse)) = coarser(problem, settings, fine, dragged) {
+        if let Some((errors, coarse)) = errors_by_coarser_meshes(problem, settings, fine, dragged) {
             (self.errors, self.coarse) = (errors, Some(Box::new(coarse)));
         }
     }
 
-    /// Goes on beside the cable without inertia; with inertia nothing is said.
+    /// Follows a step of the cable without inertia; with inertia there is no estimate.
     pub fn follow(
         &mut self,
         problem: &Arc<Problem>,
@@ -119,13 +123,14 @@ impl TwoMeshes {
         let answer = fine.solution();
         let coarse = match (before.exact, before.coarse) {
             (Some(mut exact), _) => {
-                if let Some(other) = go_on(&mut exact, dt_s, dragged) {
-                    self.errors = beside(&answer, &other, problem);
+                if let Some(other) = advance_spans(&mut exact, dt_s, dragged) {
+                    self.errors = errors_beside(&answer, &other, problem);
                     self.exact = Some(exact);
                     return;
                 }
                 // The cable has no answer without a mesh from here on.
-                laid_over(problem, settings, fine, fine.cable.meshing.even_bars / 2, &answer, dragged).map(Box::new)
+                at_rest_with_bars(problem, settings, fine, fine.cable.meshing.even_bars / 2, &answer, dragged)
+                    .map(Box::new)
             }
             (None, Some(mut coarse)) => coarse.advance(dt_s, inertia, dragged).is_ok().then_some(coarse),
             (None, None) => None,
@@ -138,7 +143,7 @@ impl TwoMeshes {
 }
 
 /// The answer of `spans` a step further on, if it has one.
-fn go_on(spans: &mut SpansModel, dt_s: f64, dragged: &[Option<Vec2>]) -> Option<CableSolution> {
+fn advance_spans(spans: &mut SpansModel, dt_s: f64, dragged: &[Option<Vec2>]) -> Option<CableSolution> {
     for (k, at) in dragged.iter().enumerate() {
         if let Some(at) = at {
             spans.drag_support(k, *at);
@@ -150,7 +155,7 @@ fn go_on(spans: &mut SpansModel, dt_s: f64, dragged: &[Option<Vec2>]) -> Option<
 
 /// Errors of a cable by the same one on bars twice and four times as long, and the one on bars
 /// twice as long; None where that finds no rest.
-fn coarser(
+fn errors_by_coarser_meshes(
     problem: &Arc<Problem>,
     settings: Settings,
     fine: &Dynamics,
@@ -160,16 +165,16 @@ fn coarser(
         return None;
     }
     let answer = fine.solution();
-    let coarse = laid_over(problem, settings, fine, fine.cable.meshing.even_bars / 2, &answer, dragged)?;
+    let coarse = at_rest_with_bars(problem, settings, fine, fine.cable.meshing.even_bars / 2, &answer, dragged)?;
     let other = coarse.solution();
     let errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
-    let coarsest = laid_over(problem, settings, fine, fine.cable.meshing.even_bars / 4, &answer, dragged);
+    let coarsest = at_rest_with_bars(problem, settings, fine, fine.cable.meshing.even_bars / 4, &answer, dragged);
     let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(FIRST_ORDER_ERROR_FRACTION));
     Some((change.map_or(errors, |change| errors.or_larger(&change)), coarse))
 }
 
-/// Errors beside an answer without a mesh.
-fn beside(answer: &CableSolution, exact: &CableSolution, problem: &Problem) -> ErrorEstimates {
+/// Errors of an answer beside one without a mesh.
+fn errors_beside(answer: &CableSolution, exact: &CableSolution, problem: &Problem) -> ErrorEstimates {
     ErrorEstimates::between(answer, exact).plus(&ErrorEstimates::rounding(exact, problem))
 }
 
@@ -177,8 +182,8 @@ fn exceeds(errors: &ErrorEstimates, answer: &CableSolution, settings: Settings) 
     errors.relative(answer).is_some_and(|e| e > settings.tolerance)
 }
 
-/// The same cable on another number of bars, at rest where an answer has it.
-fn laid_over(
+/// The same cable with another number of bars, at rest next to an answer.
+fn at_rest_with_bars(
     problem: &Arc<Problem>,
     settings: Settings,
     like: &Dynamics,

@@ -60,13 +60,15 @@ use crate::state::State;
 use elastica::Elastica;
 
 /// The outcome of starting from the solution of `spans`.
-enum FirstEquilibrium {
-    /// The mesh rests in it too; with the warnings about it.
+enum SpansStart {
+    /// The mesh rests in it, too; with the warnings about it.
     Accepted(Vec<Warning>),
     /// The mesh does not rest in it and relaxes from its own initial guess.
     Rejected,
-    /// Nothing.
+    /// `spans` has no solution, or was not asked.
     Unknown,
+    /// The cable slides from its route: the error that says why.
+    Slides(SolveError),
 }
 
 /// The error estimate of a stiff cable's equilibrium must stay below this part of the tolerance.
@@ -93,18 +95,18 @@ pub struct FemModel {
     statics: free::statics::Statics,
     dynamics: dynamics::Dynamics,
     present: Part,
-    /// True if a first rest with contact goes on from that of `spans`, where there is one.
+    /// True if the search for a first equilibrium in contact starts from that of `spans`.
     starts_from_spans: bool,
     settings: Settings,
     /// The estimate of the error in contact by another mesh.
     meshes: TwoMeshes,
-    /// Pose to which the outline of the robot was led.
-    led: Option<RigidPose>,
-    /// The rest of a stiff cable in contact, until something moves.
-    bent: Option<CableSolution>,
-    /// Error of the mesh's equilibrium of a stiff cable, in parts of the greatest tension, until
-    /// something moves.
-    unbent: Option<f64>,
+    /// Pose to which the outline of the robot was moved.
+    robot_pose: Option<RigidPose>,
+    /// The equilibrium of a stiff cable in contact as an elastica, until something moves.
+    elastica_answer: Option<CableSolution>,
+    /// Error of the mesh's equilibrium of a stiff cable by the bend that it leaves out, in parts of
+    /// the greatest tension, until something moves.
+    bending_error: Option<f64>,
 }
 
 impl FemModel {
@@ -132,9 +134,9 @@ impl FemModel {
             starts_from_spans: true,
             meshes: TwoMeshes::default(),
             settings,
-            led: problem.outline.as_ref().map(|o| o.placement),
-            bent: None,
-            unbent: None,
+            robot_pose: problem.outline.as_ref().map(|o| o.placement),
+            elastica_answer: None,
+            bending_error: None,
             problem,
         })
     }
@@ -144,53 +146,54 @@ impl FemModel {
         &self.dynamics.cable.mesh.tuning
     }
 
-    /// The same, but `spans` is not asked how the cable is laid: it was, and has no answer.
+    /// The same for a cable for which `spans` is known to have no first equilibrium.
     #[must_use]
     pub fn without_spans_start(mut self) -> Self {
         self.starts_from_spans = false;
         self
     }
 
-    /// Lays the cable with the least sliding, if there is an answer to that. On its own way down
-    /// slack comes to lie in folds, which friction then holds. Returns what there is to say of it,
-    /// and the answer without a mesh.
-    ///
-    /// # Errors
-    /// That it slides from where it is laid.
-    fn lay(&mut self) -> Result<(FirstEquilibrium, Option<InitialEquilibrium>), SolveError> {
-        let laid = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.led)?;
-        let Some(lay) = laid else { return Ok((FirstEquilibrium::Unknown, None)) };
-        // A stiff cable is laid as a flexible one: that is where it begins, not how it lies.
-        let flexible = self.problem.bending_stiffness == 0.0;
+    /// Starts from the equilibrium of `spans` with the least sliding, if it has one: a cable that
+    /// relaxes by itself comes to lie in folds, which friction then holds. Returns the outcome, and
+    /// the solution of `spans` where it is one of this cable.
+    fn start_from_spans(&mut self) -> (SpansStart, Option<InitialEquilibrium>) {
+        let first = match initial_equilibrium(&self.problem, self.settings, &self.dragged, self.robot_pose) {
+            Ok(Some(first)) => first,
+            Ok(None) => return (SpansStart::Unknown, None),
+            Err(slides) => return (SpansStart::Slides(slides), None),
+        };
+        let is_flexible = self.problem.bending_stiffness == 0.0;
         let before = self.dynamics.clone();
-        let taken =
-            self.dynamics.warm_start(&lay.answer, before.cable.time(), &self.dragged).is_ok() && self.dynamics.rested;
-        let greatest = lay.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
+        let rests =
+            self.dynamics.warm_start(&first.answer, before.cable.time(), &self.dragged).is_ok() && self.dynamics.rested;
+        let greatest = first.answer.nodes.iter().map(|n| n.tension_n).fold(0.0, larger);
         let found = self.dynamics.solution();
-        let pairs = lay.answer.supports.iter().zip(&found.supports);
-        let off = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
+        let pairs = first.answer.supports.iter().zip(&found.supports);
+        let change = pairs.map(|(a, b)| (a.reaction_x_n - b.reaction_x_n).hypot(a.reaction_y_n - b.reaction_y_n));
         let tuning = self.tuning().start;
-        let jammed =
+        let most =
             if self.problem.bending_stiffness > 0.0 { tuning.max_stiff_force_change } else { tuning.max_force_change };
-        if taken && off.fold(0.0, larger) <= jammed * greatest {
-            return Ok((FirstEquilibrium::Accepted(lay.warnings.clone()), flexible.then_some(lay)));
-        }
-        self.dynamics = before;
-        Ok((FirstEquilibrium::Rejected, flexible.then_some(lay)))
+        let outcome = if rests && change.fold(0.0, larger) <= most * greatest {
+            SpansStart::Accepted(first.warnings.clone())
+        } else {
+            self.dynamics = before;
+            SpansStart::Rejected
+        };
+        (outcome, is_flexible.then_some(first))
     }
 
-    /// The resting place.
-    fn rest(&mut self) -> Result<StepReport, SolveError> {
+    /// Finds the equilibrium.
+    fn find_equilibrium(&mut self) -> Result<StepReport, SolveError> {
         if touches_nothing(&self.problem) {
-            return self.rest_in_the_air();
+            return self.equilibrium_without_contact();
         }
-        self.bent = None;
-        self.unbent = None;
-        if let Some(report) = self.bend() {
+        self.elastica_answer = None;
+        self.bending_error = None;
+        if let Some(report) = self.elastica_from_flexible() {
             return Ok(report);
         }
         self.dynamics.solver.work_left = WorkBudget::Left(self.tuning().equilibrium.max_work);
-        let found = self.rest_in_touch();
+        let found = self.equilibrium_in_contact();
         self.dynamics.solver.work_left = WorkBudget::Unlimited;
         found
     }
@@ -203,8 +206,8 @@ impl FemModel {
         }
         let free = || {
             let mut statics = self.statics.clone();
-            if self.present == Part::Dynamics || self.bent.is_some() {
-                // It tells of no shapes where it has no answer.
+            if self.present == Part::Dynamics || self.elastica_answer.is_some() {
+                // Without an answer it has no shapes, either.
                 let _ = statics.settle(&self.dragged);
             }
             statics.bows()
@@ -214,86 +217,99 @@ impl FemModel {
         Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
     }
 
-    /// The resting place where nothing can be touched. From the flexible cable up in EI a stiff one
-    /// may come to where its shape snaps over, clamps against which it sags turn it upwards: a
+    /// Finds the equilibrium of a cable that can touch nothing. The continuation of a stiff cable
+    /// up in EI ends where its shape snaps over, as clamps against which it sags turn it upwards: a
     /// chain of bars that is let go follows it there, as it does in contact.
-    fn rest_in_the_air(&mut self) -> Result<StepReport, SolveError> {
-        self.ask(Part::Statics)?;
-        self.bent = None;
+    fn equilibrium_without_contact(&mut self) -> Result<StepReport, SolveError> {
+        self.make_present(Part::Statics)?;
+        self.elastica_answer = None;
         let found = self.statics.settle(&self.dragged);
         let Err(why) = found else { return found };
-        if !(self.problem.bending_stiffness > 0.0) || self.ask(Part::Dynamics).is_err() {
+        if !(self.problem.bending_stiffness > 0.0) || self.make_present(Part::Dynamics).is_err() {
             return Err(why);
         }
-        match self.bend() {
+        match self.elastica_from_flexible() {
             Some(report) => Ok(report),
             None => {
-                self.ask(Part::Statics)?;
+                self.make_present(Part::Statics)?;
                 Err(why)
             }
         }
     }
 
-    /// The resting place where something may be touched.
-    fn rest_in_touch(&mut self) -> Result<StepReport, SolveError> {
+    /// Finds the equilibrium of a cable that can touch something.
+    fn equilibrium_in_contact(&mut self) -> Result<StepReport, SolveError> {
         let begins = !self.dynamics.rested && self.dynamics.cable.time() == 0.0;
-        let (laid, exact) = match begins && self.starts_from_spans {
-            true => self.lay().map_or_else(|slides| (Err(slides), None), |(laid, exact)| (Ok(laid), exact)),
-            false => (Ok(FirstEquilibrium::Unknown), None),
-        };
-        let taken = matches!(laid, Ok(FirstEquilibrium::Accepted(_)));
-        if begins && !taken && self.statics.settle(&self.dragged).is_ok() {
-            self.dynamics.begin_at(&self.statics.state(), &self.dragged);
-        }
-        if begins && !taken {
-            self.begin_coarse();
-        }
-        let known = matches!(laid, Ok(FirstEquilibrium::Accepted(_) | FirstEquilibrium::Rejected));
-        let start = self.dynamics.cable.state();
-        let before = if known { None } else { Some(self.dynamics.clone()) };
-        let mut found = self.dynamics.settle(&self.dragged);
-        let slid = if known || found.is_err() { None } else { slides_as_a_whole(&self.dynamics.cable) };
-        if let Some(why) = slid {
-            found = Err(SolveError::NoRestingPlace { why });
-        }
-        let said = match laid {
-            Ok(FirstEquilibrium::Accepted(said)) => said,
-            Ok(FirstEquilibrium::Rejected | FirstEquilibrium::Unknown) => Vec::new(),
-            // A cable that slides from its first place may come to rest elsewhere.
-            Err(slides) => {
-                let answer = self.dynamics.solution();
-                let rises = !(work(&self.problem, &start, &answer, self.dynamics.cable.time()) > 0.0);
-                if found.is_err() || rises || slides_on(&self.problem, self.settings, &answer) {
-                    found = Err(slides);
-                    Vec::new()
-                } else {
-                    vec![slid_first(&self.problem, &slides)]
-                }
+        let (start, spans) =
+            if begins && self.starts_from_spans { self.start_from_spans() } else { (SpansStart::Unknown, None) };
+        if begins && !matches!(start, SpansStart::Accepted(_)) {
+            if self.statics.settle(&self.dragged).is_ok() {
+                self.dynamics.start_from_shape(&self.statics.state(), &self.dragged);
             }
+            self.start_from_coarse_mesh();
+        }
+        let has_equilibrium = matches!(start, SpansStart::Accepted(_) | SpansStart::Rejected);
+        let first = self.dynamics.cable.state();
+        let before = if has_equilibrium { None } else { Some(self.dynamics.clone()) };
+        let found = self.settle_dynamics(has_equilibrium);
+        let found = match start {
+            SpansStart::Accepted(warnings) => found.map(|mut report| {
+                report.warnings.extend(warnings);
+                report
+            }),
+            SpansStart::Slides(slides) => self.rest_after_slide(found, &first, slides),
+            SpansStart::Rejected | SpansStart::Unknown => found,
         };
         if let (Err(_), Some(before)) = (&found, before) {
             self.dynamics = before;
         }
         let mut report = found?;
-        report.warnings.extend(said);
-        if let Some(cost) = self.bend_on() {
+        if let Some(cost) = self.elastica_from_mesh() {
             report.cost = Cost { iterations: report.cost.iterations + cost.iterations, ..cost };
             return Ok(report);
         }
-        report.warnings.extend(self.bend_warning());
-        self.compare_meshes(exact);
-        report.warnings.extend(self.coarse_warning());
+        report.warnings.extend(self.coarse_bend_warning());
+        self.compare_meshes(spans);
+        report.warnings.extend(self.coarse_mesh_warning());
+        Ok(report)
+    }
+
+    /// Settles the mesh. If no other model `has_equilibrium` for the cable, what its nodes leave
+    /// unbalanced must not add up to a force that moves it.
+    fn settle_dynamics(&mut self, has_equilibrium: bool) -> Result<StepReport, SolveError> {
+        let report = self.dynamics.settle(&self.dragged)?;
+        match if has_equilibrium { None } else { slides_as_a_whole(&self.dynamics.cable) } {
+            Some(why) => Err(SolveError::NoRestingPlace { why }),
+            None => Ok(report),
+        }
+    }
+
+    /// The rest of a cable that slides from its `first` place: it may rest elsewhere, if it came
+    /// down to there and does not slide on.
+    fn rest_after_slide(
+        &self,
+        found: Result<StepReport, SolveError>,
+        first: &State,
+        slides: SolveError,
+    ) -> Result<StepReport, SolveError> {
+        let Ok(mut report) = found else { return Err(slides) };
+        let answer = self.dynamics.solution();
+        let comes_down = work(&self.problem, first, &answer, self.dynamics.cable.time()) > 0.0;
+        if !comes_down || slides_on(&self.problem, self.settings, &answer) {
+            return Err(slides);
+        }
+        report.warnings.push(slid_first(&self.problem, &slides));
         Ok(report)
     }
 
     /// A warning of the bend of a stiff cable that the mesh leaves out, where that is more than was
     /// asked for.
-    fn bend_warning(&mut self) -> Option<Warning> {
+    fn coarse_bend_warning(&mut self) -> Option<Warning> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
         let (off, s) = results::bending_error::bending_error(&self.dynamics.cable);
-        self.unbent = Some(off);
+        self.bending_error = Some(off);
         let limit = self.settings.tolerance;
         if off <= limit {
             return None;
@@ -302,9 +318,9 @@ impl FemModel {
         Some(Warning::new(cause, &self.problem.cable.name, s, [off, limit]))
     }
 
-    /// Begins a first rest of a fine mesh at that of a coarse one (nested iteration): the way down
-    /// takes as many steps as waves of slack run along the bars, which a coarse mesh does cheaply.
-    fn begin_coarse(&mut self) {
+    /// Starts a fine mesh from the equilibrium of a coarse one (nested iteration): slack runs along
+    /// the bars in waves, in as many steps of relaxation as there are bars.
+    fn start_from_coarse_mesh(&mut self) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
         let tuning = self.tuning().clone();
         if fine <= tuning.start.two_mesh_bars {
@@ -313,7 +329,7 @@ impl FemModel {
         let settings = Settings { segments: Some(fine / tuning.start.mesh_ratio), ..self.settings };
         let Ok(coarse) = Self::with_tuning(self.problem.clone(), settings, tuning) else { return };
         let mut coarse = Self { dragged: self.dragged.clone(), ..coarse.without_spans_start() };
-        if let Some(to) = self.led {
+        if let Some(to) = self.robot_pose {
             coarse.set_robot_pose(to);
         }
         if coarse.settle().is_err() {
@@ -326,59 +342,60 @@ impl FemModel {
         }
     }
 
-    /// The resting place of a stiff cable in contact as an elastica, from that of a flexible one;
-    /// None where this finds none.
-    fn bend(&mut self) -> Option<StepReport> {
+    /// Finds the equilibrium of a stiff cable as an elastica, from that of a flexible one; None
+    /// where there is none.
+    fn elastica_from_flexible(&mut self) -> Option<StepReport> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
-        let lay = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.led).ok()?;
+        let lay = initial_equilibrium(&self.problem, self.settings, &self.dragged, self.robot_pose).ok()?;
         let (time_s, tolerance) = (self.dynamics.cable.time(), STIFF_ESTIMATE_FRACTION * self.settings.tolerance);
         let flexible = lay.as_ref().map(|l| &l.answer);
         let (answer, cost) = elastica::rest(&self.problem, time_s, &self.dragged, flexible, tolerance)?;
-        self.bent = Some(answer);
+        self.elastica_answer = Some(answer);
         let mut warnings = lay.map_or_else(Vec::new, |l| l.warnings);
-        warnings.extend(self.bent_warning());
+        warnings.extend(self.elastica_warning());
         Some(StepReport { cost, warnings })
     }
 
-    /// The same from the rest that the mesh has found.
-    fn bend_on(&mut self) -> Option<Cost> {
+    /// The same from the equilibrium that the mesh has found.
+    fn elastica_from_mesh(&mut self) -> Option<Cost> {
         if !(self.problem.bending_stiffness > 0.0) {
             return None;
         }
         let answer = self.dynamics.solution();
         let bar = self.dynamics.cable.even();
         let found = Elastica::from_mesh(&self.problem, self.dynamics.cable.time(), &self.dragged, &answer, bar)?;
-        let cost = self.take_bent(found)?;
-        // The equilibrium of the mesh is followed: places that differ by more are another
-        // equilibrium.
+        let cost = self.accept_elastica(found)?;
+        // A shape that differs by more than the error of a mesh is another equilibrium.
         let near = |n: &Node| {
-            let at = self.bent.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
+            let at =
+                self.elastica_answer.as_ref().and_then(|b| State::of_nodes(&b.nodes, 0.0).position_at(n.arc_length_m));
             at.is_some_and(|at| (at - n.at()).norm() <= STIFF_SHIFT_LIMIT * self.problem.length)
         };
         if !answer.nodes.iter().all(near) {
-            self.bent = None;
+            self.elastica_answer = None;
             return None;
         }
         Some(cost)
     }
 
     /// A warning of a stiff cable's equilibrium whose error is more than was asked for.
-    fn bent_warning(&self) -> Option<Warning> {
-        let (estimate, asked) = (self.bent.as_ref()?.error_estimate?, self.settings.tolerance);
+    fn elastica_warning(&self) -> Option<Warning> {
+        let (estimate, asked) = (self.elastica_answer.as_ref()?.error_estimate?, self.settings.tolerance);
         let cause = WarningCause::BarContacts;
         (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
     }
 
-    fn take_bent(&mut self, mut found: Elastica) -> Option<Cost> {
+    /// Raises an elastica to the whole stiffness and refines it; keeps its answer.
+    fn accept_elastica(&mut self, mut found: Elastica) -> Option<Cost> {
         if !found.stiffen(&self.problem) {
             return None;
         }
         let (estimate, errors) =
             elastica::refine(&mut found, &self.problem, STIFF_ESTIMATE_FRACTION * self.settings.tolerance)?;
         let (iterations, residual_n) = found.cost();
-        self.bent =
+        self.elastica_answer =
             Some(CableSolution { error_estimate: Some(estimate), errors, ..elastica::solution(&found, &self.problem) });
         Some(Cost { iterations, residual_n, ..Cost::default() })
     }
@@ -391,16 +408,16 @@ impl FemModel {
         self
     }
 
-    /// A copy to go back to. It leaves the obstacles, among which the outline of the robot is
-    /// moved, to this one.
-    pub(super) fn kept(&self) -> Self {
+    /// A copy to go back to. Its obstacles are those of the scene: the ones among which the outline
+    /// of the robot is moved stay with this model.
+    pub(super) fn copy_for_rollback(&self) -> Self {
         let mut copy = self.clone();
         copy.dynamics.cable.problem = self.problem.clone();
         copy
     }
 
-    /// Looks at the cable in contact beside an answer without a mesh, or on another one, and makes
-    /// its own finer where the scene leaves that open.
+    /// Estimates the errors of the mesh beside the solution of `spans` or another mesh, and refines
+    /// it where the scene leaves its number of bars open.
     fn compare_meshes(&mut self, exact: Option<InitialEquilibrium>) {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         let refinement = if given { Refinement::Forbidden } else { Refinement::Allowed };
@@ -409,14 +426,14 @@ impl FemModel {
     }
 
     /// A warning of a mesh that is coarser than the tolerance asks for.
-    fn coarse_warning(&self) -> Option<Warning> {
+    fn coarse_mesh_warning(&self) -> Option<Warning> {
         let (estimate, asked) = (self.meshes.errors.relative(&self.dynamics.solution())?, self.settings.tolerance);
         let cause = WarningCause::CoarseForces { elements: self.dynamics.cable.meshing.even_bars };
         (estimate > asked).then(|| Warning::new(cause, &self.problem.cable.name, 0.0, [estimate, asked]))
     }
 
     /// Makes `part` the one that holds the present state.
-    fn ask(&mut self, part: Part) -> Result<(), SolveError> {
+    fn make_present(&mut self, part: Part) -> Result<(), SolveError> {
         if self.present != part {
             match part {
                 Part::Statics => self.statics.set_state(&self.dynamics.cable.state())?,
@@ -446,7 +463,7 @@ impl Mechanics for FemModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        let mut report = self.rest()?;
+        let mut report = self.find_equilibrium()?;
         report.warnings.extend(self.bow_warning());
         Ok(report)
     }
@@ -460,29 +477,29 @@ impl Mechanics for FemModel {
         if !(dt_s > 0.0 && dt_s.is_finite()) {
             return Err(SolveError::TimeStep { dt_s, longest_s: f64::INFINITY });
         }
-        if inertia == Inertia::QuasiStatic && touches_nothing(&self.problem) && self.bent.is_none() {
-            self.ask(Part::Statics)?;
+        if inertia == Inertia::QuasiStatic && touches_nothing(&self.problem) && self.elastica_answer.is_none() {
+            self.make_present(Part::Statics)?;
             self.statics.advance(dt_s, &self.dragged)
         } else {
-            self.ask(Part::Dynamics)?;
-            self.unbent = None;
-            if let Some(answer) = self.bent.take() {
+            self.make_present(Part::Dynamics)?;
+            self.bending_error = None;
+            if let Some(answer) = self.elastica_answer.take() {
                 self.dynamics.warm_start(&answer, self.dynamics.cable.time(), &self.dragged)?;
             }
             let mut report = self.dynamics.advance_gauged(dt_s, inertia, &self.dragged, gauge)?;
             self.meshes.follow(&self.problem, self.settings, &self.dynamics, dt_s, inertia, &self.dragged);
-            let led = !touches_nothing(&self.problem) || self.dynamics.cable.mesh.slides_anywhere();
-            match if led { self.bend_warning() } else { None } {
+            let may_bend_over = !touches_nothing(&self.problem) || self.dynamics.cable.mesh.slides_anywhere();
+            match if may_bend_over { self.coarse_bend_warning() } else { None } {
                 Some(warning) => report.warnings.push(warning),
-                // An error below the tolerance tells nothing of the other errors of a step.
-                None => self.unbent = None,
+                // An error below the tolerance says nothing about the other errors of a step.
+                None => self.bending_error = None,
             }
             Ok(report)
         }
     }
 
     fn state(&self) -> State {
-        if let Some(answer) = &self.bent {
+        if let Some(answer) = &self.elastica_answer {
             return State::of_nodes(&answer.nodes, self.dynamics.cable.time());
         }
         match self.present {
@@ -493,8 +510,8 @@ impl Mechanics for FemModel {
 
     fn set_state(&mut self, state: &State) -> Result<(), SolveError> {
         self.meshes = TwoMeshes::default();
-        self.bent = None;
-        self.unbent = None;
+        self.elastica_answer = None;
+        self.bending_error = None;
         // Statics has no velocities: what moves is taken over by the part that can move.
         if self.present == Part::Statics && state.moves() {
             self.dynamics.set_state(state)?;
@@ -508,8 +525,8 @@ impl Mechanics for FemModel {
     }
 
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
-        self.bent = None;
-        self.unbent = None;
+        self.elastica_answer = None;
+        self.bending_error = None;
         match self.present {
             Part::Statics => self.set_state(&State::of_nodes(&answer.nodes, time_s)),
             Part::Dynamics => {
@@ -536,7 +553,7 @@ impl Mechanics for FemModel {
     }
 
     fn set_robot_pose(&mut self, to: RigidPose) {
-        self.led = Some(to);
+        self.robot_pose = Some(to);
         if let Some(outline) = &mut self.dynamics.cable.outline {
             outline.lead_to(to);
         }
@@ -547,7 +564,7 @@ impl Mechanics for FemModel {
     }
 
     fn solution(&self) -> CableSolution {
-        if let Some(answer) = &self.bent {
+        if let Some(answer) = &self.elastica_answer {
             return answer.clone();
         }
         match self.present {
@@ -555,8 +572,8 @@ impl Mechanics for FemModel {
             Part::Dynamics => {
                 let answer = self.dynamics.solution();
                 let meshes = self.meshes.errors;
-                let estimates = [self.unbent, meshes.relative(&answer)].into_iter().flatten();
-                let errors = match self.unbent {
+                let estimates = [self.bending_error, meshes.relative(&answer)].into_iter().flatten();
+                let errors = match self.bending_error {
                     Some(part) => meshes.plus(&ErrorEstimates::of_forces(&answer, Some(part))),
                     None => meshes,
                 };
@@ -574,7 +591,7 @@ impl Mechanics for FemModel {
     }
 
     fn copy_to_keep(&self) -> Box<dyn Mechanics> {
-        Box::new(self.kept())
+        Box::new(self.copy_for_rollback())
     }
 
     fn lend(&mut self) -> Option<OwnedResources> {

@@ -119,9 +119,11 @@ pub struct NewtonTuning {
     /// Gap at which contacts ahead land, of the barrier's reach: about where it holds a node.
     /// Smaller: they land too hard. Larger: they are let down in more steps.
     pub landing_gap_fraction: f64,
-    /// Part of its gap that a contact within the reach may lose in a step: less than the step bound
-    /// lets it. Smaller: more steps. Larger: the bound cuts the step.
-    pub gap_loss_fraction: f64,
+    /// Part of the room that constraints and step bound leave to each other: contacts within the
+    /// reach are held to this part of the loss that the bound lets them, and wider gaps are bound
+    /// to this part of where foreseen contacts land. Smaller: more steps. Larger: rounding lets the
+    /// bound cut a step that lands.
+    pub bound_margin: f64,
     /// Stiffness of a constraint, in the largest stiffness at its nodes. Softer: nodes still run
     /// into the barrier. Much harder: rounding.
     pub constraint_hardness: f64,
@@ -132,9 +134,6 @@ pub struct NewtonTuning {
     /// again (with 0.2 twice as many steps of ends thrown about are halved, five times as many
     /// where the cable meets itself). Larger: more steps.
     pub kept_gap_fraction: f64,
-    /// The same for gaps wider than the barrier's reach, in reaches: a little less than where
-    /// foreseen contacts land.
-    pub kept_reach_fraction: f64,
     /// Least part of the cable between a sliding node and its neighbour that an iteration leaves.
     /// Smaller: a bar shrinks to nothing in a few iterations. Larger: more iterations.
     pub kept_cable_fraction: f64,
@@ -170,11 +169,10 @@ impl Default for NewtonTuning {
             free_step_fraction: 0.99,
             min_descent_fraction: 0.1,
             landing_gap_fraction: 0.5,
-            gap_loss_fraction: 0.45,
+            bound_margin: 0.9,
             constraint_hardness: 1e5,
             constraint_tolerance: 0.05,
             kept_gap_fraction: 0.5,
-            kept_reach_fraction: 0.45,
             kept_cable_fraction: 0.3,
             decrease: 1e-4,
             max_halvings: 30,
@@ -314,11 +312,10 @@ pub struct EquilibriumTuning {
     /// Rounds of refreshing the normal forces of friction in a step. Fewer: steps are halved. More:
     /// a cycle costs more.
     pub lag_rounds: usize,
-    /// The same in a step of relaxation.
-    pub relaxation_lag_rounds: usize,
     /// Rounds after which normal forces are taken in part only: where a contact that rubs more
-    /// lifts its neighbour, which then rubs less, they go round and round. Fewer: what converges by
-    /// itself takes longer. More: fewer rounds are left.
+    /// lifts its neighbour, which then rubs less, they never end. A step of relaxation, which need
+    /// not end, has no others. Fewer: what converges by itself takes longer. More: fewer rounds are
+    /// left.
     pub whole_lag_rounds: usize,
     /// Least such part. Smaller: the last rounds change nothing. Larger: what goes round and round
     /// does not end.
@@ -342,11 +339,11 @@ pub struct EquilibriumTuning {
     /// little friction 3e-4 and more.
     pub unheld_load_fraction: f64,
     /// Unbalanced force of a polished rest in its stages, in tolerances. Smaller: nothing but
-    /// rounding is gained. Larger: what is left at a hundred nodes of a lay that all but slides is
-    /// seen in the balance of the whole.
+    /// rounding is gained. Larger: the forces left at a hundred nodes of a cable that all but
+    /// slides show in the balance of the whole.
     pub polish_residuals: [f64; 3],
-    /// Newton iterations of the stages. The first has what the search left by coming to its last
-    /// iteration. Fewer: what slides as a whole on smooth ground is left as it slides.
+    /// Newton iterations of the stages. The first continues a search that came to its last
+    /// iteration. Fewer: a cable that slides as a whole on smooth ground does not come to rest.
     pub polish_iterations: [usize; 3],
     /// Times a rest is sought again because corners were met or left on the way to it. Fewer: it is
     /// refused. More: a cycle costs more.
@@ -365,7 +362,6 @@ impl Default for EquilibriumTuning {
             halvings_before_relaxation: 4,
             max_relaxation_steps: 600,
             lag_rounds: 25,
-            relaxation_lag_rounds: 8,
             whole_lag_rounds: 8,
             min_lag_fraction: 0.03,
             lag_growth: 1.1,
@@ -397,8 +393,6 @@ pub struct OutlineTuning {
     /// Part of a gap that is left when what stands in the way pushes back. Smaller: nodes in a
     /// corner come into the barrier. Larger: more rounds.
     pub kept_gap_fraction: f64,
-    /// The same that the sweep asks for, which is less for rounding.
-    pub swept_gap_fraction: f64,
     /// Rounds of giving gaps back. Fewer: a node in a corner between outline and ground stays near.
     /// More: a squeezed one, which never ends, costs more.
     pub max_rounds: usize,
@@ -414,7 +408,6 @@ impl Default for OutlineTuning {
             carried_distance_m: 0.02,
             way_fractions: [1.0, 0.5, 0.25, 0.0625],
             kept_gap_fraction: 0.1,
-            swept_gap_fraction: 0.05,
             max_rounds: 40,
             max_hitch_lag_m: 0.06,
         }
@@ -559,9 +552,6 @@ pub struct StartTuning {
     /// by more (1.2e-3 of the greatest with 1 round a post of 450°, 7e-4 with 1.5). More: more
     /// nodes.
     pub marks_per_bar: f64,
-    /// Shortest bar beside a sliding node that is taken over, in even bars. Smaller: the matrix is
-    /// worse. Larger: nodes are lost.
-    pub min_bar: f64,
     /// Part of a bar that a new node of a state taken over keeps away from its ends. Smaller: bars
     /// without mass. Larger: corners beside a node are still cut off.
     pub min_part: f64,
@@ -586,7 +576,6 @@ impl Default for StartTuning {
             max_refined_bars: 800,
             max_mark_turn_rad: 2.8,
             marks_per_bar: 1.5,
-            min_bar: 0.35,
             min_part: 0.05,
             arc_length_ratio: 2.0,
         }

@@ -242,16 +242,16 @@ impl Layout {
             law,
             drag: 0.0,
             mobilised: self.problem.cable.friction_mobilised.way(),
-            lies_loose: false,
+            loose_where_tension_ends: false,
             loads: loads.collect(),
             settings: self.settings.clone(),
         };
-        self.give(&mut course, instant);
+        self.set_course(&mut course, instant);
         course
     }
 
-    /// Takes the numbers of an instant into a course.
-    pub fn give(&self, course: &mut Course, instant: &BoundaryConditions) {
+    /// Sets loads, friction and places of a course to those of an instant.
+    pub fn set_course(&self, course: &mut Course, instant: &BoundaryConditions) {
         course.law.load = instant.load;
         course.law.thermal = instant.thermal;
         for (l, force) in course.loads.iter_mut().zip(&instant.forces) {

@@ -12,9 +12,13 @@
 //! | `run` | free spans and contacts in a row between two grips: the unknowns |
 //! | `boundary_conditions` | supports and loads at an instant, and how a cable falls into runs |
 //! | `newton`, `numerics` | all unknowns of a run at once; band LU, root finding |
-//! | `changes` | contacts that come, go, join and part |
+//! | `changes` | contacts that are released, merged and made, until none is needed |
 //! | `initial` | the first shape: route, shortest path, contacts, tension; or another answer |
-//! | `continuation`, `reversed` | from one instant to the next; the cable counted from its other end |
+//! | `first_equilibrium` | the search for the first equilibrium, from several first shapes |
+//! | `continuation` | from one instant to the next, in steps that are halved |
+//! | `missing_friction` | how much friction a sliding cable would need; what drawing leaves |
+//! | `other_balances` | slack elsewhere: balances that run away, and other resting places |
+//! | `reversed` | the cable counted from its other end |
 //! | `slack` | cable that lies without tension |
 //! | `verify` | checks of an answer that do not use the solver |
 //! | `results`, `failure` | the answer; why there is none |
@@ -29,9 +33,12 @@ mod changes;
 pub(in crate::model) mod contact;
 mod continuation;
 mod failure;
+mod first_equilibrium;
 mod initial;
+mod missing_friction;
 mod newton;
 mod numerics;
+mod other_balances;
 mod results;
 mod reversed;
 mod run;
@@ -46,8 +53,9 @@ use crate::math::{Vec2, larger, smaller};
 use crate::model::catenary::slack_without_weight;
 use crate::model::gauge::TensionGauge;
 use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, CableEquilibrium, Layout, unsupported};
-use crate::model::spans::continuation::{SearchStart, StepStats, Unfound};
+use crate::model::spans::continuation::StepStats;
 use crate::model::spans::failure::Failure;
+use crate::model::spans::first_equilibrium::{NotFound, SearchStart};
 use crate::model::spans::newton::Work;
 use crate::model::spans::results::Report;
 use crate::model::spans::reversed::Turned;
@@ -129,7 +137,7 @@ impl SpansModel {
 
     /// True if the cable that was found lies without tension.
     pub(super) fn lies_loose(&self) -> bool {
-        self.network.as_ref().is_some_and(|n| n.loose().is_some())
+        self.network.as_ref().is_some_and(|n| n.loose_lengths().is_some())
     }
 
     /// Leaves an equilibrium that runs away at the least push for a stable one; a warning where it
@@ -185,27 +193,31 @@ impl SpansModel {
         Turned { problem: &self.problem }
     }
 
-    /// A rest of the cable laid along its way, counted from its upper end; where none is found so,
-    /// from the other; else as it comes down.
-    fn lay(&mut self, instant: &mut BoundaryConditions, work: &mut Work) -> Result<StepStats, Unfound> {
-        let (network, taken) = match CableEquilibrium::rest(&self.layout, instant, work) {
+    /// Finds the first equilibrium: along the route, counted from the cable's upper end; where none
+    /// is found, counted from the other end; else in heaps as the cable comes down.
+    fn find_first_equilibrium(
+        &mut self,
+        instant: &mut BoundaryConditions,
+        work: &mut Work,
+    ) -> Result<StepStats, NotFound> {
+        let (network, taken) = match CableEquilibrium::along_route(&self.layout, instant, work) {
             Ok(found) => found,
-            Err(unfound) => {
+            Err(not_found) => {
                 let (mut there, mut dragged) = (BoundaryConditions::default(), self.dragged.clone());
                 dragged.reverse();
                 let other = counted(&self.problem, self.layout.counted_from.other(), self.layout.settings.clone())
                     .ok()
                     .and_then(|other| {
                         other.instant(&dragged, self.time_s, &mut there);
-                        Some((CableEquilibrium::rest(&other, &there, work).ok()?, other))
+                        Some((CableEquilibrium::along_route(&other, &there, work).ok()?, other))
                     });
-                match (other, CableEquilibrium::heaped(&self.layout, instant)) {
+                match (other, CableEquilibrium::in_heaps(&self.layout, instant)) {
                     (Some((found, other)), _) => {
                         (self.layout, self.dragged, *instant) = (other, dragged, there);
                         found
                     }
                     (None, Some(heap)) => (heap, StepStats::default()),
-                    (None, None) => return Err(unfound),
+                    (None, None) => return Err(not_found),
                 }
             }
         };
@@ -218,7 +230,7 @@ impl SpansModel {
         StepReport {
             cost: Cost {
                 iterations: taken.solved.iterations,
-                halved_steps: taken.halved,
+                halved_steps: taken.halvings,
                 residual_n: taken.solved.residual * scale,
                 inner_step_s: 0.0,
             },
@@ -238,12 +250,13 @@ impl SpansModel {
         let laid = tensions(network);
         let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
             let drawn = if turned { reversed::mobilised(drawn) } else { drawn };
-            let found = network.drawn(&self.layout, drawn.way(), work);
-            found.or_else(|| self.laid_anew(drawn, start, work)).map(|n| tensions(&n))
+            let found = network.drawn_one_way(&self.layout, drawn.way(), work);
+            found.or_else(|| self.along_route_drawn(drawn, start, work)).map(|n| tensions(&n))
         });
         // A cable that is longer than its way may as well lie loose.
-        let heap = CableEquilibrium::heaped(&self.layout, &network.instant);
-        let loose = heap.filter(|heap| heap.loose().is_some_and(|[material, _]| material > 0.0)).map(|n| tensions(&n));
+        let heap = CableEquilibrium::in_heaps(&self.layout, &network.instant);
+        let loose =
+            heap.filter(|heap| heap.loose_lengths().is_some_and(|[material, _]| material > 0.0)).map(|n| tensions(&n));
         let all = || std::iter::once(laid).chain(drawn.into_iter().flatten()).chain(loose);
         let range = |k: usize| all().map(|t| t[k]).fold([laid[k], laid[k]], |[a, b], t| [smaller(a, t), larger(b, t)]);
         let greatest_n = laid[2];
@@ -284,12 +297,18 @@ impl SpansModel {
         Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2])
     }
 
-    /// The cable laid anew along its way while it is drawn.
-    fn laid_anew(&self, drawn: FrictionMobilised, start: SearchStart, work: &mut Work) -> Option<CableEquilibrium> {
+    /// The first equilibrium of the cable along its route while it is drawn one way.
+    fn along_route_drawn(
+        &self,
+        drawn: FrictionMobilised,
+        start: SearchStart,
+        work: &mut Work,
+    ) -> Option<CableEquilibrium> {
         let mut layout = self.layout.clone();
         Arc::make_mut(&mut layout.problem).cable.friction_mobilised = drawn;
         let instant = self.network.as_ref()?.instant.clone();
-        CableEquilibrium::rest_from(&layout, &instant, start, work).ok().map(|n| n.0).filter(|n| n.loose().is_none())
+        let found = CableEquilibrium::along_route_from(&layout, &instant, start, work);
+        found.ok().map(|(network, _)| network).filter(|n| n.loose_lengths().is_none())
     }
 
     /// True if some of the cable is held by nothing but friction.
@@ -370,12 +389,12 @@ impl Mechanics for SpansModel {
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
         let mut work = std::mem::take(&mut self.work);
         // A cable that lies loose remembers nothing.
-        self.network = self.network.take().filter(|n| n.loose().is_none());
+        self.network = self.network.take().filter(|n| n.loose_lengths().is_none());
         let found = match &mut self.network {
             Some(network) => {
-                network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|stopped| (stopped.failure, None))
+                network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|stopped| stopped.failure.into())
             }
-            None => self.lay(&mut instant, &mut work),
+            None => self.find_first_equilibrium(&mut instant, &mut work),
         };
         let (found, stable) = match &mut self.network {
             Some(n) if found.is_ok() => match n.leave_unstable(&self.layout, &instant, &mut work) {
@@ -386,10 +405,10 @@ impl Mechanics for SpansModel {
         };
         let slides = found.is_err() && self.network.is_none() && self.hangs_by_friction();
         let needed = if slides { CableEquilibrium::friction_needed(&self.layout, &instant, &mut work) } else { None };
-        let loose = self.network.as_ref().and_then(CableEquilibrium::loose);
+        let loose = self.network.as_ref().and_then(CableEquilibrium::loose_lengths);
         let seeks = self.histories && found.is_ok() && loose.is_none() && self.rubs();
         let start = match &found {
-            Ok(taken) if taken.eased => SearchStart::WithFriction,
+            Ok(taken) if taken.found_without_friction => SearchStart::WithFriction,
             _ => SearchStart::AlsoWithoutFriction,
         };
         let histories = if seeks { self.histories(start, &mut work) } else { Histories::NotSought };
@@ -399,9 +418,9 @@ impl Mechanics for SpansModel {
             let why = NoEquilibrium::TooLittleFriction { friction_ratio: part };
             return Err(SolveError::NoRestingPlace { why });
         }
-        let taken = found.map_err(|(failure, stopped)| match slides && !self.rubs() {
+        let taken = found.map_err(|not_found| match slides && !self.rubs() {
             true => SolveError::NoRestingPlace { why: NoEquilibrium::NoFriction },
-            false => self.solve_error(stopped.as_deref(), failure),
+            false => self.solve_error(not_found.let_out.as_deref(), not_found.failure),
         })?;
         let mut report = self.report_of(taken);
         if !stable {
@@ -414,7 +433,11 @@ impl Mechanics for SpansModel {
             let cause = WarningCause::Loose { material_m: material, ground_m: ground, held_n };
             report.warnings.push(self.warning(cause));
         } else if self.rubs() && mobilised.is_default() && !self.hangs_free(&histories) {
-            let shown = if taken.eased { ShownEquilibrium::Frictionless } else { ShownEquilibrium::LeastSliding };
+            let shown = if taken.found_without_friction {
+                ShownEquilibrium::Frictionless
+            } else {
+                ShownEquilibrium::LeastSliding
+            };
             report.warnings.push(self.warning(WarningCause::ManyEquilibria { shown, histories }));
         }
         report.warnings.extend(others);
@@ -468,7 +491,7 @@ impl Mechanics for SpansModel {
                     sum.cost.iterations += one.iterations;
                     sum.cost.halved_steps += one.halved_steps;
                     sum.cost.residual_n = one.residual_n;
-                    ran += taken.ran;
+                    ran += taken.runaways;
                     self.time_s = time_s;
                 }
                 Err(stopped) => {
@@ -515,7 +538,7 @@ impl Mechanics for SpansModel {
         let mut work = std::mem::take(&mut self.work);
         let nodes = self.layout.is_reversed().then(|| self.turned().nodes(&answer.nodes));
         let nodes = nodes.as_ref().unwrap_or(&answer.nodes);
-        let taken = CableEquilibrium::taken(&self.layout, &instant, nodes, &mut work);
+        let taken = CableEquilibrium::from_answer(&self.layout, &instant, nodes, &mut work);
         self.work = work;
         self.network = Some(taken.map_err(|t| self.plain_error(t))?);
         self.time_s = time_s;

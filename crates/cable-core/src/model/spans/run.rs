@@ -29,9 +29,9 @@ pub(in crate::model::spans) struct Course {
     /// towards its end, −1 towards its start; 0 where friction does what the contact's past asks
     /// for.
     pub mobilised: f64,
-    /// True where cable on a smooth contact lies loose once it has no tension left, held by the
+    /// True if cable on a smooth contact lies loose where it has no tension left, held by the
     /// friction of the ground.
-    pub lies_loose: bool,
+    pub loose_where_tension_ends: bool,
     /// Dead loads inside the cable, in order, N.
     pub loads: Vec<PointForce>,
     pub settings: Arc<SpansSettings>,
@@ -212,7 +212,11 @@ impl Course {
             law: self.law,
             friction: self.friction(c),
             drag: self.drag,
-            floored: if c.smooth { self.lies_loose } else { self.mobilised != 0.0 && curve.friction > 0.0 },
+            floored: if c.smooth {
+                self.loose_where_tension_ends
+            } else {
+                self.mobilised != 0.0 && curve.friction > 0.0
+            },
             friction_of_loose: curve.friction,
             pivot: None,
         }

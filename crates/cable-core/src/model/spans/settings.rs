@@ -253,7 +253,7 @@ pub struct ChangeSettings {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct VerifySettings {
     /// Force across the load, of the weight of a span, up to which it hangs in one line. Smaller: a
-    /// fold is not told. Larger: a span that sags is told to fold.
+    /// fold is not reported. Larger: a span that sags is reported as a fold.
     pub fold_force_fraction: f64,
     /// Points of a span, and of a contact, that are compared before and after a step. Smaller: a
     /// corner is passed unseen. Larger: dearer.

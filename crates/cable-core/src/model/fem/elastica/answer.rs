@@ -1,4 +1,4 @@
-//! This module reads an answer out of a solved elastica.
+//! A solved elastica is written as an answer, with its error.
 
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::elastica::boundary_value::{
@@ -26,7 +26,6 @@ const NODE_SPACING_FRACTION: f64 = 1e-3;
 /// is squared.
 const PEAK_HALVINGS: usize = 24;
 
-/// The answer.
 /// Part of what halving the elements changes that may be left of an error: a fifteenth by the
 /// fourth order, twice that where the last elements beside a contact do not have it yet.
 const HALVING_ERROR_FRACTION: f64 = 2.0 / 15.0;
@@ -34,8 +33,8 @@ const HALVING_ERROR_FRACTION: f64 = 2.0 / 15.0;
 /// Elements of all pieces together that are refined to.
 const MOST_ELEMENTS: usize = 4000;
 
-/// The answer with its error, at the whole stiffness.
-pub fn answer(mut elastica: Elastica, problem: &Problem, tolerance: f64) -> Option<(CableSolution, Cost)> {
+/// Raises the elastica to the whole stiffness and refines it; returns its answer with the error.
+pub fn stiffen_and_refine(mut elastica: Elastica, problem: &Problem, tolerance: f64) -> Option<(CableSolution, Cost)> {
     if !elastica.stiffen(problem) {
         return None;
     }
@@ -79,6 +78,7 @@ pub fn refine(elastica: &mut Elastica, problem: &Problem, tolerance: f64) -> Opt
     }
 }
 
+/// The answer of an elastica.
 pub fn solution(elastica: &Elastica, problem: &Problem) -> CableSolution {
     let nodes = nodes(elastica, problem);
     CableSolution {
@@ -158,17 +158,21 @@ fn supports(elastica: &Elastica, problem: &Problem, nodes: &[Node]) -> Vec<Suppo
             for (j, joint) in elastica.joints.iter().enumerate() {
                 let (Some(a), Some(b)) = ends(j) else { continue };
                 match *joint {
-                    Joint::Held(of, ..) if of == k => put(force(b) - force(a), place(b), b[ARC]),
-                    Joint::Load(Some(of), _, load) if of == k => put(-load, place(b), b[ARC]),
+                    Joint::Held { support, .. } if support == k => put(force(b) - force(a), place(b), b[ARC]),
+                    Joint::Load { support: Some(support), force, .. } if support == k => put(-force, place(b), b[ARC]),
                     _ => {}
                 }
             }
         }
         let pulley = |c: usize| elastica.contacts.get(c).is_some_and(|c| c.owner == Owner::Pulley(k));
-        let begins =
-            elastica.joints.iter().position(|j| matches!(j, Joint::ContactPair(c) | Joint::Begin(c) if pulley(*c)));
-        let stops =
-            elastica.joints.iter().rposition(|j| matches!(j, Joint::ContactPair(c) | Joint::End(c) if pulley(*c)));
+        let begins = elastica
+            .joints
+            .iter()
+            .position(|j| matches!(j, Joint::PointContact(c) | Joint::ContactBegin(c) if pulley(*c)));
+        let stops = elastica
+            .joints
+            .iter()
+            .rposition(|j| matches!(j, Joint::PointContact(c) | Joint::ContactEnd(c) if pulley(*c)));
         if let (Some(i), Some(j)) = (begins, stops)
             && let ((Some(a), _), (_, Some(b))) = (ends(i), ends(j))
         {
@@ -186,10 +190,10 @@ fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport>
     let mut out = Vec::new();
     for (j, joint) in elastica.joints.iter().enumerate() {
         let (k, stretch) = match *joint {
-            Joint::ContactPair(k) => (k, None),
-            Joint::Begin(k) => (k, elastica.pieces.get(j + 1)),
+            Joint::PointContact(k) => (k, None),
+            Joint::ContactBegin(k) => (k, elastica.pieces.get(j + 1)),
             // The stretch that the cable begins with.
-            Joint::End(k) if j == 0 => (k, elastica.pieces.first()),
+            Joint::ContactEnd(k) if j == 0 => (k, elastica.pieces.first()),
             _ => continue,
         };
         let Some(c) = elastica.contacts.get(k) else { continue };
@@ -208,7 +212,7 @@ fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport>
             ..ContactReport::default()
         };
         let mut samples = vec![ContactSample::new(a[ARC], force(a) - force(b))];
-        if let (Joint::End(_), Some(p)) = (joint, stretch) {
+        if let (Joint::ContactEnd(_), Some(p)) = (joint, stretch) {
             // The point force comes after what lies.
             samples = along(elastica, problem, p);
             samples.push(ContactSample::new(a[ARC], force(a) - force(b)));
@@ -220,8 +224,8 @@ fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport>
             }
         }
         let tip = match (*joint, stretch) {
-            (Joint::End(_), Some(p)) => p.nodes.first().map(|u| (0, u)),
-            (Joint::Begin(_), Some(p)) if j + 2 == elastica.pieces.len() => p.nodes.last().map(|u| (1, u)),
+            (Joint::ContactEnd(_), Some(p)) => p.nodes.first().map(|u| (0, u)),
+            (Joint::ContactBegin(_), Some(p)) if j + 2 == elastica.pieces.len() => p.nodes.last().map(|u| (1, u)),
             _ => None,
         };
         if let Some((which, u)) = tip {
@@ -235,23 +239,25 @@ fn contact_reports(elastica: &Elastica, problem: &Problem) -> Vec<ContactReport>
         if let Some(p) = stretch {
             let l = p.nodes[0][LENGTH];
             for (e, pair) in p.nodes.windows(2).enumerate() {
-                let half = elastica.read(p, 0.5 * (p.grid[e] + p.grid[e + 1]));
+                let half = elastica.state_in(p, 0.5 * (p.grid[e] + p.grid[e + 1]));
                 let pressed =
                     elastica.pressure(c, &pair[0]) + 4.0 * elastica.pressure(c, &half) + elastica.pressure(c, &pair[1]);
                 r.normal_n += pressed * l * (p.grid[e + 1] - p.grid[e]) / 6.0;
             }
             let (Some(first), Some(last)) = (p.nodes.first(), p.nodes.last()) else { continue };
-            if let (Joint::Begin(_), Some(next)) = (joint, elastica.pieces.get(j + 2).and_then(|p| p.nodes.first())) {
+            if let (Joint::ContactBegin(_), Some(next)) =
+                (joint, elastica.pieces.get(j + 2).and_then(|p| p.nodes.first()))
+            {
                 r.normal_n += elastica.push(j + 1);
                 r.tension_after_n = tension(next);
-            } else if *joint == Joint::Begin(k) {
+            } else if *joint == Joint::ContactBegin(k) {
                 r.tension_after_n = tension(last);
             } else {
                 r.tension_before_n = tension(first);
             }
             (r.begins_m, r.ends_m) = (first[ARC], last[ARC]);
             r.turn_deg = (last[ANGLE] - first[ANGLE]).to_degrees();
-            let u = elastica.read(p, 0.5);
+            let u = elastica.state_in(p, 0.5);
             (middle, normal) = (place(&u), perp(tangent(&u)) * -c.sense);
         }
         r.friction_n = c.mobilised * r.normal_n;
@@ -276,10 +282,10 @@ fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STA
         let clear = |x: &f64| places.iter().chain(g).all(|y| (x - y).abs() > apart);
         places.extend(peak(elastica, piece, [g[0], g[1]]).filter(clear));
         places.sort_by(f64::total_cmp);
-        out.extend(places.into_iter().map(|x| elastica.read(piece, x)));
+        out.extend(places.into_iter().map(|x| elastica.state_in(piece, x)));
         // A node just before the end tells the spread force from the point force at the end.
         if piece.contact.is_some() && g[1] >= 1.0 {
-            out.push(elastica.read(piece, 1.0 - END_NODE_OFFSET));
+            out.push(elastica.state_in(piece, 1.0 - END_NODE_OFFSET));
         }
         out.push(*b);
     }
@@ -290,7 +296,7 @@ fn drawn(elastica: &Elastica, problem: &Problem, piece: &Piece) -> Vec<[f64; STA
 /// between nodes it is read too small by the square of their distance.
 fn peak(elastica: &Elastica, piece: &Piece, [mut from, mut to]: [f64; 2]) -> Option<f64> {
     let rises = |x: f64| {
-        let u = elastica.read(piece, x);
+        let u = elastica.state_in(piece, x);
         let (t, by) = (tangent(&u), elastica.slope(piece.contact, &u));
         Vec2::new(by[4], by[5]).dot(&t) + force(&u).dot(&perp(t)) * by[ANGLE] > 0.0
     };

@@ -1,32 +1,35 @@
-//! The boundary value problem of an elastica: its pieces and joints, their equations, and Newton's
-//! method for them. See the module above.
+//! An elastica is a boundary value problem: this module has its pieces and joints, their equations
+//! (derived in the module above), and Newton's method for them.
 
 use crate::math::{Vec2, perp};
-use crate::model::fem::elastica::band::Band;
+use crate::model::fem::elastica::band_lu::BandLu;
 
 /// Unknowns at a node: x, y, θ, M, F (2), s and the length of its piece in s.
 pub(super) const STATES: usize = 8;
-/// See `STATES`.
+/// Place of θ among the unknowns.
 pub(super) const ANGLE: usize = 2;
+/// Place of M among the unknowns.
 pub(super) const MOMENT: usize = 3;
+/// Place of s among the unknowns.
 pub(super) const ARC: usize = 6;
+/// Place of the length of the piece among the unknowns.
 pub(super) const LENGTH: usize = 7;
 
 /// Half-bandwidth: rows of a joint stand up to 13 from the columns they belong to.
-pub(super) const HALF_BAND: usize = 16;
+const HALF_BAND: usize = 16;
 
 /// Newton steps. 5 to 8 are usual; more than this finds nothing.
-pub(super) const MAX_STEPS: usize = 40;
+const MAX_STEPS: usize = 40;
 
 /// Longest turn of a node in one step, rad.
-pub(super) const LONGEST_TURN: f64 = 0.4;
+const LONGEST_TURN: f64 = 0.4;
 
 /// Part of its length that a piece may lose in one step: it must not turn over.
-pub(super) const PIECE_SHORTENING_LIMIT: f64 = 0.6;
+const PIECE_SHORTENING_LIMIT: f64 = 0.6;
 
 /// Steps in which a stretch of contact wants to be shorter than nothing before it is taken for a
 /// point. Fewer: first guesses that are too long are; more: all others wait for it.
-pub(super) const STEPS_BEFORE_POINT_CONTACT: usize = 3;
+const STEPS_BEFORE_POINT_CONTACT: usize = 3;
 
 /// Newton steps times nodes that are spent on a cable from one guess. Less: cables with ten
 /// contacts are left to a chain of bars; more: seconds go into what is not found. Chosen so that a
@@ -34,11 +37,11 @@ pub(super) const STEPS_BEFORE_POINT_CONTACT: usize = 3;
 pub(super) const MOST_WORK: usize = 25_000;
 
 /// Newton has ended where no unknown moves by more than this part of its size.
-pub(super) const STEP_TOLERANCE: f64 = 1e-10;
+const STEP_TOLERANCE: f64 = 1e-10;
 
 /// Part of an unknown's size by which it is moved to find a slope, with central differences: their
 /// error is its square.
-pub(super) const DIFFERENCE_STEP: f64 = 1e-6;
+const DIFFERENCE_STEP: f64 = 1e-6;
 
 /// A surface on which the cable can lie, at one place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,8 +69,8 @@ pub(super) enum Owner {
     Pulley(usize),
 }
 
-/// Residuals of some states, appended.
-pub(super) type Residual<'a> = dyn Fn(&[[f64; STATES]], &mut Vec<f64>) + 'a;
+/// Appends the residuals of some states.
+type Residual<'a> = dyn Fn(&[[f64; STATES]], &mut Vec<f64>) + 'a;
 
 impl Contact {
     /// Gap (m) and outward normal at a place.
@@ -82,12 +85,12 @@ impl Contact {
         }
     }
 
-    /// Curvature of what it offers, with its sign, 1/m.
+    /// Curvature of a cable that lies on it, with its sign, 1/m.
     pub(super) fn curvature(&self) -> f64 {
         self.radius.filter(|r| *r > 0.0).map_or(0.0, |r| self.sense / r)
     }
 
-    /// True if it is a point that the cable slides over, which no cable can lie on.
+    /// True if it is a sharp corner: a cable slides over it, and none can lie on it.
     pub(super) fn is_point(&self) -> bool {
         self.radius == Some(0.0)
     }
@@ -107,16 +110,16 @@ pub(super) struct Piece {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Joint {
     /// A contact in one point.
-    ContactPair(usize),
+    PointContact(usize),
     /// A stretch of contact begins.
-    Begin(usize),
-    /// It ends.
-    End(usize),
-    /// Held at a place of the cable (m) and of the plane (m), in a direction (rad) where it is
-    /// clamped.
-    Held(usize, f64, Vec2, Option<f64>),
-    /// A dead load at a place of the cable, N; with the support it is, if it is one.
-    Load(Option<usize>, f64, Vec2),
+    ContactBegin(usize),
+    /// A stretch of contact ends.
+    ContactEnd(usize),
+    /// A support holds the cable at an arc length (m) and a position (m), in a direction (rad)
+    /// where it is clamped.
+    Held { support: usize, arc: f64, at: Vec2, angle: Option<f64> },
+    /// A dead load (N) acts at an arc length (m): that of a support, or a point load.
+    Load { support: Option<usize>, arc: f64, force: Vec2 },
 }
 
 /// An end of the cable.
@@ -169,7 +172,7 @@ pub(super) fn tension(u: &[f64; STATES]) -> f64 {
 }
 
 /// The angle from a line's or round's own direction, as a sine: zero where the cable is tangent.
-pub(super) fn slant(contact: &Contact, u: &[f64; STATES]) -> f64 {
+fn slant(contact: &Contact, u: &[f64; STATES]) -> f64 {
     contact.gap(place(u)).1.dot(&tangent(u))
 }
 
@@ -206,30 +209,24 @@ impl Elastica {
     }
 
     /// Residual of Simpson's rule in an element, with the middle of Hermite's cubic.
-    pub(super) fn element(
-        &self,
-        contact: Option<usize>,
-        h: f64,
-        a: &[f64; STATES],
-        b: &[f64; STATES],
-    ) -> [f64; STATES] {
+    fn element_residual(&self, contact: Option<usize>, h: f64, a: &[f64; STATES], b: &[f64; STATES]) -> [f64; STATES] {
         let (fa, fb) = (self.slope(contact, a), self.slope(contact, b));
         let middle = std::array::from_fn(|i| 0.5 * (a[i] + b[i]) + 0.125 * h * (fa[i] - fb[i]));
         let fm = self.slope(contact, &middle);
         std::array::from_fn(|i| b[i] - a[i] - h / 6.0 * (fa[i] + 4.0 * fm[i] + fb[i]))
     }
 
-    /// The equations at an end of the cable; `lies`: the contact that its piece lies on.
-    pub(super) fn end(&self, which: usize, contact: Option<usize>, u: &[f64; STATES], out: &mut Vec<f64>) {
+    /// Appends the equations at an end of the cable, whose piece lies on `contact` if on any.
+    fn end_equations(&self, which: usize, contact: Option<usize>, u: &[f64; STATES], out: &mut Vec<f64>) {
         out.push(u[ARC] - if which == 0 { 0.0 } else { self.length });
         let sign = if which == 0 { -1.0 } else { 1.0 };
         let contact = contact.and_then(|k| self.contacts.get(k));
         if let (0, Some(c)) = (which, contact) {
-            self.lie(c, u, out);
+            self.lying_equations(c, u, out);
         }
         match (self.ends[which], contact) {
-            // An end that lies on a contact is led: only its place along the contact or its pull is
-            // free.
+            // The contact prescribes the direction and distance of an end that lies on it: only its
+            // place along the contact or its pull is free.
             (End::Held(at, _), Some(_)) => out.push((place(u) - at).dot(&tangent(u))),
             (End::Loaded(load), Some(c)) => {
                 out.push(tension(u) - sign * (load.dot(&tangent(u)) + c.mobilised * self.tip_push(which, c, u)));
@@ -254,15 +251,15 @@ impl Elastica {
         }
     }
 
-    /// The four conditions under which a piece lies on its contact: all of it does where its start
-    /// does.
-    pub(super) fn lie(&self, c: &Contact, u: &[f64; STATES], out: &mut Vec<f64>) {
+    /// Appends the four conditions under which a piece lies on its contact: all of it does where
+    /// its start does.
+    fn lying_equations(&self, c: &Contact, u: &[f64; STATES], out: &mut Vec<f64>) {
         let bent = self.bending * c.curvature() * (1.0 + tension(u) / self.axial_stiffness);
         out.extend([c.gap(place(u)).0, slant(c, u), u[MOMENT] - bent, force(u).dot(&perp(tangent(u)))]);
     }
 
-    /// The equations where two pieces meet.
-    pub(super) fn joint(&self, joint: Joint, a: &[f64; STATES], b: &[f64; STATES], out: &mut Vec<f64>) {
+    /// Appends the equations where two pieces meet.
+    fn joint_equations(&self, joint: Joint, a: &[f64; STATES], b: &[f64; STATES], out: &mut Vec<f64>) {
         let jump = |c: &Contact| {
             let (t, d) = (tangent(a), force(b) - force(a));
             let normal = perp(t) * -c.sense;
@@ -270,26 +267,26 @@ impl Elastica {
         };
         let (xa, xb) = (place(a), place(b));
         match joint {
-            Joint::ContactPair(k) | Joint::Begin(k) | Joint::End(k) => {
+            Joint::PointContact(k) | Joint::ContactBegin(k) | Joint::ContactEnd(k) => {
                 out.extend((0..=MOMENT).map(|i| b[i] - a[i]));
                 out.push(b[ARC] - a[ARC]);
                 let Some(c) = self.contacts.get(k) else { return };
                 out.push(jump(c));
                 match joint {
-                    Joint::ContactPair(_) if c.is_point() => out.extend([(xa - c.at).x, (xa - c.at).y]),
-                    Joint::ContactPair(_) => out.extend([c.gap(xa).0, slant(c, a)]),
-                    Joint::Begin(_) => self.lie(c, b, out),
+                    Joint::PointContact(_) if c.is_point() => out.extend([(xa - c.at).x, (xa - c.at).y]),
+                    Joint::PointContact(_) => out.extend([c.gap(xa).0, slant(c, a)]),
+                    Joint::ContactBegin(_) => self.lying_equations(c, b, out),
                     _ => {}
                 }
             }
-            Joint::Held(_, s, at, angle) => {
+            Joint::Held { arc: s, at, angle, .. } => {
                 out.extend([a[ARC] - s, b[ARC] - s, (xa - at).x, (xa - at).y, (xb - at).x, (xb - at).y]);
                 match angle {
                     Some(angle) => out.extend([a[ANGLE] - angle, b[ANGLE] - angle]),
                     None => out.extend([b[ANGLE] - a[ANGLE], b[MOMENT] - a[MOMENT]]),
                 }
             }
-            Joint::Load(_, s, load) => {
+            Joint::Load { arc: s, force: load, .. } => {
                 let d = force(b) - force(a) + load;
                 out.extend([a[ARC] - s, b[ARC] - s, d.x, d.y]);
                 out.extend((0..=MOMENT).map(|i| b[i] - a[i]));
@@ -298,7 +295,7 @@ impl Elastica {
     }
 
     /// The size by which each unknown is measured.
-    pub(super) fn sizes(&self) -> [f64; STATES] {
+    fn sizes(&self) -> [f64; STATES] {
         let moment = self
             .pieces
             .iter()
@@ -312,7 +309,8 @@ impl Elastica {
 
     /// Solves all equations at the present set of contacts; false where that does not end.
     pub(super) fn newton(&mut self) -> bool {
-        let mut wanting = vec![0; self.pieces.len()];
+        // Steps in a row in which a piece in contact would become shorter than nothing.
+        let mut vanishing = vec![0; self.pieces.len()];
         self.shrinking = None;
         for _ in 0..MAX_STEPS {
             self.work += self.pieces.iter().map(|p| p.nodes.len()).sum::<usize>();
@@ -320,7 +318,7 @@ impl Elastica {
                 return false;
             }
             let sizes = self.sizes();
-            let Some(step) = self.step(&sizes) else { return false };
+            let Some(step) = self.newton_step(&sizes) else { return false };
             let (mut part, mut most, mut turn): (f64, f64, f64) = (1.0, 0.0, 0.0);
             for (u, d) in self.pieces.iter().flat_map(|p| &p.nodes).zip(step.chunks_exact(STATES)) {
                 for i in 0..STATES {
@@ -339,11 +337,11 @@ impl Elastica {
             let mut at = 0;
             for (k, p) in self.pieces.iter().enumerate() {
                 let gone =
-                    p.contact.is_some() && k > 0 && k + 1 < wanting.len() && -step[at + LENGTH] > p.nodes[0][LENGTH];
-                wanting[k] = if gone { wanting[k] + 1 } else { 0 };
+                    p.contact.is_some() && k > 0 && k + 1 < vanishing.len() && -step[at + LENGTH] > p.nodes[0][LENGTH];
+                vanishing[k] = if gone { vanishing[k] + 1 } else { 0 };
                 at += STATES * p.nodes.len();
             }
-            self.shrinking = wanting.iter().position(|w| *w >= STEPS_BEFORE_POINT_CONTACT);
+            self.shrinking = vanishing.iter().position(|w| *w >= STEPS_BEFORE_POINT_CONTACT);
             if self.shrinking.is_some() {
                 return false;
             }
@@ -361,10 +359,10 @@ impl Elastica {
         false
     }
 
-    /// One Newton step for all unknowns.
-    pub(super) fn step(&mut self, sizes: &[f64; STATES]) -> Option<Vec<f64>> {
+    /// One Newton step for all unknowns; None where the equations are singular.
+    fn newton_step(&mut self, sizes: &[f64; STATES]) -> Option<Vec<f64>> {
         let count: usize = self.pieces.iter().map(|p| p.nodes.len()).sum();
-        let mut band = Band::new(STATES * count, HALF_BAND);
+        let mut band = BandLu::new(STATES * count, HALF_BAND);
         let mut right: Vec<f64> = Vec::with_capacity(STATES * count);
         let last = self.pieces.len() - 1;
         let (mut first, mut column) = (Vec::new(), 0);
@@ -395,21 +393,21 @@ impl Elastica {
         };
         for (k, piece) in self.pieces.iter().enumerate() {
             if k == 0 {
-                add(column, &piece.nodes[..1], &|u, out| self.end(0, piece.contact, &u[0], out));
+                add(column, &piece.nodes[..1], &|u, out| self.end_equations(0, piece.contact, &u[0], out));
             }
             for (e, pair) in piece.nodes.windows(2).enumerate() {
                 let h = piece.grid[e + 1] - piece.grid[e];
-                add(column, pair, &|u, out| out.extend(self.element(piece.contact, h, &u[0], &u[1])));
+                add(column, pair, &|u, out| out.extend(self.element_residual(piece.contact, h, &u[0], &u[1])));
                 column += STATES;
             }
             first.clear();
             first.extend(piece.nodes.last());
             if k == last {
-                add(column, &first, &|u, out| self.end(1, piece.contact, &u[0], out));
+                add(column, &first, &|u, out| self.end_equations(1, piece.contact, &u[0], out));
             } else {
                 first.extend(self.pieces[k + 1].nodes.first());
                 let joint = self.joints[k];
-                add(column, &first, &|u, out| self.joint(joint, &u[0], &u[1], out));
+                add(column, &first, &|u, out| self.joint_equations(joint, &u[0], &u[1], out));
             }
             column += STATES;
         }

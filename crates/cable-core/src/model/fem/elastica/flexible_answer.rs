@@ -1,4 +1,4 @@
-//! These functions read the answer for a flexible cable, from which that of a stiff one begins.
+//! The shape, tension and friction of an answer are read at any arc length.
 
 use crate::math::Vec2;
 use crate::model::fem::free::beam::equilibrium::nearest_turn;
@@ -13,6 +13,7 @@ pub(super) struct Curve<'a> {
 }
 
 impl<'a> Curve<'a> {
+    /// Counts the directions on from chord to chord.
     pub fn new(nodes: &'a [Node]) -> Self {
         let mut last: Option<f64> = None;
         let angles = nodes
@@ -29,23 +30,41 @@ impl<'a> Curve<'a> {
     }
 
     /// Index of the chord at `s`, m.
-    pub fn chord(&self, s: f64) -> usize {
+    fn chord_at(&self, s: f64) -> usize {
         self.nodes.partition_point(|n| n.arc_length_m <= s).clamp(1, self.nodes.len() - 1) - 1
     }
 
-    pub fn at(&self, s: f64) -> (Vec2, f64) {
-        let k = self.chord(s);
+    /// The nodes of the chord at `s` (m), and the place between them: 0 to 1.
+    fn between(&self, s: f64) -> (&Node, &Node, f64) {
+        let k = self.chord_at(s);
         let (a, b) = (&self.nodes[k], &self.nodes[k + 1]);
         let d = b.arc_length_m - a.arc_length_m;
-        let f = if d > 0.0 { ((s - a.arc_length_m) / d).clamp(0.0, 1.0) } else { 0.5 };
-        (a.at() + (b.at() - a.at()) * f, a.tension_n + (b.tension_n - a.tension_n) * f)
+        (a, b, if d > 0.0 { ((s - a.arc_length_m) / d).clamp(0.0, 1.0) } else { 0.5 })
     }
 
-    /// Direction at `s` (m) as seen from inside `from` … `to` (m), rad.
-    pub fn angle(&self, s: f64, [from, to]: [f64; 2]) -> f64 {
+    /// Position at `s` (m), m.
+    pub fn position_at(&self, s: f64) -> Vec2 {
+        let (a, b, f) = self.between(s);
+        a.at() + (b.at() - a.at()) * f
+    }
+
+    /// Tension at `s` (m), N.
+    pub fn tension_at(&self, s: f64) -> f64 {
+        let (a, b, f) = self.between(s);
+        a.tension_n + (b.tension_n - a.tension_n) * f
+    }
+
+    /// Curvature at `s` (m), 1/m.
+    pub fn curvature_at(&self, s: f64) -> f64 {
+        let (a, b, f) = self.between(s);
+        a.curvature_per_m + (b.curvature_per_m - a.curvature_per_m) * f
+    }
+
+    /// Direction at `s` (m), rad, by the chords whose middles are between `from` and `to` (m).
+    pub fn angle_at(&self, s: f64, [from, to]: [f64; 2]) -> f64 {
         let middle = |k: usize| 0.5 * (self.nodes[k].arc_length_m + self.nodes[k + 1].arc_length_m);
         let inside = |k: usize| middle(k) > from && middle(k) < to;
-        let k = self.chord(s);
+        let k = self.chord_at(s);
         let other = if s > middle(k) { k + 1 } else { k.wrapping_sub(1) };
         if other < self.angles.len() && inside(other) && inside(k) && middle(other) != middle(k) {
             return self.angles[k]
@@ -55,20 +74,33 @@ impl<'a> Curve<'a> {
     }
 }
 
-/// Part of its friction that an obstacle mobilises at `s` (m) in an answer, and true if that is all
-/// of it.
-pub(super) fn mobilised(problem: &Problem, answer: &CableSolution, obstacle: usize, s: f64) -> (f64, bool) {
+/// The friction that a contact mobilises in an answer.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct MobilisedFriction {
+    /// Force along growing arc length over normal force.
+    pub(super) coefficient: f64,
+    /// True if that is all the friction there is.
+    pub(super) slips: bool,
+}
+
+/// The friction that an obstacle mobilises at `s` (m) in an answer.
+pub(super) fn mobilised_friction(
+    problem: &Problem,
+    answer: &CableSolution,
+    obstacle: usize,
+    s: f64,
+) -> MobilisedFriction {
     let name = problem.world.obstacle_name(obstacle);
-    let far = |c: &&ContactReport| {
+    let distance = |c: &&ContactReport| {
         let [from, to] = c.extent_m();
         (from - s).max(s - to).max(0.0)
     };
     let reports = answer.contacts.iter().filter(|c| c.obstacle == name);
-    let report = reports.min_by(|a, b| far(a).total_cmp(&far(b)));
-    let friction = problem.world.geometry().bodies().iter().find(|b| b.obstacle == obstacle);
-    let most = friction.map_or(0.0, |b| b.friction);
-    let Some(r) = report.filter(|_| most > 0.0) else { return (0.0, false) };
+    let report = reports.min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let body = problem.world.geometry().bodies().iter().find(|b| b.obstacle == obstacle);
+    let most = body.map_or(0.0, |b| b.friction);
+    let Some(r) = report.filter(|_| most > 0.0) else { return MobilisedFriction::default() };
     let part = if r.normal_n > 0.0 { (r.friction_n / r.normal_n).clamp(-most, most) } else { 0.0 };
     let slips = r.state == ContactState::Slip && part != 0.0;
-    (if slips { most * part.signum() } else { part }, slips)
+    MobilisedFriction { coefficient: if slips { most * part.signum() } else { part }, slips }
 }

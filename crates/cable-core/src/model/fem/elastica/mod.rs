@@ -23,16 +23,28 @@
 //! Each piece is solved by Lobatto collocation of fourth order (U. Ascher, R. Mattheij, R.
 //! Russell, *Numerical Solution of Boundary Value Problems for Ordinary Differential Equations*,
 //! SIAM 1995), its length s among the unknowns; all equations are local, so the Jacobian is a band.
-//! The way there goes from the flexible cable up in EI.
+//!
+//! | room | what it holds |
+//! |---|---|
+//! | `flexible_answer` | an answer read at any arc length |
+//! | `guess/` | the first guess of an elastica, from an answer |
+//! | `boundary_value` | pieces, joints, their equations, Newton's method |
+//! | `active_set` | the contacts, each a point or a stretch |
+//! | `stiffening` | continuation from the flexible cable up in EI |
+//! | `refinement` | new nodes, and states between nodes |
+//! | `answer` | the answer of an elastica, with its error |
+//! | `chain/` | a chain of bars that is let go: another way to the contacts, and a test of stability |
+//! | `band_lu` | elimination in a band of any width |
 
-mod active;
+mod active_set;
 mod answer;
-mod band;
+mod band_lu;
 mod boundary_value;
-mod chain_answer;
+mod chain;
 mod flexible_answer;
-mod relax;
-mod start;
+mod guess;
+mod refinement;
+mod stiffening;
 
 use crate::contact::swept_corners;
 use crate::math::Vec2;
@@ -40,44 +52,51 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, ErrorEstimates, Node};
 pub(in crate::model::fem) use answer::{refine, solution};
 pub(in crate::model::fem) use boundary_value::Elastica;
-use relax::{Chain, LetGo};
+use chain::{Chain, LetGo, RestState, Setting};
 
-/// Accuracy asked of the forces of another equilibrium that is only told. Smaller: time; larger:
-/// its tensions are told with fewer digits than they are written.
+/// Accuracy of the forces of another equilibrium that a warning reports. Smaller: time; larger: its
+/// tensions have fewer digits than are written.
 const BOW_TOLERANCE: f64 = 1e-4;
 
 /// The resting place of a stiff cable in contact, from the answer for a flexible one where there is
-/// one: as an elastica where that is found, else as a chain of bars with what halving them changes
-/// as its error.
+/// one: as an elastica where that is found, else as a chain of bars, whose error is what halving
+/// the bars changes. None where neither is found.
+///
+/// The contacts of the elastica are first those of the flexible cable, then those of a chain that
+/// comes to rest by itself, then those of a chain of half the bars.
 pub fn rest(
     problem: &Problem,
     time_s: f64,
     dragged: &[Option<Vec2>],
-    lay: Option<&CableSolution>,
+    flexible: Option<&CableSolution>,
     tolerance: f64,
 ) -> Option<(CableSolution, Cost)> {
-    let bent = lay.and_then(|lay| Elastica::from_flexible(problem, time_s, dragged, lay));
-    let bent = bent.and_then(|e| answer::answer(e, problem, tolerance));
-    let bent = bent.filter(|(found, _)| lay.is_some_and(|lay| keeps_sides(problem, &lay.nodes, found)));
+    let setting = Setting { problem, time_s, dragged, friction_source: flexible };
+    let bent = flexible.and_then(|flexible| {
+        let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible)?;
+        let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
+        keeps_sides(problem, &flexible.nodes, &found.0).then_some(found)
+    });
     let chain = match &bent {
-        // An equilibrium may be one that a cable runs away from: a chain that is let go there
-        // tells.
-        Some((answer, _)) => match relax::settle_chain(problem, time_s, dragged, answer) {
+        // A cable may run away from an equilibrium: a chain that is let go there shows it.
+        Some((answer, _)) => match chain::let_go(setting, answer) {
             LetGo::Stays | LetGo::Unknown => return bent,
             LetGo::Leaves(chain) => *chain,
-            LetGo::Totters => return None,
+            LetGo::Unstable => return None,
         },
-        None => relax::relaxed(problem, time_s, dragged, lay)?,
+        None => chain::rest_of_flexible(setting)?,
     };
-    let bend = |chain: &Chain<'_>| {
-        let found = Elastica::from_chain(chain, dragged).and_then(|e| answer::answer(e, problem, tolerance))?;
+    let bent_from = |chain: &Chain<'_>| {
+        let elastica = Elastica::from_chain(chain)?;
+        let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
         keeps_sides(problem, &chain.nodes(), &found.0).then_some(found)
     };
-    if let Some(found) = bend(&chain) {
+    if let Some(found) = bent_from(&chain) {
         return Some(found);
     }
-    let (fine, rests) = chain.halved(dragged)?;
-    if let Some(found) = if rests { bend(&fine) } else { None } {
+    let (fine, state) = chain.halved()?;
+    let rests = state != RestState::NotFound;
+    if let Some(found) = if rests { bent_from(&fine) } else { None } {
         return Some(found);
     }
     let cost = Cost { iterations: chain.steps + fine.steps, ..Cost::default() };
@@ -86,8 +105,9 @@ pub fn rest(
     Some((if rests { finer } else { coarse }.known_to(errors), cost))
 }
 
-/// The nodes of the equilibrium to which a chain of bars leads that is let go at a shape, if it
-/// keeps to the sides of obstacles on which the cable is; None where it finds none.
+/// The nodes of the equilibrium to which a chain of bars comes that is let go at a shape, if the
+/// cable can come there `from` its present one without passing through an obstacle; None where it
+/// finds none.
 pub fn rest_near(
     problem: &Problem,
     time_s: f64,
@@ -95,14 +115,14 @@ pub fn rest_near(
     from: &[Node],
     shape: &[Node],
 ) -> Option<Vec<Node>> {
-    let chain = Chain::near(problem, time_s, dragged, shape)?;
-    let bent = Elastica::from_chain(&chain, dragged).and_then(|e| answer::answer(e, problem, BOW_TOLERANCE));
-    bent.map(|(found, _)| found).filter(|found| keeps_sides(problem, from, found)).map(|found| found.nodes)
+    let chain = Chain::rest_near(Setting { problem, time_s, dragged, friction_source: None }, shape)?;
+    let (found, _) = answer::stiffen_and_refine(Elastica::from_chain(&chain)?, problem, BOW_TOLERANCE)?;
+    keeps_sides(problem, from, &found).then_some(found.nodes)
 }
 
 /// True if a cable can have come from one shape to an answer without passing through an obstacle.
-/// Newton's method can: where a contact of the way up in stiffness would have to pull it is let go,
-/// and what springs off a post may come to rest on its other side.
+/// Newton's method can pass through: where a contact of the continuation in EI would have to pull
+/// it opens, and a cable that springs off a post may come to rest on its other side.
 fn keeps_sides(problem: &Problem, from: &[Node], to: &CableSolution) -> bool {
     let [old, new] = [from, &to.nodes].map(|nodes| nodes.iter().map(Node::at).collect::<Vec<Vec2>>());
     swept_corners::through(&swept_corners::corners(&problem.world), &old, &new, &mut Vec::new()).is_none()

@@ -4,14 +4,14 @@
 use crate::math::{bounded, larger};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::SolverMemory;
-use crate::model::fem::state::step_setup::{StickSlipChanges, update_grips};
+use crate::model::fem::state::stick_slip::{ChangedNodes, StickSlipChanges, update_stick_slip};
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 
-/// A solution with refreshed normal forces, grips and factors.
+/// A solution in which normal forces and stick-slip states were renewed.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Lagged {
     pub(in crate::model::fem) done: Converged,
-    grips: StickSlipChanges,
+    changes: StickSlipChanges,
     /// Change of the friction of a contact in the last round, N.
     off: f64,
 }
@@ -19,41 +19,41 @@ pub(in crate::model::fem) struct Lagged {
 impl Lagged {
     /// True if friction is what the normal forces allow, at sliding nodes and elsewhere.
     pub(in crate::model::fem) fn is_lawful(&self, cable: &CableState) -> bool {
-        self.grips.hold() && self.off <= cable.mesh.tuning.newton.stretch_residual * cable.input.tolerance
+        self.changes.are_lawful() && self.off <= cable.mesh.tuning.newton.stretch_residual * cable.input.tolerance
     }
 }
 
 impl SolverMemory {
-    /// Minimises again and again with refreshed normal forces, grips and factors until nothing
-    /// changes.
-    pub(in crate::model::fem) fn lag(
+    /// Minimises in rounds, with normal forces and stick-slip states renewed after each, until
+    /// nothing changes.
+    pub(in crate::model::fem) fn solve_with_lag(
         &mut self,
         cable: &mut CableState,
         unknowns: &mut Unknowns,
         rounds: usize,
     ) -> Result<Converged, Failure> {
-        self.lag_until(cable, unknowns, rounds).map(|found| found.done)
+        self.solve_rounds(cable, unknowns, rounds).map(|found| found.done)
     }
 
-    /// The same; says what was found.
-    pub(in crate::model::fem) fn lag_until(
+    /// The same; returns the state of friction, too.
+    pub(in crate::model::fem) fn solve_rounds(
         &mut self,
         cable: &mut CableState,
         unknowns: &mut Unknowns,
         rounds: usize,
     ) -> Result<Lagged, Failure> {
         let tuning = cable.mesh.tuning.equilibrium;
-        let (mut total, mut grips) = (Converged::default(), StickSlipChanges::FOUND);
+        let (mut total, mut changes) = (Converged::default(), StickSlipChanges::NONE);
         let (mut fewest, mut spare) = (usize::MAX, tuning.whole_lag_rounds);
         let (mut off, mut part) = (0.0, 1.0);
         let mut before = Vec::with_capacity(cable.contacts.friction_contacts.capacity());
         for round in 0..rounds {
-            cable.contacts.look_around(&cable.problem, &cable.mesh, &unknowns.positions, |_| 0.0);
+            cable.contacts.list_neighbours(&cable.problem, &cable.mesh, &unknowns.positions, |_| 0.0);
             std::mem::swap(&mut before, &mut cable.contacts.friction_contacts);
             cable.contacts.prepare(&cable.problem, &cable.mesh, &unknowns.positions, &cable.motion.positions);
             if round > 0 {
-                let now = cable.contacts.ease(&before, part);
-                // Forces that go to and fro get no nearer by steps as long as before.
+                let now = cable.contacts.blend_friction(&before, part);
+                // Forces that oscillate come no nearer to each other by steps as long as before.
                 if round >= tuning.whole_lag_rounds {
                     part = if now < (1.0 - 0.5 * part) * off {
                         bounded(tuning.lag_growth * part, 0.0, 1.0)
@@ -66,29 +66,30 @@ impl SolverMemory {
             cable.input.shift = cable.meshing.soft_shift();
             let done = self.minimise(cable, unknowns)?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
-            grips = update_grips(cable, unknowns, spare == 0);
-            if grips.wrong < fewest {
-                (fewest, spare) = (grips.wrong, tuning.whole_lag_rounds);
+            let nodes = if spare == 0 { ChangedNodes::One } else { ChangedNodes::All };
+            changes = update_stick_slip(cable, unknowns, nodes);
+            if changes.wrong < fewest {
+                (fewest, spare) = (changes.wrong, tuning.whole_lag_rounds);
             } else {
                 spare = spare.saturating_sub(1);
             }
             // A round that needed no iteration found the normal forces it had used.
             let found = done.iterations == 0 && off <= cable.input.tolerance;
-            if (found || cable.contacts.friction_contacts.is_empty()) && grips.wrong == 0 && grips.same {
-                return Ok(Lagged { done: total, grips, off: 0.0 });
+            if (found || cable.contacts.friction_contacts.is_empty()) && changes.wrong == 0 && changes.same {
+                return Ok(Lagged { done: total, changes, off: 0.0 });
             }
         }
-        Ok(Lagged { done: total, grips, off })
+        Ok(Lagged { done: total, changes, off })
     }
 
     /// The same, until the law holds at every sliding node.
-    pub(in crate::model::fem) fn lag_wholly(
+    pub(in crate::model::fem) fn solve_lawfully(
         &mut self,
         cable: &mut CableState,
         unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
         let sliding = cable.mesh.sliding.iter().flatten().count();
-        let found = self.lag_until(
+        let found = self.solve_rounds(
             cable,
             unknowns,
             cable.mesh.tuning.equilibrium.lag_rounds + cable.mesh.tuning.step.grip_rounds_each * sliding,

@@ -2,3 +2,4 @@
 
 pub(in crate::model::fem) mod lagged_friction;
 pub(in crate::model::fem) mod quasi_static;
+pub(in crate::model::fem) mod relaxation;

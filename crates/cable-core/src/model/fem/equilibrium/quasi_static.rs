@@ -3,6 +3,7 @@
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::equilibrium::relaxation::moved_away;
 use crate::model::fem::newton::initial_guess::{bow, depenetrate};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::obstacle::moving_outline::{prepare_way, put_outline};
@@ -19,20 +20,8 @@ use crate::state::State;
 /// 10 000 bars on a floor that was 0.7 of the work); more: coarser rests.
 const LENGTH_ROUNDINGS: f64 = 2.0;
 
-/// The resistance that a way down begins with, N/m: what acts on an element over a tenth of a
-/// metre, dead loads with it where they are what counts. With the weight alone a cable of 5 g/m
-/// under 100 N, laid through a post, was thrown about and found no rest.
-fn first_resistance(cable: &CableState) -> f64 {
-    let whole = load_scale(&cable.problem).1 / cable.meshing.even_bars as f64;
-    if whole > cable.mesh.tuning.equilibrium.dead_load_weights * cable.meshing.bar_weight {
-        whole / 0.1
-    } else {
-        cable.meshing.soft_shift()
-    }
-}
-
-/// Why a cable that nothing but friction holds does not rest where it was brought: what each
-/// node alone is let off with adds up.
+/// Why a cable that nothing but friction holds does not rest where it was brought: the forces that
+/// each node alone may leave unbalanced add up.
 pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoEquilibrium> {
     if cable.problem.supports.iter().any(|s| s.at.is_some()) || cable.contacts.own.shape.is_on() {
         return None;
@@ -43,14 +32,13 @@ pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoE
         .then_some(NoEquilibrium::UnheldForce { left_n: left, loads_n: scale })
 }
 
-/// The obstacle through which a cable runs that found no rest at `x`: it cannot get out of
-/// there.
-fn through(cable: &CableState, x: &[Vec2]) -> Option<NoEquilibrium> {
+/// The obstacle through which a cable at `x` runs that found no rest: it cannot get out of there.
+fn obstacle_run_through(cable: &CableState, x: &[Vec2]) -> Option<NoEquilibrium> {
     let (mesh, world) = (&cable.mesh, &cable.problem.world);
     if x.len() != mesh.nodes() {
         return None;
     }
-    // Its centre line is in the thing itself, or nearly: what only touches is not through.
+    // The centre line is in the obstacle itself, or nearly: a cable that touches it is outside.
     let least = -0.9 * cable.problem.radius;
     let clear = |e: usize| world.geometry().is_clear(mesh.straight(e, x), least, mesh.rounds(e));
     let e = (0..mesh.rest_length.len()).filter(|&e| mesh.is_free(e) || mesh.is_free(e + 1)).find(|&e| !clear(e))?;
@@ -60,21 +48,13 @@ fn through(cable: &CableState, x: &[Vec2]) -> Option<NoEquilibrium> {
     Some(NoEquilibrium::ThroughObstacle { obstacle, at_m: gap.point, arc_length_m: mesh.arc_length[e] })
 }
 
-/// Least distance (m) that both ends have moved from where they are `now` to `sought`, if that is
-/// more than the length (m) of the cable.
-fn ran_away(length: f64, now: &[Vec2], sought: &[Vec2]) -> Option<f64> {
-    let moved = |a: Option<&Vec2>, b: Option<&Vec2>| Some((a? - b?).norm());
-    let way = moved(sought.first(), now.first())?.min(moved(sought.last(), now.last())?);
-    (way > length).then_some(way)
-}
-
 /// True if two bars of a cable at positions `x` (m) cross.
 fn crosses_itself(x: &[Vec2]) -> bool {
     !crate::contact::self_crossings::crossings(x, |_| true).is_empty()
 }
 
 impl Dynamics {
-    /// A step without inertia to the time `to`; friction remembers.
+    /// A step without inertia to the time `to` (s); friction remembers.
     pub(in crate::model::fem) fn rest_step(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
         self.rest_rounds(to, dragged, f64::INFINITY)
     }
@@ -84,7 +64,7 @@ impl Dynamics {
     /// # Errors
     /// `CornerPulls` where a corner would have to pull, before anything is accepted: what slides
     /// meanwhile would keep what that did.
-    pub(in crate::model::fem) fn quiet_step(
+    pub(in crate::model::fem) fn step_without_pull(
         &mut self,
         to: f64,
         dragged: &[Option<Vec2>],
@@ -102,7 +82,7 @@ impl Dynamics {
             self.cable.input.most_noise =
                 self.cable.mesh.tuning.equilibrium.squeezed_residual * self.cable.input.tolerance;
             let mut unknowns = self.solver.present_unknowns(&self.cable);
-            let mut done = self.solver.lag_wholly(&mut self.cable, &mut unknowns);
+            let mut done = self.solver.solve_lawfully(&mut self.cable, &mut unknowns);
             if done.is_err_and(|f| f.cause != FailureCause::WorkSpent)
                 && self.cable.contacts.slip < self.cable.contacts.tuning.slip_m
             {
@@ -110,7 +90,7 @@ impl Dynamics {
                 // more easily on ground that gives way.
                 self.cable.contacts.set_slip(self.cable.contacts.tuning.slip_m);
                 unknowns = self.solver.present_unknowns(&self.cable);
-                done = self.solver.lag_wholly(&mut self.cable, &mut unknowns);
+                done = self.solver.solve_lawfully(&mut self.cable, &mut unknowns);
             }
             if round == 0
                 && pull.is_finite()
@@ -151,7 +131,7 @@ impl Dynamics {
             (self.cable.input.tolerance, self.cable.input.max_iterations) =
                 (larger(part * exact, rounding), iterations);
             let mut unknowns = self.solver.present_unknowns(&self.cable);
-            let Ok(done) = self.solver.lag(&mut self.cable, &mut unknowns, tuning.lag_rounds) else {
+            let Ok(done) = self.solver.solve_with_lag(&mut self.cable, &mut unknowns, tuning.lag_rounds) else {
                 self.rollback.restore(&mut self.cable);
                 break;
             };
@@ -194,7 +174,7 @@ impl Dynamics {
 
     /// Takes unknowns as the state at rest at the time `to`; returns whether what the cable runs
     /// over changed.
-    fn accept_rest(&mut self, unknowns: &Unknowns, to: f64) -> bool {
+    pub(super) fn accept_rest(&mut self, unknowns: &Unknowns, to: f64) -> bool {
         self.accept_unknowns(unknowns, to);
         remesh(&mut self.cable, Inertia::QuasiStatic).sliding_nodes
     }
@@ -210,114 +190,6 @@ impl Dynamics {
         self.cable.mesh.slide(&unknowns.slides);
         self.cable.mesh.sliding.iter_mut().flatten().for_each(|s| s.balanced = None);
         self.forget_history();
-    }
-
-    /// Follows the way down with ever weaker viscous resistance, then finds the resting place
-    /// itself. On the way what rounding hides may be any force: a cable laid in touch begins there.
-    /// If that finds no equilibrium, it may not.
-    pub(in crate::model::fem) fn relax(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
-        let kept = self.rollback.with_saved();
-        self.rollback.save(&self.cable);
-        let mut found = self.relax_within(f64::INFINITY, to, dragged);
-        if found.is_err_and(|f| {
-            f.cause != FailureCause::WorkSpent
-                && f.residual > self.cable.mesh.tuning.equilibrium.squeezed_residual * self.cable.input.tolerance
-        }) {
-            self.rollback.restore(&mut self.cable);
-            found = self.relax_within(self.cable.mesh.tuning.equilibrium.squeezed_residual, to, dragged);
-        }
-        self.rollback = kept;
-        found
-    }
-
-    /// The same; `noise` is the greatest force, in tolerances, that rounding may hide on the way.
-    fn relax_within(&mut self, noise: f64, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
-        // Stretches into which the outline moves go out of its way before anything slides.
-        prepare_way(&mut self.cable, [to, to], Some(dragged));
-        self.cable.motion.positions.clone_from_slice(self.cable.input.begins());
-        self.cable.contacts.outline_motion = None;
-        let laid = self.cable.motion.positions.clone();
-        let mut resistance = first_resistance(&self.cable);
-        let (full, floor) = (resistance, 1e-5 * resistance);
-        // Set where Newton without resistance has failed: then steps are solved exactly, until what
-        // resists is nothing.
-        let mut stubborn = false;
-        let mut total = 0;
-        let mut last = Failure { node: 0, residual: f64::NAN, cause: FailureCause::StillMoves };
-        for round in 0..self.cable.mesh.tuning.equilibrium.max_relaxation_steps {
-            prepare_input(&mut self.cable, to, Some(dragged));
-            self.cable.adapt_slip();
-            let even = self.cable.problem.length / self.cable.meshing.even_bars as f64;
-            self.cable.input.inertia.fill(resistance);
-            for k in 0..self.cable.mesh.nodes() {
-                self.cable.input.inertia[k] *= self.cable.mesh.share(k) / even;
-            }
-            let exact = self.cable.input.tolerance;
-            self.cable.input.tolerance = if stubborn { exact } else { 1e2 * exact };
-            self.cable.input.most_noise = noise * exact;
-            // A first lay carries no normal force yet: without refreshing, it would slide as if on
-            // ice.
-            let mut unknowns = self.solver.present_unknowns(&self.cable);
-            let rounds = self.cable.mesh.tuning.equilibrium.relaxation_lag_rounds;
-            let done = self.solver.lag_until(&mut self.cable, &mut unknowns, rounds);
-            self.cable.input.tolerance = exact;
-            match done {
-                Ok(found) => {
-                    let done = found.done;
-                    total += done.iterations;
-                    let (mut moved, mut resists, mut slowest): (f64, f64, usize) = (0.0, 0.0, 0);
-                    // Resistance adds up along a creeping stretch.
-                    let mut drift = Vec2::zeros();
-                    for (k, (a, b)) in unknowns.positions.iter().zip(&self.cable.motion.positions).enumerate() {
-                        let way = (a - b).norm().max(unknowns.slides[k].abs());
-                        moved = moved.max(way);
-                        let free = if self.cable.mesh.held[k] { 0.0 } else { self.cable.input.inertia[k] };
-                        drift = if free > 0.0 { drift + (a - b) * free } else { Vec2::zeros() };
-                        let force = larger(way * free, drift.norm() / self.cable.mesh.tuning.newton.stretch_residual);
-                        if force > resists {
-                            (resists, slowest) = (force, k);
-                        }
-                    }
-                    last =
-                        Failure { node: slowest, residual: done.residual + resists, cause: FailureCause::StillMoves };
-                    let remeshed = self.accept_rest(&unknowns, self.cable.motion.time);
-                    if ran_away(self.cable.problem.length, &self.cable.motion.positions, &laid).is_some() {
-                        return Err(Failure { node: 0, residual: f64::NAN, cause: FailureCause::SlidesAway });
-                    }
-                    if remeshed {
-                        moved = moved.max(0.1);
-                    } else if stubborn
-                        && found.is_lawful(&self.cable)
-                        && resists <= exact
-                        && done.residual <= self.cable.mesh.tuning.equilibrium.squeezed_residual * exact
-                    {
-                        self.cable.motion.time = to;
-                        return Ok(Converged { iterations: total, residual: done.residual + resists });
-                    }
-                    resistance *= if moved < 0.3 { 0.6 } else { 1.0 };
-                    if resistance < floor || (moved < 1e-4 && round % 8 == 7) || moved < 1e-7 {
-                        match self.rest_step(to, dragged) {
-                            Ok(done) => return Ok(Converged { iterations: total + done.iterations, ..done }),
-                            Err(failure) if failure.cause == FailureCause::WorkSpent => return Err(failure),
-                            Err(failure) => {
-                                last = failure;
-                                stubborn = true;
-                                resistance = (resistance.max(floor) * 30.0).min(full);
-                            }
-                        }
-                    }
-                }
-                Err(failure) if failure.cause == FailureCause::WorkSpent => return Err(failure),
-                Err(failure) => {
-                    last = failure;
-                    resistance *= 8.0;
-                    if resistance > 1e9 * full {
-                        return Err(failure);
-                    }
-                }
-            }
-        }
-        Err(last)
     }
 
     /// Finds the resting place with contact at the present time; `dragged` are the hand-set support
@@ -338,7 +210,7 @@ impl Dynamics {
             self.cable.motion.positions = x;
             self.forget_history();
         }
-        match self.find_rest(dragged)? {
+        match self.find_equilibrium(dragged)? {
             Ok(done) => {
                 self.rested = true;
                 let done = self.polish(done, dragged);
@@ -348,7 +220,7 @@ impl Dynamics {
                 let at_m = self.cable.motion.positions.get(f.node).copied().unwrap_or_default();
                 let sought = self.cable.motion.positions.clone();
                 self.rollback.restore(&mut self.cable);
-                if ran_away(self.cable.problem.length, &self.cable.motion.positions, &sought).is_some() {
+                if moved_away(self.cable.problem.length, &self.cable.motion.positions, &sought).is_some() {
                     return Err(SolveError::NoRestingPlace { why: NoEquilibrium::SlidesOff });
                 }
                 if f.cause == FailureCause::WorkSpent {
@@ -357,7 +229,7 @@ impl Dynamics {
                     let (residual_n, place) = (f.residual, self.cable.place(f.node));
                     return Err(SolveError::TooMuchWork { model, iterations, segments, residual_n, place });
                 }
-                if let Some(why) = through(&self.cable, &sought) {
+                if let Some(why) = obstacle_run_through(&self.cable, &sought) {
                     return Err(SolveError::NoRestingPlace { why });
                 }
                 let arc_length = self.cable.mesh.arc_length.get(f.node).copied().unwrap_or(f64::NAN);
@@ -375,7 +247,7 @@ impl Dynamics {
     /// Begins at `shape`, a rest without contact, if the cable gets there from its lay without
     /// coming near to anything. The way down with contact takes as many rounds as a cable that
     /// hangs has bars.
-    pub(in crate::model::fem) fn begin_at(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
+    pub(in crate::model::fem) fn start_from_shape(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
         let touched = self.cable.problem.floor_friction.is_some() || self.cable.contacts.own.shape.is_on();
         let alone = self.cable.outline.is_none() && !touched && !self.cable.problem.world.is_empty();
         if self.rested || !alone || self.cable.mesh.sliding.iter().any(Option::is_some) {
@@ -414,9 +286,9 @@ impl Dynamics {
         self.cable.input.tolerance = exact;
     }
 
-    /// The resting place; one that the cable reaches without ever touching itself is found as if it
-    /// could pass itself, for its first lay is no shape it could have.
-    fn find_rest(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
+    /// Finds the equilibrium. One in which the cable does not touch itself is sought first as if it
+    /// could pass itself: its first shape may cross itself.
+    fn find_equilibrium(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
         let time = self.cable.motion.time;
         let shape = self.cable.contacts.own.shape;
         if !shape.is_on() {
@@ -431,7 +303,7 @@ impl Dynamics {
             }
             self.rollback.restore(&mut self.cable);
             self.rollback.save(&self.cable);
-            self.begin_on_a_bow();
+            self.start_on_an_arc();
         }
         let overlap = self.cable.contacts.own.smallest_gap(&self.cable.mesh, &self.cable.motion.positions, 0.0);
         if overlap.is_some() || crosses_itself(&self.cable.motion.positions) {
@@ -444,7 +316,7 @@ impl Dynamics {
 
     /// A cable with much to spare for which no route is drawn begins on an arc, where it does not
     /// touch itself: along a straight line it would, or stand on itself as a row of beads does.
-    fn begin_on_a_bow(&mut self) {
+    fn start_on_an_arc(&mut self) {
         let cable = &mut self.cable;
         let way: f64 = cable.motion.positions.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
         if !cable.problem.cable.route_m.is_empty()

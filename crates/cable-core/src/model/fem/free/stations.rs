@@ -105,7 +105,7 @@ impl Layout {
     pub fn new(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>], slid: &[Option<f64>]) -> Self {
         let gravity =
             if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
-        let laid = lay(problem, time_s, dragged);
+        let laid = arcs_along_route(problem, time_s, dragged);
         let mut stops: Vec<Stop> = Vec::with_capacity(problem.supports.len() + problem.loads.len());
         for (k, support) in problem.supports.iter().enumerate() {
             let at = place(problem, k, time_s, dragged);
@@ -194,9 +194,9 @@ pub fn place(problem: &Problem, support: usize, time_s: f64, dragged: &[Option<V
 const LEAST_TAIL: f64 = 0.05;
 
 /// Arc length at every support with the material spread evenly along the route, or along the
-/// straight way where there is none. What the way between the outer anchors does not take is left
-/// to hanging ends.
-fn lay(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>]) -> Vec<f64> {
+/// straight way where there is none. Hanging ends get the material that the way between the outer
+/// anchors leaves.
+fn arcs_along_route(problem: &Problem, time_s: f64, dragged: &[Option<Vec2>]) -> Vec<f64> {
     let count = problem.supports.len();
     let places: Vec<Option<Vec2>> = (0..count).map(|k| place(problem, k, time_s, dragged)).collect();
     if problem.route.len() > 1 {

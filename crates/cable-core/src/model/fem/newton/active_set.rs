@@ -78,10 +78,10 @@ impl PredictedContacts {
     /// Stops each node of a step at its landing gap, whatever its neighbours do.
     pub(in crate::model::fem) fn stop(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &mut [f64]) {
         let StepContext { mesh, contacts, .. } = *step;
-        self.look(step, x, direction);
+        self.find_contacts(step, x, direction);
         for touch in self.touches.iter().filter(|t| !t.on_segment && t.pair.weight > 0.0 && mesh.is_free(t.node)) {
             let (n, k) = (touch.pair.gap.normal, 2 * touch.node);
-            let least = landing(&mesh.tuning.newton, touch.pair.gap.gap_m, contacts.barrier.reach);
+            let least = landing_gap(&mesh.tuning.newton, touch.pair.gap.gap_m, contacts.barrier.reach);
             let over = least - touch.pair.gap.gap_m - n.dot(&moved(touch, direction));
             if over > 0.0 {
                 direction[k] += n.x * over;
@@ -91,7 +91,7 @@ impl PredictedContacts {
     }
 
     /// Finds all that each bar could touch if it went as far as in this step, whichever way.
-    fn look(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &[f64]) {
+    fn find_contacts(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &[f64]) {
         let StepContext { problem, mesh, contacts, .. } = *step;
         let reach = |e: usize| contacts.barrier.reach + longest(direction.get(2 * e..2 * e + 4).unwrap_or(direction));
         contacts.find_within_each(problem, mesh, x, reach, &mut self.touches);
@@ -108,17 +108,22 @@ impl PredictedContacts {
     ) {
         let StepContext { mesh, contacts, .. } = *context;
         let Equations { system, factor, coupling } = equations;
-        self.look(context, x, direction);
+        self.find_contacts(context, x, direction);
         let reach = contacts.barrier.reach;
         self.stops.clear();
         for touch in self.touches.iter().filter(|t| t.pair.weight > 0.0) {
-            self.stops.push(Stop::of(touch, mesh, system, landing(&mesh.tuning.newton, touch.pair.gap.gap_m, reach)));
+            self.stops.push(Stop::of(
+                touch,
+                mesh,
+                system,
+                landing_gap(&mesh.tuning.newton, touch.pair.gap.gap_m, reach),
+            ));
         }
         if contacts.own.shape.is_on() {
             let within = reach + 2.0 * longest(direction);
             contacts.own.shape.pairs(x, &mesh.arc_length, within, &mut self.order, &mut self.pairs);
             for pair in self.pairs.iter().filter(|p| p.weight > 0.0) {
-                self.stops.push(Stop::of_own(pair, mesh, system, landing(&mesh.tuning.newton, pair.gap_m, reach)));
+                self.stops.push(Stop::of_own(pair, mesh, system, landing_gap(&mesh.tuning.newton, pair.gap_m, reach)));
             }
         }
         let Self { stops, right, step, .. } = self;
@@ -152,8 +157,12 @@ impl PredictedContacts {
 }
 
 /// The gap at which a step is stopped.
-fn landing(tuning: &NewtonTuning, gap: f64, reach: f64) -> f64 {
-    if gap > reach { tuning.landing_gap_fraction * reach } else { (1.0 - tuning.gap_loss_fraction) * gap }
+fn landing_gap(tuning: &NewtonTuning, gap: f64, reach: f64) -> f64 {
+    if gap > reach {
+        return tuning.landing_gap_fraction * reach;
+    }
+    let loss = tuning.bound_margin * (1.0 - tuning.kept_gap_fraction);
+    (1.0 - loss) * gap
 }
 
 /// Displacement of the touching point in a step.

@@ -9,19 +9,16 @@ use crate::problem::Problem;
 use crate::problem::ground_route::above_ground;
 use crate::scene::SupportKind;
 
-/// Passes of pushing the first lay out of obstacles. Ten are enough for routes drawn within a
+/// Passes of pushing the first shape out of obstacles. Ten are enough for routes drawn within a
 /// diameter.
 const MAX_PASSES: usize = 60;
 
 /// Depth (m) inside an obstacle to which a first shape is found and pushed out.
 const DEPENETRATION_DEPTH: f64 = 0.5;
 
-/// Steps in which an end is leaned until it is clear of what is below it, rad, and how many to
-/// either side: a half turn. Smaller: the same at more cost; larger: it begins higher than it needs
-/// to.
-const LEAN_STEP: f64 = std::f64::consts::PI / 36.0;
-/// See `LEAN_STEP`.
-const MOST_LEANS: i32 = 36;
+/// Steps of the half turn by which an end is leaned to either side until it is clear of what is
+/// below it. More: the same at more cost; fewer: it begins higher than it needs to.
+const LEANS: i32 = 36;
 
 /// Halvings in the search for the angle of an arc: rounding.
 const ARC_HALVINGS: usize = 52;
@@ -83,13 +80,14 @@ pub fn leaning_way(problem: &Problem) -> Vec<(f64, Vec2)> {
         let down = pull.try_normalize(0.0).unwrap_or_else(|| -Vec2::y());
         // A clamp says to which side it leans.
         let aside = hinge.angle.map_or(1.0, f64::cos) * reach;
-        let lean = if cross(down, Vec2::new(aside, 0.0)) < 0.0 { -LEAN_STEP } else { LEAN_STEP };
+        let step = std::f64::consts::PI / f64::from(LEANS);
+        let lean = if cross(down, Vec2::new(aside, 0.0)) < 0.0 { -step } else { step };
         let leaned = |k: i32| {
             let (sin, cos) = (lean * f64::from(k)).sin_cos();
             at + Vec2::new(cos * down.x - sin * down.y, sin * down.x + cos * down.y) * reach.abs()
         };
         let clear = |k: &i32| problem.world.signed_gap(leaned(*k), problem.length).is_none_or(|g| g.gap_m >= 0.0);
-        let both = (1..=MOST_LEANS).flat_map(|k| [k, -k]);
+        let both = (1..=LEANS).flat_map(|k| [k, -k]);
         let Some(k) = std::iter::once(0).chain(both).find(clear).filter(|k| *k != 0) else { continue };
         let leg = [(hinged, at), (s, leaned(k))];
         if reach < 0.0 {

@@ -165,7 +165,7 @@ impl Workspace {
                 return None;
             }
             if !self.solve(mesh, input, &unknowns.positions, input.shift)
-                && !self.ease(mesh, input, &unknowns.positions)
+                && !self.reduce_compression(mesh, input, &unknowns.positions)
             {
                 self.assemble(step, unknowns, Curvature::Clipped);
                 if !self.solve(mesh, input, &unknowns.positions, input.shift) {
@@ -184,11 +184,11 @@ impl Workspace {
         None
     }
 
-    /// The direction again where bars that push make the matrix indefinite: with less and less of
-    /// their push counted, until it is definite. None of it is what the minimiser takes, but that
-    /// is a different matrix, far from the equations, and what it finds goes to and fro. False
-    /// where that does not help; the system is pinned, and what it held is lost.
-    fn ease(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2]) -> bool {
+    /// Solves for the direction again where bars that push make the matrix indefinite: with less
+    /// and less of their push in it, until it is definite. The minimiser leaves out all of it, but
+    /// that matrix is far from the equations, and its steps oscillate. Returns false where no part
+    /// helps; the system is pinned then, and its values are lost.
+    fn reduce_compression(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2]) -> bool {
         if !self.coupling.is_empty() || mesh.bending_stiffness > 0.0 {
             return false;
         }

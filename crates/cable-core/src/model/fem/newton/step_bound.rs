@@ -26,7 +26,8 @@ impl Workspace {
         let StepContext { problem, mesh, contacts, .. } = *step;
         let (direction, geometry) = (&self.direction, problem.world.geometry());
         let move_of = |k: usize| Vec2::new(direction[2 * k], direction[2 * k + 1]);
-        let most = mesh.tuning.newton.kept_reach_fraction * contacts.barrier.reach;
+        let tuning = &mesh.tuning.newton;
+        let most = tuning.bound_margin * tuning.landing_gap_fraction * contacts.barrier.reach;
         let mut free = fraction;
         for e in 0..mesh.rest_length.len() {
             let slides = [e, e + 1].map(|k| mesh.sliding[k].is_some());

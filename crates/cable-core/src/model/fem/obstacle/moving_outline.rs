@@ -27,7 +27,8 @@ use crate::model::RobotContact;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::moving_outline::MovingOutline;
-use crate::model::fem::state::step_setup::{clear_way, prepare_step};
+use crate::model::fem::state::step_setup::prepare_step;
+use crate::model::fem::state::support_stop::stopped_by_obstacles;
 use crate::model::fem::system::friction_state::{ContactPair, OutlineMotion};
 use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_context::StepContext;
@@ -119,7 +120,7 @@ fn hitch_on(cable: &mut CableState, outline_motion: &OutlineMotion) -> bool {
     };
     let on_it = outline_motion.to.place(outline.shape.hitch);
     if (cable.input.target[k] - on_it).norm() > STANDS_M {
-        cable.input.target[k] = clear_way(&cable.problem, &cable.mesh, cable.input.start[k], on_it);
+        cable.input.target[k] = stopped_by_obstacles(&cable.problem, &cable.mesh, cable.input.start[k], on_it);
     }
     let far = |p: Vec2| (p - on_it).norm();
     let now = cable.input.start[k];
@@ -246,14 +247,20 @@ impl<'a> OutlineStep<'a> {
         }
     }
 
-    /// True if nothing is passed on the way to `x`: neither what stands nor, seen from it, the
-    /// outline.
+    /// The part of a gap that the sweep asks for: half of what is given back, so that rounding
+    /// stops nothing.
+    fn swept_gap_fraction(&self) -> f64 {
+        0.5 * self.step.mesh.tuning.outline.kept_gap_fraction
+    }
+
+    /// True if the cable passes nothing on the way to `x`: neither a fixed obstacle nor, seen from
+    /// the moving outline, the outline.
     fn is_free_way(&self, ends: &[[Vec2; 2]], x: &[Vec2], near: &[bool]) -> bool {
         let (mesh, geometry) = (self.step.mesh, self.step.problem.world.geometry());
         let own = geometry.bodies().len().saturating_sub(1);
         let swept = |e: usize, from: [Vec2; 2], of_outline: bool| {
             let to = mesh.straight(e, x);
-            let sweep = Sweep::new(from, to, self.step.mesh.tuning.outline.swept_gap_fraction);
+            let sweep = Sweep::new(from, to, self.swept_gap_fraction());
             let parts = geometry.parts(sweep.low, sweep.high, sweep.margin);
             let parts = parts.filter(|p: &Part| (p.body == own) == of_outline && !is_passed_by(geometry, *p, from, to));
             geometry.free_fraction_among(parts, &sweep, mesh.rounds(e)) >= 1.0
@@ -270,7 +277,7 @@ impl<'a> OutlineStep<'a> {
                 &self.step.input.start,
                 arc,
                 &step,
-                [self.step.mesh.tuning.outline.swept_gap_fraction, f64::INFINITY, 1.0],
+                [self.swept_gap_fraction(), f64::INFINITY, 1.0],
                 order,
             )
         };

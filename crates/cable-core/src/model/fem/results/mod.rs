@@ -11,6 +11,7 @@ pub(in crate::model::fem) mod bending_error;
 mod contacts;
 pub(in crate::model::fem) mod forces;
 mod nodes;
+mod self_contact;
 mod supports;
 
 use self::forces::{bar_tension, bar_tensions, end_forces};

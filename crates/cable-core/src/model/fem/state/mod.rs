@@ -10,3 +10,5 @@ pub(in crate::model::fem) mod momentum;
 pub(in crate::model::fem) mod moving_outline;
 pub(in crate::model::fem) mod step_setup;
 pub(in crate::model::fem) mod stepping;
+pub(in crate::model::fem) mod stick_slip;
+pub(in crate::model::fem) mod support_stop;

@@ -136,7 +136,7 @@ impl FrictionContact {
     }
 }
 
-/// Those of a node, of a list by node.
+/// The friction contacts of a node, out of a list in order of nodes.
 fn of_node(rubs: &[FrictionContact], node: usize) -> impl Iterator<Item = &FrictionContact> {
     let low = rubs.partition_point(|r| r.touch.node < node);
     rubs[low..].iter().take_while(move |r| r.touch.node == node)
@@ -171,7 +171,7 @@ pub struct ContactSet {
 }
 
 impl ContactSet {
-    /// No contact yet.
+    /// A set without contacts.
     #[must_use]
     pub fn new(barrier: Barrier, tuning: ContactTuning, nodes: usize) -> Self {
         Self {
@@ -190,7 +190,7 @@ impl ContactSet {
         }
     }
 
-    /// Becomes a copy without new memory where there is room.
+    /// Copies another set; asks for no memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { barrier, slip, friction_contacts, memory, floor_slid, own, outline_motion, .. } = other;
         (self.barrier, self.slip) = (*barrier, *slip);
@@ -207,8 +207,7 @@ impl ContactSet {
         self.outline_motion = *outline_motion;
     }
 
-    /// Friction is from now on fully mobilised at a sliding of `slip` (m); every contact keeps its
-    /// force.
+    /// Sets the sliding at which friction is fully mobilised (m); every contact keeps its force.
     pub fn set_slip(&mut self, slip: f64) {
         let part = slip / self.slip;
         if part == 1.0 {
@@ -228,7 +227,7 @@ impl ContactSet {
         self.own.forget();
     }
 
-    /// A contact is to have slid by so much, m.
+    /// Remembers that a contact has slid by so much, m.
     pub fn remember(&mut self, touch: &ContactPair, slid: f64) {
         let gap = &touch.pair.gap;
         let (node, on_segment) = (touch.node, touch.on_segment);
@@ -307,9 +306,9 @@ impl ContactSet {
         })
     }
 
-    /// Lists what each bar can come near to while its nodes move from `x` by no more than `most`
-    /// says, with room to spare, unless the lists at hand are good for that, and measures its gap.
-    pub fn look_around(&mut self, problem: &Problem, mesh: &Mesh, x: &[Vec2], most: impl Fn(usize) -> f64) {
+    /// Lists the obstacles that each bar can come near to while its nodes move from `x` by no more
+    /// than `most` (m), with room to spare, unless the present lists suffice, and measures its gap.
+    pub fn list_neighbours(&mut self, problem: &Problem, mesh: &Mesh, x: &[Vec2], most: impl Fn(usize) -> f64) {
         if problem.world.is_empty() {
             return;
         }
@@ -333,21 +332,21 @@ impl ContactSet {
         }
     }
 
-    /// Sets up friction for a step that began at `start`: contacts and normal forces as at `now`
-    /// (m).
+    /// Sets up friction for a step that began at `start`, with the contacts and normal forces at
+    /// `now` (m).
     pub fn prepare(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
         self.own.prepare(&self.barrier, mesh, now, start);
-        self.rub(problem, mesh, now, start);
+        self.find_friction_contacts(problem, mesh, now, start);
     }
 
-    /// The same for obstacles alone.
-    fn rub(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
+    /// The same for contacts with obstacles alone.
+    fn find_friction_contacts(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
         let mut touches = std::mem::take(&mut self.scratch);
         self.find(problem, mesh, now, &mut touches);
         self.friction_contacts.clear();
         for touch in &touches {
             let limit = touch.pair.gap.friction * touch.load(&self.barrier);
-            // The part of a normal force that counts twice is taken away of its friction, too.
+            // A contact that counts twice has pairs of both signs, and so has its friction.
             let same = self
                 .friction_contacts
                 .iter_mut()
@@ -374,10 +373,10 @@ impl ContactSet {
         self.scratch = touches;
     }
 
-    /// Takes the normal forces of friction as they are at `now` (m) in a step that began at
-    /// `start`, unless with them each contact can carry what it could before: `same` tells that of
-    /// the greatest change and of the most that one can carry (N). Returns whether it took them.
-    pub fn renew(
+    /// Sets the normal forces of friction to those at `now` (m) in a step that began at `start`,
+    /// unless they are the same: `same` decides that by the greatest change of a friction limit and
+    /// the greatest limit (N). Returns whether they were set.
+    pub fn renew_normal_forces(
         &mut self,
         problem: &Problem,
         mesh: &Mesh,
@@ -385,7 +384,7 @@ impl ContactSet {
         same: impl Fn(f64, f64) -> bool,
     ) -> bool {
         std::mem::swap(&mut self.friction_contacts, &mut self.before);
-        self.rub(problem, mesh, now, start);
+        self.find_friction_contacts(problem, mesh, now, start);
         let limit = |all: &[FrictionContact], touch: &ContactPair| {
             of_node(all, touch.node).find(|r| r.is_of(touch)).map_or(0.0, |r| r.limit)
         };
@@ -398,14 +397,14 @@ impl ContactSet {
         if renewed {
             self.own.prepare(&self.barrier, mesh, now, start);
         } else {
-            // The step balances these.
+            // The step is in balance with the limits before.
             std::mem::swap(&mut self.friction_contacts, &mut self.before);
         }
         renewed
     }
 
     /// The contacts that were found last, each with its normal force, N.
-    pub fn pressing(&self) -> impl Iterator<Item = (&ContactPair, f64)> {
+    pub fn loaded_contacts(&self) -> impl Iterator<Item = (&ContactPair, f64)> {
         let same = |a: &ContactPair, b: &ContactPair| {
             (a.node, a.on_segment, a.pair.gap.feature) == (b.node, b.on_segment, b.pair.gap.feature)
         };
@@ -420,15 +419,14 @@ impl ContactSet {
     }
 
     /// Friction force of a contact along its tangent at `x` (m), N.
-    pub fn rubs(&self, touch: &ContactPair, x: &[Vec2]) -> f64 {
+    pub fn tangential_force(&self, touch: &ContactPair, x: &[Vec2]) -> f64 {
         let rub = of_node(&self.friction_contacts, touch.node).find(|r| r.is_of(touch));
         rub.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
     }
 
-    /// Takes the friction of every contact by a `part` of the way from what it had `before` to what
-    /// it has now, none where it was not or is no longer; returns by how much it was off at most,
-    /// N.
-    pub fn ease(&mut self, before: &[FrictionContact], part: f64) -> f64 {
+    /// Sets the friction limit of every contact to a `part` of the way from that `before` to the
+    /// present one (0 where there is no contact); returns the greatest difference of the two, N.
+    pub fn blend_friction(&mut self, before: &[FrictionContact], part: f64) -> f64 {
         let gone =
             |now: &[FrictionContact], b: &FrictionContact| !of_node(now, b.touch.node).any(|n| n.is_of(&b.touch));
         let gone: Vec<FrictionContact> = before.iter().filter(|b| gone(&self.friction_contacts, b)).copied().collect();

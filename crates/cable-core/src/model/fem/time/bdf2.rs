@@ -1,4 +1,4 @@
-//! This module takes one step of implicit dynamics (BDF2) of a cable in contact.
+//! The time integrator is BDF2, with a part of BDF3 for a cable that can touch nothing.
 //!
 //! BDF2 with a step ratio ω = h/h₋ (Hairer, Wanner, "Solving ordinary differential equations II",
 //! 1996): with α₀ = (1 + 2ω)/(1 + ω) and the history x̂ = ((1 + ω) x₀ − ω²/(1 + ω) x₋)/α₀,
@@ -9,9 +9,6 @@
 //! order, BDF3: α₀ = (9 + 2β)/6 and x̂ = ((2 + β) x₀ − (½ + β) x₋ + (β/3) x₌)/α₀ at the same cost.
 //! Of a vibration ω BDF2 makes one that is slower by (ωh)²/3 and loses ω⁴h³/4 of its amplitude a
 //! second; this 1 − β and 1 − 2β of that.
-//!
-//! After each step contacts are made plastic: the barrier is a spring and would throw a landing
-//! cable back at 0.4 to 0.8 of its speed.
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
@@ -20,14 +17,13 @@ use crate::model::fem::state::history::Motion;
 use crate::model::fem::system::loss::damping_time;
 use crate::model::fem::system::step_input::Unknowns;
 use crate::model::fem::time::branches;
-use crate::model::fem::time::self_contact::{carried_on, plastic};
 
-/// Part of BDF3 in a step of a cable that can touch nothing. It is A-stable up to ½; 0.48 is V. N.
-/// Vatsa's, M. H. Carpenter's and D. P. Lockard's ("Re-evaluation of an optimized second order
+/// Part β of BDF3 in a step of a cable that can touch nothing. It is A-stable up to ½; 0.48 is V.
+/// N. Vatsa's, M. H. Carpenter's and D. P. Lockard's ("Re-evaluation of an optimized second order
 /// backward difference (BDF2OPT) scheme for unsteady flow applications", AIAA 2010-122). Less:
 /// vibrations are slower, up to twice, and damped, up to 25 times; more: what bars ring is not
 /// damped at all.
-const THIRD: f64 = 0.48;
+const BDF3_PART: f64 = 0.48;
 
 /// The weights of its history in a step: v = a (x − x̂), x̂ = now x₀ − past x₋ + older x₌.
 #[derive(Clone, Copy, Debug)]
@@ -50,8 +46,13 @@ impl Weights {
 
     /// The third of steps of `h` (s) with a part of BDF3.
     fn blended(h: f64) -> Self {
-        let alpha = 1.5 + THIRD / 3.0;
-        Self { now: (2.0 + THIRD) / alpha, past: (0.5 + THIRD) / alpha, older: THIRD / 3.0 / alpha, a: alpha / h }
+        let alpha = 1.5 + BDF3_PART / 3.0;
+        Self {
+            now: (2.0 + BDF3_PART) / alpha,
+            past: (0.5 + BDF3_PART) / alpha,
+            older: BDF3_PART / 3.0 / alpha,
+            a: alpha / h,
+        }
     }
 
     pub(in crate::model::fem) fn place(self, m: &Motion, k: usize) -> Vec2 {
@@ -73,61 +74,8 @@ impl Weights {
     }
 }
 
-/// Makes contacts plastic: what still comes nearer stops, and what goes away goes no faster
-/// than without the force of the contact, as nothing presses on what leaves (J. J. Moreau,
-/// "Unilateral contact and dry friction in finite freedom dynamics", in: Nonsmooth Mechanics
-/// and Applications, CISM 302, 1988). What was drawn away by the cable itself keeps its speed:
-/// stopped in each step, it would stay until one step carries it out of the barrier's reach,
-/// and finer steps would hold it harder.
-///
-/// An impact is over with its step: the history of nodes that change has what the other forces
-/// gave them, and of the contact what holds against those ([`carried_on`]). With all of the
-/// contact in it a third of an impact would come after it and throw the cable back; with none
-/// of it contacts would press by half too much in the next step; without what the others gave
-/// BDF2 would give two thirds of their next impulse only.
-pub(in crate::model::fem) fn land(cable: &mut CableState, h: f64, a: f64) {
-    let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
-    let mass = |k: usize| cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, k);
-    let m = &mut cable.motion;
-    for (touch, load) in cable.contacts.pressing() {
-        let n = touch.pair.gap.normal;
-        let carried = cable.contacts.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
-        let of_it = carried.map_or(Vec2::zeros(), |c| c.way(touch.interpolate(&m.positions)) / h);
-        let speed = (touch.interpolate(&m.velocities) - of_it).dot(&n);
-        let shares = touch.shares();
-        let nodes = [touch.node, touch.node + usize::from(touch.on_segment)];
-        let free = [0, 1].map(|j| if cable.mesh.is_free(nodes[j]) { shares[j] } else { 0.0 });
-        let sum = free[0] * shares[0] + free[1] * shares[1];
-        if sum < 1e-3 {
-            continue;
-        }
-        let give = [0, 1].map(|j| if free[j] > 0.0 { free[j] / mass(nodes[j]) } else { 0.0 });
-        let sum = give[0] * shares[0] + give[1] * shares[1];
-        // Impulses: what the contact gave in the step, and what is taken of it.
-        let made = load / a;
-        let taken = plastic(speed, made * sum) / sum;
-        if speed.abs() < cable.mesh.tuning.step.plastic_speed_m_per_s {
-            continue;
-        }
-        let change = touch.interpolate(&m.velocities) - touch.interpolate(&m.previous_velocities);
-        let acted = n * made + touch.tangent() * (cable.contacts.rubs(touch, &m.positions) / a);
-        let over = acted - carried_on(acted - change / sum, n, touch.pair.gap.friction);
-        for j in 0..2 {
-            if free[j] > 0.0 {
-                let k = nodes[j];
-                m.velocities[k] -= n * (taken * give[j]);
-                m.previous_velocities[k] += (over - n * taken) * give[j];
-                m.previous_positions[k] = m.positions[k] - (m.velocities[k] + m.previous_velocities[k]) * (0.5 * h);
-                given -= n * (taken * free[j]);
-                forgotten += over * free[j];
-            }
-        }
-    }
-    cable.motion.account.land(given, forgotten);
-}
-
-/// Keeps what friction acts between at each sliding node.
-pub(in crate::model::fem) fn note_balanced(cable: &mut CableState, unknowns: &Unknowns) {
+/// Keeps the tensions and the turn between which friction acts at each sliding node.
+pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unknowns: &Unknowns) {
     for k in 0..cable.mesh.nodes() {
         let Some(load) = cable.step_context().load_at(k, &unknowns.positions, Some(&unknowns.slides)) else { continue };
         let inertia = cable.input.inertia[k] * (unknowns.slides[k] - cable.input.predicted_slide[k]);
@@ -146,9 +94,9 @@ pub(in crate::model::fem) fn note_balanced(cable: &mut CableState, unknowns: &Un
     }
 }
 
-/// Supports that could not get where they were to be: said, and their hands start again from
-/// there.
-pub(in crate::model::fem) fn note_lag(cable: &mut CableState, unknowns: &Unknowns) {
+/// Reports the supports that did not reach their targets; their hands start again from where they
+/// are.
+pub(in crate::model::fem) fn report_held_back(cable: &mut CableState, unknowns: &Unknowns) {
     for (support, node) in cable.meshing.support_node.iter().enumerate() {
         let Some(k) = node.filter(|&k| cable.mesh.held[k]) else { continue };
         if unknowns.positions[k] != cable.input.target[k] && !cable.answers.held_back.contains(&support) {

@@ -1,17 +1,17 @@
-//! The solution of the step that is set up: by the solver of free cables where nothing can be
-//! touched, else by that of contact, until friction and normal forces agree.
+//! A step that is set up is solved: by the solver of free cables where the cable can touch nothing,
+//! else by that of contact, until friction and normal forces agree.
 
 use crate::math::larger;
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::SolverMemory;
-use crate::model::fem::state::step_setup::update_grips;
+use crate::model::fem::state::stick_slip::{ChangedNodes, update_stick_slip};
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 
 impl SolverMemory {
     /// The contacts of the last step that was solved with contact.
-    pub(in crate::model::fem) fn touches(&self) -> &[ContactPair] {
+    pub(in crate::model::fem) fn contacts(&self) -> &[ContactPair] {
         self.memory.0.as_ref().map_or(&[], |memory| &memory.touches)
     }
 
@@ -40,21 +40,25 @@ impl SolverMemory {
     /// Minimises until contacts rub by the normal forces that the step itself has. By those at its
     /// start an impact would rub in the step after it, by a force that is no longer there: up to
     /// nine times the cone, along the cable.
-    pub(in crate::model::fem) fn rub_and_minimise(
+    pub(in crate::model::fem) fn minimise_with_friction(
         &mut self,
         cable: &mut CableState,
         unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
-        let mut done = self.grip_and_minimise(cable, unknowns)?;
+        let mut done = self.minimise_with_stick_slip(cable, unknowns)?;
         for _ in 0..cable.mesh.tuning.step.friction_rounds {
             let same = |change: f64, most: f64| {
                 change <= larger(cable.mesh.tuning.step.friction_change * most, cable.meshing.bar_weight)
             };
-            if !cable.contacts.renew(&cable.problem, &cable.mesh, [&unknowns.positions, &cable.motion.positions], same)
-            {
+            if !cable.contacts.renew_normal_forces(
+                &cable.problem,
+                &cable.mesh,
+                [&unknowns.positions, &cable.motion.positions],
+                same,
+            ) {
                 break;
             }
-            let more = self.grip_and_minimise(cable, unknowns)?;
+            let more = self.minimise_with_stick_slip(cable, unknowns)?;
             done = Converged { iterations: done.iterations + more.iterations, ..more };
         }
         Ok(done)
@@ -66,17 +70,22 @@ impl SolverMemory {
     /// All grips that are wrong are changed at once while that makes them fewer; then one at a time
     /// (J. Júdice, F. Pires, "A block principal pivoting algorithm for large-scale strictly
     /// monotone linear complementarity problems", Computers & Operations Research 21, 1994).
-    fn grip_and_minimise(&mut self, cable: &mut CableState, unknowns: &mut Unknowns) -> Result<Converged, Failure> {
+    fn minimise_with_stick_slip(
+        &mut self,
+        cable: &mut CableState,
+        unknowns: &mut Unknowns,
+    ) -> Result<Converged, Failure> {
         let mut done = self.minimise(cable, unknowns)?;
         let sliding = cable.mesh.sliding.iter().flatten().count();
         let (mut fewest, mut spare) = (usize::MAX, cable.mesh.tuning.step.grip_rounds);
         for _ in 0..cable.mesh.tuning.step.grip_rounds + cable.mesh.tuning.step.grip_rounds_each * sliding {
-            let grips = update_grips(cable, unknowns, spare == 0);
-            if grips.hold() {
+            let nodes = if spare == 0 { ChangedNodes::One } else { ChangedNodes::All };
+            let changes = update_stick_slip(cable, unknowns, nodes);
+            if changes.are_lawful() {
                 return Ok(done);
             }
-            if grips.wrong < fewest {
-                (fewest, spare) = (grips.wrong, cable.mesh.tuning.step.grip_rounds);
+            if changes.wrong < fewest {
+                (fewest, spare) = (changes.wrong, cable.mesh.tuning.step.grip_rounds);
             } else {
                 spare = spare.saturating_sub(1);
             }

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use crate::contact::barrier::Barrier;
 use crate::math::Vec2;
 use crate::model::Settings;
+use crate::model::fem::mesh::bar_count::bar_count;
 use crate::model::fem::newton::initial_guess::{depenetrate, place_nodes, route};
-use crate::model::fem::settings::{StartTuning, Tuning};
+use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::cable::{CableState, Gauged, StepAnswers};
 use crate::model::fem::state::history::Motion;
 use crate::model::fem::state::meshing::Meshing;
@@ -30,7 +31,7 @@ pub(in crate::model::fem) fn cable_along_route(
     let Tuning { contact, start, .. } = *tuning;
     let (outline, problem) = MovingOutline::of(problem);
     let route = route(&problem);
-    let segments = segments(&problem, settings, &start);
+    let segments = bar_count(&problem, settings, &start);
     let even = problem.length / segments as f64;
     let mut breaks = vec![0.0, problem.length];
     breaks.extend(problem.supports.iter().filter_map(|s| s.arc_length));
@@ -120,12 +121,4 @@ pub(in crate::model::fem) fn cable_along_route(
 /// mass that changed as contact begins would change the energy.
 fn spreads_mass(problem: &Problem) -> bool {
     touches_nothing(problem) && problem.supports.iter().all(|s| s.kind != SupportKind::Pulley)
-}
-
-/// Elements of a cable where neither the scene nor the settings give a number: finer where it can
-/// touch an obstacle.
-fn segments(problem: &Problem, settings: Settings, tuning: &StartTuning) -> usize {
-    let element = if problem.world.is_empty() { tuning.free_bar_m } else { tuning.bar_m };
-    let automatic = (problem.length / element).ceil().max(tuning.min_bars).min(tuning.max_bars) as usize;
-    settings.segments.or(problem.cable.segments).unwrap_or(automatic).max(2)
 }

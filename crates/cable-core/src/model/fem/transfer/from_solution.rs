@@ -157,7 +157,7 @@ pub(in crate::model::fem) fn adopt_sliding_nodes(cable: &mut CableState, curve: 
 
 /// A sliding node at a material point (m).
 fn add_sliding_node(cable: &mut CableState, s: f64, node: SlidingNode) {
-    let near = cable.mesh.tuning.start.min_bar * cable.even();
+    let near = cable.mesh.tuning.remesh.min_bar * cable.even();
     let k = cable.mesh.arc_length.partition_point(|&a| a <= s);
     for j in [k, k.wrapping_sub(1)] {
         let spare = cable.mesh.arc_length.get(j).is_some_and(|a| (a - s).abs() < near);

@@ -77,7 +77,7 @@ impl Dynamics {
             return Ok(());
         }
         self.rollback.save(&self.cable);
-        let taken = self.take(state);
+        let taken = self.take_over(state);
         if taken.is_err() {
             self.rollback.restore(&mut self.cable);
         }
@@ -128,7 +128,8 @@ impl Dynamics {
         Ok(())
     }
 
-    fn take(&mut self, state: &State) -> Result<(), SolveError> {
+    /// Takes over a state: node by node where the nodes are the same, else by arc length.
+    fn take_over(&mut self, state: &State) -> Result<(), SolveError> {
         self.pacing.sleep.wake();
         let led = put_outline(&mut self.cable);
         let same = state.arc_length_m == self.cable.mesh.arc_length && !led;

@@ -62,7 +62,7 @@ impl Way {
         let (h, count) = if way.abs() <= PANEL {
             (way, 1)
         } else if !(way.abs() <= MOST_TURN) {
-            // No cable is wound so: Newton is told to look elsewhere.
+            // No cable is wound so far: Newton's method rejects the step.
             (f64::NAN, 1)
         } else {
             let panels = (way.abs() / PANEL).ceil().max(1.0);

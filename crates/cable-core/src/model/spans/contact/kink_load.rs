@@ -76,7 +76,7 @@ pub(in crate::model::spans) fn enter(strand: &mut CableRun, course: &Course) -> 
 }
 
 /// Lets the load that is contact j out of its kink; whether it left.
-pub(in crate::model::spans) fn leave(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Failure> {
+pub(in crate::model::spans) fn leave_kink(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Failure> {
     let f = load_balance(strand, course, j);
     let c = &strand.contacts[j];
     let Some(kink) = c.kink() else { return Ok(false) };

@@ -135,7 +135,7 @@ pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) ->
                 lift(strand, course, j);
                 return Ok(true);
             }
-            if kink_load::leave(strand, course, j)? {
+            if kink_load::leave_kink(strand, course, j)? {
                 return Ok(true);
             }
         } else if set_down(strand, course, j) || press_end(strand, course, j) {

@@ -23,7 +23,7 @@ pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, sid
             }
         }
         (Tie::Lies(_), None) => lift(strand, course, side, outer, at),
-        (Tie::Held(_), Some(p)) if beyond(strand, outer, side, p) => lay(strand, side, outer, p),
+        (Tie::Held(_), Some(p)) if beyond(strand, outer, side, p) => lay_end_on(strand, side, outer, p),
         (Tie::Held(_), _) => strand.ties[side] = Tie::Held(at),
         _ => {}
     }
@@ -35,8 +35,8 @@ fn beyond(strand: &CableRun, j: usize, side: usize, p: f64) -> bool {
     if side == 0 { p <= e.p[0] } else { p >= e.p[1] }
 }
 
-/// An end that comes down to lie on the boundary: its span is gone.
-fn lay(strand: &mut CableRun, side: usize, j: usize, p: f64) {
+/// Lays an end of the strand on the boundary, which takes its span away.
+fn lay_end_on(strand: &mut CableRun, side: usize, j: usize, p: f64) {
     strand.ties[side] = Tie::Lies(p);
     let s = if side == 0 { strand.from } else { strand.to };
     let e = &mut strand.contacts[j].ends;

@@ -28,8 +28,9 @@ struct Wrap {
     turn: f64,
 }
 
-/// The strand at its route, and the route. None where the string of the route finds no end.
-pub(in crate::model::spans) fn lay(
+/// The strand laid along its route, and the points of the route. None where the string of the route
+/// finds no end.
+pub(in crate::model::spans) fn strand_along_route(
     layout: &Layout,
     index: usize,
     course: &Course,

@@ -36,9 +36,9 @@ impl Station {
     }
 }
 
-/// The strands of a cable as an answer has it, with at most a part of the cone of friction called
-/// upon; None where they cannot be told from it.
-pub(in crate::model::spans) fn take(
+/// The strands of a cable in the shape of an answer, with at most a part of the cone of friction
+/// called upon; None where the answer does not show them.
+pub(in crate::model::spans) fn strands_of(
     layout: &Layout,
     course: &Course,
     instant: &BoundaryConditions,

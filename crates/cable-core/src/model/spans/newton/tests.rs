@@ -39,7 +39,7 @@ fn loaded(
     let mut instant = BoundaryConditions::default();
     layout.instant(&[None, None], 0.0, &mut instant);
     let mut work = Work::default();
-    let (mut network, _) = CableEquilibrium::rest(&layout, &instant, &mut work).map_err(|e| e.0).unwrap();
+    let (mut network, _) = CableEquilibrium::along_route(&layout, &instant, &mut work).map_err(|e| e.failure).unwrap();
     instant.places[1] += moved;
     network.travel(&layout, &instant, 0.1, &mut work).unwrap();
     (network.strands.remove(0), network.course)

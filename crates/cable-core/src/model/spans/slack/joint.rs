@@ -19,7 +19,7 @@
 
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::loose::{Line, Part, Stretch};
-use crate::model::spans::slack::{Drape, HALVINGS, STRAIGHT_TURN, Sought};
+use crate::model::spans::slack::{Drape, HALVINGS, LooseShapes, STRAIGHT_TURN};
 use crate::numerics::bisect;
 
 /// Doublings of the force across the load in the search for one that is too large.
@@ -71,7 +71,7 @@ impl Drape<'_> {
             let (s, enters) = (out.stretches[k], out.leaves);
             out.enters[k] = enters;
             out.leaves = self.least(&s, side, enters, s.coordinates[1 - side]);
-            if self.sought == Sought::NoTension && out.leaves > self.most {
+            if self.sought == LooseShapes::NoTension && out.leaves > self.most {
                 return None;
             }
             let first = if side == 0 { k } else { k.wrapping_sub(1) };

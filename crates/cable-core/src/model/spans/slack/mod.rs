@@ -71,23 +71,23 @@ impl Part {
     }
 }
 
-/// The shapes of cable that lies that are of use to who asks.
+/// The shapes of loose cable that a search accepts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::model::spans) enum Sought {
+pub(in crate::model::spans) enum LooseShapes {
     /// Any.
     AnyTension,
-    /// Only those in which nothing that lies has tension ([`Loose::spreads`]). Then a crest that
+    /// Only those in which no cable that lies has tension ([`Loose::spreads`]). Then a crest that
     /// draws ends the search, before the spans that it would hold are looked for.
     NoTension,
 }
 
-/// The strand as it lies loose at an instant; None where it does not.
-pub(in crate::model::spans) fn lay(
+/// The strand where it lies loose at an instant; None where it cannot.
+pub(in crate::model::spans) fn loose_strand(
     layout: &Layout,
     index: usize,
     course: &Course,
     instant: &BoundaryConditions,
-    sought: Sought,
+    sought: LooseShapes,
 ) -> Option<CableRun> {
     let part = layout.strands.get(index)?;
     let (load, [from, to]) = (course.law.load, part.material);
@@ -197,7 +197,7 @@ struct Drape<'a> {
     frame: Frame,
     /// Tension that is rounding, N.
     most: f64,
-    sought: Sought,
+    sought: LooseShapes,
 }
 
 impl Drape<'_> {
@@ -540,10 +540,10 @@ mod tests {
                     let course = layout.course(layout.curves(), &instant);
                     for k in 0..layout.strands.len() {
                         let laid = |sought| {
-                            lay(&layout, k, &course, &instant, sought)
+                            loose_strand(&layout, k, &course, &instant, sought)
                                 .filter(|s| s.loose.as_ref().is_some_and(Loose::spreads))
                         };
-                        let [any, none] = [Sought::AnyTension, Sought::NoTension].map(laid);
+                        let [any, none] = [LooseShapes::AnyTension, LooseShapes::NoTension].map(laid);
                         assert_eq!(format!("{any:?}"), format!("{none:?}"), "{id}, {longer} times as long");
                         compared += 1;
                         found += usize::from(any.is_some());

@@ -3,13 +3,13 @@
 
 /// A band matrix with as many entries on either side of the diagonal, factorised in place.
 #[derive(Clone, Debug)]
-pub(super) struct Band {
+pub(super) struct BandLu {
     half: usize,
     rows: Vec<f64>,
     size: usize,
 }
 
-impl Band {
+impl BandLu {
     /// All zero.
     pub fn new(size: usize, half: usize) -> Self {
         // Pivoting fills as many again on the right.
@@ -111,7 +111,7 @@ mod tests {
     proptest! {
         #[test]
         fn solves_what_a_dense_solver_solves(n in 1usize..14, seed in prop::collection::vec(-1.0f64..1.0, 14 * 15)) {
-            let mut band = Band::new(n, 3);
+            let mut band = BandLu::new(n, 3);
             let mut dense = nalgebra::DMatrix::<f64>::zeros(n, n);
             let mut b = vec![0.0; n];
             for i in 0..n {

@@ -1,25 +1,41 @@
 //! `Dynamics` advances the state of a cable in contact: its motion, quasi-static steps and
 //! equilibria.
+//!
+//! An advance is divided into inner steps ([`Dynamics::advance`]); one that fails is halved
+//! (`halving`); a step with inertia is [`Dynamics::dynamic_step`]. Steps without inertia are in
+//! `equilibrium`.
+
+mod halving;
 
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::SlideOver;
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::obstacle::moving_outline::prepare_way;
-use crate::model::fem::remesh::adapt::{remesh, settle_down};
+use crate::model::fem::remesh::adapt::remesh;
 use crate::model::fem::results;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::{HandDrive, Pacing, Rollback, SolverMemory};
 use crate::model::fem::state::momentum::MovingMass;
-use crate::model::fem::state::step_setup::renew_input;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause};
-use crate::model::fem::time::bdf2::{Weights, note_balanced, note_lag, set_inertia};
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
+use crate::model::fem::time::bdf2::{Weights, keep_balanced_tensions, report_held_back, set_inertia};
 use crate::model::fem::time::momentum::{account_for_step, forces_in_step};
-use crate::model::fem::time::{bdf2, branches, hands, self_contact};
+use crate::model::fem::time::{branches, hands, plastic_impact};
 use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::held_warning;
-use crate::model::{Inertia, Model, StepReport};
+use crate::model::{Inertia, StepReport};
 use crate::solution::{CableSolution, Cost, Warning, WarningCause};
+
+/// What the steps of an advance have in common.
+#[derive(Clone, Copy, Debug)]
+struct StepRequest<'a> {
+    /// End of the advance, s: without inertia hands draw supports evenly to where they are to be
+    /// then.
+    due: f64,
+    inertia: Inertia,
+    /// Where supports are dragged to, m.
+    dragged: &'a [Option<Vec2>],
+}
 
 /// The moving cable, or the resting one where it can touch something.
 #[derive(Clone, Debug)]
@@ -31,12 +47,6 @@ pub struct Dynamics {
     pub(super) rollback: Rollback,
     /// True if it has come to rest, or moves from a state that did.
     pub(super) rested: bool,
-}
-
-/// Lets the outline of the robot wait where it is; returns whether it was moving.
-fn waits(cable: &mut CableState) -> bool {
-    let at = cable.motion.placement;
-    cable.outline.as_mut().is_some_and(|outline| outline.wait_at(at))
 }
 
 impl Dynamics {
@@ -109,9 +119,10 @@ impl Dynamics {
             Inertia::QuasiStatic => self.cable.static_steps(end, dragged),
         };
         let h = dt_s / pieces;
+        let request = StepRequest { due: end, inertia, dragged };
         let (mut total, mut halved) = (Converged::default(), 0);
         for _ in 0..pieces as usize {
-            let done = self.halving(h, end, inertia, dragged, &mut halved, gauge)?;
+            let done = self.step_in_halves(h, request, &mut halved, gauge)?;
             total = Converged { iterations: total.iterations + done.iterations, ..done };
         }
         self.cable.motion.time = end;
@@ -133,126 +144,6 @@ impl Dynamics {
             self.pacing.sleep.wake();
         }
         Ok(self.report(total, halved, h))
-    }
-
-    /// One step of `h`; on failure back to its start and two of half the size, again and again.
-    /// Without inertia hands draw supports evenly to where they are to be at `due` (s).
-    fn halving(
-        &mut self,
-        h: f64,
-        due: f64,
-        inertia: Inertia,
-        dragged: &[Option<Vec2>],
-        halved: &mut usize,
-        gauge: &mut TensionGauge,
-    ) -> Result<Converged, SolveError> {
-        let (mut left, mut size, mut depth) = (h, h, 0);
-        let mut total = Converged::default();
-        // Time that was left when a motion without history began.
-        let mut began = None;
-        loop {
-            let begins =
-                self.cable.motion.step_before == 0.0 && inertia == Inertia::Dynamic && self.cable.meets_nothing();
-            if begins && depth == 0 && left > self.cable.mesh.tuning.step.first_fraction * h {
-                (began, size) = (Some(left), self.cable.mesh.tuning.step.first_fraction * left);
-            }
-            self.rollback.save(&self.cable);
-            let start = self.cable.motion.time;
-            let piece = match inertia {
-                Inertia::Dynamic => self.cable.until_release(size),
-                Inertia::QuasiStatic => size,
-            };
-            let to = start + piece;
-            let tried = match inertia {
-                Inertia::Dynamic => self.dynamic_step(piece, dragged),
-                Inertia::QuasiStatic => {
-                    let mut aims = std::mem::take(&mut self.hand_drive.aims);
-                    self.cable.aim(&mut aims, dragged, piece / (due - start));
-                    let tried = self.quiet_step(to, &aims).or_else(|failure| {
-                        if failure.cause == FailureCause::CornerPulls
-                            || depth < self.cable.mesh.tuning.equilibrium.halvings_before_relaxation
-                        {
-                            return Err(failure);
-                        }
-                        self.rollback.restore(&mut self.cable);
-                        self.rollback.save(&self.cable);
-                        self.cable.motion.time = start;
-                        self.relax(to, &aims)
-                    });
-                    self.hand_drive.aims = aims;
-                    tried
-                }
-            };
-            let finite = self
-                .cable
-                .motion
-                .positions
-                .iter()
-                .chain(&self.cable.motion.velocities)
-                .all(|p| p.iter().all(|c| c.is_finite()));
-            match tried {
-                Ok(done) if finite => {
-                    total = Converged { iterations: total.iterations + done.iterations, ..done };
-                    if inertia == Inertia::Dynamic {
-                        self.pacing.pace.note_solved(done.iterations);
-                        gauge.note(to, &self.cable.answers.gauged.arc_length, |k| self.cable.answers.gauged.tension[k]);
-                        gauge.keep();
-                    }
-                    left -= piece;
-                    // Forces jump where a support lets go: with the history from before, BDF2 would
-                    // feel them half a step late.
-                    if self.cable.problem.supports.iter().any(|s| s.holds_from(start) != s.holds_from(to)) {
-                        self.cable.motion.step_before = 0.0;
-                    }
-                    if left <= 1e-9 * h {
-                        return Ok(total);
-                    }
-                    size = began.filter(|_| depth == 0).map_or(size, |b: f64| b - left).min(left);
-                }
-                other => {
-                    let f = other.err().unwrap_or(Failure {
-                        node: 0,
-                        residual: f64::NAN,
-                        cause: FailureCause::StateNotFinite,
-                    });
-                    self.rollback.restore(&mut self.cable);
-                    if f.cause == FailureCause::CornerPulls && settle_down(&mut self.cable, f.node) {
-                        renew_input(&mut self.cable);
-                        continue;
-                    }
-                    // A cable that cannot get out of the way of the robot holds it.
-                    if depth >= self.cable.mesh.tuning.step.halvings_before_robot_waits && waits(&mut self.cable) {
-                        (depth, size) = (0, left);
-                        continue;
-                    }
-                    // The barrier may be too soft for what this step does.
-                    self.cable.adapt_stiffness([2.0, 1.0], self.cable.mesh.tuning.contact.retry_stiffening);
-                    *halved += 1;
-                    depth += 1;
-                    size *= 0.5;
-                    if inertia == Inertia::Dynamic {
-                        self.pacing.pace.note_refused(&self.cable.mesh.tuning.step, size);
-                    }
-                    if inertia == Inertia::QuasiStatic
-                        && depth == self.cable.mesh.tuning.equilibrium.halvings_before_relaxation
-                    {
-                        // Then all that is left at once.
-                        size = left;
-                    }
-                    self.cable.motion.step_before = 0.0;
-                    if depth > self.cable.mesh.tuning.step.max_halvings {
-                        return Err(SolveError::StepFailed {
-                            model: Model::Fem,
-                            time_s: self.cable.motion.time,
-                            dt_s: size,
-                            residual_n: f.residual,
-                            place: self.cable.place(f.node),
-                            cause: f.cause,
-                        });
-                    }
-                }
-            }
-        }
     }
 
     pub(super) fn report(&self, done: Converged, halved_steps: usize, inner_step_s: f64) -> StepReport {
@@ -293,41 +184,15 @@ impl Dynamics {
         let weights = Weights::of_step(&self.cable.motion, h);
         set_inertia(&mut self.cable, weights, h, &mut self.solver.decay);
         let (m, input, mesh) = (&self.cable.motion, &self.cable.input, &self.cable.mesh);
-        self.cable.contacts.look_around(&self.cable.problem, mesh, &m.positions, |k| {
+        self.cable.contacts.list_neighbours(&self.cable.problem, mesh, &m.positions, |k| {
             if mesh.held[k] { (input.target[k] - m.positions[k]).norm() } else { m.velocities[k].norm() * h }
         });
         weights
     }
 
-    pub(in crate::model::fem) fn dynamic_step(
-        &mut self,
-        h: f64,
-        dragged: &[Option<Vec2>],
-    ) -> Result<Converged, Failure> {
-        let weights = self.begin_step(h, dragged);
+    /// Moves the cable to the unknowns of a step, and its history on by that step.
+    fn move_to(&mut self, unknowns: &Unknowns, weights: Weights) {
         let Weights { now, past, a, .. } = weights;
-        let (mut unknowns, exact) = (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.tolerance);
-        self.cable.contacts.prepare(
-            &self.cable.problem,
-            &self.cable.mesh,
-            &unknowns.positions,
-            &self.cable.motion.positions,
-        );
-        self.cable.input.tolerance = self.cable.input.rounded_tolerance(&self.cable.motion.positions);
-        let done = self.solver.rub_and_minimise(&mut self.cable, &mut unknowns);
-        self.cable.input.tolerance = exact;
-        let done = done?;
-        let most = self.cable.mesh.tuning.remesh.max_reverse_turn_rad;
-        if let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.positions).pulled_corner(most) {
-            return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
-        }
-        note_lag(&mut self.cable, &unknowns);
-        hands::keep_forces(&mut self.cable, &unknowns);
-        note_balanced(&mut self.cable, &unknowns);
-        let given = forces_in_step(&self.cable, &unknowns, self.solver.touches());
-        let slid = MovingMass::of(&self.cable).sliding_momentum();
-        branches::relax(&mut self.cable, h, &unknowns.positions);
-        self.cable.commit_contacts(&unknowns);
         let (m, mesh) = (&mut self.cable.motion, &self.cable.mesh);
         for k in 0..unknowns.positions.len() {
             let v = (unknowns.positions[k] - weights.place(m, k)) * a;
@@ -344,6 +209,39 @@ impl Dynamics {
             m.velocities[k] = v;
             m.slide_rates[k] = if mesh.sliding[k].is_some() { w } else { 0.0 };
         }
+    }
+
+    /// One step of `h` (s) with inertia.
+    pub(in crate::model::fem) fn dynamic_step(
+        &mut self,
+        h: f64,
+        dragged: &[Option<Vec2>],
+    ) -> Result<Converged, Failure> {
+        let weights = self.begin_step(h, dragged);
+        let a = weights.a;
+        let (mut unknowns, exact) = (self.solver.predicted_unknowns(&self.cable, h), self.cable.input.tolerance);
+        self.cable.contacts.prepare(
+            &self.cable.problem,
+            &self.cable.mesh,
+            &unknowns.positions,
+            &self.cable.motion.positions,
+        );
+        self.cable.input.tolerance = self.cable.input.rounded_tolerance(&self.cable.motion.positions);
+        let done = self.solver.minimise_with_friction(&mut self.cable, &mut unknowns);
+        self.cable.input.tolerance = exact;
+        let done = done?;
+        let most = self.cable.mesh.tuning.remesh.max_reverse_turn_rad;
+        if let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.positions).pulled_corner(most) {
+            return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
+        }
+        report_held_back(&mut self.cable, &unknowns);
+        hands::keep_forces(&mut self.cable, &unknowns);
+        keep_balanced_tensions(&mut self.cable, &unknowns);
+        let given = forces_in_step(&self.cable, &unknowns, self.solver.contacts());
+        let slid = MovingMass::of(&self.cable).sliding_momentum();
+        branches::relax(&mut self.cable, h, &unknowns.positions);
+        self.cable.commit_contacts(&unknowns);
+        self.move_to(&unknowns, weights);
         self.cable.mesh.slide(&unknowns.slides);
         account_for_step(&mut self.cable, weights, given, slid, &unknowns.slides);
         self.solver.unknowns = unknowns;
@@ -353,8 +251,8 @@ impl Dynamics {
         let smooth = !cable.mesh.spread.is_lumped() && cable.answers.gauged.bars.iter().all(|tension| *tension > 0.0);
         self.cable.motion.note_step(h, smooth);
         self.pacing.pace.observe(&self.cable, h);
-        bdf2::land(&mut self.cable, h, a);
-        self_contact::land(&mut self.cable, h, a);
+        plastic_impact::land_on_obstacles(&mut self.cable, h, a);
+        plastic_impact::land_on_itself(&mut self.cable, h, a);
         let momentum = MovingMass::of(&self.cable).momentum();
         self.cable.motion.account.close(self.cable.motion.time, momentum);
         self.cable.contacts.outline_motion = None;

@@ -1,11 +1,11 @@
-//! This module makes a solution of a chain at rest.
+//! A chain at rest is written as an answer.
 //!
 //! Forces of contacts and weight act on the chain's nodes. In the answer a contact acts where it
 //! is: a bar that lies on a corner is cut there, its force before and after differ by what the
 //! corner does, and its moment balances as before.
 
 use crate::math::{Vec2, larger, perp};
-use crate::model::fem::elastica::relax::{Chain, ContactPair};
+use crate::model::fem::elastica::chain::{Chain, ChainContact};
 use crate::scene::SupportKind;
 use crate::solution::{Assumptions, CableSolution, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
@@ -14,14 +14,16 @@ const CONTACT_MERGE_BARS: f64 = 2.5;
 
 impl Chain<'_> {
     /// Force of a contact on the cable, N.
-    fn force_of(&self, t: &ContactPair) -> Vec2 {
-        let along = (self.positions[t.node + 1] - self.positions[t.node]).normalize();
-        t.gap.normal * t.push + along * (t.mobilised * t.push)
+    fn force_of(&self, t: &ChainContact) -> Vec2 {
+        t.gap.normal * t.push + self.direction(t.node) * (t.mobilised * t.push)
     }
 
     /// Moments at all nodes, N·m.
     fn moments(&self) -> Vec<f64> {
-        self.bends().iter().map(|b| self.problem.bending_stiffness * b / self.problem.thermal_stretch).collect()
+        self.curvatures()
+            .iter()
+            .map(|b| self.setting.problem.bending_stiffness * b / self.setting.problem.thermal_stretch)
+            .collect()
     }
 
     /// Forces of what comes after on what comes before, in the middle of each bar, N.
@@ -36,26 +38,26 @@ impl Chain<'_> {
     }
 
     /// The answer.
-    pub fn solution(&self) -> CableSolution {
+    pub(in crate::model::fem::elastica) fn solution(&self) -> CableSolution {
         let moments = self.moments();
         let forces = self.forces(&moments);
-        let pushes = self.pushes();
+        let pushes = self.pushing_contacts();
         let nodes = self.answer_nodes(&moments, &forces, &pushes);
         CableSolution {
-            name: self.problem.cable.name.clone(),
+            name: self.setting.problem.cable.name.clone(),
             supports: self.supports(&forces, &nodes),
             contacts: self.reports(&pushes),
             nodes,
             assumptions: Assumptions {
-                bending_stiffness_n_m2: self.problem.bending_stiffness,
+                bending_stiffness_n_m2: self.setting.problem.bending_stiffness,
                 ..Assumptions::default()
             },
             ..CableSolution::default()
         }
     }
 
-    fn answer_nodes(&self, moments: &[f64], forces: &[Vec2], pushes: &[ContactPair]) -> Vec<Node> {
-        let p = self.problem;
+    fn answer_nodes(&self, moments: &[f64], forces: &[Vec2], pushes: &[ChainContact]) -> Vec<Node> {
+        let p = self.setting.problem;
         let area = p.cable.area_m2();
         let last = self.positions.len() - 1;
         let mut out = Vec::with_capacity(self.positions.len() + pushes.len());
@@ -74,7 +76,7 @@ impl Chain<'_> {
             let (a, b) = (self.positions[k], self.positions[k + 1]);
             let t = (b - a).normalize();
             let half = self.body * (0.5 * (self.arc[k + 1] - self.arc[k]));
-            let mut inside: Vec<&ContactPair> =
+            let mut inside: Vec<&ChainContact> =
                 pushes.iter().filter(|t| t.node == k && t.gap.fraction > 0.0 && t.gap.fraction < 1.0).collect();
             inside.sort_by(|a, b| a.gap.fraction.total_cmp(&b.gap.fraction));
             // Before the first of the contacts on this bar.
@@ -105,7 +107,7 @@ impl Chain<'_> {
     }
 
     fn supports(&self, forces: &[Vec2], nodes: &[Node]) -> Vec<SupportReaction> {
-        let p = self.problem;
+        let p = self.setting.problem;
         let last = self.positions.len() - 1;
         let ends = p.supports.len().saturating_sub(1);
         let reaction = |(k, s): (usize, &crate::problem::SupportPoint)| {
@@ -115,10 +117,10 @@ impl Chain<'_> {
             let after = if i < last { forces[i] } else { Vec2::zeros() };
             let loaded = matches!(s.kind, SupportKind::Load | SupportKind::Free);
             // Forces that bars on corners pass on to it are not its own.
-            let near = self.touches.iter().filter(|t| t.active);
+            let near = self.contacts.iter().filter(|t| t.active);
             let led = near.flat_map(|t| t.shares().map(|(k, a)| (k, self.force_of(t) * a)));
             let led = led.filter(|(k, _)| *k == i).fold(Vec2::zeros(), |sum, (_, f)| sum + f);
-            let f = if loaded { -p.hung_on(k, self.time_s) } else { after - before + self.load[i] + led };
+            let f = if loaded { -p.hung_on(k, self.setting.time_s) } else { after - before + self.load[i] + led };
             SupportReaction {
                 name: s.name.clone(),
                 reaction_x_n: f.x,
@@ -132,9 +134,9 @@ impl Chain<'_> {
         p.supports.iter().enumerate().map(reaction).collect()
     }
 
-    fn reports(&self, pushes: &[ContactPair]) -> Vec<ContactReport> {
+    fn reports(&self, pushes: &[ChainContact]) -> Vec<ContactReport> {
         let mut out = Vec::new();
-        let mut left: Vec<&ContactPair> = pushes.iter().collect();
+        let mut left: Vec<&ChainContact> = pushes.iter().collect();
         while let Some(first) = left.first().copied() {
             let (mut group, mut rest, mut to) = (vec![first], Vec::new(), first.arc);
             for t in left.into_iter().skip(1) {
@@ -148,14 +150,14 @@ impl Chain<'_> {
             left = rest;
             let (Some(a), Some(b)) = (group.first(), group.last()) else { break };
             let middle = group[group.len() / 2];
-            let at = |t: &ContactPair| {
+            let at = |t: &ChainContact| {
                 self.positions[t.node] + (self.positions[t.node + 1] - self.positions[t.node]) * t.gap.fraction
             };
             let x = at(middle);
             let normal_n: f64 = group.iter().map(|t| t.push).sum();
             let friction_n: f64 = group.iter().map(|t| t.mobilised * t.push).sum();
             let mut r = ContactReport {
-                obstacle: self.problem.world.obstacle_name(first.gap.obstacle).to_owned(),
+                obstacle: self.setting.problem.world.obstacle_name(first.gap.obstacle).to_owned(),
                 x_m: x.x,
                 y_m: x.y,
                 arc_length_m: 0.5 * (a.arc + b.arc),

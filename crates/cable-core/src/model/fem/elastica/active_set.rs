@@ -1,39 +1,37 @@
-//! The active set says which contacts there are, and which of them are a point and which a stretch.
+//! The active set is found: which contacts there are, which of them are a point and which a
+//! stretch.
 
 use crate::math::{Vec2, perp};
 use crate::model::fem::elastica::boundary_value::{
     ANGLE, ARC, Contact, Elastica, Joint, LENGTH, MOMENT, MOST_WORK, Owner, Piece, STATES, force, place, tangent,
 };
-use crate::model::fem::elastica::start::contact_at;
+use crate::model::fem::elastica::guess::contacts::contact_at;
 use crate::problem::Problem;
-
-/// Changes of the set of contacts before it is given up. 1 to 4 are usual.
-const MAX_CHANGES: usize = 60;
 
 /// Part of the cable's radius by which a cable may lie in an obstacle: what elements are off
 /// between their ends.
 const OVERLAP_TOLERANCE: f64 = 1e-3;
 
 /// Elements of a new stretch of contact.
-const ELEMENTS: usize = 8;
+const STRETCH_ELEMENTS: usize = 8;
 
 /// Length of a new stretch of contact in parts of its radius, or of the shorter free piece beside
 /// it. Newton's method finds the right one; far more than that turns over on the way.
-const NEW: f64 = 0.05;
+const NEW_STRETCH_FRACTION: f64 = 0.05;
 
 /// Length, in parts of the radius (of the cable for a line), below which a stretch of contact is a
 /// point.
-const POINT: f64 = 1e-4;
+const SHORTEST_STRETCH_FRACTION: f64 = 1e-4;
 
 /// Part by which a cable may be more bent than the round it touches, or pull at it in parts of the
 /// scene's forces.
 const CONTACT_CURVATURE_TOLERANCE: f64 = 1e-7;
 
-/// The same for the bend of what was found to be no stretch: at the very limit it is either, and
-/// would go to and fro.
-const POINT_SLACK: f64 = 1e-3;
+/// The same for a contact that was a stretch and became a point: at the very limit it is either,
+/// and would change for ever.
+const POINT_CURVATURE_TOLERANCE: f64 = 1e-3;
 
-/// A piece cut at a node, both parts free.
+/// The two free pieces into which a node cuts a piece.
 fn split(piece: &Piece, node: usize) -> (Piece, Piece) {
     let cut = piece.grid[node];
     let part = |nodes: &[[f64; STATES]], grid: &[f64], from: f64, to: f64| Piece {
@@ -55,28 +53,26 @@ fn split(piece: &Piece, node: usize) -> (Piece, Piece) {
 }
 
 impl Elastica {
-    /// Solves with the right set of contacts; false where none is found.
+    /// Solves with the right set of contacts; returns false where none is found.
     pub(super) fn settle(&mut self, problem: &Problem) -> bool {
-        // Stretches that were found to be points.
+        // Contacts that were stretches and became points.
         let mut points = Vec::new();
-        for _ in 0..MAX_CHANGES {
-            if self.work > MOST_WORK {
-                return false;
-            }
+        // Each change costs work, 1 to 4 are usual.
+        while self.work <= MOST_WORK {
             let saved = self.clone();
             let solved = self.newton();
-            if let Some(k) = self.shrinking.take().or_else(|| self.vanishing(problem)) {
+            if let Some(k) = self.shrinking.take().or_else(|| self.shortest_stretch(problem)) {
                 points.extend(self.pieces[k].contact);
                 if !solved {
                     *self = Self { steps: self.steps, work: self.work, ..saved };
                 }
-                self.contract(k);
+                self.make_point(k);
             } else if !solved {
-                if !self.lift(&saved) {
+                if !self.lift_off_lines(&saved) {
                     return false;
                 }
             } else {
-                match self.exchange(problem, &points) {
+                match self.change_one_contact(problem, &points) {
                     Some(true) => {}
                     Some(false) => return true,
                     None => return false,
@@ -86,14 +82,15 @@ impl Elastica {
         false
     }
 
-    /// Back to a guess, with less of what lies on lines between free pieces: a stretch becomes a
-    /// point, a point is left out, as a cable that bends round what is before and behind it is
-    /// lifted off. Where that is wrong it will be met again. Returns whether there was any.
-    fn lift(&mut self, from: &Self) -> bool {
+    /// Goes back to a guess with less contact with lines between free pieces: a stretch becomes a
+    /// point, a point opens. A cable that bends round obstacles before and behind a line is lifted
+    /// off it; where that is wrong the cable meets the line again. Returns whether there was any
+    /// such contact.
+    fn lift_off_lines(&mut self, from: &Self) -> bool {
         let line = |k: usize| from.contacts.get(k).is_some_and(|c| c.radius.is_none());
         let inner = |k: usize| k > 0 && k + 1 < from.pieces.len();
         let stretch = (0..from.pieces.len()).find(|&k| inner(k) && from.pieces[k].contact.is_some_and(line));
-        let point = from.joints.iter().position(|j| matches!(j, Joint::ContactPair(k) if line(*k)));
+        let point = from.joints.iter().position(|j| matches!(j, Joint::PointContact(k) if line(*k)));
         if stretch.is_none() && point.is_none() {
             return false;
         }
@@ -103,7 +100,7 @@ impl Elastica {
             let middle = self.pieces[k].nodes.len() / 2;
             let (before, after) = split(&self.pieces[k], middle);
             self.pieces.splice(k..=k, [before, after]);
-            self.joints.insert(k, Joint::ContactPair(contact));
+            self.joints.insert(k, Joint::PointContact(contact));
             self.release(k + 1);
             self.release(k - 1);
         } else if let Some(j) = point {
@@ -112,40 +109,40 @@ impl Elastica {
         true
     }
 
-    /// The first piece that lies on hardly anything.
-    fn vanishing(&self, problem: &Problem) -> Option<usize> {
+    /// The first stretch of contact, between free pieces, that is too short for one.
+    fn shortest_stretch(&self, problem: &Problem) -> Option<usize> {
         let short = |p: &Piece| {
             let c = p.contact.and_then(|k| self.contacts.get(k));
-            c.is_some_and(|c| p.nodes[0][LENGTH] < POINT * c.radius.unwrap_or(problem.radius))
+            c.is_some_and(|c| p.nodes[0][LENGTH] < SHORTEST_STRETCH_FRACTION * c.radius.unwrap_or(problem.radius))
         };
         let inner = |k: usize| k > 0 && k + 1 < self.pieces.len();
         (0..self.pieces.len()).find(|&k| inner(k) && short(&self.pieces[k]))
     }
 
-    /// A stretch becomes a point.
-    fn contract(&mut self, k: usize) {
+    /// Makes a point contact of a piece that lies on one.
+    fn make_point(&mut self, k: usize) {
         let Some(contact) = self.pieces[k].contact else { return };
         self.pieces.remove(k);
         self.joints.remove(k);
-        self.joints[k - 1] = Joint::ContactPair(contact);
+        self.joints[k - 1] = Joint::PointContact(contact);
     }
 
-    /// A point becomes a stretch.
-    fn stretch(&mut self, joint: usize, contact: usize) {
+    /// Makes a stretch of a point contact.
+    fn make_stretch(&mut self, joint: usize, contact: usize) {
         let (before, after) = (&self.pieces[joint], &self.pieces[joint + 1]);
         let (Some(mut u), Some(v)) = (before.nodes.last().copied(), after.nodes.first().copied()) else { return };
         let beside = before.nodes[0][LENGTH].min(v[LENGTH]);
         let c = self.contacts[contact];
         let room = c.radius.filter(|r| *r < beside).unwrap_or(beside);
         let over = c.sense * (u[MOMENT] / self.bending - c.curvature()) * room;
-        let l = room * if over < NEW { over } else { NEW };
+        let l = room * if over < NEW_STRETCH_FRACTION { over } else { NEW_STRETCH_FRACTION };
         let t = tangent(&u);
         let f = t * (0.5 * (force(&u) + force(&v)).dot(&t));
         (u[4], u[5], u[LENGTH]) = (f.x, f.y, l);
         u[MOMENT] = self.bending * c.curvature();
         let start = u[6] - 0.5 * l;
-        let nodes = (0..=ELEMENTS).map(|i| {
-            let way = l * i as f64 / ELEMENTS as f64;
+        let nodes = (0..=STRETCH_ELEMENTS).map(|i| {
+            let way = l * i as f64 / STRETCH_ELEMENTS as f64;
             let mut node = u;
             node[6] = start + way;
             let off = t * (way - 0.5 * l);
@@ -156,28 +153,30 @@ impl Elastica {
         let piece = Piece {
             contact: Some(contact),
             nodes: nodes.collect(),
-            grid: (0..=ELEMENTS).map(|i| i as f64 / ELEMENTS as f64).collect(),
+            grid: (0..=STRETCH_ELEMENTS).map(|i| i as f64 / STRETCH_ELEMENTS as f64).collect(),
         };
         self.pieces.insert(joint + 1, piece);
-        self.joints[joint] = Joint::Begin(contact);
-        self.joints.insert(joint + 1, Joint::End(contact));
+        self.joints[joint] = Joint::ContactBegin(contact);
+        self.joints.insert(joint + 1, Joint::ContactEnd(contact));
     }
 
     /// Force of the contact at a joint along its normal, N.
     pub(super) fn push(&self, joint: usize) -> f64 {
-        let (Joint::ContactPair(k) | Joint::Begin(k) | Joint::End(k)) = self.joints[joint] else { return 0.0 };
+        let (Joint::PointContact(k) | Joint::ContactBegin(k) | Joint::ContactEnd(k)) = self.joints[joint] else {
+            return 0.0;
+        };
         let ends = (self.pieces[joint].nodes.last(), self.pieces[joint + 1].nodes.first());
         let (Some(a), Some(b)) = ends else { return 0.0 };
         let normal = perp(tangent(a)) * -self.contacts[k].sense;
         -(force(b) - force(a)).dot(&normal)
     }
 
-    /// Changes one contact that is not as it has to be; returns whether there was any, None where
-    /// this can do nothing about it.
-    fn exchange(&mut self, problem: &Problem, points: &[usize]) -> Option<bool> {
+    /// Changes one contact that breaks its law; returns whether there was any, None where it is one
+    /// that no change mends.
+    fn change_one_contact(&mut self, problem: &Problem, points: &[usize]) -> Option<bool> {
         let size = self.scale + self.bending / (self.length * self.length);
         for j in 0..self.joints.len() {
-            let Joint::ContactPair(k) = self.joints[j] else { continue };
+            let Joint::PointContact(k) = self.joints[j] else { continue };
             let c = self.contacts[k];
             let u = *self.pieces[j].nodes.last()?;
             let pulley = matches!(c.owner, Owner::Pulley(_));
@@ -191,28 +190,28 @@ impl Elastica {
             let bent = c.sense * (u[MOMENT] / self.bending - c.curvature());
             let least = 1.0 / self.length;
             let limit = if c.curvature().abs() > least { c.curvature().abs() } else { least };
-            let slack = if points.contains(&k) { POINT_SLACK } else { CONTACT_CURVATURE_TOLERANCE };
+            let slack = if points.contains(&k) { POINT_CURVATURE_TOLERANCE } else { CONTACT_CURVATURE_TOLERANCE };
             if bent > slack * limit {
-                self.stretch(j, k);
+                self.make_stretch(j, k);
                 return Some(true);
             }
-            if !pulley && let Some(other) = self.better(problem, &c, place(&u), tangent(&u)) {
+            if !pulley && let Some(other) = self.deeper_contact(problem, &c, place(&u), tangent(&u)) {
                 self.contacts[k] = other;
                 return Some(true);
             }
         }
-        // A stretch that would have to pull, or that leaves its feature.
+        // A stretch that would have to pull, or that lies in another surface.
         for k in 0..self.pieces.len() {
             let Some(c) = self.pieces[k].contact.and_then(|c| self.contacts.get(c)) else { continue };
             let pulley = matches!(c.owner, Owner::Pulley(_));
             for u in &self.pieces[k].nodes {
-                let deeper = !pulley && self.better(problem, c, place(u), tangent(u)).is_some();
+                let deeper = !pulley && self.deeper_contact(problem, c, place(u), tangent(u)).is_some();
                 if deeper || (!pulley && self.pressure(c, u) * self.length < -CONTACT_CURVATURE_TOLERANCE * size) {
                     return None;
                 }
             }
         }
-        // An end that its load lifts off.
+        // An end that its load lifts off its contact.
         let tips = [
             (0, self.pieces.first().map(|p| (p, p.nodes.first()))),
             (1, self.pieces.last().map(|p| (p, p.nodes.last()))),
@@ -224,15 +223,15 @@ impl Elastica {
                 return None;
             }
         }
-        self.meet(problem)
+        self.add_deepest_contact(problem)
     }
 
-    /// Distance of the centre line from the obstacle of a gap in touch, m.
-    fn offset(&self, problem: &Problem, gap: &crate::contact::Gap) -> f64 {
+    /// Distance of the centre line from an obstacle in contact, m.
+    fn contact_distance(&self, problem: &Problem, gap: &crate::contact::Gap) -> f64 {
         problem.world.geometry().body_of(gap.feature).map_or(problem.radius, |b| b.offset)
     }
 
-    /// Takes a contact in one point away.
+    /// Opens a point contact: the pieces beside it become one.
     fn release(&mut self, joint: usize) {
         let after = self.pieces.remove(joint + 1);
         self.joints.remove(joint);
@@ -249,22 +248,22 @@ impl Elastica {
         }
     }
 
-    /// The contact in which a place on a contact lies deeper than in that one.
-    fn better(&self, problem: &Problem, c: &Contact, x: Vec2, t: Vec2) -> Option<Contact> {
+    /// The contact in whose obstacle a place on another contact lies, if in any.
+    fn deeper_contact(&self, problem: &Problem, c: &Contact, x: Vec2, t: Vec2) -> Option<Contact> {
         let deep = OVERLAP_TOLERANCE * problem.radius;
         let gap = problem.world.signed_gap(x, 0.0).filter(|g| g.gap_m < -deep)?;
         let other = contact_at(problem, &gap, x, t)?;
         Some(Contact { mobilised: c.mobilised, slips: c.slips, sense: c.sense, ..other })
     }
 
-    /// Looks for what free pieces run into; a contact in one point where they are deepest. None
-    /// where a piece has no node at which it could be parted.
-    fn meet(&mut self, problem: &Problem) -> Option<bool> {
+    /// Adds a point contact where free pieces are deepest in an obstacle; returns whether they are
+    /// in any, None where a piece has no node at which it could be cut.
+    fn add_deepest_contact(&mut self, problem: &Problem) -> Option<bool> {
         let deep = OVERLAP_TOLERANCE * problem.radius;
         let mut worst: Option<(f64, usize, usize, crate::contact::Gap)> = None;
         let world = &problem.world;
         for (k, piece) in self.pieces.iter().enumerate().filter(|(_, p)| p.contact.is_none()) {
-            let mut look = |x: Vec2, i: usize| {
+            let mut measure = |x: Vec2, i: usize| {
                 let Some(gap) = world.signed_gap(x, self.length) else { return };
                 if gap.gap_m < -deep && worst.is_none_or(|w| gap.gap_m < w.0) {
                     worst = Some((gap.gap_m, k, i, gap));
@@ -274,16 +273,16 @@ impl Elastica {
             for i in 0..last {
                 let (a, b) = (&piece.nodes[i], &piece.nodes[i + 1]);
                 if i > 0 {
-                    look(place(a), i);
+                    measure(place(a), i);
                 }
                 // Between two nodes it may run into a corner or round that neither of them is in.
                 let bulge = (b[ANGLE] - a[ANGLE]).abs() * (b[ARC] - a[ARC]);
                 let (from, to) = (piece.grid[i], piece.grid[i + 1]);
                 world.geometry().segment_pairs(place(a), place(b), bulge, &mut |p| {
-                    let at = self.read(piece, from + (to - from) * p.gap.fraction);
+                    let at = self.state_in(piece, from + (to - from) * p.gap.fraction);
                     let nearer = if p.gap.fraction < 0.5 { i } else { i + 1 };
-                    // Of a piece of one element that is an end.
-                    look(place(&at), nearer.min(last - 1).max(1));
+                    // The nearest inner node; a piece of one element has none.
+                    measure(place(&at), nearer.min(last - 1).max(1));
                 });
             }
         }
@@ -292,8 +291,8 @@ impl Elastica {
             return None;
         }
         let u = self.pieces[k].nodes[i];
-        // A line is where the gap was measured.
-        let x = gap.point + gap.normal * (gap.gap_m + self.offset(problem, &gap));
+        // The line of a flat contact goes through where the gap was measured.
+        let x = gap.point + gap.normal * (gap.gap_m + self.contact_distance(problem, &gap));
         let mut contact = contact_at(problem, &gap, x, tangent(&u))?;
         if gap.friction > 0.0 {
             // A contact on which the flexible cable did not lie slips as its neighbours do.
@@ -304,7 +303,7 @@ impl Elastica {
         self.contacts.push(contact);
         let (before, after) = split(&self.pieces[k], i);
         self.pieces.splice(k..=k, [before, after]);
-        self.joints.insert(k, Joint::ContactPair(self.contacts.len() - 1));
+        self.joints.insert(k, Joint::PointContact(self.contacts.len() - 1));
         Some(true)
     }
 }

@@ -1,0 +1,177 @@
+//! A chain is laid along a curve, with a node at each support and load.
+
+use crate::math::{Vec2, larger};
+use crate::model::fem::elastica::chain::{Chain, Clamp, ClampedSide, Setting};
+use crate::model::fem::elastica::flexible_answer::Curve;
+use crate::model::fem::free::stations::place as support_place;
+use crate::model::fem::newton::initial_guess::push_chain_out;
+use crate::scene::SupportKind;
+
+/// Bars in the bend beside a contact, √(EI/T) with T a third of the weight, or in the cable's
+/// length, whichever asks for more up to the most.
+const BARS_IN_BEND: f64 = 3.0;
+/// See `BARS_IN_BEND`.
+const LEAST_BARS: f64 = 150.0;
+/// See `BARS_IN_BEND`.
+const MOST_BARS: f64 = 500.0;
+
+/// Part by which a bar's rest length grows in a step until it has all of its material.
+pub(super) const PAY_OUT_RATE: f64 = 0.03;
+
+/// Shortest rest length that a bar begins with, in parts of its material.
+const FIRST_LENGTH_FRACTION: f64 = 0.05;
+
+/// Part of the cable's radius by which the first shape is pushed out of obstacles.
+const FIRST_CLEARANCE_FRACTION: f64 = 1e-3;
+
+/// Part of the cable's length below which two places of it are one: rounding.
+const SAME_PLACE_FRACTION: f64 = 1e-9;
+
+/// A point of the cable where a support or a load acts.
+struct Station {
+    /// Arc length, m.
+    arc: f64,
+    /// Where a support holds it, m.
+    position: Option<Vec2>,
+    /// Direction in which it is clamped, rad.
+    angle: Option<f64>,
+    /// Dead load, N.
+    force: Vec2,
+}
+
+/// All stations in order along the cable; None if one is a pulley.
+fn stations(setting: Setting<'_>) -> Option<Vec<Station>> {
+    let Setting { problem, time_s, dragged, .. } = setting;
+    let gravity = if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
+    let last = problem.supports.len().checked_sub(1)?;
+    let mut stations = Vec::new();
+    for (k, s) in problem.supports.iter().enumerate() {
+        if s.kind == SupportKind::Pulley {
+            return None;
+        }
+        let at = support_place(problem, k, time_s, dragged);
+        let loaded = matches!(s.kind, SupportKind::Load | SupportKind::Free) || at.is_none();
+        let arc = if k == 0 {
+            0.0
+        } else if k == last {
+            problem.length
+        } else {
+            s.arc_length?
+        };
+        stations.push(Station {
+            arc,
+            position: at.filter(|_| !loaded),
+            angle: s.angle.filter(|_| s.kind == SupportKind::Clamped && !loaded),
+            force: if loaded { s.force.at(time_s) + gravity * s.mass } else { Vec2::zeros() },
+        });
+    }
+    for l in &problem.loads {
+        stations.push(Station { arc: l.arc_length, position: None, angle: None, force: l.force.at(time_s) });
+    }
+    stations.sort_by(|a, b| a.arc.total_cmp(&b.arc));
+    Some(stations)
+}
+
+impl<'a> Chain<'a> {
+    /// The chain along a curve, pushed out of obstacles. None where the scene has things that a
+    /// chain does not model (pulleys, a robot, a rough floor, self-contact), or where the curve
+    /// runs through an obstacle.
+    pub(super) fn along_curve(setting: Setting<'a>, curve: &Curve<'_>, refinement: f64) -> Option<Self> {
+        let Setting { problem, time_s, .. } = setting;
+        if problem.outline.is_some() || problem.floor_friction.is_some() || problem.cable.self_contact {
+            return None;
+        }
+        let stations = stations(setting)?;
+        let scale = problem.force_scale();
+        let bend = (problem.bending_stiffness / larger(scale / 3.0, 1e-300)).sqrt();
+        let count = (BARS_IN_BEND * problem.length / bend).clamp(LEAST_BARS, MOST_BARS) * refinement;
+        let mut chain = Self {
+            setting,
+            body: problem.body_force(time_s),
+            arc: vec![0.0],
+            positions: Vec::new(),
+            rest: Vec::new(),
+            unstretched: Vec::new(),
+            tension: Vec::new(),
+            held: Vec::new(),
+            clamps: Vec::new(),
+            load: Vec::new(),
+            contacts: Vec::new(),
+            scale,
+            bar: problem.length / count,
+            steps: 0,
+            refinement,
+        };
+        chain.place_nodes(&stations, curve);
+        chain.apply_stations(stations);
+        chain.add_bars(curve);
+        push_chain_out(
+            problem,
+            &chain.held,
+            &|_, _| false,
+            &mut chain.positions,
+            FIRST_CLEARANCE_FRACTION * problem.radius,
+        );
+        chain.is_clear_enough(&chain.positions).then_some(chain)
+    }
+
+    /// Divides the cable between stations into even bars.
+    fn place_nodes(&mut self, stations: &[Station], curve: &Curve<'_>) {
+        for pair in stations.windows(2) {
+            let (from, to) = (pair[0].arc, pair[1].arc);
+            if to - from > SAME_PLACE_FRACTION * self.setting.problem.length {
+                let n = ((to - from) / self.bar).ceil().max(2.0);
+                self.arc.extend((1..=n as usize).map(|i| from + (to - from) * i as f64 / n));
+            }
+        }
+        let n = self.arc.len();
+        self.positions = self.arc.iter().map(|&s| curve.position_at(s)).collect();
+        self.held = vec![false; n];
+        self.load = vec![Vec2::zeros(); n];
+    }
+
+    fn apply_stations(&mut self, stations: Vec<Station>) {
+        let n = self.arc.len();
+        for station in stations {
+            let same = SAME_PLACE_FRACTION * self.setting.problem.length;
+            let k = self.arc.partition_point(|a| *a < station.arc - same).min(n - 1);
+            if let Some(at) = station.position {
+                self.positions[k] = at;
+                self.held[k] = true;
+            }
+            if let Some(angle) = station.angle {
+                let direction = Vec2::new(angle.cos(), angle.sin());
+                if k > 0 {
+                    self.clamps.push(Clamp { node: k, side: ClampedSide::Before, direction });
+                }
+                if k + 1 < n {
+                    self.clamps.push(Clamp { node: k, side: ClampedSide::After, direction });
+                }
+            }
+            self.load[k] += station.force;
+        }
+    }
+
+    /// Adds the bars with their tension and weight. A bar for whose material the curve has no room
+    /// begins as short as the curve.
+    fn add_bars(&mut self, curve: &Curve<'_>) {
+        let problem = self.setting.problem;
+        for e in 0..self.arc.len() - 1 {
+            let ds = self.arc[e + 1] - self.arc[e];
+            let chord = (self.positions[e + 1] - self.positions[e]).norm();
+            let unstretched = problem.thermal_stretch * ds;
+            self.unstretched.push(unstretched);
+            let tension = curve.tension_at(0.5 * (self.arc[e] + self.arc[e + 1]));
+            let stretched = unstretched * (1.0 + tension / problem.axial_stiffness);
+            self.rest.push(if chord < (1.0 - PAY_OUT_RATE) * stretched {
+                larger(chord, FIRST_LENGTH_FRACTION * unstretched)
+            } else {
+                unstretched
+            });
+            self.tension.push(tension);
+            for k in [e, e + 1] {
+                self.load[k] += self.body * (0.5 * ds);
+            }
+        }
+    }
+}

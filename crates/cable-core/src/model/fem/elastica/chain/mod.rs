@@ -1,0 +1,232 @@
+//! A chain of bars is let go and comes to rest: it finds the equilibrium of a stiff cable whose
+//! contacts are not those of a flexible one, and tells whether an equilibrium is stable.
+//!
+//! Bars of rest length l̂ between nodes x, the angle ψ between two of them, weight and loads b,
+//! obstacles at gaps g:
+//! ```text
+//! E(x) = Σ EA (|d| − l̂)²/2l̂ + Σ EI ψ²/2l̄ − Σ b·x        least, with every g ≥ 0
+//! ```
+//! The chain is laid along a curve (`layout`) and comes to rest by Newton's method with a
+//! resistance to motion that fades (`relaxation`, of steps by `newton_step`). Obstacles enter as
+//! contacts that the step opens and closes (`contacts`), and a chain at rest is written as an
+//! answer (`solution`). At the end the second derivative of E on the active set is positive
+//! definite: the equilibrium is stable.
+
+mod contacts;
+mod layout;
+mod newton_step;
+mod relaxation;
+mod solution;
+
+use crate::energy::bending::turn;
+use crate::math::Vec2;
+use crate::model::fem::elastica::flexible_answer::Curve;
+use crate::model::fem::newton::initial_guess::leaning_way;
+use crate::problem::Problem;
+use crate::solution::{CableSolution, Node};
+pub(super) use contacts::ChainContact;
+pub(super) use relaxation::RestState;
+
+/// A bar may be shorter than its material by this part in the answer of a flexible cable. A stiff
+/// cable has no folds: where the material lies closer, the chain is laid anew.
+const FOLDED_BAR_FRACTION: f64 = 0.5;
+
+/// Shortest bar of an answer that is asked whether it is folded, in parts of the cable's length.
+const FOLDED_BAR_LENGTH_FRACTION: f64 = 1e-3;
+
+/// Bars by which an answer may be elsewhere than the chain that was let go from it. Less: the error
+/// of a coarse chain counts as motion; more: answers that give way a little are taken for stable.
+const STABILITY_DISTANCE_BARS: f64 = 2.0;
+
+/// A chain that is nearly at rest begins with this part of the first resistance.
+const REDUCED_RESISTANCE_FACTOR: f64 = 1e-2;
+
+/// The scene at one instant, as every chain of a search is laid in it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Setting<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) time_s: f64,
+    /// Where supports are dragged to, m.
+    pub(super) dragged: &'a [Option<Vec2>],
+    /// The answer that says how much of its friction each contact mobilises; None: none rubs.
+    pub(super) friction_source: Option<&'a CableSolution>,
+}
+
+/// A node whose bar, before or after it, has a prescribed direction.
+#[derive(Clone, Copy, Debug)]
+struct Clamp {
+    node: usize,
+    side: ClampedSide,
+    direction: Vec2,
+}
+
+/// The bar of a clamped node whose direction is prescribed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ClampedSide {
+    Before,
+    After,
+}
+
+impl Clamp {
+    /// Index of the bar.
+    fn bar(&self) -> usize {
+        match self.side {
+            ClampedSide::Before => self.node - 1,
+            ClampedSide::After => self.node,
+        }
+    }
+}
+
+/// A chain of bars.
+#[derive(Clone, Debug)]
+pub(super) struct Chain<'a> {
+    pub(super) setting: Setting<'a>,
+    /// Weight and wind, N per metre of arc length.
+    body: Vec2,
+    /// Arc length of each node, m.
+    arc: Vec<f64>,
+    /// Positions of the nodes, m.
+    positions: Vec<Vec2>,
+    /// Rest lengths of the bars at present, m. They grow to the unstretched lengths.
+    rest: Vec<f64>,
+    /// Lengths of the bars without tension, m.
+    unstretched: Vec<f64>,
+    /// Tension of each bar, N.
+    tension: Vec<f64>,
+    /// True for nodes that a support holds.
+    held: Vec<bool>,
+    clamps: Vec<Clamp>,
+    /// Weight, wind and dead loads at each node, N.
+    load: Vec<Vec2>,
+    contacts: Vec<ChainContact>,
+    /// Forces of the scene, N.
+    scale: f64,
+    /// Length of a bar, m.
+    pub(super) bar: f64,
+    /// Newton steps so far.
+    pub(super) steps: usize,
+    /// Number of its bars over that of the coarsest chain.
+    refinement: f64,
+}
+
+/// The outcome of letting a chain go from an answer.
+pub(super) enum LetGo<'a> {
+    /// The chain stays: the answer is stable.
+    Stays,
+    /// The chain runs away and rests elsewhere.
+    Leaves(Box<Chain<'a>>),
+    /// The chain stays where it is, and would leave if anything moved it.
+    Unstable,
+    /// The scene has things that a chain does not model, or the chain finds no rest.
+    Unknown,
+}
+
+/// The route of a cable as nodes.
+fn nodes_along_route(problem: &Problem) -> Vec<Node> {
+    let node = |(s, x): (f64, Vec2)| Node { arc_length_m: s, x_m: x.x, y_m: x.y, ..Node::default() };
+    leaning_way(problem).into_iter().map(node).collect()
+}
+
+/// True if material of an answer lies in folds.
+fn is_folded(problem: &Problem, answer: &CableSolution) -> bool {
+    let least = FOLDED_BAR_LENGTH_FRACTION * problem.length;
+    answer.nodes.windows(2).any(|p| {
+        let ds = p[1].arc_length_m - p[0].arc_length_m;
+        ds > least && (p[1].at() - p[0].at()).norm() < FOLDED_BAR_FRACTION * ds
+    })
+}
+
+/// A chain at stable rest, let go from the answer for a flexible cable, or from its route where
+/// that is no shape of a stiff one; None where it finds none.
+pub(super) fn rest_of_flexible(setting: Setting<'_>) -> Option<Chain<'_>> {
+    let problem = setting.problem;
+    let usable = |l: &&CableSolution| l.nodes.len() > 1 && l.breaks.is_empty() && !is_folded(problem, l);
+    let flexible = setting.friction_source.filter(usable);
+    let route = nodes_along_route(problem);
+    if route.len() < 2 {
+        return None;
+    }
+    let of_flexible =
+        flexible.and_then(|l| Chain::along(Setting { friction_source: flexible, ..setting }, &l.nodes, 1.0));
+    let of_route = || Chain::along(Setting { friction_source: None, ..setting }, &route, 1.0);
+    let mut chain = of_flexible.or_else(of_route)?;
+    (chain.relax(1.0) == RestState::Stable).then_some(chain)
+}
+
+/// Lets a chain go from an answer for the stiff cable, whose friction it keeps.
+pub(super) fn let_go<'a>(setting: Setting<'a>, answer: &'a CableSolution) -> LetGo<'a> {
+    let setting = Setting { friction_source: Some(answer), ..setting };
+    let Some(mut chain) = Chain::along(setting, &answer.nodes, 1.0) else { return LetGo::Unknown };
+    let from = chain.positions.clone();
+    let state = chain.relax(REDUCED_RESISTANCE_FACTOR);
+    let near = STABILITY_DISTANCE_BARS * chain.bar;
+    let stays = from.iter().zip(&chain.positions).all(|(a, b)| (a - b).norm() <= near);
+    match state {
+        RestState::Stable if stays => LetGo::Stays,
+        RestState::Stable => LetGo::Leaves(Box::new(chain)),
+        RestState::Unstable => LetGo::Unstable,
+        RestState::NotFound => LetGo::Unknown,
+    }
+}
+
+impl<'a> Chain<'a> {
+    /// The same cable with bars of half the length, let go from this shape, and how it rests.
+    pub(super) fn halved(&self) -> Option<(Self, RestState)> {
+        let mut fine = Self::along(self.setting, &self.nodes(), 2.0 * self.refinement)?;
+        let state = fine.relax(REDUCED_RESISTANCE_FACTOR);
+        Some((fine, state))
+    }
+
+    /// A chain at stable rest, let go from a shape; None where it finds none.
+    pub(super) fn rest_near(setting: Setting<'a>, shape: &[Node]) -> Option<Self> {
+        let mut chain = Self::along(Setting { friction_source: None, ..setting }, shape, 1.0)?;
+        (chain.relax(REDUCED_RESISTANCE_FACTOR) == RestState::Stable).then_some(chain)
+    }
+
+    /// The chain along nodes; see [`Chain::along_curve`].
+    fn along(setting: Setting<'a>, nodes: &[Node], refinement: f64) -> Option<Self> {
+        Self::along_curve(setting, &Curve::new(nodes), refinement)
+    }
+
+    /// Unit vector along a bar.
+    fn direction(&self, bar: usize) -> Vec2 {
+        (self.positions[bar + 1] - self.positions[bar]).normalize()
+    }
+
+    /// Curvatures at all nodes, 1/m of unstretched length.
+    fn curvatures(&self) -> Vec<f64> {
+        let n = self.positions.len();
+        let mut curvatures = vec![0.0; n];
+        for k in 1..n - 1 {
+            let psi = turn(self.positions[k] - self.positions[k - 1], self.positions[k + 1] - self.positions[k]);
+            curvatures[k] = psi / (0.5 * (self.arc[k + 1] - self.arc[k - 1]));
+        }
+        for clamp in &self.clamps {
+            let bar = clamp.bar();
+            let d = self.positions[bar + 1] - self.positions[bar];
+            let psi = match clamp.side {
+                ClampedSide::After => turn(clamp.direction, d),
+                ClampedSide::Before => turn(d, clamp.direction),
+            };
+            curvatures[clamp.node] = psi / (0.5 * (self.arc[bar + 1] - self.arc[bar]));
+        }
+        curvatures
+    }
+
+    /// Its nodes as those of an answer: positions, tensions and curvatures.
+    pub(super) fn nodes(&self) -> Vec<Node> {
+        let n = self.positions.len();
+        let curvatures = self.curvatures();
+        let tension = |k: usize| 0.5 * (self.tension[k.saturating_sub(1)] + self.tension[k.min(n - 2)]);
+        (0..n)
+            .map(|k| Node {
+                arc_length_m: self.arc[k],
+                x_m: self.positions[k].x,
+                y_m: self.positions[k].y,
+                tension_n: tension(k),
+                curvature_per_m: curvatures[k],
+                ..Node::default()
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,277 @@
+//! One Newton step of a chain solves its linearised equations with the contacts that the step
+//! itself closes, an active set of a quadratic programme.
+//!
+//! Tensions are unknowns of their own: a step turns bars by the tension of the last one, not by
+//! what turning has just stretched them, so that EA limits no step. A contact is a stiff spring
+//! that acts where its gap would close; each mobilises the friction that it is given.
+
+use crate::contact::Gap;
+use crate::energy::bending::{BendingEnergy, ClampBend};
+use crate::energy::{Curvature, Energy};
+use crate::linalg::{BandFactor, BandMatrix};
+use crate::math::{Mat2, Vec2, perp};
+use crate::model::fem::elastica::band_lu::BandLu;
+use crate::model::fem::elastica::chain::Chain;
+use crate::model::fem::elastica::chain::contacts::ChainContact;
+
+/// Changes of the active set in a step. More: the first steps pay for exactness they do not need.
+const MAX_SETS: usize = 8;
+
+/// Changes of the active set in a step in which contacts may open.
+const RELEASE_ROUNDS: usize = 4;
+
+/// Part of the cable's radius that a push of the whole weight presses in. Smaller: numbers lose
+/// digits; larger: contacts are found late.
+const PENALTY_DEPTH_FRACTION: f64 = 1e-3;
+
+/// Half-bandwidth: a node sees two neighbours on each side.
+const HALF_BAND: usize = 5;
+
+/// The second derivative with which a step is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Hessian {
+    /// All of it. Where it is not positive definite the chain is at no stable rest.
+    Exact,
+    /// Without the terms that can be negative: compression, curvature of bends and of rounds.
+    Convex,
+}
+
+/// The matrix of a step and its factors.
+pub(super) struct LinearSystem {
+    matrix: BandMatrix,
+    factor: BandFactor,
+}
+
+impl LinearSystem {
+    /// Memory for a chain of so many nodes; None where there is none.
+    pub(super) fn new(nodes: usize) -> Option<Self> {
+        Some(Self {
+            matrix: BandMatrix::new(2 * nodes, HALF_BAND),
+            factor: BandFactor::new(2 * nodes, HALF_BAND).ok()?,
+        })
+    }
+}
+
+/// A Newton step.
+pub(super) struct Step {
+    /// Displacement of each node, m.
+    pub(super) moves: Vec<Vec2>,
+    /// True if the active set it was solved with is the one it ends in.
+    pub(super) contacts_settled: bool,
+}
+
+/// A symmetric 2 × 2 block as the band matrix takes it.
+fn block(k: &Mat2) -> [[f64; 2]; 2] {
+    [[k[(0, 0)], k[(0, 1)]], [k[(1, 0)], k[(1, 1)]]]
+}
+
+/// Adds a force to the right-hand side at a node.
+fn add_force(right: &mut [f64], node: usize, f: Vec2) {
+    right[2 * node] += f.x;
+    right[2 * node + 1] += f.y;
+}
+
+impl Chain<'_> {
+    /// Stiffness of contacts, N/m.
+    fn contact_stiffness(&self) -> f64 {
+        self.scale / (PENALTY_DEPTH_FRACTION * self.setting.problem.radius)
+    }
+
+    /// One Newton step with a resistance to motion, N/m²; None where its matrix is not positive
+    /// definite.
+    pub(super) fn newton_step(&mut self, system: &mut LinearSystem, resistance: f64, hessian: Hessian) -> Option<Step> {
+        let mut step = Step { moves: Vec::new(), contacts_settled: false };
+        for set in 0..MAX_SETS {
+            let mut right = vec![0.0; 2 * self.positions.len()];
+            self.assemble(&mut system.matrix, &mut right, resistance, hessian);
+            system.factor.factor(&system.matrix).ok()?;
+            if self.contacts.iter().any(ChainContact::rubs) {
+                self.matrix_with_friction(&system.matrix).solve(&mut right).then_some(())?;
+            } else {
+                system.factor.solve_in_place(&mut right);
+            }
+            step.moves = right.chunks_exact(2).map(|d| Vec2::new(d[0], d[1])).collect();
+            step.contacts_settled = !self.update_active_set(&step.moves, set < RELEASE_ROUNDS);
+            if step.contacts_settled {
+                break;
+            }
+        }
+        Some(step)
+    }
+
+    /// Closes the contacts whose gaps a step would close, and opens the others where they
+    /// `may_open`: two that open and close by turns would go on for ever. Returns whether any gap
+    /// contradicts the set the step was solved with.
+    fn update_active_set(&mut self, moves: &[Vec2], may_open: bool) -> bool {
+        let stiff = self.contact_stiffness();
+        let mut changed = false;
+        for t in &mut self.contacts {
+            let moved = t.shares().iter().fold(0.0, |m, (k, a)| m + a * moves[*k].dot(&t.gap.normal));
+            let gap = t.gap.gap_m + moved;
+            changed |= t.active != (gap < 0.0);
+            t.active = gap < 0.0 || (t.active && !may_open);
+            // A new contact pushes from the next solution on.
+            t.push = if gap < 0.0 { -stiff * gap } else { 0.0 };
+        }
+        changed
+    }
+
+    /// Assembles matrix and right-hand side: loads, bars, bends, resistance, active contacts; nodes
+    /// that are held do not move.
+    fn assemble(&self, matrix: &mut BandMatrix, right: &mut [f64], resistance: f64, hessian: Hessian) {
+        matrix.clear();
+        for (k, load) in self.load.iter().enumerate() {
+            add_force(right, k, *load);
+        }
+        self.add_bars_to(matrix, right, hessian);
+        self.add_bends(matrix, right, hessian);
+        self.add_resistance(matrix, resistance);
+        for t in self.contacts.iter().filter(|t| t.active) {
+            self.add_contact(matrix, right, t, hessian);
+        }
+        for (k, _) in self.held.iter().enumerate().filter(|(_, held)| **held) {
+            for i in [2 * k, 2 * k + 1] {
+                matrix.pin(i);
+                right[i] = 0.0;
+            }
+        }
+    }
+
+    fn add_bars_to(&self, matrix: &mut BandMatrix, right: &mut [f64], hessian: Hessian) {
+        let ea = self.setting.problem.axial_stiffness;
+        for e in 0..self.positions.len() - 1 {
+            let d = self.positions[e + 1] - self.positions[e];
+            let l = d.norm();
+            let t = d / l;
+            let (axial, pull) = (ea / self.rest[e], ea * (l / self.rest[e] - 1.0));
+            let turns = match hessian {
+                Hessian::Exact => self.tension[e],
+                Hessian::Convex => self.tension[e].max(0.0),
+            } / l;
+            let k = t * t.transpose() * (axial - turns) + Mat2::identity() * turns;
+            matrix.add_spring(2 * e, [k[(0, 0)], k[(0, 1)], k[(1, 1)]]);
+            add_force(right, e, t * pull);
+            add_force(right, e + 1, -t * pull);
+        }
+    }
+
+    /// Adds the bends at inner nodes, and those of clamped bars.
+    fn add_bends(&self, matrix: &mut BandMatrix, right: &mut [f64], hessian: Hessian) {
+        let curvature = match hessian {
+            Hessian::Exact => Curvature::Exact,
+            Hessian::Convex => Curvature::Clipped,
+        };
+        let ei = self.setting.problem.bending_stiffness;
+        for k in 1..self.positions.len() - 1 {
+            if self.clamps.iter().any(|c| c.node == k) {
+                continue;
+            }
+            let length = 0.5 * (self.unstretched[k - 1] + self.unstretched[k]);
+            let bend = BendingEnergy { stiffness: ei, length, from: 0.0 };
+            let x = [self.positions[k - 1], self.positions[k], self.positions[k + 1]];
+            let (g, h) = (bend.gradient(&x), bend.hessian(&x, curvature));
+            for i in 0..3 {
+                add_force(right, k + i - 1, -g[i]);
+                for j in i..3 {
+                    matrix.add_block(2 * (k + i - 1), 2 * (k + j - 1), block(&h[i][j]));
+                }
+            }
+        }
+        for clamp in &self.clamps {
+            let bar = clamp.bar();
+            let length = 0.5 * self.unstretched[bar];
+            let bend = ClampBend { stiffness: ei, length, direction: clamp.direction, from: 0.0 };
+            let x = [self.positions[bar], self.positions[bar + 1]];
+            let (g, h) = (bend.gradient(&x), bend.hessian(&x, curvature));
+            for i in 0..2 {
+                add_force(right, bar + i, -g[i]);
+                for j in i..2 {
+                    matrix.add_block(2 * (bar + i), 2 * (bar + j), block(&h[i][j]));
+                }
+            }
+        }
+    }
+
+    fn add_resistance(&self, matrix: &mut BandMatrix, resistance: f64) {
+        let n = self.positions.len();
+        for k in 0..n {
+            let share = 0.5 * (self.unstretched[k.saturating_sub(1).min(n - 2)] + self.unstretched[k.min(n - 2)]);
+            matrix.add(2 * k, 2 * k, resistance * share);
+            matrix.add(2 * k + 1, 2 * k + 1, resistance * share);
+        }
+    }
+
+    fn add_contact(&self, matrix: &mut BandMatrix, right: &mut [f64], t: &ChainContact, hessian: Hessian) {
+        let stiff = self.contact_stiffness();
+        let f = (t.gap.normal + self.direction(t.node) * t.mobilised) * (-stiff * t.gap.gap_m);
+        let mut k = t.gap.normal * t.gap.normal.transpose() * stiff;
+        if hessian == Hessian::Exact && t.push > 0.0 {
+            self.add_round_curvature(matrix, t, &mut k);
+        }
+        let shares = t.shares();
+        for (i, a) in shares {
+            add_force(right, i, f * a);
+            for (j, b) in shares {
+                if i <= j && a * b != 0.0 {
+                    matrix.add_block(2 * i, 2 * j, block(&(k * (a * b))));
+                }
+            }
+        }
+    }
+
+    /// Adds −p ∂²g of a contact with a round that pushes with p: of a node −p/D, of a bar that
+    /// turns by φ about a point at distance D and slides along itself by m,
+    /// −p g = p (Dφ²/2 + φm).
+    fn add_round_curvature(&self, matrix: &mut BandMatrix, t: &ChainContact, at_node: &mut Mat2) {
+        let is_round = !t.gap.feature.is_multiple_of(2);
+        if !is_round {
+            return;
+        }
+        let distance = t.gap.gap_m + self.offset(&t.gap);
+        let f = t.gap.fraction;
+        if f == 0.0 || f == 1.0 {
+            let d = perp(t.gap.normal);
+            *at_node -= d * d.transpose() * (t.push / distance);
+            return;
+        }
+        let (k, d) = (2 * t.node, self.positions[t.node + 1] - self.positions[t.node]);
+        let (l, n) = (d.norm(), t.gap.normal);
+        let (turns, slides) = ([-n / l, n / l], [d * ((1.0 - f) / l), d * (f / l)]);
+        for (i, j) in [(0, 0), (0, 1), (1, 1)] {
+            let own = turns[i] * turns[j].transpose() * distance;
+            let both = turns[i] * slides[j].transpose() + slides[i] * turns[j].transpose();
+            matrix.add_block(k + 2 * i, k + 2 * j, block(&((own + both) * t.push)));
+        }
+    }
+
+    /// Distance of the centre line from a round's centre in contact, m.
+    fn offset(&self, gap: &Gap) -> f64 {
+        let problem = self.setting.problem;
+        problem.world.geometry().body_of(gap.feature).map_or(problem.radius, |b| b.offset)
+    }
+
+    /// The matrix with friction that follows its normal force within the step. With the normal
+    /// force of the step before, each change of one force changes the other by more where an end is
+    /// pressed against a corner, and the iteration diverges.
+    fn matrix_with_friction(&self, matrix: &BandMatrix) -> BandLu {
+        let size = matrix.rows();
+        let mut band = BandLu::new(size, HALF_BAND);
+        for i in 0..size {
+            for j in i.saturating_sub(HALF_BAND)..(i + HALF_BAND + 1).min(size) {
+                band.set(i, j, matrix.get(i, j));
+            }
+        }
+        for t in self.contacts.iter().filter(|t| t.rubs()) {
+            let k = self.direction(t.node) * t.gap.normal.transpose() * (t.mobilised * self.contact_stiffness());
+            let free = |(i, _): &(usize, f64)| !self.held[*i];
+            for (i, a) in t.shares().into_iter().filter(free) {
+                for (j, b) in t.shares().into_iter().filter(free) {
+                    for (r, c) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                        band.add(2 * i + r, 2 * j + c, k[(r, c)] * (a * b));
+                    }
+                }
+            }
+        }
+        band
+    }
+}

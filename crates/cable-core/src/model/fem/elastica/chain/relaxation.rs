@@ -1,0 +1,285 @@
+//! A chain comes to rest by Newton's method with a resistance to motion that fades
+//! (pseudo-transient continuation: C. Kelley, D. Keyes, *SIAM Journal on Numerical Analysis* 35(2),
+//! 1998).
+//!
+//! Far from rest the steps use the convex part of the second derivative, near it all of it. Where
+//! that is not positive definite the convex part serves as long as it leads to rest, and more
+//! resistance where it does not. Material that the first shape has no room for is paid out on the
+//! way. A chain that rests where it could give way is moved sideways and goes on.
+
+use crate::math::{Vec2, larger, perp};
+use crate::model::fem::elastica::chain::layout::PAY_OUT_RATE;
+use crate::model::fem::elastica::chain::newton_step::{Hessian, LinearSystem, Step};
+use crate::model::fem::elastica::chain::{Chain, REDUCED_RESISTANCE_FACTOR};
+
+/// Newton steps. 10 to 20 from a flexible cable, 200 to 600 from its route.
+const MAX_STEPS: usize = 1200;
+
+/// Steps before a second derivative that is not positive definite is met with resistance.
+const STEPS_BEFORE_RESISTANCE: usize = 700;
+
+/// Times that resistance is raised in a step.
+const MAX_RESISTANCE_RISES: usize = 8;
+
+/// Factor of the resistance after a step that could not be taken, and its least value then, in
+/// parts of the first one.
+const RESISTANCE_RISE: f64 = 8.0;
+/// See `RESISTANCE_RISE`.
+const LEAST_RAISED_RESISTANCE: f64 = 1e-6;
+
+/// Factor of the resistance after a whole short step, and after one that was cut to less than
+/// `LEAST_FREE_PART`; in between it stays.
+const RESISTANCE_FALL: f64 = 0.4;
+/// See `RESISTANCE_FALL`.
+const CUT_STEP_RISE: f64 = 3.0;
+/// See `RESISTANCE_FALL`.
+const LEAST_FREE_PART: f64 = 0.3;
+
+/// Least resistance, and the most of it at rest, in parts of the first one.
+const LEAST_RESISTANCE: f64 = 1e-9;
+/// See `LEAST_RESISTANCE`.
+const REST_RESISTANCE: f64 = 1e-3;
+
+/// Longest turn of a bar in a step, rad.
+const LONGEST_TURN: f64 = 0.4;
+
+/// Greatest motion, in bars, of a step after which resistance falls, and of one after which all of
+/// the second derivative is used.
+const SHORT_STEP_BARS: f64 = 0.5;
+/// See `SHORT_STEP_BARS`.
+const NEAR_REST_BARS: f64 = 0.2;
+
+/// Halvings of a step that leads into an obstacle.
+const MAX_HALVINGS: usize = 12;
+
+/// Part of the cable's radius below which a motion is none.
+const MOVE_TOLERANCE: f64 = 1e-5;
+
+/// Times that a chain is moved which has come to rest where it could give way.
+const MAX_PERTURBATIONS: usize = 2;
+
+/// Part of the cable's radius by which it is moved. Less: rounding moves it as far; more: it is put
+/// into obstacles.
+const PERTURBATION_FRACTION: f64 = 1e-2;
+
+/// The state in which a relaxation ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::fem::elastica) enum RestState {
+    /// At rest, where the second derivative of the energy is positive definite.
+    Stable,
+    /// At rest, where it is not.
+    Unstable,
+    /// Not at rest.
+    NotFound,
+}
+
+/// The resistance of a relaxation, N/m², and what the last steps tell about it.
+struct Resistance {
+    now: f64,
+    /// The value that the weight of the chain suggests.
+    first: f64,
+    /// True if the last step was short enough for the exact second derivative.
+    near_rest: bool,
+    /// Times that the chain has been moved sideways.
+    perturbations: usize,
+}
+
+impl Resistance {
+    /// Raises it after a step that could not be taken.
+    fn raise(&mut self) {
+        self.now = larger(self.now * RESISTANCE_RISE, LEAST_RAISED_RESISTANCE * self.first);
+    }
+
+    /// Adapts it to a step of which a part was taken.
+    fn adapt(&mut self, part: f64, is_short: bool) {
+        self.now *= if part == 1.0 && is_short {
+            RESISTANCE_FALL
+        } else if part > LEAST_FREE_PART {
+            1.0
+        } else {
+            CUT_STEP_RISE
+        };
+        if self.now < LEAST_RESISTANCE * self.first {
+            self.now = LEAST_RESISTANCE * self.first;
+        }
+    }
+}
+
+impl Chain<'_> {
+    /// Lets the chain go until it rests. `resistance` is the part of the first resistance that it
+    /// begins with.
+    pub(super) fn relax(&mut self, resistance: f64) -> RestState {
+        let Some(mut system) = LinearSystem::new(self.positions.len()) else { return RestState::NotFound };
+        let problem = self.setting.problem;
+        let first = self.scale / problem.length / self.bar;
+        let mut resistance = Resistance { now: resistance * first, first, near_rest: false, perturbations: 0 };
+        for round in 0..MAX_STEPS {
+            self.steps += 1;
+            let paid_out = self.pay_out();
+            self.find_contacts();
+            let Some((step, hessian)) = self.solvable_step(&mut system, &mut resistance, round) else {
+                resistance.near_rest = false;
+                continue;
+            };
+            let (moved, turned) = self.size_of(&step.moves);
+            if !moved.is_finite() {
+                return RestState::NotFound;
+            }
+            let longest = (self.bar / moved).min(LONGEST_TURN / turned).min(1.0);
+            let Some((part, positions)) = self.clear_part(&step.moves, longest) else {
+                resistance.raise();
+                continue;
+            };
+            self.take_step(&step.moves, part, &positions);
+            let whole = part == 1.0;
+            let still = moved < MOVE_TOLERANCE * problem.radius && resistance.now <= REST_RESISTANCE * first;
+            if whole && paid_out && step.contacts_settled && still {
+                if hessian == Hessian::Exact {
+                    return RestState::Stable;
+                }
+                if resistance.perturbations >= MAX_PERTURBATIONS {
+                    return RestState::Unstable;
+                }
+                resistance.perturbations += 1;
+                self.perturb(resistance.perturbations);
+                resistance.now = larger(resistance.now, REDUCED_RESISTANCE_FACTOR * first);
+            }
+            resistance.near_rest = paid_out && whole && moved < NEAR_REST_BARS * self.bar;
+            resistance.adapt(part, moved < SHORT_STEP_BARS * self.bar);
+        }
+        RestState::NotFound
+    }
+
+    /// A step whose matrix is positive definite, with the second derivative it was found with; None
+    /// where none is found. Near rest that is all of it, where it can be.
+    fn solvable_step(
+        &mut self,
+        system: &mut LinearSystem,
+        resistance: &mut Resistance,
+        round: usize,
+    ) -> Option<(Step, Hessian)> {
+        let mut hessian = if resistance.near_rest { Hessian::Exact } else { Hessian::Convex };
+        for _ in 0..MAX_RESISTANCE_RISES {
+            if let Some(step) = self.newton_step(system, resistance.now, hessian) {
+                return Some((step, hessian));
+            }
+            if hessian == Hessian::Exact && round < STEPS_BEFORE_RESISTANCE && resistance.perturbations == 0 {
+                hessian = Hessian::Convex;
+            } else {
+                resistance.raise();
+            }
+        }
+        None
+    }
+
+    /// Greatest motion of a node (m) and turn of a bar (rad) in a step.
+    fn size_of(&self, moves: &[Vec2]) -> (f64, f64) {
+        let (mut moved, mut turned): (f64, f64) = (0.0, 0.0);
+        for k in 0..moves.len() {
+            moved = larger(moved, moves[k].norm());
+            if k + 1 < moves.len() {
+                let bar = (self.positions[k + 1] - self.positions[k]).norm();
+                turned = larger(turned, (moves[k + 1] - moves[k]).norm() / bar);
+            }
+        }
+        (moved, turned)
+    }
+
+    /// The part of a step, `longest` or a fraction of that, which leads into no obstacle, and the
+    /// positions there.
+    fn clear_part(&self, moves: &[Vec2], longest: f64) -> Option<(f64, Vec<Vec2>)> {
+        let mut part = longest;
+        for _ in 0..=MAX_HALVINGS {
+            let positions: Vec<Vec2> = self.positions.iter().zip(moves).map(|(x, d)| x + d * part).collect();
+            if self.is_clear_enough(&positions) {
+                return Some((part, positions));
+            }
+            part *= 0.5;
+        }
+        None
+    }
+
+    /// Moves the nodes to the positions to which a part of a step leads, with the tensions of the
+    /// linearised bars.
+    fn take_step(&mut self, moves: &[Vec2], part: f64, positions: &[Vec2]) {
+        for e in 0..self.rest.len() {
+            let d = self.positions[e + 1] - self.positions[e];
+            let l = d.norm();
+            let longer = (moves[e + 1] * part - moves[e] * part).dot(&d) / (l * part);
+            let pull = self.setting.problem.axial_stiffness * ((l + longer) / self.rest[e] - 1.0);
+            self.tension[e] += part * (pull - self.tension[e]);
+        }
+        self.positions.copy_from_slice(positions);
+    }
+
+    /// Moves all nodes a little sideways, in the shape of a wave.
+    fn perturb(&mut self, waves: usize) {
+        let n = self.positions.len();
+        let from = self.positions.clone();
+        for k in (1..n - 1).filter(|&k| !self.held[k]) {
+            let phase = std::f64::consts::PI * (waves * k) as f64 / n as f64;
+            let along = from[k + 1] - from[k - 1];
+            let size = PERTURBATION_FRACTION * self.setting.problem.radius * phase.sin();
+            self.positions[k] += perp(along) * (size / larger(along.norm(), 1e-300));
+        }
+    }
+
+    /// Lets the bars grow to their material; returns whether all have it.
+    fn pay_out(&mut self) -> bool {
+        let mut paid_out = true;
+        for (rest, unstretched) in self.rest.iter_mut().zip(&self.unstretched) {
+            if *rest < *unstretched {
+                let grown = *rest * (1.0 + PAY_OUT_RATE);
+                *rest = if grown < *unstretched { grown } else { *unstretched };
+                paid_out &= *rest >= *unstretched;
+            }
+        }
+        paid_out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::fem::elastica::chain::Setting;
+    use crate::problem::Problem;
+    use crate::scene::Scene;
+    use crate::solution::{CableSolution, Node};
+
+    fn problem(text: &str) -> Result<Problem, Box<dyn std::error::Error>> {
+        let scene = Scene::from_toml(text)?;
+        let first = crate::problem::problems(&scene)?.into_iter().next().ok_or("no cable")?;
+        Ok(Problem::clone(&first))
+    }
+
+    /// A weightless strut of 2 m between hinges, pressed by `part` of its critical force π²EI/L².
+    fn strut(part: f64) -> Result<(Problem, CableSolution), Box<dyn std::error::Error>> {
+        let (ei, ea, l) = (1.0, 1e4, 2.0);
+        let pull = -part * std::f64::consts::PI.powi(2) * ei / (l * l);
+        let way = l * (1.0 + pull / ea);
+        let p = problem(&format!(
+            "version = 1\n[environment]\ngravity_m_per_s2 = 0.0\n[[cables]]\nname = \"c\"\nlength_m = {l}\ndiameter_m = 0.02\n\
+             linear_density_kg_per_m = 1.0\naxial_stiffness_n = {ea:e}\nbending_stiffness_n_m2 = {ei}\n\
+             service_tension_n = 1e9\nbreaking_tension_n = 1e9\n\
+             [[cables.supports]]\nname = \"a\"\nkind = \"fixed\"\nat_m = [0.0, 1.0]\n\
+             [[cables.supports]]\nname = \"b\"\nkind = \"fixed\"\nat_m = [{way:.12}, 1.0]\n"
+        ))?;
+        let node = |s: f64| Node { arc_length_m: s, x_m: s * way / l, y_m: 1.0, tension_n: pull, ..Node::default() };
+        Ok((p, CableSolution { nodes: vec![node(0.0), node(l)], ..CableSolution::default() }))
+    }
+
+    /// Euler's strut: straight it stays below its critical force, and leaves above.
+    #[test]
+    fn a_strut_buckles_at_its_critical_force() -> Result<(), Box<dyn std::error::Error>> {
+        for (part, stays) in [(0.5, true), (0.98, true), (1.02, false), (2.0, false)] {
+            let (problem, straight) = strut(part)?;
+            let setting =
+                Setting { problem: &problem, time_s: 0.0, dragged: &[None, None], friction_source: Some(&straight) };
+            let mut chain = Chain::along(setting, &straight.nodes, 1.0).ok_or("no chain")?;
+            assert_eq!(chain.relax(REDUCED_RESISTANCE_FACTOR), RestState::Stable, "{part}");
+            let off = chain.positions.iter().map(|x| (x.y - 1.0).abs()).fold(0.0, larger);
+            assert_eq!(off < 1e-9, stays, "{part} of the critical force: {off} m aside");
+        }
+        Ok(())
+    }
+}

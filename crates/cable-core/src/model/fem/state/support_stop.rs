@@ -1,0 +1,37 @@
+//! A support that is driven against an obstacle stops in front of it.
+
+use crate::math::Vec2;
+use crate::model::fem::system::mesh::Mesh;
+use crate::problem::Problem;
+
+/// Rounding of a gap, m.
+const GAP_ROUNDING: f64 = 1e-9;
+
+/// The target `to` if it is at most `most` (m) away, else the place so far on the way to it.
+pub(super) fn no_farther_than(from: Vec2, to: Vec2, most: f64) -> Vec2 {
+    let (way, distance) = (to - from, (to - from).norm());
+    if distance > most { from + way * (most / distance) } else { to }
+}
+
+/// The place that a held node can reach on its way to a target: an obstacle in the way stops it
+/// (m).
+pub(in crate::model::fem) fn stopped_by_obstacles(problem: &Problem, mesh: &Mesh, from: Vec2, to: Vec2) -> Vec2 {
+    if problem.world.is_empty() || from == to {
+        return to;
+    }
+    let least_gap = mesh.tuning.step.support_gap_reaches * mesh.tuning.contact.reach_m;
+    let gap = |p: Vec2| problem.world.signed_gap(p, least_gap).map_or(least_gap, |g| g.gap_m);
+    // A support that the scene puts on a surface may stay on it; none may come nearer than it
+    // stands.
+    let least = gap(from) - GAP_ROUNDING;
+    let free = problem.world.free_fraction([from, from], [to, to], mesh.tuning.step.kept_support_gap_fraction);
+    let mut part = if free >= 1.0 { 1.0 } else { free };
+    for _ in 0..mesh.tuning.step.stand_off_tries {
+        let at = if part >= 1.0 { to } else { from + (to - from) * part };
+        if gap(at) >= least {
+            return at;
+        }
+        part *= 0.5;
+    }
+    from
+}

@@ -1,0 +1,130 @@
+//! Ends of contacts go over edges: along an edge nothing turns, and Newton's method does not find
+//! across it.
+
+use crate::math::{Vec2, smaller};
+use crate::model::spans::boundary::curve::{ChainRange, Curve};
+use crate::model::spans::run::{CableRun, Course};
+
+/// Part of p by which an end of a contact may be off the end of an arc and be taken to be there:
+/// Newton's steps go beyond it by less.
+const ARC_END_FRACTION: f64 = 1e-8;
+
+/// G: contacts that route to the end of an arc, with their span turned on into the edge behind it,
+/// go on to the corner at the edge's far end, those that route to its start, with their span lifted
+/// off the edge before it, back to the near one; whether there was one. A stiff taut cable turns by
+/// w/T a metre along an edge: next to nothing.
+pub(super) fn follow_edges(strand: &mut CableRun, course: &Course) -> bool {
+    let mut any = false;
+    for j in 0..strand.contacts.len() {
+        for side in 0..2 {
+            let c = &strand.contacts[j];
+            let curve = &course.curves[c.curve];
+            let p = c.ends.p[side];
+            let i = curve.locate(p, c.chain_range);
+            let border = |q: f64| (p - q).abs() <= ARC_END_FRACTION * (1.0 + p.abs());
+            if c.wheel.is_none()
+                && !c.is_load()
+                && strand.has_span(j + side)
+                && (border(curve.origin(i)) || border(curve.end(i)))
+            {
+                let s = strand.contacts[j].ends.s[side];
+                let leans = strand.force(course, j + side, s).try_normalize(0.0);
+                any |= move_end_over_edges(strand, course, j, side, None)
+                    || move_end_back_over_edge(strand, course, j, side)
+                    || move_end_over_edges(strand, course, j, side, leans);
+            }
+        }
+    }
+    any
+}
+/// Moves the ends of the contacts beside contact k over the edges towards it.
+pub(super) fn move_neighbours_over_edges(strand: &mut CableRun, course: &Course, k: usize) {
+    for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
+        if let Some(j) = j.filter(|&j| strand.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.is_load())) {
+            move_end_over_edges(strand, course, j, side, None);
+        }
+    }
+}
+
+/// Moves an end of contact j over edges; returns whether it moved.
+fn move_end_over_edges(strand: &mut CableRun, course: &Course, j: usize, side: usize, leans: Option<Vec2>) -> bool {
+    let far = strand.ends_of(course, j + side)[side];
+    let c = &mut strand.contacts[j];
+    let p = beyond_edges(&course.curves[c.curve], c.chain_range, c.ends.p[side], side, far, leans);
+    if p == c.ends.p[side] {
+        return false;
+    }
+    let way = course.curves[c.curve].length(c.ends.p[side], p, c.chain_range) / course.law.stretch(c.ends.t[side]);
+    (c.ends.p[side], c.ends.s[side]) = (p, c.ends.s[side] + way);
+    true
+}
+
+/// Moves an end of contact j that lies at the start of an arc, seen along the contact, back over
+/// the edge before it where its span leaves that edge; returns whether it moved.
+fn move_end_back_over_edge(strand: &mut CableRun, course: &Course, j: usize, side: usize) -> bool {
+    let Some(far) = strand.ends_of(course, j + side)[side] else { return false };
+    let c = &mut strand.contacts[j];
+    let (curve, p) = (&course.curves[c.curve], c.ends.p[side]);
+    let (back, forward) = if side == 0 { (1, -1.0) } else { (-1, 1.0) };
+    let i = curve.locate(p, c.chain_range);
+    let arc = if curve.is_arc(i) { i } else { i - back };
+    let (edge, near) = (arc + back, arc + 2 * back);
+    let inside = |i: i64| i >= c.chain_range.first && i <= c.chain_range.last;
+    let way = (far - curve.place(p, c.chain_range).at) * forward;
+    if ![arc, edge, near].into_iter().all(inside) || curve.is_arc(edge) || !curve.is_arc(arc) || !curve.is_arc(near) {
+        return false;
+    }
+    if curve.beyond_arc(arc, way) != back {
+        return false;
+    }
+    let q = curve.with_tangent(near, way);
+    let other = c.ends.p[1 - side];
+    let q = if (q - other) * forward > 0.0 { q } else { other };
+    let moved = curve.length(p, q, c.chain_range) / course.law.stretch(c.ends.t[side]);
+    (c.ends.p[side], c.ends.s[side]) = (q, c.ends.s[side] + moved);
+    moved != 0.0
+}
+
+/// The boundary coordinate to which a contact's end at p goes on: over each edge into which the
+/// span there leads, to the corner behind it. Along an edge nothing turns, and Newton's method does
+/// not find across it.
+///
+/// `far` is the other end of the span; `leans` its direction at the contact, where that is known
+/// better than by its far end.
+pub(super) fn beyond_edges(
+    curve: &Curve,
+    chain_range: ChainRange,
+    mut p: f64,
+    side: usize,
+    far: Option<Vec2>,
+    mut leans: Option<Vec2>,
+) -> f64 {
+    let (step, forward) = if side == 0 { (-1, -1.0) } else { (1, 1.0) };
+    let Some(far) = far else { return p };
+    let inside = |i: i64| i >= chain_range.first && i <= chain_range.last;
+    let mut i = curve.locate(p, chain_range);
+    for _ in chain_range.first..=chain_range.last {
+        let edge = if curve.is_arc(i) { i + step } else { i };
+        let arc = edge + step;
+        if !inside(edge) || !inside(arc) || curve.is_arc(edge) || !curve.is_arc(arc) {
+            break;
+        }
+        let way = leans.unwrap_or_else(|| (far - curve.place(p, chain_range).at) * forward);
+        // An arc on which the cable comes to run along the way does not lead on to its edge.
+        if curve.is_arc(i) && curve.beyond_arc(i, way) != step {
+            break;
+        }
+        let place = curve.place_on(edge, 0.0);
+        let corner = curve.place_on(arc, if side == 0 { curve.piece(arc).extent } else { 0.0 }).at;
+        // The span leads on beyond the end of the edge, and below it there.
+        let on = (far - corner) * forward;
+        let below = leans.take().map_or(far - corner, |way| way * forward);
+        if below.dot(&place.normal) >= 0.0 || on.dot(&place.tangent) <= 0.0 {
+            break;
+        }
+        // The place is on the arc itself: the border with the edge before it counts as that edge.
+        let border = curve.end(arc) - ARC_END_FRACTION * curve.piece(arc).extent;
+        (p, i) = (smaller(curve.with_tangent(arc, on), border), arc);
+    }
+    p
+}

@@ -1,0 +1,253 @@
+//! A span that runs into an obstacle is laid down on it.
+
+use crate::contact::swept_corners::{self, Corner};
+use crate::contact::{Gap, World};
+use crate::math::{Vec2, cross, perp};
+use crate::model::spans::boundary::curve::{ChainRange, SUPPORT_CONTACT_DISTANCE_M};
+use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
+use crate::model::spans::changes::edges::{beyond_edges, move_neighbours_over_edges};
+use crate::model::spans::contact::load_landing;
+use crate::model::spans::contact::release_below;
+use crate::model::spans::failure::Failure;
+use crate::model::spans::newton::Work;
+use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
+use crate::model::spans::verify::penetration;
+use crate::model::spans::verify::penetration::Penetration;
+use crate::model::spans::verify::tunnelling;
+
+/// Depth inside an obstacle from which a span touches it, of the strand: points nearer than that
+/// are one.
+const DEPTH_FRACTION: f64 = 1e-9;
+
+/// The purpose of a solve.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// To find a first equilibrium: contacts found on the way have not rubbed.
+    FirstEquilibrium,
+    /// To follow a step in time.
+    Step,
+}
+
+/// Lays each span down on the obstacle it is deepest in. Returns whether there was any.
+pub(super) fn touch_obstacles(
+    strand: &mut CableRun,
+    course: &Course,
+    world: &World,
+    purpose: Purpose,
+) -> Result<bool, Failure> {
+    if world.is_empty() {
+        return Ok(false);
+    }
+    let deep = DEPTH_FRACTION * (strand.to - strand.from);
+    let mut any = false;
+    // From the last span, so that those before keep their number.
+    for k in (0..strand.spans()).rev() {
+        if let Some(landing) = load_landing::find(strand, course, world, k, deep) {
+            load_landing::touch(strand, course, k, &landing)?;
+            any = true;
+            continue;
+        }
+        if let Some(hit) = penetration::deepest(strand, course, world, k, deep) {
+            lay_down_span(strand, course, k, &hit, purpose)?;
+            any = true;
+        }
+    }
+    Ok(any)
+}
+
+/// The point of a strand that is nearest to a corner.
+#[derive(Clone, Copy, Debug)]
+struct NearestPoint {
+    /// Distance from the corner, m.
+    distance: f64,
+    span: usize,
+    /// Arc length, m.
+    arc_length: f64,
+    at: Vec2,
+    /// Force in the cable, N.
+    force: Vec2,
+}
+
+/// Lays the cable on a corner through which it has passed on its way from its route. Returns
+/// whether there was one.
+pub(super) fn touch_passed_corner(
+    strand: &mut CableRun,
+    course: &Course,
+    corners: &[Corner],
+    route: &[Vec2],
+    work: &mut Work,
+) -> Result<bool, Failure> {
+    let mut shape = Vec::new();
+    tunnelling::shape(strand, course, &mut shape);
+    let Some(corner) = swept_corners::through(corners, route, &shape, &mut work.turns) else { return Ok(false) };
+    let mut nearest: Option<NearestPoint> = None;
+    let points = course.settings.changes.corner_search_points;
+    for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
+        strand.shapes(course, k, |s0, at, c| {
+            for i in 1..points {
+                let s = c.span().length * i as f64 / points as f64;
+                let p = at + c.position_at(s);
+                let d = (p - corner.at).norm();
+                if nearest.is_none_or(|n| d < n.distance) {
+                    nearest =
+                        Some(NearestPoint { distance: d, span: k, arc_length: s0 + s, at: p, force: c.force_at(s) });
+                }
+            }
+        });
+    }
+    let Some(NearestPoint { span: k, arc_length: s, at, force, .. }) = nearest else { return Ok(false) };
+    let tangent = force / force.norm();
+    // The corner is on the wrong side of the cable: the contact pushes it to the other one.
+    let normal = perp(tangent) * cross(tangent, corner.at - at).signum();
+    let gap = Gap {
+        gap_m: -(corner.at - at).norm(),
+        normal,
+        point: corner.at,
+        fraction: 0.0,
+        friction: 0.0,
+        obstacle: 0,
+        feature: corner.feature,
+    };
+    lay_down_span(
+        strand,
+        course,
+        k,
+        &Penetration { arc_length: s, at: corner.at, tangent, gap, body: corner.body },
+        Purpose::FirstEquilibrium,
+    )?;
+    Ok(true)
+}
+
+/// Lays span k down where it is deepest in an obstacle: the contact beside it is drawn out to
+/// there, or a new one begins.
+fn lay_down_span(
+    strand: &mut CableRun,
+    course: &Course,
+    k: usize,
+    hit: &Penetration,
+    purpose: Purpose,
+) -> Result<(), Failure> {
+    let impossible = Failure::ContactImpossible { s: hit.arc_length, at: hit.at };
+    let back = hit.gap.normal.dot(&perp(hit.tangent)) < 0.0;
+    let curve_index = 2 * hit.body + usize::from(back);
+    let Some(curve) = course.curves.get(curve_index) else { return Err(impossible) };
+    let load = course.law.load;
+    // The feature of a kink has no piece of its own: its edges have.
+    let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(hit.gap.feature.checked_sub(back)?, hit.at));
+    let Some(i) = curve.piece_of(hit.gap.feature, hit.at).or_else(kink) else { return Err(impossible) };
+    // A cable cannot lie on a wall or an underside: it goes round the nearer corner.
+    let found = curve.chain(i, load).or_else(|| curve.chain(curve.corner_beside(i, hit.at)?, load));
+    let Some((i, chain_range)) = found else { return Err(impossible) };
+    let edge = curve.place_on(i, 0.0).turn == 0.0;
+    let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
+    let ends = strand.ends_of(course, k);
+    let force = strand.force(course, k, hit.arc_length).norm();
+    let same =
+        |c: &Contact| c.curve == curve_index && c.chain_range == chain_range && c.wheel.is_none() && !c.is_load();
+    let end = |j: Option<usize>, side: usize| {
+        j.and_then(|j| strand.contacts.get(j)).filter(|c| same(c)).map(|c| c.ends.p[side])
+    };
+    let p = match end(k.checked_sub(1), 1).or_else(|| end(Some(k), 0)).filter(|_| curve.is_round()) {
+        Some(end) => release_below::nearest_turn(p, end),
+        None => p,
+    };
+    // A contact on the underside of a post goes on over its bottom only where tension presses it
+    // on.
+    let bears = |c: &Contact, (from, to): (f64, f64)| {
+        let track = course.track(c);
+        let mut bears = true;
+        track.bottoms(from, to, |p| bears &= track.law.press(&track.place(p), force) >= 0.0);
+        bears || !curve.is_round()
+    };
+    if let Some(c) = k
+        .checked_sub(1)
+        .and_then(|j| strand.contacts.get_mut(j))
+        .filter(|c| same(c) && p > c.ends.p[1] && bears(c, (c.ends.p[1], p)))
+    {
+        let p = beyond_edges(curve, chain_range, p, 1, ends[1], None);
+        (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.arc_length, force);
+        return Ok(());
+    }
+    if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0] && bears(c, (p, c.ends.p[0]))) {
+        let p = beyond_edges(curve, chain_range, p, 0, ends[0], None);
+        (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.arc_length, force);
+        return Ok(());
+    }
+    let new = NewContact { curve_index, chain_range, p, force };
+    insert_contact(strand, course, k, hit, new, purpose);
+    Ok(())
+}
+
+/// A contact to be made.
+#[derive(Clone, Copy, Debug)]
+struct NewContact {
+    curve_index: usize,
+    chain_range: ChainRange,
+    /// Its boundary coordinate.
+    p: f64,
+    /// Tension there, N.
+    force: f64,
+}
+
+/// Inserts a contact at a point of span k. One that reaches the held end of the cable on the same
+/// chain goes on to there.
+fn insert_contact(
+    strand: &mut CableRun,
+    course: &Course,
+    k: usize,
+    hit: &Penetration,
+    new: NewContact,
+    purpose: Purpose,
+) {
+    let NewContact { curve_index, chain_range, p, force } = new;
+    let curve = &course.curves[curve_index];
+    let mut contact = Contact {
+        curve: curve_index,
+        chain_range,
+        ends: Ends { p: [p, p], s: [hit.arc_length, hit.arc_length], t: [force, force] },
+        mode: if curve.friction > 0.0 && purpose == Purpose::Step { Mode::Hold } else { Mode::Slide(0.0) },
+        history: TensionProfile::default(),
+        wheel: None,
+        flips: 0,
+        held: None,
+        next: Next::Span,
+        load: None,
+        smooth: purpose == Purpose::FirstEquilibrium,
+    };
+    let track = course.track(&contact);
+    let mut held_ends = [None, None];
+    for side in 0..2 {
+        let outer = if side == 0 { k == 0 } else { k == strand.contacts.len() };
+        if let (true, Tie::Held(at)) = (outer, strand.ties[side])
+            && let Some(end) = curve.on_chain(chain_range, at, SUPPORT_CONTACT_DISTANCE_M)
+            && (if side == 0 { end <= p } else { end >= p })
+        {
+            let s = if side == 0 { strand.from } else { strand.to };
+            held_ends[side] = Some(end);
+            (contact.ends.p[side], contact.ends.s[side]) = (end, s);
+            // The length that is laid from the held end to the other.
+            let laid = track.slide(end, p, force, 0.0).material;
+            if held_ends[1 - side].is_none() {
+                contact.ends.s[1 - side] = s + laid;
+            }
+        }
+    }
+    let knot = |side: usize| Knot {
+        coordinate: contact.ends.p[side],
+        arc_length: contact.ends.s[side],
+        tension: force,
+        mobilised: 0.0,
+    };
+    contact.history = TensionProfile::new(knot(0), knot(1));
+    let g = strand.forces[k];
+    strand.contacts.insert(k, contact);
+    strand.forces.insert(k, g);
+    for side in 0..2 {
+        if let Some(p) = held_ends[side] {
+            strand.ties[side] = Tie::Lies(p);
+        }
+    }
+    if purpose == Purpose::FirstEquilibrium {
+        move_neighbours_over_edges(strand, course, k);
+    }
+}

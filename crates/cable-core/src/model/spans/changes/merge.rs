@@ -1,0 +1,38 @@
+//! Two neighbouring contacts of one chain become one.
+
+use crate::model::spans::boundary::capstan::Track;
+use crate::model::spans::boundary::friction_memory::Mode;
+use crate::model::spans::contact::release_below;
+use crate::model::spans::run::{CableRun, Course};
+
+/// Merges two neighbouring contacts of one chain. Returns whether there were any.
+pub(super) fn merge_contacts(strand: &mut CableRun, course: &Course) -> bool {
+    for j in 1..strand.contacts.len() {
+        let (a, b) = (&strand.contacts[j - 1], &strand.contacts[j]);
+        let loads = a.is_load() || b.is_load();
+        let apart =
+            |track: &Track<'_>| track.curve.is_round() && release_below::hangs_between(track, a.ends.p[1], b.ends.p[0]);
+        if a.curve == b.curve
+            && a.chain_range == b.chain_range
+            && a.wheel.is_none()
+            && !loads
+            && b.ends.p[1] >= a.ends.p[0]
+            && !apart(&course.track(a))
+        {
+            let b = strand.contacts.remove(j);
+            strand.forces.remove(j);
+            let a = &mut strand.contacts[j - 1];
+            a.history.append(&course.track(&b), &b.history);
+            a.smooth &= b.smooth;
+            a.next = b.next;
+            (a.ends.p[1], a.ends.s[1], a.ends.t[1]) = (b.ends.p[1], b.ends.s[1], b.ends.t[1]);
+            if let (Mode::Slide(m), Mode::Hold) = (a.mode, b.mode)
+                && m != 0.0
+            {
+                a.mode = Mode::Hold;
+            }
+            return true;
+        }
+    }
+    false
+}

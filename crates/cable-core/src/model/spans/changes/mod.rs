@@ -1,0 +1,93 @@
+//! A strand is solved with the contacts that belong to its answer: after each solve one kind of
+//! change is made, until none is needed.
+//!
+//! | room | what changes |
+//! |---|---|
+//! | `release` | a contact that would have to pull is removed, or one that has vanished |
+//! | `merge` | two neighbouring contacts of one chain become one |
+//! | `landing` | a span that runs into an obstacle is laid down on it |
+//! | `edges` | ends of contacts go over edges, along which nothing turns |
+//!
+//! Loads, kinks, wheels and slack have their own changes, in `contact`.
+
+mod edges;
+mod landing;
+mod merge;
+mod release;
+
+use crate::contact::World;
+use crate::contact::swept_corners::Corner;
+use crate::math::Vec2;
+use crate::model::spans::changes::edges::follow_edges;
+use crate::model::spans::changes::landing::{Purpose, touch_obstacles, touch_passed_corner};
+use crate::model::spans::changes::merge::merge_contacts;
+use crate::model::spans::changes::release::{lifted_wheel, release_turned_contact, release_vanishing_contact};
+use crate::model::spans::contact::kink_load;
+use crate::model::spans::contact::point_load;
+use crate::model::spans::contact::release_below;
+use crate::model::spans::contact::slack_pocket;
+use crate::model::spans::failure::Failure;
+use crate::model::spans::newton;
+use crate::model::spans::newton::{Solved, Work};
+use crate::model::spans::run::{CableRun, Course};
+
+/// Solves a strand with the contacts that belong to its answer.
+///
+/// `route` is the shape that a first equilibrium is sought from, which may be far away: the cable
+/// touches the corners between.
+pub(in crate::model::spans) fn solve(
+    strand: &mut CableRun,
+    course: &mut Course,
+    world: &World,
+    corners: &[Corner],
+    route: Option<&[Vec2]>,
+    work: &mut Work,
+) -> Result<Solved, Failure> {
+    let tuned = course.settings.changes;
+    let purpose = if route.is_some() { Purpose::FirstEquilibrium } else { Purpose::Step };
+    let (mut sum, mut caught) = (Solved::default(), 0);
+    for _ in 0..tuned.max_changes {
+        point_load::join(strand, course)?;
+        let found = match newton::solve(strand, course, work) {
+            Ok(found) => found,
+            Err(stall) => {
+                sum.iterations += stall.iterations;
+                if follow_edges(strand, course) || kink_load::enter(strand, course) {
+                    continue;
+                }
+                caught += 1;
+                if caught <= tuned.max_load_releases
+                    && (release_vanishing_contact(strand, course)? || point_load::catch(strand, course))
+                {
+                    continue;
+                }
+                if let Some(support) = lifted_wheel(strand, course) {
+                    return Err(Failure::OffWheel { support });
+                }
+                let s = strand.material(stall.at).0;
+                return Err(Failure::Stalled { iterations: sum.iterations, residual: stall.residual, s });
+            }
+        };
+        sum.iterations += found.iterations;
+        sum.residual = found.residual;
+        // Tunnelled corners are checked before penetrations: they tell on which side of an obstacle
+        // the cable belongs.
+        let changed = release_turned_contact(strand, course)?
+            || merge_contacts(strand, course)
+            || release_below::part(strand, course)
+            || kink_load::enter(strand, course)
+            || point_load::settle(strand, course)?
+            || slack_pocket::open(strand, course)
+            || match route {
+                Some(route) => touch_passed_corner(strand, course, corners, route, work)?,
+                None => false,
+            }
+            || touch_obstacles(strand, course, world, purpose)?;
+        if !changed {
+            // Other contacts may press the cable on to its wheel again: it is off its wheel when
+            // nothing else changes.
+            return lifted_wheel(strand, course).map_or(Ok(sum), |support| Err(Failure::OffWheel { support }));
+        }
+    }
+    Err(Failure::Restless { s: strand.from })
+}

@@ -1,0 +1,113 @@
+//! Contacts are released that would have to pull, or that have vanished.
+
+use crate::model::spans::boundary::friction_memory::{Knot, Mode, TensionProfile};
+use crate::model::spans::failure::Failure;
+use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
+
+/// Extent (m or rad) by which the interval of a contact has turned round when it is released:
+/// rounding of a contact in a point.
+const RELEASE_OVERLAP: f64 = 1e-10;
+
+/// Releases the contact whose interval has turned round most: it would have to pull. Returns
+/// whether there was one.
+pub(super) fn release_turned_contact(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> {
+    let turned = |c: &Contact| c.ends.p[1] - c.ends.p[0];
+    let worst = (0..strand.contacts.len())
+        .filter(|&j| !is_round_wheel(&strand.contacts[j], course))
+        .min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
+    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -RELEASE_OVERLAP) else {
+        return Ok(false);
+    };
+    remove_contact(strand, course, j)
+}
+
+/// True if a contact is a wheel with a radius: the cable passes it on one side. An eye it may pass
+/// on either.
+fn is_round_wheel(c: &Contact, course: &Course) -> bool {
+    c.wheel.is_some() && course.track(c).place(c.ends.p[0]).stretch > 0.0
+}
+
+/// The wheel on which the interval has turned round most, if on any: it would have to pull there.
+pub(super) fn lifted_wheel(strand: &CableRun, course: &Course) -> Option<usize> {
+    let wheels = strand.contacts.iter().filter(|c| is_round_wheel(c, course));
+    let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
+    wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -RELEASE_OVERLAP)?.wheel
+}
+
+/// Releases a contact that has shrunk to next to nothing beside a load, whose weight a span that
+/// turned round past it would count. Returns whether there was any.
+pub(super) fn release_vanishing_contact(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> {
+    let least = course.settings.changes.shed_length_fraction * (strand.to - strand.from);
+    let small = |c: &Contact| !c.is_load() && c.ends.s[1] - c.ends.s[0] < least;
+    let beside = |j: usize| strand.is_joined(j, 0) || strand.is_joined(j, 1);
+    let Some(j) = (0..strand.contacts.len()).find(|&j| small(&strand.contacts[j]) && beside(j)) else {
+        return Ok(false);
+    };
+    remove_contact(strand, course, j)
+}
+
+/// Removes contact j: the spans beside it become one. A wheel cannot be removed, and an eye is
+/// passed on its other side.
+fn remove_contact(strand: &mut CableRun, course: &mut Course, j: usize) -> Result<bool, Failure> {
+    if let Some(support) = strand.contacts[j].wheel {
+        if is_round_wheel(&strand.contacts[j], course) {
+            return Err(Failure::OffWheel { support });
+        }
+        pass_eye_on_other_side(&mut strand.contacts[j]);
+        return Ok(true);
+    }
+    let contact = strand.contacts.remove(j);
+    let m = strand.contacts.len();
+    if let Some(before) = j.checked_sub(1).and_then(|i| strand.contacts.get_mut(i)) {
+        before.next.end_pocket();
+    }
+    // Beside a load there was no span; now there is the one that was on the other side.
+    let before = j.checked_sub(1).is_some_and(|i| strand.contacts[i].next.part());
+    if before || contact.next == Next::Joined {
+        let (k, other) = if contact.next == Next::Joined { (j + 1, j) } else { (j, j + 1) };
+        let ends = (other == 0 && !strand.ties[0].has_span()) || (other > m && !strand.ties[1].has_span());
+        if ends {
+            return Err(Failure::LoadLies { s: contact.ends.s[0] });
+        }
+        strand.forces.remove(k);
+        strand.resolve_span(course, j);
+        return Ok(true);
+    }
+    // An end that rested on this contact becomes a fixed or a free end.
+    for side in 0..2 {
+        let outer = if side == 0 { j == 0 } else { j == m };
+        if outer && !strand.ties[side].has_span() {
+            strand.ties[side] = match strand.ties[side] {
+                Tie::Lies(p) => Tie::Held(course.track(&contact).place(p).at),
+                Tie::Loose(force) => Tie::Hangs(force),
+                other => other,
+            };
+            strand.forces.remove(if side == 0 { 0 } else { m + 1 });
+            if strand.contacts.is_empty() && strand.forces.len() > 1 {
+                strand.forces.truncate(1);
+            }
+            strand.resolve_span(course, if side == 0 { 0 } else { m });
+            return Ok(true);
+        }
+    }
+    strand.forces.remove(j);
+    strand.resolve_span(course, j);
+    Ok(true)
+}
+
+/// Passes an eye on its other side.
+fn pass_eye_on_other_side(c: &mut Contact) {
+    // Its boundary in the other sense: p → −p.
+    c.curve ^= 1;
+    c.ends.p = [-c.ends.p[0], -c.ends.p[1]];
+    let s = 0.5 * (c.ends.s[0] + c.ends.s[1]);
+    let knot = |k: usize| Knot { coordinate: c.ends.p[k], arc_length: s, tension: c.ends.t[k], mobilised: 0.0 };
+    // Its interval is a point: the friction memory keeps the material that is there.
+    let held = c.history.knots().first().map_or(s, |k| k.arc_length);
+    c.history = TensionProfile::new(Knot { arc_length: held, ..knot(0) }, Knot { arc_length: held, ..knot(1) });
+    if let Mode::Slide(m) = c.mode
+        && m != 0.0
+    {
+        c.mode = Mode::Hold;
+    }
+}

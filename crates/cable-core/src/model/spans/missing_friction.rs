@@ -1,0 +1,71 @@
+//! A cable that nothing but friction holds slides if there is too little of it: this module finds
+//! how much it would need, and what a cable keeps that was drawn.
+
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout};
+use crate::model::spans::contact::point_load;
+use crate::model::spans::first_equilibrium::{FirstShape, shapes_with_friction};
+use crate::model::spans::newton::Work;
+use crate::model::spans::run::CableRun;
+
+/// Part of the friction that is missing to which it is found: three digits are shown.
+const MISSING_FRICTION_TOLERANCE: f64 = 2e-4;
+
+/// Less than this part that is missing is none: rounding. Larger: a cable that slides by so little
+/// has no answer and no cause.
+const LEAST_MISSING_PART: f64 = 1e-7;
+
+impl CableEquilibrium {
+    /// The least multiple of its friction with which a cable that nothing else holds would rest
+    /// along its route. None where it rests with its own friction, or where it is not known to
+    /// slide.
+    ///
+    /// With less friction every contact of the strand slides the same way. Contacts that all but
+    /// slide just above the multiple prove that friction is missing, and not the search's success.
+    pub fn friction_needed(layout: &Layout, instant: &BoundaryConditions, work: &mut Work) -> Option<f64> {
+        let tuned = &layout.settings.continuation;
+        let course = layout.course(layout.curves(), instant);
+        let mut rests = |part: f64, shape: FirstShape| {
+            let begin = BoundaryConditions { friction: part, ..instant.clone() };
+            let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
+            let taken = network.lay_along_route(layout, &begin, shape, work).ok()?;
+            (taken.runaways == 0).then_some(network)
+        };
+        let (mut low, mut step) = (1.0, tuned.first_missing_part);
+        let (mut high, shape) = loop {
+            if step > tuned.max_missing_part {
+                return None;
+            }
+            let high = 1.0 + step;
+            if let Some(shape) = shapes_with_friction(layout).into_iter().find(|shape| rests(high, *shape).is_some()) {
+                break (high, shape);
+            }
+            (low, step) = (high, 2.0 * step);
+        };
+        while high - low > MISSING_FRICTION_TOLERANCE * (high - 1.0) {
+            let middle = 0.5 * (low + high);
+            if rests(middle, shape).is_some() {
+                high = middle;
+            } else {
+                low = middle;
+            }
+            if high - 1.0 < LEAST_MISSING_PART {
+                return None;
+            }
+        }
+        let found = rests(high, shape)?;
+        let near = tuned.mobilised_fraction * (1.0 + MISSING_FRICTION_TOLERANCE * (high - 1.0));
+        let slides = |s: &CableRun| [1.0, -1.0].iter().any(|way| point_load::mobilised(s, &found.course, *way, near));
+        let unheld = layout.strands.iter().zip(&found.strands).filter(|(p, _)| p.supports.iter().all(Option::is_none));
+        unheld.map(|(_, s)| s).any(slides).then_some(high)
+    }
+
+    /// The balance in which all friction acts against a cable that was drawn one way (1: towards
+    /// its end, −1: towards its start). None where there is none.
+    pub fn drawn_one_way(&self, layout: &Layout, way: f64, work: &mut Work) -> Option<Self> {
+        let mut network = self.clone();
+        network.course.mobilised = way;
+        let instant = self.instant.clone();
+        network.step(layout, &instant, work).ok()?;
+        Some(network)
+    }
+}

@@ -1,0 +1,162 @@
+//! Of the balances of a slack cable that slides without friction some run away; the others are
+//! resting places of their own.
+//!
+//! A loop that hangs down pulls the harder the longer it is, so that slack may rest on either side
+//! of a contact. The cable leaves one balance for another by sliding under a drag.
+
+use crate::math::{bounded, larger, smaller};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout};
+use crate::model::spans::continuation::StepStats;
+use crate::model::spans::failure::Failure;
+use crate::model::spans::initial::contacts;
+use crate::model::spans::newton::{self, Work};
+
+/// Factor of the drag after a step that failed.
+const DRAG_RISE: f64 = 8.0;
+
+/// Least factor of the drag after a step: it falls as the force that is left does.
+const LEAST_DRAG_FALL: f64 = 0.25;
+
+/// A length of material to be passed on at one contact.
+#[derive(Clone, Copy, Debug)]
+struct SlackMove {
+    /// Index of the contact among those of all strands.
+    contact: usize,
+    /// Material that it passes on along the cable, m.
+    passed_on_m: f64,
+}
+
+impl CableEquilibrium {
+    /// Leaves a balance that runs away for a stable one; a stable one is kept, and on an error
+    /// nothing has changed.
+    pub fn leave_unstable(
+        &mut self,
+        layout: &Layout,
+        to: &BoundaryConditions,
+        work: &mut Work,
+    ) -> Result<StepStats, Failure> {
+        if self.is_stable(work) {
+            return Ok(StepStats::default());
+        }
+        let by = layout.settings.continuation.leaving_fraction * layout.problem.length;
+        let before = self.clone();
+        self.slide_from(layout, to, |_| by, work).inspect_err(|_| {
+            *self = before;
+            layout.set_course(&mut self.course, to);
+        })
+    }
+
+    /// Finds other balances of a slack cable that slides without friction. Slack is moved from each
+    /// side of each contact to the other, and on from each balance that is found so.
+    pub fn other_balances(&self, layout: &Layout, work: &mut Work) -> Vec<Self> {
+        let tuned = &layout.settings.continuation;
+        let mut found = vec![self.clone()];
+        let (mut from, mut tries) = (0, 0);
+        while let Some(base) = found.get(from).cloned() {
+            for SlackMove { contact, passed_on_m } in base.moves_of_slack(layout) {
+                if tries == tuned.max_other_balances {
+                    break;
+                }
+                tries += 1;
+                let (mut other, to) = (base.clone(), base.instant.clone());
+                let moved = |k: usize| if k == contact { passed_on_m } else { 0.0 };
+                if other.slide_from(layout, &to, moved, work).is_ok()
+                    && !found.iter().any(|f| f.is_same_balance(&other, layout))
+                {
+                    found.push(other);
+                }
+            }
+            from += 1;
+        }
+        found.split_off(1)
+    }
+
+    /// The moves that bring the slack of either side of a contact to the other, at contacts on both
+    /// sides of which cable hangs.
+    fn moves_of_slack(&self, layout: &Layout) -> Vec<SlackMove> {
+        let least = layout.settings.continuation.least_slack_fraction;
+        let mut moves = Vec::new();
+        let mut index = 0;
+        for strand in &self.strands {
+            for j in 0..strand.contacts.len() {
+                let slack = [j, j + 1].map(|k| strand.has_span(k).then(|| strand.slack(&self.course, k)).flatten());
+                if let [Some([before, near]), Some([after, far])] = slack
+                    && before + after > least * smaller(near, far)
+                {
+                    let lengths = [(1.0 - least) * after, -(1.0 - least) * before];
+                    moves.extend(lengths.map(|passed_on_m| SlackMove { contact: index, passed_on_m }));
+                }
+                index += 1;
+            }
+        }
+        moves
+    }
+
+    /// True if two balances have the same material at the same contacts.
+    fn is_same_balance(&self, other: &Self, layout: &Layout) -> bool {
+        let near = layout.settings.continuation.other_balance_fraction * layout.problem.length;
+        let [here, there] = [self, other].map(Self::material_at_contacts);
+        here.len() == there.len() && here.iter().zip(&there).all(|(a, b)| (a - b).abs() <= near)
+    }
+
+    /// Lets the cable slide to a stable balance, under a drag, from where the material at each
+    /// contact is passed on by a length, m; on an error it is anywhere.
+    ///
+    /// The drag is lowered as the forces that are left fall, so that it stays while they grow
+    /// (switched evolution relaxation: W. A. Mulder and B. van Leer, J. Comput. Phys. 59, 1985).
+    fn slide_from(
+        &mut self,
+        layout: &Layout,
+        to: &BoundaryConditions,
+        passed_on_m: impl Fn(usize) -> f64,
+        work: &mut Work,
+    ) -> Result<StepStats, Failure> {
+        let tuned = &layout.settings.continuation;
+        let size = to.load.norm();
+        let (mut drag, mut taken, mut left) = (tuned.leaving_drag_factor * size, StepStats::default(), None);
+        let mut raised = 0;
+        for (k, c) in self.strands.iter_mut().flat_map(|s| &mut s.contacts).enumerate() {
+            let by = passed_on_m(k);
+            c.history.pass_on(by);
+            c.ends.s = c.ends.s.map(|s| s + by);
+        }
+        for strand in &mut self.strands {
+            contacts::solve_spans(strand, &self.course).ok_or(Failure::Restless { s: strand.from })?;
+        }
+        for _ in 0..tuned.max_drag_steps {
+            let materials = self.material_at_contacts();
+            self.course.drag = drag;
+            let result = self.step(layout, to, work);
+            self.course.drag = 0.0;
+            let Ok(one) = result else {
+                if raised == tuned.max_drag_raises {
+                    break;
+                }
+                (drag, raised) = (DRAG_RISE * drag, raised + 1);
+                continue;
+            };
+            (taken, raised) = (taken.and(one), 0);
+            let slips = self.material_at_contacts().into_iter().zip(materials).map(|(a, b)| (a - b).abs());
+            let force = drag * slips.fold(0.0, larger);
+            drag *= left.map_or(1.0, |left| bounded(force / left, LEAST_DRAG_FALL, 1.0));
+            left = Some(force);
+            if drag < tuned.drag_factor * tuned.rest_drag_fraction * size
+                && let Ok(one) = self.step(layout, to, work)
+                && self.is_stable(work)
+            {
+                return Ok(taken.and(one));
+            }
+        }
+        Err(Failure::Restless { s: 0.0 })
+    }
+
+    /// Material at the start of each contact, m.
+    fn material_at_contacts(&self) -> Vec<f64> {
+        self.strands.iter().flat_map(|s| &s.contacts).map(|c| c.ends.s[0]).collect()
+    }
+
+    /// True if every strand is a stable rest and not a balance that runs away.
+    pub fn is_stable(&self, work: &mut Work) -> bool {
+        self.strands.iter().all(|s| newton::stable(s, &self.course, work))
+    }
+}
