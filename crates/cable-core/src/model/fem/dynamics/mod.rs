@@ -20,7 +20,7 @@ use crate::model::fem::state::momentum::MovingMass;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 use crate::model::fem::time::bdf2::{Weights, keep_balanced_tensions, report_held_back, set_inertia};
 use crate::model::fem::time::momentum::{account_for_step, forces_in_step};
-use crate::model::fem::time::{branches, hands, plastic_impact};
+use crate::model::fem::time::{hands, loss_memory, plastic_impact};
 use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::held_warning;
 use crate::model::{Inertia, StepReport};
@@ -239,7 +239,7 @@ impl Dynamics {
         keep_balanced_tensions(&mut self.cable, &unknowns);
         let given = forces_in_step(&self.cable, &unknowns, self.solver.contacts());
         let slid = MovingMass::of(&self.cable).sliding_momentum();
-        branches::relax(&mut self.cable, h, &unknowns.positions);
+        loss_memory::relax(&mut self.cable, h, &unknowns.positions);
         self.cable.commit_contacts(&unknowns);
         self.move_to(&unknowns, weights);
         self.cable.mesh.slide(&unknowns.slides);

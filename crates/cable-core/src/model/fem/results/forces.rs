@@ -9,7 +9,7 @@ use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::friction_state::ContactPair;
 use crate::model::fem::system::mesh::Mesh;
-use crate::model::fem::time::branches;
+use crate::model::fem::time::loss_memory;
 
 /// Tension in the middle of the straight part of each bar, N; a stiff cable's may be less than
 /// zero.
@@ -25,7 +25,7 @@ pub(super) fn bar_tension(d: &CableState, x: &[Vec2], e: usize) -> f64 {
         let material = d.mesh.arc_length[e + 1] - d.mesh.arc_length[e];
         return Weight::of(&d.mesh, e, &path, d.input.body).in_the_middle(t, material, flexible);
     }
-    let t = if t > 0.0 || !flexible { t + branches::force(d, e) } else { t };
+    let t = if t > 0.0 || !flexible { t + loss_memory::force(d, e) } else { t };
     if t < 0.0 && flexible { 0.0 } else { t }
 }
 

@@ -17,7 +17,7 @@ mod supports;
 use self::forces::{bar_tension, bar_tensions, end_forces};
 use crate::math::larger;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::time::branches;
+use crate::model::fem::time::loss_memory;
 use crate::solution::{Assumptions, CableSolution};
 
 /// The answer of a cable at this instant: that of the last step as it was balanced, else that of
@@ -64,7 +64,7 @@ pub(in crate::model::fem) fn gauge_tension(cable: &mut CableState) {
         let mesh = &cable.mesh;
         gauged.bars.extend(x.windows(2).enumerate().map(|(e, pair)| {
             let t = mesh.bar(e).tension((pair[1] - pair[0]).norm());
-            let t = if t > 0.0 { t + branches::force(cable, e) } else { t };
+            let t = if t > 0.0 { t + loss_memory::force(cable, e) } else { t };
             if t < 0.0 && mesh.is_flexible() { 0.0 } else { t }
         }));
     } else {

@@ -9,7 +9,7 @@ use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::results::forces::{curvature_at, half, moments, shear};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::floor_friction::OverRound;
-use crate::model::fem::time::branches;
+use crate::model::fem::time::loss_memory;
 use crate::solution::Node;
 
 /// Nodes on a round: one at least every so many radians.
@@ -98,7 +98,7 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
         let beside = if k == 0 { 0..1 } else { k - 1..if k + 1 < n { k + 1 } else { k } };
         let count = beside.len() as f64;
         let by_branches =
-            beside.map(|e| if tension[e] > 0.0 { branches::force(d, e) } else { 0.0 }).sum::<f64>() / count;
+            beside.map(|e| if tension[e] > 0.0 { loss_memory::force(d, e) } else { 0.0 }).sum::<f64>() / count;
         out.push(Node { strain: node.strain - by_branches / d.problem.axial_stiffness, ..node });
     }
     out

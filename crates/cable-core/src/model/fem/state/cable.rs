@@ -11,7 +11,7 @@ use crate::model::fem::state::history::Motion;
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::moving_outline::MovingOutline;
 use crate::model::fem::system::friction_state::{ContactSet, slip_at_rest};
-use crate::model::fem::system::loss::Loss;
+use crate::model::fem::system::loss_branches::Loss;
 use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_context::StepContext;
 use crate::model::fem::system::step_input::{StepInput, Unknowns, load_scale};

@@ -10,7 +10,7 @@
 //! depends on its slide. The weight of the bar acts at the centroid c of its way (`bar_weight.rs`),
 //! so a change δL of the material adds −b·(c − x₀) δL, with x₀ the sliding node it came through.
 //! Viscous loss with time constant τ is a second bar of stiffness EA τ a whose strain is measured
-//! from the one predicted; so is that of relaxation branches in a taut bar (`loss.rs`).
+//! from the one predicted; so is that of relaxation branches in a taut bar (`loss_branches.rs`).
 
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};

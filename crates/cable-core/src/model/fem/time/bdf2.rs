@@ -14,9 +14,9 @@ use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::history::Motion;
-use crate::model::fem::system::loss::damping_time;
+use crate::model::fem::system::loss_branches::damping_time;
 use crate::model::fem::system::step_input::Unknowns;
-use crate::model::fem::time::branches;
+use crate::model::fem::time::loss_memory;
 
 /// Part β of BDF3 in a step of a cable that can touch nothing. It is A-stable up to ½; 0.48 is V.
 /// N. Vatsa's, M. H. Carpenter's and D. P. Lockard's ("Re-evaluation of an optimized second order
@@ -163,5 +163,5 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
             length(&m.positions) * now - length(&m.previous_positions) * past + older
         };
     }
-    branches::add(cable, h, rate, decay);
+    loss_memory::add(cable, h, rate, decay);
 }

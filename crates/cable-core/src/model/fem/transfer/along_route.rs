@@ -14,7 +14,7 @@ use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::moving_outline::MovingOutline;
 use crate::model::fem::state::step_setup::prepare_input;
 use crate::model::fem::system::friction_state::ContactSet;
-use crate::model::fem::system::loss::Loss;
+use crate::model::fem::system::loss_branches::Loss;
 use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{StepInput, load_scale, tolerance};
 use crate::model::fem::touches_nothing;
