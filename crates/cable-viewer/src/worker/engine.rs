@@ -419,10 +419,9 @@ impl Engine {
         let at_rest = from.is_none_or(|o| o.time_s() <= 0.0);
         self.routes.clear();
         let mut edit = edit;
-        // Only without a mesh do other histories take longer than the rest itself: the cable is
-        // laid anew for each. Where nobody refines the answer they are asked for at once.
-        let meshless = old.as_ref().is_some_and(|o| is_quasi_static(o.model()));
-        self.histories_due = self.drafts && at_rest && meshless && edit.settings.histories;
+        // Other histories take longer than the rest itself: each is another rest. Where nobody
+        // refines the answer they are asked for at once.
+        self.histories_due = self.drafts && at_rest && edit.settings.histories;
         let rebuilt = if at_rest { self.lay(&mut edit, from).map(|s| (s, true)) } else { self.rebuild(&edit, from) };
         self.edit = Some(edit);
         self.solve_s = began.elapsed().as_secs_f64();
@@ -591,7 +590,7 @@ impl Engine {
             simulation.reset();
         } else if let Some(edit) = self.edit.clone() {
             let mut edit = edit;
-            self.histories_due = false;
+            self.histories_due = self.drafts && edit.settings.histories;
             self.simulation = Some(self.lay(&mut edit, None)?);
             self.before_motion = None;
             self.phase = Phase::Answer { start_kept: true };
@@ -736,6 +735,8 @@ pub fn is_quasi_static(model: Model) -> bool {
 /// The simulation that moves from where the one stands that `auto` chose for rest, and whether it
 /// has come to rest there on its own mesh.
 fn moving(rest: &Simulation, settings: Settings) -> Result<(Simulation, bool), Error> {
+    // What it says of other histories would be gone with the first step.
+    let settings = Settings { histories: false, ..settings };
     let mut moving = Simulation::for_question(rest.scene().clone(), Model::Auto, settings, MOTION)?;
     moving.carry(rest)?;
     let mut settled = moving.clone();
