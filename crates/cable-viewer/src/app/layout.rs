@@ -1,9 +1,10 @@
 //! The layout says where panels and canvas are.
 
-use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui};
+use egui::style::ScrollAnimation;
+use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui, vec2};
 
 use crate::app::{first_steps, menu, tutorial_bar};
-use crate::canvas::layers::legend;
+use crate::canvas::layers::{legend, safe_reach};
 use crate::command::Command;
 use crate::state::AppState;
 use crate::widgets::highlight;
@@ -17,7 +18,7 @@ const EDIT: &[Section] = &[("Outline", panels::scene::outline::ui), (SELECTED, p
 /// Warnings, the form of the selected thing, then the readouts. Where a place on the cable is
 /// marked its tension stands above the readouts, else at the end.
 const READ: &[Section] = &[
-    ("Warnings", panels::warnings::ui),
+    (WARNINGS, panels::warnings::ui),
     (SELECTED, panels::selected::ui),
     (MARKED, panels::analysis::tension_budget::ui),
     (READOUTS, panels::readouts::ui),
@@ -29,6 +30,7 @@ const READ: &[Section] = &[
 
 /// Where there is a panel of their own for them, their head stands above what scrolls there.
 const READOUTS: &str = "Readouts";
+const WARNINGS: &str = "Warnings";
 const SAFE_REACH: &str = "Safe reach";
 const SELECTED: &str = "Selected";
 const MARKED: &str = "Tension at the marked place";
@@ -74,6 +76,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     if wide && open.results {
         side(ui, Panel::right("read"), part(INSPECTOR_WIDTH, width), |ui| {
             legend::beside(ui, state);
+            safe_reach::legend_beside(ui, state);
             panels::readouts::head(ui, state, commands);
             ui.separator();
             scroll(ui, "read", READ, state, commands);
@@ -115,7 +118,7 @@ fn side(ui: &mut Ui, panel: Panel, width: f32, contents: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// What the one panel of a small window shows.
+/// The contents of the one panel of a small window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Tab {
     #[default]
@@ -191,7 +194,7 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
     let shown = newly_wanted(ui, (id, sections), state);
     // The bar stands beside figures, not over their last letters.
     ui.spacing_mut().scroll.floating_allocated_width = BAR;
-    // What is too wide scrolls: it must not push the canvas aside.
+    // Contents that are too wide scroll: they must not push the canvas aside.
     ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
         let width = ui.available_width();
         for (title, panel) in sections {
@@ -207,15 +210,34 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
             }
             let panel =
                 if *title == READOUTS && state.ui.legend_beside { &(panels::readouts::rest as PanelUi) } else { panel };
+            let top = ui.cursor().top();
             let section = CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| {
                 // One section that is too wide does not widen the others.
                 ui.set_max_width(width);
                 panel(ui, state, commands);
             });
+            if *title == WARNINGS && id == "read" {
+                hold_still(ui, top);
+            }
             if shown == Some(*title) {
                 section.header_response.scroll_to_me(Some(egui::Align::TOP));
             }
             highlight::offer(&section.header_response, &format!("{title} section"));
         }
     });
+}
+
+/// Warnings that come and go do not move what the pointer is at below them: the panel scrolls by
+/// what they take more or less than in the frame before. `top`: where they begin.
+fn hold_still(ui: &Ui, top: f32) {
+    let id = Id::unique("height of the warnings");
+    let height = ui.cursor().top() - top;
+    let before = ui.data(|d| d.get_temp::<f32>(id)).unwrap_or(height);
+    ui.data_mut(|d| d.insert_temp(id, height));
+    let pointer = ui.ctx().pointer_latest_pos().filter(|p| ui.clip_rect().contains(*p));
+    // In this frame all that follows has moved already, but not the hand.
+    if height != before && pointer.is_some_and(|p| p.y > top + height.min(before)) {
+        ui.scroll_with_delta_animation(vec2(0.0, before - height), ScrollAnimation::none());
+        ui.ctx().request_repaint();
+    }
 }

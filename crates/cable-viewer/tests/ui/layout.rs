@@ -10,7 +10,7 @@ use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::{apply, open};
+use crate::{apply, open, select};
 
 /// The canvas as a part of the window.
 fn share(harness: &Harness<'_, ViewerApp>, [width, height]: [f32; 2]) -> f32 {
@@ -322,4 +322,33 @@ fn issue_020_labels_leave_the_robot_to_be_seen() {
         let named = found.iter().filter(|(text, _)| text == "leg 1" || text == "leg 3").count();
         assert_eq!(named, 2, "{found:?}");
     }
+}
+
+/// A warning that came while a slider was dragged moved it, and the next click met another control.
+#[test]
+fn a_warning_that_comes_does_not_move_the_form_under_the_pointer() {
+    let mut harness = open(catalog::hanging_span());
+    select(&mut harness, Item::Cable(0));
+    let place = |h: &Harness<'_, ViewerApp>| h.get_by_label("Linear density slider").rect();
+    let before = place(&harness);
+    harness.hover_at(before.center());
+    harness.run_steps(2);
+    let warn = |h: &mut Harness<'_, ViewerApp>, service_tension_n: f64| {
+        let mut cable = h.state().state.document.scene.cables[0].clone();
+        (cable.service_tension_n, cable.min_bend_radius_m) = (service_tension_n, 20.0);
+        apply(h, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+        h.run_steps(3);
+    };
+    warn(&mut harness, 50.0);
+    let warnings = harness.state().state.live.snapshot.solution.as_ref().unwrap().warnings.len();
+    assert!(warnings >= 2, "{warnings}");
+    assert!((place(&harness).top() - before.top()).abs() < 1.0, "{before:?} {:?}", place(&harness));
+    // They go as they came.
+    warn(&mut harness, 800.0);
+    assert!((place(&harness).top() - before.top()).abs() < 1.0, "{before:?} {:?}", place(&harness));
+    // A pointer elsewhere wants to see them.
+    harness.hover_at(harness.get_by_label("Canvas").rect().center());
+    harness.run_steps(2);
+    warn(&mut harness, 50.0);
+    assert!(place(&harness).top() > before.top() + 10.0);
 }
