@@ -43,6 +43,8 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         border[3] += hints_height(state);
         let bounds = bounds::scene(state);
         state.view.camera.fit(rect, bounds, border);
+        // Where its cable lies is not known yet: it is fitted once more with it.
+        state.view.camera.fit_wanted = !state.is_answered();
     }
     let [low, high] = [rect.left_bottom(), rect.right_top()].map(|p| state.view.camera.to_world(rect, p));
     state.view.visible_m = [low, high];

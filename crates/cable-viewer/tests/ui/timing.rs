@@ -11,7 +11,7 @@ use cable_core::scene::catalog;
 use cable_core::solution::Histories;
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
-use cable_viewer::command::{Command, PlaybackCommand, SceneCommand};
+use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand};
 use cable_viewer::state::Item;
 use egui::Vec2;
 use egui_kittest::Harness;
@@ -281,6 +281,25 @@ fn while_other_histories_are_sought_the_window_says_so() {
     assert_eq!(said(catalog::over_beam(), true), [true, false]);
     assert_eq!(said(catalog::over_beam(), false), [false, true]);
     assert_eq!(said(catalog::hanging_span(), true), [false, true]);
+}
+
+/// A scene that was opened was fitted to the cable of the one before, which was still on screen.
+#[test]
+fn a_scene_that_is_opened_is_fitted_to_its_own_cable() {
+    let mut harness = threaded(catalog::hanging_span(), 60);
+    harness.run_steps(3);
+    let hand = harness.state().state.view.camera;
+    submit(&mut harness, Command::File(FileCommand::OpenCatalogue("pile".to_owned())));
+    harness.step();
+    wait(&mut harness);
+    harness.run_steps(2);
+    let camera = harness.state().state.view.camera;
+    assert!(camera != hand && !camera.fit_wanted);
+    let nodes = &harness.state().state.live.snapshot.solution.as_ref().unwrap().cables[0].nodes;
+    let (least, most) = nodes.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), n| (a.min(n.x_m), b.max(n.x_m)));
+    let canvas = harness.get_by_label("Canvas").rect();
+    let x = camera.to_screen(canvas, [0.5 * (least + most), 0.0]).x;
+    assert!((x - canvas.center().x).abs() < 0.1 * canvas.width(), "{x} in {canvas:?}");
 }
 
 fn undimmed(what: &str, scene: Scene, item: Item, at: Point) {
