@@ -23,7 +23,7 @@ const READ: &[Section] = &[
     (MARKED, panels::analysis::tension_budget::ui),
     (READOUTS, panels::readouts::ui),
     (SAFE_REACH, panels::analysis::safe_reach::ui),
-    ("Compare", panels::analysis::compare::ui),
+    (COMPARE, panels::analysis::compare::ui),
     (UNMARKED, panels::analysis::tension_budget::ui),
     ("Friction range", panels::analysis::friction_range::ui),
 ];
@@ -32,6 +32,7 @@ const READ: &[Section] = &[
 const READOUTS: &str = "Readouts";
 const WARNINGS: &str = "Warnings";
 const SAFE_REACH: &str = "Safe reach";
+const COMPARE: &str = "Compare";
 const SELECTED: &str = "Selected";
 const MARKED: &str = "Tension at the marked place";
 const UNMARKED: &str = "Tension at a place";
@@ -159,8 +160,8 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
 }
 
 /// The section to scroll to, since something else is marked or selected than in the frame before:
-/// where a tension comes from, a search that was begun elsewhere, or the form of the selected
-/// thing. Warnings stay in sight above it.
+/// where a tension comes from, a search that was begun elsewhere, a result that was pinned, or the
+/// form of the selected thing. Warnings stay in sight above it.
 fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -> Option<&'static str> {
     let marked = is_new(ui, (id, "marked"), state.analysis.tension_marker) && state.analysis.tension_marker.is_some();
     let selected = is_new(ui, (id, "selected"), state.selection.selected) && state.selection.selected.is_some();
@@ -173,6 +174,11 @@ fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -
     let searches = is_new(ui, (id, "searches"), state.analysis.safe_reach.began);
     if searches && state.analysis.safe_reach.began.is_some() && from_elsewhere && holds(SAFE_REACH) {
         return Some(SAFE_REACH);
+    }
+    let pins = state.analysis.references.len();
+    let pinned = is_new(ui, (id, "pinned"), pins) && pins > 0;
+    if pinned && from_elsewhere && holds(COMPARE) {
+        return Some(COMPARE);
     }
     // The form stands on the right where there is such a panel, else below the outline.
     match (selected, id == "read", state.ui.legend_beside) {

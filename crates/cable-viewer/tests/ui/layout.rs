@@ -352,3 +352,15 @@ fn a_warning_that_comes_does_not_move_the_form_under_the_pointer() {
     warn(&mut harness, 50.0);
     assert!(place(&harness).top() > before.top() + 10.0);
 }
+
+/// A result that was pinned by name was nowhere to be seen: its table stood below what is in sight.
+#[test]
+fn a_result_that_is_pinned_by_name_is_seen() {
+    let mut harness = open(catalog::over_beam());
+    harness.hover_at(harness.get_by_label("Canvas").rect().center());
+    harness.run_steps(2);
+    apply(&mut harness, Command::View(ViewCommand::Hold));
+    harness.run_steps(5);
+    let unpin = harness.get_by_label("Unpin all").rect();
+    assert!(harness.ctx.content_rect().contains_rect(unpin), "{unpin:?}");
+}
