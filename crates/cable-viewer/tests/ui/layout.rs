@@ -6,6 +6,7 @@ use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, PlaybackCommand, SceneCommand, ViewCommand};
 use cable_viewer::state::{FirstSteps, Item, OpenPanels, TensionMarker};
+use cable_viewer::units::system::System;
 use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -279,8 +280,13 @@ fn the_table_of_pinned_results_is_as_wide_as_its_panel() {
     harness.run_steps(3);
     harness.get_by_label("Cost").scroll_to_me();
     harness.run_steps(3);
-    let cost = harness.get_by_label("889 ms").rect();
-    assert!(cost.right() <= 1272.0, "{cost:?}");
+    // Foot-pounds are the longest unit.
+    for units in [System::Si, System::Us] {
+        apply(&mut harness, Command::View(ViewCommand::SetUnits(units)));
+        let cost = harness.get_by_label("889 ms").rect();
+        assert!(cost.right() <= 1272.0, "{cost:?}");
+    }
+    apply(&mut harness, Command::View(ViewCommand::SetUnits(System::Si)));
     harness.get_by_label("Length: 14.20 m, now 15.20 m");
 }
 
