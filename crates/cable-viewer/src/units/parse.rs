@@ -5,7 +5,8 @@ use crate::units::system;
 use crate::units::unit::Unit;
 
 impl Unit {
-    /// The SI value of typed text: a number, alone or with a unit of this quantity in either system.
+    /// The SI value of typed text: a number, alone or with a unit of this quantity in either
+    /// system.
     ///
     /// # Errors
     /// What is wrong with the text and what would be right.
