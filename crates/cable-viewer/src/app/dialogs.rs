@@ -29,6 +29,13 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                     commands.push(Command::File(FileCommand::Export(path, sheet.clone())));
                 }
             }
+            Dialog::ExportPicture { path } => {
+                let note = "The canvas as it is in view, with its legend and the greatest tension above it";
+                let title = "Export the canvas as a picture";
+                if let Some(path) = ask(ui, (title, "Save"), ("Ends in .png", note), path, commands) {
+                    commands.push(Command::File(FileCommand::ExportPicture(path)));
+                }
+            }
             Dialog::SaveRun { path } => {
                 let note = "The scene and the tables history.csv, nodes.csv and events.csv, in a folder that is new, empty or of an earlier run, which is replaced once the new one is whole";
                 if let Some(path) = ask(ui, ("Save what was recorded", "Save"), ("A folder", note), path, commands) {
@@ -170,7 +177,7 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], commands: &mu
     });
 }
 
-/// What may be taller than the window scrolls; heading and buttons stay in sight.
+/// Lets contents that may be taller than the window scroll; heading and buttons stay in sight.
 fn tall(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     /// Of heading, buttons and margins, points.
     const REST: f32 = 130.0;
@@ -182,7 +189,7 @@ fn tall(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// What was checked and what was not.
+/// Lists what was checked and what was not.
 fn about(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.heading("About the cable simulator");
     ui.weak(format!("Version {}; MIT or Apache-2.0", env!("CARGO_PKG_VERSION")));
@@ -300,7 +307,7 @@ fn recover(ui: &mut Ui, scene: &cable_core::Scene, commands: &mut Vec<Command>) 
     });
 }
 
-/// What pointer and keys do; docs/controls.md has the same table.
+/// The table of what pointer and keys do; docs/controls.md has the same one.
 const CONTROLS: [(&str, &str); 28] = [
     ("Drag a support, waypoint or corner", "Moves it; the cable follows"),
     ("Drag an obstacle", "Moves all of it; click it to see its corners"),

@@ -1,9 +1,10 @@
 //! The layout says where panels and canvas are.
 
-use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui};
+use egui::style::ScrollAnimation;
+use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui, vec2};
 
 use crate::app::{first_steps, menu, tutorial_bar};
-use crate::canvas::layers::legend;
+use crate::canvas::layers::{legend, safe_reach};
 use crate::command::Command;
 use crate::state::AppState;
 use crate::widgets::highlight;
@@ -17,19 +18,21 @@ const EDIT: &[Section] = &[("Outline", panels::scene::outline::ui), (SELECTED, p
 /// Warnings, the form of the selected thing, then the readouts. Where a place on the cable is
 /// marked its tension stands above the readouts, else at the end.
 const READ: &[Section] = &[
-    ("Warnings", panels::warnings::ui),
+    (WARNINGS, panels::warnings::ui),
     (SELECTED, panels::selected::ui),
     (MARKED, panels::analysis::tension_budget::ui),
     (READOUTS, panels::readouts::ui),
     (SAFE_REACH, panels::analysis::safe_reach::ui),
-    ("Compare", panels::analysis::compare::ui),
+    (COMPARE, panels::analysis::compare::ui),
     (UNMARKED, panels::analysis::tension_budget::ui),
     ("Friction range", panels::analysis::friction_range::ui),
 ];
 
 /// Where there is a panel of their own for them, their head stands above what scrolls there.
 const READOUTS: &str = "Readouts";
+const WARNINGS: &str = "Warnings";
 const SAFE_REACH: &str = "Safe reach";
+const COMPARE: &str = "Compare";
 const SELECTED: &str = "Selected";
 const MARKED: &str = "Tension at the marked place";
 const UNMARKED: &str = "Tension at a place";
@@ -74,6 +77,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     if wide && open.results {
         side(ui, Panel::right("read"), part(INSPECTOR_WIDTH, width), |ui| {
             legend::beside(ui, state);
+            safe_reach::legend_beside(ui, state);
             panels::readouts::head(ui, state, commands);
             ui.separator();
             scroll(ui, "read", READ, state, commands);
@@ -115,7 +119,7 @@ fn side(ui: &mut Ui, panel: Panel, width: f32, contents: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// What the one panel of a small window shows.
+/// The contents of the one panel of a small window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Tab {
     #[default]
@@ -156,8 +160,8 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
 }
 
 /// The section to scroll to, since something else is marked or selected than in the frame before:
-/// where a tension comes from, a search that was begun elsewhere, or the form of the selected
-/// thing. Warnings stay in sight above it.
+/// where a tension comes from, a search that was begun elsewhere, a result that was pinned, or the
+/// form of the selected thing. Warnings stay in sight above it.
 fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -> Option<&'static str> {
     let marked = is_new(ui, (id, "marked"), state.analysis.tension_marker) && state.analysis.tension_marker.is_some();
     let selected = is_new(ui, (id, "selected"), state.selection.selected) && state.selection.selected.is_some();
@@ -170,6 +174,11 @@ fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -
     let searches = is_new(ui, (id, "searches"), state.analysis.safe_reach.began);
     if searches && state.analysis.safe_reach.began.is_some() && from_elsewhere && holds(SAFE_REACH) {
         return Some(SAFE_REACH);
+    }
+    let pins = state.analysis.references.len();
+    let pinned = is_new(ui, (id, "pinned"), pins) && pins > 0;
+    if pinned && from_elsewhere && holds(COMPARE) {
+        return Some(COMPARE);
     }
     // The form stands on the right where there is such a panel, else below the outline.
     match (selected, id == "read", state.ui.legend_beside) {
@@ -191,7 +200,7 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
     let shown = newly_wanted(ui, (id, sections), state);
     // The bar stands beside figures, not over their last letters.
     ui.spacing_mut().scroll.floating_allocated_width = BAR;
-    // What is too wide scrolls: it must not push the canvas aside.
+    // Contents that are too wide scroll: they must not push the canvas aside.
     ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
         let width = ui.available_width();
         for (title, panel) in sections {
@@ -207,15 +216,34 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
             }
             let panel =
                 if *title == READOUTS && state.ui.legend_beside { &(panels::readouts::rest as PanelUi) } else { panel };
+            let top = ui.cursor().top();
             let section = CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| {
                 // One section that is too wide does not widen the others.
                 ui.set_max_width(width);
                 panel(ui, state, commands);
             });
+            if *title == WARNINGS && id == "read" {
+                hold_still(ui, top);
+            }
             if shown == Some(*title) {
                 section.header_response.scroll_to_me(Some(egui::Align::TOP));
             }
             highlight::offer(&section.header_response, &format!("{title} section"));
         }
     });
+}
+
+/// Warnings that come and go do not move what the pointer is at below them: the panel scrolls by
+/// what they take more or less than in the frame before. `top`: where they begin.
+fn hold_still(ui: &Ui, top: f32) {
+    let id = Id::unique("height of the warnings");
+    let height = ui.cursor().top() - top;
+    let before = ui.data(|d| d.get_temp::<f32>(id)).unwrap_or(height);
+    ui.data_mut(|d| d.insert_temp(id, height));
+    let pointer = ui.ctx().pointer_latest_pos().filter(|p| ui.clip_rect().contains(*p));
+    // In this frame all that follows has moved already, but not the hand.
+    if height != before && pointer.is_some_and(|p| p.y > top + height.min(before)) {
+        ui.scroll_with_delta_animation(vec2(0.0, before - height), ScrollAnimation::none());
+        ui.ctx().request_repaint();
+    }
 }

@@ -45,8 +45,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     });
 }
 
-/// What an engineer looks at first, always in sight: the greatest tension, how much of the service
-/// tension that is, and whether the answer was checked. From right to left.
+/// Draws the figures that an engineer looks at first, always in sight: the greatest tension, how
+/// much of the service tension that is, and whether the answer was checked. From right to left.
 fn results(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(answer) = state.live.snapshot.solution.as_deref() else { return };
     let current = state.is_current();
@@ -115,7 +115,7 @@ fn entry(ui: &mut Ui, text: &str, shortcut: Option<&KeyboardShortcut>) -> bool {
     clicked
 }
 
-/// What an entry does, where its name leaves something open.
+/// Returns what an entry does, where its name leaves something open.
 fn help(text: &str) -> &'static str {
     match text {
         "New" => "A scene with one cable; asks first if this one is not saved",
@@ -123,6 +123,7 @@ fn help(text: &str) -> &'static str {
         "Save" => "To the same file; the old one stays intact if saving fails",
         "Save as…" => "To another file",
         "Import map…" => "Terrain and beams from a table or an SVG, added to the scene",
+        "Export picture…" => "The canvas with its legend, as PNG",
         "Open run…" => "A folder with a recording",
         "Save run…" => "The whole recording, as tables in a folder",
         "Quit" => "Asks first if the scene is not saved",
@@ -149,6 +150,7 @@ fn file(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ("Save", Some(&keys::SAVE), FileCommand::Save),
         ("Save as…", Some(&keys::SAVE_AS), FileCommand::AskSaveAs),
         ("Import map…", None, import_map()),
+        ("Export picture…", None, FileCommand::AskExportPicture),
         ("Open run…", None, FileCommand::SetDialog(Some(Dialog::OpenRun { path: "run".to_owned(), hold: false }))),
         ("Save run…", None, FileCommand::SetDialog(Some(Dialog::SaveRun { path: "run".to_owned() }))),
         ("Quit", Some(&keys::QUIT), FileCommand::Quit),
@@ -275,7 +277,7 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
 }
 
-/// What the cable's colours show, and between which values.
+/// Offers what the cable's colours show, and between which values.
 fn colours(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut colour = state.view.colour;
     for quantity in Quantity::ALL {
@@ -314,16 +316,26 @@ fn scenes(ui: &mut Ui, commands: &mut Vec<Command>) {
     }
 }
 
+/// Returns the outcome of a verification in a word or two.
+pub fn verdict(verification: &Verification) -> &'static str {
+    match (verification.is_sound(), verification.not_checked.is_empty()) {
+        (true, true) => "verified",
+        (true, false) => "partly verified",
+        (false, _) => "VERIFICATION FAILED",
+    }
+}
+
 /// Diameter of the light that shows the verdict, points.
 const LIGHT_SIZE: f32 = 9.0;
 /// Whether the answer obeys the laws of mechanics, as they were checked independently of the model
 /// that gave it.
 fn light(ui: &mut Ui, verification: &Verification) {
     let visuals = ui.visuals();
-    let (lamp, colour, text) = match (verification.is_sound(), verification.not_checked.is_empty()) {
-        (true, true) => (theme::palette(visuals).sound, visuals.text_color(), "verified"),
-        (true, false) => (visuals.weak_text_color(), visuals.weak_text_color(), "partly verified"),
-        (false, _) => (visuals.error_fg_color, visuals.error_fg_color, "VERIFICATION FAILED"),
+    let text = verdict(verification);
+    let (lamp, colour) = match (verification.is_sound(), verification.not_checked.is_empty()) {
+        (true, true) => (theme::palette(visuals).sound, visuals.text_color()),
+        (true, false) => (visuals.weak_text_color(), visuals.weak_text_color()),
+        (false, _) => (visuals.error_fg_color, visuals.error_fg_color),
     };
     let laws: Vec<&str> = verification.checked.iter().map(|l| l.name()).collect();
     let help = format!("{}. Checked: {}", sentence(verification), laws.join(", "));

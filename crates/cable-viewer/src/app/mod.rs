@@ -6,7 +6,9 @@
 //! - `early_clicks`: clicks that come before the first frame
 //! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
 //! - `screenshot`, `gallery`: the window as a picture file, and in eight states
+//! - `canvas_picture`: the canvas with its legend as a picture file
 
+mod canvas_picture;
 mod dialogs;
 mod early_clicks;
 mod feedback_form;
@@ -51,7 +53,7 @@ const SOLVING_REPAINT: Duration = Duration::from_millis(30);
 
 /// The eframe application.
 pub struct ViewerApp {
-    /// What is on screen.
+    /// Everything on screen.
     pub state: AppState,
     worker: Worker,
     threaded: bool,
@@ -74,7 +76,7 @@ pub struct ViewerApp {
     models: Option<model_comparison::Job>,
     /// Every model and mesh being compared.
     precision: Option<work_precision::Job>,
-    /// What neglecting bending stiffness changes, computed or being computed.
+    /// The effect of neglecting bending stiffness, computed or being computed.
     bending: Option<neglected_bending::Job>,
     /// The ribbon of less and more friction, computed or being computed.
     spread: Option<friction_range::Job>,
@@ -183,6 +185,10 @@ impl ViewerApp {
     fn carry_out(&mut self, ctx: &egui::Context, effects: Effects) {
         if let (true, Some(autosave)) = (effects.forget_recovery, &mut self.autosave) {
             autosave.forget();
+        }
+        if let Some(path) = effects.picture {
+            let result = canvas_picture::save(&mut self.state, ctx.theme(), &path);
+            command::file::exported(&mut self.state, path, result);
         }
         if let Some(text) = effects.copied {
             ctx.copy_text(text);
@@ -429,8 +435,8 @@ impl eframe::App for ViewerApp {
     }
 
     fn on_exit(&mut self) {
-        // Closed on purpose: what is not saved is not wanted. What another window left stays until
-        // it is decided on.
+        // The user closed the window on purpose, so unsaved changes are not wanted. Those that
+        // another window left stay until they are decided on.
         if let Some(autosave) = &mut self.autosave {
             autosave.look(&self.state.document.saved, [false, true], Instant::now());
         }

@@ -14,7 +14,7 @@ use crate::state::{AppState, Item, OpenPanels};
 use crate::units::system::System;
 
 /// Other words that people look for, and a part of the name that they mean.
-const SYNONYMS: [(&str, &str); 26] = [
+const SYNONYMS: [(&str, &str); 27] = [
     ("start here", "learn guide tutorial welcome introduction"),
     ("pin this result", "hold keep compare reference remember"),
     ("pin a recorded run", "hold compare"),
@@ -23,6 +23,7 @@ const SYNONYMS: [(&str, &str); 26] = [
     ("save run", "export record csv table"),
     ("save as", "export write"),
     ("export the graph", "save plot chart picture image csv svg png"),
+    ("export picture", "save image png screenshot canvas scene view drawing snapshot"),
     ("add obstacle", "insert create ground terrain pipe wall"),
     ("open a file", "load read"),
     ("import map", "terrain ground svg csv"),
@@ -58,6 +59,7 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
         ("Open run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: false })),
         ("Pin a recorded run…", file(Dialog::OpenRun { path: "run".to_owned(), hold: true })),
         ("Save run…", file(Dialog::SaveRun { path: "run".to_owned() })),
+        ("Export picture…", Command::File(FileCommand::AskExportPicture)),
         ("Import map…", Command::File(crate::app::menu::import_map())),
         ("Undo", Command::Scene(SceneCommand::Undo)),
         ("Redo", Command::Scene(SceneCommand::Redo)),
@@ -142,7 +144,7 @@ fn found(text: &str, state: &AppState) -> Vec<(String, Command)> {
         words.iter().all(|w| text.contains(w))
     };
     all.retain(|(name, _)| matches(name, true));
-    // What is called so comes before what is meant by it.
+    // Commands of that name come before those of which it is a synonym.
     all.sort_by_key(|(name, _)| !matches(name, false));
     all
 }
@@ -189,7 +191,10 @@ mod tests {
         assert_eq!(found("").len(), entries(&state).len());
         assert!(found("comp").iter().any(|(name, _)| name == "Compare all models"));
         assert!(found("export").iter().any(|(name, _)| name == "Save run…"));
-        assert!(found("export")[0].0.starts_with("Export the graph"));
+        assert!(found("export").iter().any(|(name, _)| name.starts_with("Export the graph")));
+        assert!(
+            ["export", "screenshot", "save image", "canvas png"].iter().all(|t| found(t)[0].0 == "Export picture…")
+        );
         assert!(found("add").iter().any(|(name, _)| name == "Add obstacle: beam"));
         assert_eq!(found("hold this")[0].0, "Pin this result");
         assert_eq!(found("hold")[0].0, "Pin a recorded run…");

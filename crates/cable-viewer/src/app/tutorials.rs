@@ -8,11 +8,11 @@ use crate::state::{AppState, Item};
 
 /// A guided scene.
 pub struct Tutorial {
-    /// What it teaches.
+    /// The subject that it teaches.
     pub title: &'static str,
     /// Short id of its scene in the catalogue.
     pub scene: &'static str,
-    /// What to do, one after the other.
+    /// The things to do, one after the other.
     pub steps: &'static [Step],
 }
 
@@ -26,7 +26,7 @@ pub struct Step {
     pub points_at: &'static str,
 }
 
-/// What is to be done at a place.
+/// Returns the step at a place.
 #[must_use]
 pub fn step(place: TutorialPlace) -> Option<&'static Step> {
     TUTORIALS.get(place.tutorial)?.steps.get(place.step)
@@ -75,7 +75,7 @@ pub const TUTORIALS: [Tutorial; 6] = [
             ),
             read(
                 "Readouts section",
-                "Read the largest tension, its place and the sag on the right, under Readouts; the scale of colours is on the canvas",
+                "Read the largest tension, its place and the sag on the right: a scale explains the colours, and Readouts has more",
             ),
             act("Edit menu", "Undo it with Ctrl+Z, or Undo in the Edit menu", |s| !changed(s)),
         ],

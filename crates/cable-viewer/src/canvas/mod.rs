@@ -36,13 +36,15 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         return;
     }
     let answered = state.live.snapshot.solution.is_some() || state.live.snapshot.error.is_some();
-    // What was fitted stays so in a canvas of another size.
+    // A scene that was fitted stays so in a canvas of another size.
     let resized = state.view.camera.fitted_to.is_some_and(|size| size != <[f32; 2]>::from(rect.size()));
     if (state.view.camera.fit_wanted || resized) && answered {
         let mut border = if state.ui.legend_beside { BORDER_WITHOUT_LEGEND } else { BORDER };
         border[3] += hints_height(state);
         let bounds = bounds::scene(state);
         state.view.camera.fit(rect, bounds, border);
+        // Where its cable lies is not known yet: it is fitted once more with it.
+        state.view.camera.fit_wanted = !state.is_answered();
     }
     let [low, high] = [rect.left_bottom(), rect.right_top()].map(|p| state.view.camera.to_world(rect, p));
     state.view.visible_m = [low, high];
@@ -114,9 +116,9 @@ fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     if !state.ui.legend_beside {
         legend::draw(view, state);
         legend::contacts(view, state);
+        safe_reach::legend(view, state);
     }
     legend::banner(view, state);
-    safe_reach::legend(view, state);
     if state.view.layers.labels {
         supports::labels(view, state, figures);
     }

@@ -1,12 +1,14 @@
 //! Effects are what applying commands asks of the world outside [`AppState`].
 
+use std::path::PathBuf;
+
 use cable_core::Scene;
 
 use crate::jobs::safe_reach::ReachQuery;
 use crate::state::AppState;
 use crate::worker::request::{Edit, Request};
 
-/// What applying commands asks of the world outside [`AppState`].
+/// The requests of applied commands to the world outside [`AppState`].
 #[derive(Debug, Default)]
 pub struct Effects {
     /// For the worker.
@@ -23,6 +25,8 @@ pub struct Effects {
     pub models: Option<Option<Box<Scene>>>,
     /// Compare every model and mesh about a scene, or end that.
     pub work_precision: Option<Option<Box<Scene>>>,
+    /// Draw the canvas with its legend to a file.
+    pub picture: Option<PathBuf>,
     /// Text for the clipboard of the system.
     pub copied: Option<String>,
 }

@@ -48,11 +48,15 @@ pub enum FileCommand {
     SaveAs(PathBuf),
     /// Writes what was in view of a graph.
     Export(PathBuf, Box<Sheet>),
+    /// Asks where to draw the canvas to.
+    AskExportPicture,
+    /// Draws the canvas with its legend to a file.
+    ExportPicture(PathBuf),
     /// Adds terrain and beams read from a file, or from a text.
     ImportMap {
         /// The file; None: the text.
         path: Option<PathBuf>,
-        /// What was pasted.
+        /// The text that was pasted.
         text: String,
         /// Length of a unit of it, m.
         unit_m: f64,
@@ -93,6 +97,19 @@ fn written(state: &mut AppState, path: PathBuf) {
     (state.ui.dialog, state.ui.written) = (None, Some(path));
 }
 
+/// Says whether something was written to a file.
+pub fn exported(state: &mut AppState, path: PathBuf, result: Result<(), String>) {
+    match result {
+        Ok(()) => written(state, path),
+        Err(text) => {
+            // The path that was typed is not lost: it is asked again.
+            let asked = state.ui.dialog.take();
+            complain(state, &format!("“{}” was not written", path.display()), text);
+            state.ui.after_message = asked;
+        }
+    }
+}
+
 fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
     match command {
         FileCommand::New => open(state, new_scene(), None, effects),
@@ -116,10 +133,15 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             None => state.ui.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
         },
         FileCommand::SaveAs(path) => save(state, &path),
-        FileCommand::Export(path, sheet) => match graph_file::save(&path, &sheet) {
-            Ok(()) => written(state, path),
-            Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
-        },
+        FileCommand::Export(path, sheet) => {
+            let result = graph_file::save(&path, &sheet);
+            exported(state, path, result);
+        }
+        FileCommand::AskExportPicture => {
+            let path = Path::new(&path_text(state)).with_extension("png").display().to_string();
+            carry_out(state, FileCommand::SetDialog(Some(Dialog::ExportPicture { path })), effects);
+        }
+        FileCommand::ExportPicture(path) => effects.picture = Some(path),
         FileCommand::ImportMap { path, text, unit_m } => {
             match import::add(&state.document.scene, path.as_deref(), &text, unit_m) {
                 Ok((scene, report)) => {
@@ -182,7 +204,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
 }
 
 impl FileCommand {
-    /// What takes the place of the present scene; None: it stays.
+    /// Returns what takes the place of the present scene; None: it stays.
     fn replacement(&self) -> Option<Replacement> {
         Some(match self {
             Self::New => Replacement::New,
@@ -271,7 +293,7 @@ fn save(state: &mut AppState, path: &Path) {
         }
         Err(text) => {
             complain(state, &format!("“{}” was not saved", path.display()), text);
-            // What was typed is not lost: it is asked again.
+            // The path that was typed is not lost: it is asked again.
             state.ui.after_message = Some(Dialog::SaveAs { path: path.display().to_string() });
         }
     }

@@ -30,7 +30,8 @@ impl Bounds {
 }
 
 fn add_cables(state: &AppState, bounds: &mut Bounds) {
-    if let Some(solution) = &state.live.snapshot.solution {
+    // The cable of a scene that was there before says nothing of where this one will be.
+    if let Some(solution) = state.live.snapshot.solution.as_ref().filter(|_| state.is_answered()) {
         for n in solution.cables.iter().flat_map(|c| &c.nodes) {
             bounds.add([n.x_m, n.y_m]);
         }

@@ -6,6 +6,7 @@ use egui::epaint::TextShape;
 use egui::{Color32, FontId, Pos2, Shape, Stroke, Ui};
 
 use crate::io::graph_sheet::{Sheet, visible};
+use crate::io::picture_file;
 use crate::render::colour::LINES;
 use crate::render::offscreen::Offscreen;
 use crate::units::format::{round_step, significant};
@@ -233,10 +234,7 @@ pub fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
             paint(ui, &drawing);
         });
     }
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    let picture = offscreen.picture(Color32::WHITE);
-    picture.write_to(&mut bytes, image::ImageFormat::Png).map_err(|e| e.to_string())?;
-    Ok(bytes.into_inner())
+    picture_file::png(&offscreen.picture(Color32::WHITE))
 }
 
 /// Paints a drawing; returns where its words stand.

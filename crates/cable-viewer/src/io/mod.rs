@@ -7,6 +7,7 @@
 //! - `saved_run`: the folder of a run, read again
 //! - `graph_file`: what is in view of a graph, as CSV, SVG or PNG
 //! - `graph_sheet`, `graph_drawing`: what that is, and how it is laid out, once for SVG and PNG
+//! - `picture_file`: a picture as PNG
 //! - `autosave`: unsaved changes, kept for a window that dies
 //! - `feedback`: what a user thinks, as a row of a table
 
@@ -17,6 +18,7 @@ pub mod folder;
 pub mod graph_drawing;
 pub mod graph_file;
 pub mod graph_sheet;
+pub mod picture_file;
 pub mod recent_files;
 pub mod saved_run;
 pub mod scene_file;

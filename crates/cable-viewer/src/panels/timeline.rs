@@ -73,7 +73,8 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let [first, last] = span.unwrap_or([0.0, 1.0]);
     let text = match state.live.recording.shown_s {
         _ if span.is_none() => "Press play to record".to_owned(),
-        Some(t) => format!("{t:.2} of {last:.2} s"),
+        // The time of the frame on screen, not that of the knob between two frames.
+        Some(t) => format!("{:.2} of {last:.2} s", state.live.snapshot.solution.as_ref().map_or(t, |s| s.time_s)),
         None => format!("recorded {}", format::duration(last - first)),
     };
     let count = match state.live.recording.events().len() {

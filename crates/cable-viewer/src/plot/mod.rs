@@ -18,6 +18,7 @@ use crate::plot::cursors::Cursors;
 use crate::record::measure::Measure;
 use crate::record::series::{Series, line_style, value_at};
 use crate::render::colour::{LINES, Quantity};
+use crate::render::theme;
 use crate::units::format::{round_step, significant};
 use crate::units::unit::{DIGITS, Unit};
 use crate::widgets::field;
@@ -184,6 +185,8 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         .link_cursor(Id::unique(("cursor", graph.group.to_owned())), [true, false])
         .height(height)
         .y_axis_min_width(44.0)
+        // As fine as that of the canvas: lines of data stand off it.
+        .grid_color(theme::palette(ui.visuals()).grid_zero)
         .allow_drag(!follow)
         .allow_zoom(!follow)
         .allow_boxed_zoom(!follow)

@@ -55,7 +55,7 @@ impl Camera {
 
     /// Moves the world with the pointer.
     pub fn pan(&mut self, delta: Vec2) {
-        self.fitted_to = None;
+        self.leave_fit();
         self.centre_m[0] -= f64::from(delta.x) / self.points_per_m;
         self.centre_m[1] += f64::from(delta.y) / self.points_per_m;
     }
@@ -65,7 +65,7 @@ impl Camera {
         if !(factor.is_finite() && factor > 0.0) {
             return;
         }
-        self.fitted_to = None;
+        self.leave_fit();
         let scale = (self.points_per_m * factor).clamp(*SCALE.start(), *SCALE.end());
         let k = self.points_per_m / scale;
         for i in 0..2 {
@@ -76,7 +76,13 @@ impl Camera {
 
     /// Puts a point (m) in the middle.
     pub fn centre_on(&mut self, p: Point) {
-        (self.centre_m, self.fitted_to) = (p, None);
+        self.leave_fit();
+        self.centre_m = p;
+    }
+
+    /// The view is moved by hand: it is not fitted any more, and not again once an answer comes.
+    fn leave_fit(&mut self) {
+        (self.fit_wanted, self.fitted_to) = (false, None);
     }
 
     /// Puts a world rectangle (least and greatest corner, m) in view, with free borders (points).

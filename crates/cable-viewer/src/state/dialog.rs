@@ -29,14 +29,14 @@ pub enum Replacement {
     Quit,
 }
 
-/// What the user is asked or told.
+/// A question to the user, or a message.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Dialog {
     /// Something went wrong; the old scene is kept.
     Message {
         /// One line.
         title: String,
-        /// What, where, why, what to do.
+        /// It says what, where, why and what to do.
         text: String,
     },
     /// Where to read a scene from.
@@ -53,8 +53,13 @@ pub enum Dialog {
     Export {
         /// The path as typed so far.
         path: String,
-        /// What was in view.
+        /// The part that was in view.
         sheet: Box<Sheet>,
+    },
+    /// Where to draw the canvas to.
+    ExportPicture {
+        /// The path as typed so far.
+        path: String,
     },
     /// Where to save what was recorded.
     SaveRun {
@@ -72,17 +77,17 @@ pub enum Dialog {
     ImportMap {
         /// The path as typed so far; empty: what was pasted.
         path: String,
-        /// What was pasted.
+        /// The text that was pasted.
         text: String,
         /// Length of a unit of it as typed so far, m.
         unit_m: String,
     },
     /// Everything that can be done, by name.
     Palette {
-        /// What was typed so far.
+        /// The text as typed so far.
         text: String,
     },
-    /// What the user thinks.
+    /// The user's opinion.
     Feedback {
         /// So far.
         answers: Answers,
@@ -91,7 +96,7 @@ pub enum Dialog {
     },
     /// The guides, and what else to begin with.
     StartHere,
-    /// What was validated and what was not.
+    /// The list of what was validated and what was not.
     About,
     /// A window that did not close has left unsaved changes.
     Recover {
@@ -100,7 +105,7 @@ pub enum Dialog {
     },
     /// The scene has unsaved changes and something is about to replace it.
     Unsaved {
-        /// What goes on once the user agrees.
+        /// The action that goes on once the user agrees.
         then: Replacement,
     },
     /// Keys and pointer.

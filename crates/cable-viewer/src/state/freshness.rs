@@ -37,6 +37,12 @@ impl AppState {
         }
     }
 
+    /// Returns whether what is on screen answers the last edit, be it by a draft or by a refusal.
+    #[must_use]
+    pub fn is_answered(&self) -> bool {
+        self.live.snapshot.edit >= self.solver.edits_sent
+    }
+
     /// Figures on screen are of the scene as it is.
     #[must_use]
     pub fn is_current(&self) -> bool {

@@ -1,10 +1,12 @@
 //! Typed text is read as a number, alone or with a unit of its quantity.
 
 use crate::units::format::with_symbol;
+use crate::units::system;
 use crate::units::unit::Unit;
 
 impl Unit {
-    /// The SI value of typed text: a number, alone or with a unit of this quantity.
+    /// The SI value of typed text: a number, alone or with a unit of this quantity in either
+    /// system.
     ///
     /// # Errors
     /// What is wrong with the text and what would be right.
@@ -12,7 +14,10 @@ impl Unit {
         let Self { symbol, si, others, .. } = self.display();
         let plain = text.trim().replace('−', "-").replace(' ', "");
         let number = |digits: &str, si: f64| digits.parse::<f64>().ok().filter(|v| v.is_finite()).map(|v| v * si);
-        let spelled = std::iter::once((symbol, si)).chain(others.iter().copied());
+        // Whatever is shown, units of both systems may be typed.
+        let both = [Some(self), system::us(self)].into_iter().flatten();
+        let more = both.flat_map(|u| std::iter::once((u.symbol, u.si)).chain(u.others.iter().copied()));
+        let spelled = std::iter::once((symbol, si)).chain(others.iter().copied()).chain(more);
         number(&plain, si)
             .or_else(|| {
                 let mut units: Vec<_> = spelled.filter(|(symbol, _)| !symbol.is_empty()).collect();

@@ -54,8 +54,13 @@ pub fn unit(of: Unit) -> Unit {
     if current() == System::Si {
         return of;
     }
-    let found = US.iter().find(|(symbol, _)| *symbol == of.symbol);
-    found.map_or(of, |(_, us)| Unit { decimals: of.decimals, ..*us })
+    us(of).map_or(of, |us| Unit { decimals: of.decimals, ..us })
+}
+
+/// The US unit in the place of an SI one.
+#[must_use]
+pub fn us(of: Unit) -> Option<Unit> {
+    US.iter().find(|(symbol, _)| *symbol == of.symbol).map(|(_, us)| *us)
 }
 
 /// Units of a quantity from large to small with the value (SI) each is used from on, and the one of
@@ -145,6 +150,10 @@ mod tests {
         assert!((Unit::KN.parse(&exact).unwrap() / 12_345.678 - 1.0).abs() < 1e-13, "{exact}");
         set_current(System::Si);
         assert_eq!(format::force(1000.0), "1000 N");
+        // Units of both systems may be typed in either.
         assert!((Unit::M.parse("10 ft").unwrap() - 3.048).abs() < 1e-15);
+        assert!((Unit::KN.parse("20 lbf").unwrap() - 20.0 * POUND_FORCE).abs() < 1e-12);
+        assert!((Unit::KG_PER_M.parse("2 lb/ft").unwrap() - 2.0 * POUND / FOOT).abs() < 1e-12);
+        assert!((Unit::M_PER_S.parse("10 mph").unwrap() - 4.4704).abs() < 1e-12);
     }
 }

@@ -61,6 +61,7 @@ pub fn advance_frame(draft: &mut Simulation) -> Result<(), SolveError> {
 pub fn coarse_edit(edit: &Edit, old: &Simulation) -> Edit {
     let mut coarse = edit.clone();
     coarse.settings.segments = Some(SEGMENTS);
+    coarse.settings.histories = false;
     // An explicit model: what `auto` chose for the full mesh.
     coarse.model = old.model();
     coarse

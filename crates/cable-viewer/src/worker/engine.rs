@@ -16,7 +16,7 @@ use crate::worker::passing;
 use crate::worker::request::{Drag, Edit, Request, Resume};
 use crate::worker::timing::{COARSE_AFTER_S, DRAFT_AFTER_S, DRAFT_FIRST_S, FRAME_S, MAX_ANSWERS, QUIET_S};
 
-/// What `auto` is asked once time runs.
+/// The question to `auto` once time runs.
 const MOTION: Question = Question::History(Inertia::Dynamic);
 
 /// Owns the simulation.
@@ -25,7 +25,7 @@ pub struct Engine {
     simulation: Option<Simulation>,
     /// The last edit, for rebuilding.
     edit: Option<Edit>,
-    /// What `simulation` holds, beside the last edit.
+    /// The state of `simulation` relative to the last edit.
     phase: Phase,
     /// The simulation that `auto` chose for rest, kept while one that can move has taken its place.
     before_motion: Option<Simulation>,
@@ -43,7 +43,7 @@ pub struct Engine {
     robot_order: Option<f64>,
     /// Drafts may be shown: there is a thread to replace them by the answer.
     drafts: bool,
-    /// What is known of the run so far; None where it does not go on from a start that has settled:
+    /// The figures of the run so far; None where it does not go on from a start that has settled:
     /// a change while time runs begins another.
     monitor: Option<RunMonitor>,
     /// The rest was laid without asking what other histories would have left, so that it is on
@@ -59,7 +59,7 @@ pub struct Engine {
     hand: Option<Hand>,
 }
 
-/// What the simulation of an [`Engine`] holds, beside the last edit.
+/// The state of the simulation of an [`Engine`] relative to the last edit.
 #[derive(Clone, Debug)]
 enum Phase {
     /// The answer to the last edit, if there is any.
@@ -104,7 +104,7 @@ struct Hand {
     at_m: Point,
 }
 
-/// What goes to the window.
+/// A message to the window.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     /// The latest answer.
@@ -169,7 +169,7 @@ impl Engine {
         }
     }
 
-    /// What is shown is a draft.
+    /// Returns whether a draft is shown.
     #[must_use]
     pub fn draft(&self) -> bool {
         matches!(self.phase, Phase::Draft { .. })
@@ -255,7 +255,7 @@ impl Engine {
         self.report(held_back)
     }
 
-    /// What is shown is a draft that still moves.
+    /// Returns whether a draft is shown that still moves.
     #[must_use]
     pub fn settling(&self) -> bool {
         matches!(self.phase, Phase::Draft { settling: true })
@@ -419,10 +419,9 @@ impl Engine {
         let at_rest = from.is_none_or(|o| o.time_s() <= 0.0);
         self.routes.clear();
         let mut edit = edit;
-        // Only without a mesh do other histories take longer than the rest itself: the cable is
-        // laid anew for each. Where nobody refines the answer they are asked for at once.
-        let meshless = old.as_ref().is_some_and(|o| is_quasi_static(o.model()));
-        self.histories_due = self.drafts && at_rest && meshless && edit.settings.histories;
+        // Other histories take longer than the rest itself: each is another rest. Where nobody
+        // refines the answer they are asked for at once.
+        self.histories_due = self.drafts && at_rest && edit.settings.histories;
         let rebuilt = if at_rest { self.lay(&mut edit, from).map(|s| (s, true)) } else { self.rebuild(&edit, from) };
         self.edit = Some(edit);
         self.solve_s = began.elapsed().as_secs_f64();
@@ -591,7 +590,7 @@ impl Engine {
             simulation.reset();
         } else if let Some(edit) = self.edit.clone() {
             let mut edit = edit;
-            self.histories_due = false;
+            self.histories_due = self.drafts && edit.settings.histories;
             self.simulation = Some(self.lay(&mut edit, None)?);
             self.before_motion = None;
             self.phase = Phase::Answer { start_kept: true };
@@ -689,7 +688,7 @@ impl Engine {
         }
     }
 
-    /// What is on screen is an answer: it stays while later scenes have none.
+    /// Keeps an answer that is on screen: it stays while later scenes have none.
     fn keep_answer(&mut self) {
         if let (false, Some(solution)) = (self.snapshot.draft, &self.snapshot.solution) {
             let Snapshot { scene, peaks, .. } = &self.snapshot;
@@ -736,6 +735,8 @@ pub fn is_quasi_static(model: Model) -> bool {
 /// The simulation that moves from where the one stands that `auto` chose for rest, and whether it
 /// has come to rest there on its own mesh.
 fn moving(rest: &Simulation, settings: Settings) -> Result<(Simulation, bool), Error> {
+    // Its warning of other histories would be gone with the first step.
+    let settings = Settings { histories: false, ..settings };
     let mut moving = Simulation::for_question(rest.scene().clone(), Model::Auto, settings, MOTION)?;
     moving.carry(rest)?;
     let mut settled = moving.clone();

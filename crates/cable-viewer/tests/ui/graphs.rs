@@ -77,7 +77,7 @@ fn a_drag_in_the_graph_over_time_moves_the_playhead_of_all() {
     let shown = shown_s(&harness).expect("an earlier time is shown");
     let solution = harness.state().state.live.snapshot.solution.clone().unwrap();
     assert!((solution.time_s - shown).abs() < 1.0 / 60.0 && shown < 1.9, "{shown} {}", solution.time_s);
-    harness.get_by_label_contains(&format!("{shown:.2} of "));
+    harness.get_by_label_contains(&format!("{:.2} of ", solution.time_s));
     assert!(harness.state().state.live.playback.paused);
     assert_eq!(plot::hovered(&harness.ctx, "along"), None);
 }
@@ -111,4 +111,16 @@ fn a_zoomed_graph_goes_to_the_time_that_is_scrubbed_to() {
     let [left, right] = in_view(&harness);
     assert!(left < 0.3 && 0.3 < right, "{left} to {right}");
     assert!(right - left < 2.0, "it stays zoomed");
+}
+
+/// The knob of the timeline stands between two frames; the frame before it is shown, and its time
+/// was said once as its own and once as that of the knob.
+#[test]
+fn the_timeline_tells_the_time_of_the_frame_that_is_shown() {
+    let mut harness = played(1);
+    for knob_s in [0.345, 0.5, 0.6649] {
+        apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(knob_s))));
+        let shown_s = harness.state().state.live.snapshot.solution.as_ref().unwrap().time_s;
+        harness.get_by_label_contains(&format!("{shown_s:.2} of "));
+    }
 }

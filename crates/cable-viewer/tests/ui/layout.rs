@@ -6,11 +6,12 @@ use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, PlaybackCommand, SceneCommand, ViewCommand};
 use cable_viewer::state::{FirstSteps, Item, OpenPanels, TensionMarker};
+use cable_viewer::units::system::System;
 use egui::{Key, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
-use crate::{apply, open};
+use crate::{apply, open, select};
 
 /// The canvas as a part of the window.
 fn share(harness: &Harness<'_, ViewerApp>, [width, height]: [f32; 2]) -> f32 {
@@ -279,8 +280,13 @@ fn the_table_of_pinned_results_is_as_wide_as_its_panel() {
     harness.run_steps(3);
     harness.get_by_label("Cost").scroll_to_me();
     harness.run_steps(3);
-    let cost = harness.get_by_label("889 ms").rect();
-    assert!(cost.right() <= 1272.0, "{cost:?}");
+    // Foot-pounds are the longest unit.
+    for units in [System::Si, System::Us] {
+        apply(&mut harness, Command::View(ViewCommand::SetUnits(units)));
+        let cost = harness.get_by_label("889 ms").rect();
+        assert!(cost.right() <= 1272.0, "{cost:?}");
+    }
+    apply(&mut harness, Command::View(ViewCommand::SetUnits(System::Si)));
     harness.get_by_label("Length: 14.20 m, now 15.20 m");
 }
 
@@ -322,4 +328,45 @@ fn issue_020_labels_leave_the_robot_to_be_seen() {
         let named = found.iter().filter(|(text, _)| text == "leg 1" || text == "leg 3").count();
         assert_eq!(named, 2, "{found:?}");
     }
+}
+
+/// A warning that came while a slider was dragged moved it, and the next click met another control.
+#[test]
+fn a_warning_that_comes_does_not_move_the_form_under_the_pointer() {
+    let mut harness = open(catalog::hanging_span());
+    select(&mut harness, Item::Cable(0));
+    let place = |h: &Harness<'_, ViewerApp>| h.get_by_label("Linear density slider").rect();
+    let before = place(&harness);
+    harness.hover_at(before.center());
+    harness.run_steps(2);
+    let warn = |h: &mut Harness<'_, ViewerApp>, service_tension_n: f64| {
+        let mut cable = h.state().state.document.scene.cables[0].clone();
+        (cable.service_tension_n, cable.min_bend_radius_m) = (service_tension_n, 20.0);
+        apply(h, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
+        h.run_steps(3);
+    };
+    warn(&mut harness, 50.0);
+    let warnings = harness.state().state.live.snapshot.solution.as_ref().unwrap().warnings.len();
+    assert!(warnings >= 2, "{warnings}");
+    assert!((place(&harness).top() - before.top()).abs() < 1.0, "{before:?} {:?}", place(&harness));
+    // They go as they came.
+    warn(&mut harness, 800.0);
+    assert!((place(&harness).top() - before.top()).abs() < 1.0, "{before:?} {:?}", place(&harness));
+    // A pointer elsewhere wants to see them.
+    harness.hover_at(harness.get_by_label("Canvas").rect().center());
+    harness.run_steps(2);
+    warn(&mut harness, 50.0);
+    assert!(place(&harness).top() > before.top() + 10.0);
+}
+
+/// A result that was pinned by name was nowhere to be seen: its table stood below what is in sight.
+#[test]
+fn a_result_that_is_pinned_by_name_is_seen() {
+    let mut harness = open(catalog::over_beam());
+    harness.hover_at(harness.get_by_label("Canvas").rect().center());
+    harness.run_steps(2);
+    apply(&mut harness, Command::View(ViewCommand::Hold));
+    harness.run_steps(5);
+    let unpin = harness.get_by_label("Unpin all").rect();
+    assert!(harness.ctx.content_rect().contains_rect(unpin), "{unpin:?}");
 }

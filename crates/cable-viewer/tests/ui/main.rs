@@ -8,6 +8,7 @@ mod controls;
 mod defects;
 mod early;
 mod editing;
+mod exported_picture;
 mod first_minute;
 mod gallery;
 mod gpu;

@@ -270,8 +270,17 @@ fn progress_of_a_robots_reach_counts_places_and_what_is_found_so_far_is_said_to_
     click(&mut harness, "Cancel safe reach");
 }
 
+fn legend(harness: &Harness<'_, ViewerApp>) -> egui::Rect {
+    let found = harness.output().shapes.iter().find_map(|shape| match &shape.shape {
+        egui::Shape::Text(text) if text.galley.text() == "above service" => Some(text.visual_bounding_rect()),
+        _ => None,
+    });
+    found.expect("the map has a legend")
+}
+
 /// Issue 20: begun by the palette, a search showed neither its progress nor its result, which stood
-/// below what was in sight; and the hints of the first minute lay over its legend.
+/// below what was in sight; the hints of the first minute lay over its legend, and that over the
+/// cable.
 #[test]
 fn issue_020_a_search_is_seen_wherever_it_was_begun() {
     let mut harness = open(catalog::tank_robot());
@@ -286,16 +295,17 @@ fn issue_020_a_search_is_seen_wherever_it_was_begun() {
     let screen = harness.ctx.content_rect();
     let bar = harness.get_by_label("Progress of the safe reach").rect();
     assert!(screen.contains_rect(bar), "{bar:?}");
-    let hints = harness.get_by_label("Start here…").rect();
-    let mut legend = None;
-    for shape in &harness.output().shapes {
-        if let egui::Shape::Text(text) = &shape.shape
-            && text.galley.text() == "above service"
-        {
-            legend = Some(text.visual_bounding_rect());
-        }
+    // At no size does its legend lie over cable, robot or hints: it stands beside the canvas, and
+    // on it only where there is no such panel.
+    for size in [[1024.0, 640.0], [1280.0, 800.0]] {
+        harness.set_size(size.into());
+        harness.run_steps(3);
+        let canvas = harness.get_by_label("Canvas").rect();
+        assert!(!canvas.intersects(legend(&harness)), "{size:?}: {canvas:?} {:?}", legend(&harness));
     }
-    let legend = legend.expect("the map has a legend");
-    assert!(legend.max.y < hints.min.y, "{legend:?} {hints:?}");
+    harness.key_press(Key::CloseBracket);
+    harness.run_steps(3);
+    let hints = harness.get_by_label("Start here…").rect();
+    assert!(legend(&harness).max.y < hints.min.y, "{:?} {hints:?}", legend(&harness));
     apply(&mut harness, Command::View(ViewCommand::Reach(false)));
 }

@@ -11,11 +11,13 @@ use cable_core::scene::catalog;
 use cable_core::solution::Histories;
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
-use cable_viewer::command::{Command, PlaybackCommand, SceneCommand};
+use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand};
 use cable_viewer::state::Item;
 use egui::Vec2;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+
+use crate::open;
 
 /// Longer than any answer takes on a loaded machine; only a dead worker reaches it.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -234,27 +236,32 @@ fn a_rest_is_shown_before_other_histories_of_it_are_sought() {
             h.step();
         }
     };
-    let mut harness = build(catalog::tank());
-    wait_for_histories(&mut harness);
-    let item = Item::Support { cable: 0, support: 1 };
-    let at: Point = harness.state().state.document.scene.cables[0].supports[1].at_m.expect("held");
-    submit(&mut harness, Command::Scene(SceneCommand::Move { item, to_m: [at[0] - 0.05, at[1]] }));
-    // The first frame with the answer; the search begins 60 ms later.
-    while !harness.state().settled() {
-        harness.step();
+    // Without a mesh and with one.
+    for scene in [catalog::tank(), catalog::plan_posts()] {
+        let name = scene.name.clone();
+        let mut harness = build(scene);
+        wait_for_histories(&mut harness);
+        let support = harness.state().state.document.scene.cables[0].supports.len() - 1;
+        let at: Point = harness.state().state.document.scene.cables[0].supports[support].at_m.expect("held");
+        let item = Item::Support { cable: 0, support };
+        submit(&mut harness, Command::Scene(SceneCommand::Move { item, to_m: [at[0] - 0.05, at[1]] }));
+        // The first frame with the answer; the search begins 60 ms later.
+        while !harness.state().settled() {
+            harness.step();
+        }
+        let state = &harness.state().state;
+        assert!(state.live.snapshot.seeks_histories && state.is_current() && !state.live.snapshot.draft, "{name}");
+        assert!(sought(&harness).is_empty(), "{name}: what is not known yet is not said");
+        let first = figures(&harness);
+        wait_for_histories(&mut harness);
+        assert_eq!(first, figures(&harness), "{name}");
+        let then = sought(&harness);
+        assert!(!then.is_empty() && !then.contains(&Histories::NotSought), "{name}: {then:?}");
+        // The scene as it is, with everything asked at once, says the same.
+        let scene = harness.state().state.document.scene.clone();
+        let anew = open(scene);
+        assert_eq!((figures(&harness), then), (figures(&anew), sought(&anew)), "{name}");
     }
-    let state = &harness.state().state;
-    assert!(state.live.snapshot.seeks_histories && state.is_current() && !state.live.snapshot.draft);
-    assert!(sought(&harness).is_empty(), "what is not known yet is not said");
-    let first = figures(&harness);
-    wait_for_histories(&mut harness);
-    assert_eq!(first, figures(&harness));
-    let then = sought(&harness);
-    assert!(!then.is_empty() && !then.contains(&Histories::NotSought), "{then:?}");
-    // The scene as it is, opened anew, says the same.
-    let mut anew = build(harness.state().state.document.scene.clone());
-    wait_for_histories(&mut anew);
-    assert_eq!((figures(&harness), then), (figures(&anew), sought(&anew)));
 }
 
 /// While it is being sought whether the rest is the only one, the window neither says that there
@@ -274,6 +281,25 @@ fn while_other_histories_are_sought_the_window_says_so() {
     assert_eq!(said(catalog::over_beam(), true), [true, false]);
     assert_eq!(said(catalog::over_beam(), false), [false, true]);
     assert_eq!(said(catalog::hanging_span(), true), [false, true]);
+}
+
+/// A scene that was opened was fitted to the cable of the one before, which was still on screen.
+#[test]
+fn a_scene_that_is_opened_is_fitted_to_its_own_cable() {
+    let mut harness = threaded(catalog::hanging_span(), 60);
+    harness.run_steps(3);
+    let hand = harness.state().state.view.camera;
+    submit(&mut harness, Command::File(FileCommand::OpenCatalogue("pile".to_owned())));
+    harness.step();
+    wait(&mut harness);
+    harness.run_steps(2);
+    let camera = harness.state().state.view.camera;
+    assert!(camera != hand && !camera.fit_wanted);
+    let nodes = &harness.state().state.live.snapshot.solution.as_ref().unwrap().cables[0].nodes;
+    let (least, most) = nodes.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), n| (a.min(n.x_m), b.max(n.x_m)));
+    let canvas = harness.get_by_label("Canvas").rect();
+    let x = camera.to_screen(canvas, [0.5 * (least + most), 0.0]).x;
+    assert!((x - canvas.center().x).abs() < 0.1 * canvas.width(), "{x} in {canvas:?}");
 }
 
 fn undimmed(what: &str, scene: Scene, item: Item, at: Point) {

@@ -7,11 +7,15 @@ use cable_core::analysis::safe_reach::area::Area;
 use cable_core::analysis::safe_reach::line::{ReachMap, ReachPlace, Trip};
 use cable_core::math::Point;
 use cable_core::scene::preset::robot_preset;
-use egui::{Align2, Color32, FontId, Mesh, Pos2, Rect, Shape, Stroke, StrokeKind, pos2, vec2};
+use egui::{
+    Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
+    vec2,
+};
 
 use crate::canvas::view::{CanvasView, hints_height};
 use crate::jobs::safe_reach::Maps;
 use crate::render::colour::ColourMap;
+use crate::render::theme::{self, Palette};
 use crate::state::AppState;
 use crate::units::labels;
 
@@ -23,8 +27,10 @@ const BEYOND: f64 = 2.0;
 const HATCH: f32 = 7.0;
 /// Height of the strip of a robot of unknown size, m.
 const HEIGHT_M: f64 = 1.0;
-/// Size of the legend, points.
-const LEGEND: [f32; 2] = [206.0, 78.0];
+/// Height of what explains the colours, points.
+const KEY_HEIGHT: f32 = 56.0;
+/// Size of the legend on the canvas, points.
+const LEGEND: [f32; 2] = [206.0, KEY_HEIGHT + 12.0];
 
 /// Draws the map of an end.
 pub fn area(view: &CanvasView<'_>, state: &AppState) {
@@ -89,24 +95,24 @@ fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], mesh: &m
     }
     let over = |limit_n: f64| corners.iter().all(|(_, n)| *n > limit_n);
     if over(area.service_n) {
-        lines.extend(stroke(view, [at[0], at[2]], 1.0));
+        lines.extend(stroke(view.palette, [at[0], at[2]], 1.0));
     }
     if over(area.breaking_n) {
-        lines.extend(stroke(view, [at[1], at[3]], 1.0));
+        lines.extend(stroke(view.palette, [at[1], at[3]], 1.0));
     }
     let values = corners.map(|(_, n)| n.min(BEYOND * area.breaking_n));
     for (limit_n, width) in [(area.service_n, 2.0), (area.breaking_n, 3.5)] {
         for ends in crossing(at, values, limit_n) {
-            lines.extend(stroke(view, ends, width));
+            lines.extend(stroke(view.palette, ends, width));
         }
     }
 }
 
 /// A line of risk over one of the background: one of the two stands off every colour of the map
 /// that is above the service tension, in both themes.
-fn stroke(view: &CanvasView<'_>, ends: [Pos2; 2], width: f32) -> [Shape; 2] {
+fn stroke(palette: &Palette, ends: [Pos2; 2], width: f32) -> [Shape; 2] {
     let line = |width: f32, colour: Color32| Shape::line_segment(ends, Stroke::new(width, colour));
-    [line(width + 2.0, view.palette.background), line(width, view.palette.risk)]
+    [line(width + 2.0, palette.background), line(width, palette.risk)]
 }
 
 /// Where a value is passed in a square: its ends on the sides, between which tension grows by even
@@ -166,7 +172,7 @@ fn hatch(view: &CanvasView<'_>, [a, b]: [Pos2; 2], height: f32) {
     let strokes = ((b.x - a.x).abs() / HATCH).ceil().clamp(1.0, 40.0);
     for k in 0..strokes as usize {
         let at = a + (b - a) * (k as f32 / strokes);
-        view.painter.extend(stroke(view, [at, at + vec2(HATCH, -height)], 1.0));
+        view.painter.extend(stroke(view.palette, [at, at + vec2(HATCH, -height)], 1.0));
     }
 }
 
@@ -190,19 +196,14 @@ fn ends(
     }
 }
 
-/// What the colours of the map mean, in the lower left corner.
+/// Draws what the colours of the map mean in the lower left corner of the canvas.
 pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
-    let Some((maps, scene)) = state.analysis.safe_reach.found() else { return };
-    let [service_n, breaking_n] = maps.limits_n();
+    let Some(key) = MapKey::of(state) else { return };
     let corner = pos2(
         view.rect.min.x + crate::canvas::layers::grid::STRIP[0] + 10.0,
         view.rect.max.y - crate::canvas::layers::grid::STRIP[1] - 30.0 - hints_height(state),
     );
-    let over = match maps {
-        Maps::Line(_) => "above service".to_owned(),
-        Maps::Area(..) => format!("above service; thick line: breaks, {}", labels::force(breaking_n)),
-    };
-    let words = view.painter.layout_no_wrap(over.clone(), FontId::proportional(10.5), view.palette.text).size().x;
+    let words = view.painter.layout_no_wrap(key.over.clone(), FontId::proportional(10.5), view.palette.text).size().x;
     let size = vec2(LEGEND[0].max(words + 45.0), LEGEND[1]);
     let plate = Rect::from_min_size(corner - vec2(0.0, size.y), size);
     if plate.max.x > view.rect.max.x - 20.0 || plate.min.y < view.rect.min.y + 20.0 {
@@ -210,34 +211,68 @@ pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
     }
     let line = Stroke::new(1.0, view.palette.plate_line);
     view.painter.rect(plate, 4.0, view.palette.plate, line, StrokeKind::Inside);
-    let title = if state.analysis.safe_reach.choice.back { "Safe reach, there and back" } else { "Safe reach" };
-    let title = if **scene == state.document.scene { title.to_owned() } else { format!("{title} (out of date)") };
-    view.text(plate.min + vec2(9.0, 6.0), Align2::LEFT_TOP, &title, 11.5, view.palette.text);
-    let bar = Rect::from_min_size(plate.min + vec2(9.0, 24.0), vec2(size.x - 18.0, 9.0));
-    let mut mesh = Mesh::default();
-    const STRIPS: u32 = 24;
-    for k in 0..=STRIPS {
-        let f = k as f32 / STRIPS as f32;
-        let x = bar.min.x + f * bar.width();
-        mesh.colored_vertex(pos2(x, bar.min.y), colour(f64::from(f)));
-        mesh.colored_vertex(pos2(x, bar.max.y), colour(f64::from(f)));
-        if k > 0 {
-            let b = 2 * k;
-            mesh.add_triangle(b - 2, b - 1, b);
-            mesh.add_triangle(b - 1, b + 1, b);
-        }
-    }
-    view.painter.add(mesh);
-    let under = bar.max.y + 3.0;
-    view.text(pos2(bar.min.x, under), Align2::LEFT_TOP, &labels::force(0.0), 10.5, view.palette.text);
-    let service = format!("service {}", labels::force(service_n));
-    view.text(pos2(bar.max.x, under), Align2::RIGHT_TOP, &service, 10.5, view.palette.text);
-    let y = plate.max.y - 12.0;
-    let sample = pos2(bar.min.x, y);
-    for k in 0..3 {
-        let foot = sample + vec2(6.0 * k as f32, 5.0);
-        view.painter.extend(stroke(view, [foot, foot + vec2(6.0, -10.0)], 1.0));
-    }
-    view.text(sample + vec2(27.0, 0.0), Align2::LEFT_CENTER, &over, 10.5, view.palette.text);
+    key.draw(view.painter, view.palette, plate.shrink2(vec2(9.0, 6.0)));
     view.taken.push(plate);
+}
+
+/// Draws what the colours of the map mean as a strip beside the canvas.
+pub fn legend_beside(ui: &mut Ui, state: &AppState) {
+    let Some(key) = MapKey::of(state) else { return };
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), KEY_HEIGHT), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, "Colours of the safe reach"));
+    key.draw(ui.painter(), theme::palette(ui.visuals()), rect);
+}
+
+/// The meaning of the colours of a map, in words.
+struct MapKey {
+    title: String,
+    service: String,
+    over: String,
+}
+
+impl MapKey {
+    fn of(state: &AppState) -> Option<Self> {
+        let (maps, scene) = state.analysis.safe_reach.found()?;
+        let [service_n, breaking_n] = maps.limits_n();
+        let title = if state.analysis.safe_reach.choice.back { "Safe reach, there and back" } else { "Safe reach" };
+        let out_of_date = if **scene == state.document.scene { "" } else { " (out of date)" };
+        let over = match maps {
+            Maps::Line(_) => "above service".to_owned(),
+            Maps::Area(..) => format!("above service; thick line: breaks, {}", labels::force(breaking_n)),
+        };
+        let service = format!("service {}", labels::force(service_n));
+        Some(Self { title: format!("{title}{out_of_date}"), service, over })
+    }
+
+    fn draw(&self, painter: &Painter, palette: &Palette, area: Rect) {
+        let text = |at: Pos2, anchor: Align2, text: &str, size: f32| {
+            painter.text(pos2(at.x.round(), at.y.round()), anchor, text, FontId::proportional(size), palette.text)
+        };
+        text(area.min, Align2::LEFT_TOP, &self.title, 11.0);
+        let bar = Rect::from_min_size(area.min + vec2(0.0, 16.0), vec2(area.width(), 9.0));
+        let mut mesh = Mesh::default();
+        const STRIPS: u32 = 24;
+        for k in 0..=STRIPS {
+            let f = k as f32 / STRIPS as f32;
+            let x = bar.min.x + f * bar.width();
+            mesh.colored_vertex(pos2(x, bar.min.y), colour(f64::from(f)));
+            mesh.colored_vertex(pos2(x, bar.max.y), colour(f64::from(f)));
+            if k > 0 {
+                let b = 2 * k;
+                mesh.add_triangle(b - 2, b - 1, b);
+                mesh.add_triangle(b - 1, b + 1, b);
+            }
+        }
+        painter.rect_filled(bar, 0.0, palette.background);
+        painter.add(mesh);
+        let under = bar.max.y + 2.0;
+        text(pos2(bar.min.x, under), Align2::LEFT_TOP, &labels::force(0.0), 10.5);
+        text(pos2(bar.max.x, under), Align2::RIGHT_TOP, &self.service, 10.5);
+        let sample = pos2(bar.min.x, bar.max.y + 24.0);
+        for k in 0..3 {
+            let foot = sample + vec2(6.0 * k as f32, 5.0);
+            painter.extend(stroke(palette, [foot, foot + vec2(6.0, -10.0)], 1.0));
+        }
+        text(sample + vec2(27.0, 0.0), Align2::LEFT_CENTER, &self.over, 10.5);
+    }
 }

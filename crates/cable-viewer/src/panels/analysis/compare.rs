@@ -18,6 +18,10 @@ use crate::units::sentence::sentence;
 use crate::units::{format, labels};
 use crate::widgets::{field, highlight, readout};
 
+/// Narrowest column of the table, points: the cross and the number of a pin fit.
+const LEAST_COLUMN: f32 = 28.0;
+/// Size of its figures, points. Larger: the last column is cut in US units.
+const FIGURES: f32 = 12.0;
 /// Most lines of difference told; more are counted.
 const MAX_LINES: usize = 12;
 
@@ -59,7 +63,8 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         .as_deref()
         .map(|s| Figures::of(s, &state.document.scene, state.live.snapshot.solve_wall_s));
     readout::wide(ui, "compare", |ui| {
-        Grid::new("compare").num_columns(5).spacing([4.0, 3.0]).striped(true).show(ui, |ui| {
+        let grid = Grid::new("compare").num_columns(5).spacing([4.0, 3.0]).min_col_width(LEAST_COLUMN);
+        grid.striped(true).show(ui, |ui| {
             for title in ["", "Tension", "Sag", "Energy", "Cost"] {
                 ui.weak(title);
             }
@@ -213,13 +218,14 @@ fn row(ui: &mut Ui, f: &Figures, present: Option<&Figures>) {
 fn cell(ui: &mut Ui, text: String, value: Option<f64>, present: Option<f64>) {
     ui.vertical(|ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
-        ui.add(egui::Label::new(text).extend());
+        ui.add(egui::Label::new(RichText::new(text).size(FIGURES)).extend());
         if let (Some(value), Some(present)) = (value, present)
             && present != 0.0
             && value.is_finite()
         {
             let share = format!("{:+.2} %", 100.0 * (value / present - 1.0)).replace('-', "−");
-            ui.label(RichText::new(share).small().weak()).on_hover_text("Against the present answer");
+            let share = egui::Label::new(RichText::new(share).small().weak()).extend();
+            ui.add(share).on_hover_text("Against the present answer");
         }
     });
 }
