@@ -170,8 +170,12 @@ impl CheckedCable<'_> {
 
     /// Returns whether something touches a piece or a neighbour.
     pub fn touches(&self, near: &Neighbours, k: usize) -> bool {
-        let led = || self.wheels.iter().any(|w| [k, k + 1].iter().any(|&k| self.is_led(k, w.0, w.1)));
-        !near.around(k, k + 1).is_empty() || led()
+        !near.around(k, k + 1).is_empty() || self.is_at_wheel(k)
+    }
+
+    /// Returns whether an end of the bar from node k to the next is on a wheel.
+    pub fn is_at_wheel(&self, k: usize) -> bool {
+        self.wheels.iter().any(|w| [k, k + 1].iter().any(|&k| self.is_led(k, w.0, w.1)))
     }
 
     /// Returns whether a node is on a wheel.

@@ -196,16 +196,13 @@ const BOW_PARTS: usize = 8;
 /// places that are held without anything to lie on: drawn as its chord c, a loose bar hangs below
 /// that by √(3/8 c · missing).
 fn hangs_in_air(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, near: &Neighbours, missing: f64) -> bool {
-    let at_wheel = || checked.wheels.iter().any(|w| [bar.k, bar.k + 1].iter().any(|&k| checked.is_led(k, w.0, w.1)));
-    let on_itself = || checked.foreign().next().is_some();
     let Some(down) = checked.body.try_normalize(0.0) else { return false };
-    // What hangs free beside it would give way.
-    let held = |end: bool, beside: usize| end || !near.of(beside).is_empty();
+    let touches = |bar: usize| !near.of(bar).is_empty();
     let last = bar.k + 2 == checked.answer.nodes.len();
-    if !held(bar.k == 0, bar.k.wrapping_sub(1)) || !held(last, bar.k + 1) {
-        return false;
-    }
-    if checked.floor_rubs() || !near.of(bar.k).is_empty() || at_wheel() || on_itself() {
+    // Cable that hangs free beside the bar would give way.
+    let held = (bar.k == 0 || touches(bar.k - 1)) && (last || touches(bar.k + 1));
+    let on_itself = || checked.foreign().next().is_some();
+    if !held || checked.floor_rubs() || touches(bar.k) || checked.is_at_wheel(bar.k) || on_itself() {
         return false;
     }
     let depth = (0.375 * bar.way.norm() * missing).sqrt();

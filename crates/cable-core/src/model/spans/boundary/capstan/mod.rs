@@ -158,8 +158,8 @@ impl Step {
     }
 }
 
-/// Where cable that is drawn ends and cable that lies loose begins: the place, the material (m)
-/// from the end that is drawn, and the tension (N).
+/// The border between cable that is drawn and cable that lies loose: its place, the material (m) to
+/// it from the end that is drawn, and the tension there (N).
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::spans) struct LooseEnd {
     pub coordinate: f64,
@@ -281,9 +281,9 @@ impl Track<'_> {
         (sum, loose)
     }
 
-    /// Where stretches of one law begin and end, with the tensions there of cable that lies loose
-    /// from p₁, where it has none, to p₀: none where friction holds it, and what is missing of
-    /// friction on slopes beyond its cone.
+    /// Returns the borders between stretches of one law, with the tensions there of cable that lies
+    /// loose from p₁, where it has none, to p₀: they stay as they are where friction holds it, and
+    /// grow by what is missing of friction on slopes beyond its cone.
     fn lying(&self, p1: f64, p0: f64) -> Vec<(f64, f64)> {
         let mut out = vec![(p1, 0.0)];
         let (mut at, mut tension) = (p1, 0.0);
