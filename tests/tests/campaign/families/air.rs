@@ -88,7 +88,7 @@ pub fn loads(r: &mut Chance) -> Case {
 pub fn hangs_free(r: &mut Chance) -> Case {
     let (length, w) = (r.scale(0.1, 300.0), r.scale(0.01, 50.0));
     let mut s = cable(
-        [length, w, w * length * r.scale(1e2, 1e7), 0.02],
+        [length, w, (w * length * r.scale(1e2, 1e7)).max(1.0), 0.02],
         vec![Support::fixed("a", [r.within(-3.0, 3.0), 5.0]), Support::free("b")],
     );
     let mut force = [0.0, -w * STANDARD_GRAVITY * length];

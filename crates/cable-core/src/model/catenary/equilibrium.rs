@@ -338,9 +338,12 @@ fn descend(
     let mut sigma = sigma;
     let lost = |iterations| not_converged(slide.problem, layout, 0, iterations, f64::NAN);
     let mut s = slide.stretches(&sigma, near).ok_or_else(|| lost(0))?;
-    let mut iterations = s.iterations;
+    let (mut iterations, mut before) = (s.iterations, f64::INFINITY);
     for _ in 0..layout.settings.max_iterations {
         let (r, j, worst, newtons) = rows(slide, &s, modes, smooth).ok_or_else(|| lost(iterations))?;
+        // Newton's method gains far more than a half there, unless what is left is rounding.
+        let rounding = worst <= BALANCE_ACCEPTED && worst > 0.5 * before;
+        before = worst;
         let end = move |sigma, s, residual| Equilibrium {
             sigma,
             modes: modes.to_vec(),
@@ -350,7 +353,7 @@ fn descend(
             residual,
             runs_away: false,
         };
-        let next = if worst <= PULLEY_BALANCE_TOLERANCE {
+        let next = if worst <= PULLEY_BALANCE_TOLERANCE || rounding {
             None
         } else {
             run_off(slide, &s)?;

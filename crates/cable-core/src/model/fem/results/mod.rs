@@ -5,6 +5,7 @@
 //! | `mod.rs` | the answer as a whole, and the tension of inner steps |
 //! | `forces.rs` | tensions of bars, forces on ends and nodes, moments |
 //! | `nodes.rs`, `supports.rs`, `contacts.rs` | those parts of the answer |
+//! | `weighted_capstan.rs` | the tension along a round between those at its ends |
 //! | `bending_error.rs` | the part of the error that is bending round obstacles |
 
 pub(in crate::model::fem) mod bending_error;
@@ -13,6 +14,7 @@ pub(in crate::model::fem) mod forces;
 mod nodes;
 mod self_contact;
 mod supports;
+mod weighted_capstan;
 
 use self::forces::{bar_tension, bar_tensions, end_forces};
 use crate::math::larger;

@@ -210,7 +210,7 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
             c.mode = Mode::Slide(course.mobilised * course.friction(c));
         }
     }
-    let (mut best, mut stalled, mut iterations, mut polished) = (f64::INFINITY, 0, 0, false);
+    let (mut best, mut stalled, mut iterations, mut polished) = (f64::INFINITY, 0, 0, f64::INFINITY);
     assemble(strand, course, &mut work.system);
     loop {
         let (mut worst, mut at) = norm(&work.system.residual);
@@ -231,8 +231,9 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
                     continue;
                 }
             } else if done {
-                if content && !polished && is_rough(strand, course, worst) {
-                    (polished, iterations) = (true, iterations + 1);
+                // For as long as it gains: where a tension vanishes, Newton's method is of the first order.
+                if content && worst < 0.5 * polished && is_rough(strand, course, worst) {
+                    (polished, iterations) = (worst, iterations + 1);
                     if step(strand, course, work) {
                         continue;
                     }

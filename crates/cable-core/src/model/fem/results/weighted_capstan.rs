@@ -1,0 +1,109 @@
+//! The tension along a round follows from the tensions at its ends if friction and weight act all
+//! along it.
+//!
+//! With b the load per metre, t the direction of the cable, n the outward normal and g the radius
+//! over the stretch, friction that is mobilised evenly, by a coefficient m, makes of the tension T
+//!
+//! ```text
+//! dT/dψ = mT − g (b·t + m b·n),      dt/dψ = −n,      dn/dψ = t
+//! T = α b·t + β b·n + C e^{mψ},      α = 2gm/(1+m²),   β = g(m²−1)/(1+m²)
+//! ```
+//!
+//! and m is what leads from the one end to the other. Where |m| is no more than the friction, every
+//! piece of the round is within its cone. (L. Euler, "Remarques sur l'effet du frottement dans
+//! l'équilibre", Mémoires de l'académie des sciences de Berlin 18, 1769, with weight.)
+
+use crate::numerics::bisect;
+
+/// Doublings of the coefficient in the search for one that is too large: beyond that no friction
+/// leads from the one tension to the other.
+const DOUBLINGS: i32 = 12;
+/// Halvings of the interval in which it is.
+const HALVINGS: usize = 60;
+
+/// The tension of a cable along a round that carries its weight.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct WeightedCapstan {
+    /// Tension at its start, N.
+    pub start: f64,
+    /// Coefficient of the friction that is mobilised; positive where the tension grows by it.
+    pub mobilised: f64,
+    /// g b·t and g b·n at its start, N.
+    pub load: [f64; 2],
+}
+
+impl WeightedCapstan {
+    /// Between two tensions (N) over a turn (rad) with g b·t and g b·n at its start (N); None where
+    /// no friction leads from the one to the other.
+    pub fn between([start, end]: [f64; 2], turn: f64, load: [f64; 2]) -> Option<Self> {
+        let with = |mobilised: f64| Self { start, mobilised, load };
+        let lacks = |m: f64| with(m).at(turn) < end;
+        let bound = (0..=DOUBLINGS).map(|k| f64::powi(2.0, k) / turn);
+        let range = if lacks(0.0) {
+            [0.0, bound.into_iter().find(|m| !lacks(*m))?]
+        } else {
+            [-bound.into_iter().find(|m| lacks(-*m))?, 0.0]
+        };
+        let [low, high] = bisect(range, HALVINGS, lacks);
+        Some(with(0.5 * (low + high)))
+    }
+
+    /// The tension after a turn (rad), N.
+    pub fn at(&self, turned: f64) -> f64 {
+        let (m, [along, outward]) = (self.mobilised, self.load);
+        let (sin, cos) = turned.sin_cos();
+        let square = 1.0 + m * m;
+        let [alpha, beta] = [2.0 * m / square, (m * m - 1.0) / square];
+        let weight = alpha * (along * cos - outward * sin) + beta * (outward * cos + along * sin);
+        weight + (self.start - alpha * along - beta * outward) * (m * turned).exp()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The law itself, by Runge and Kutta's steps.
+    fn integrated(start: f64, m: f64, turn: f64, [along, outward]: [f64; 2]) -> f64 {
+        const STEPS: usize = 400;
+        let h = turn / STEPS as f64;
+        let slope = |angle: f64, tension: f64| {
+            let (sin, cos) = angle.sin_cos();
+            m * tension - (along * cos - outward * sin) - m * (outward * cos + along * sin)
+        };
+        (0..STEPS).fold(start, |tension, k| {
+            let angle = k as f64 * h;
+            let k1 = slope(angle, tension);
+            let k2 = slope(angle + 0.5 * h, tension + 0.5 * h * k1);
+            let k3 = slope(angle + 0.5 * h, tension + 0.5 * h * k2);
+            let k4 = slope(angle + h, tension + h * k3);
+            tension + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+        })
+    }
+
+    #[test]
+    fn the_closed_form_obeys_the_law_and_leads_from_end_to_end() {
+        for (start, end, turn, load) in [
+            (10.0, 14.0, 1.0, [0.0; 2]),
+            (1.58, 1.008, 0.78, [1.5, -1.5]),
+            (1.0, 2.5, 2.0, [-2.0, -0.5]),
+            (3.0, 0.2, 0.5, [0.3, -2.0]),
+        ] {
+            let found = WeightedCapstan::between([start, end], turn, load).expect("friction leads there");
+            assert!((found.at(turn) - end).abs() < 1e-12 * start, "{found:?}");
+            let by_steps = integrated(start, found.mobilised, turn, load);
+            assert!((by_steps - end).abs() < 1e-8 * start, "{by_steps} against {end}");
+        }
+        let weightless = WeightedCapstan::between([10.0, 14.0], 1.0, [0.0; 2]).expect("friction leads there");
+        assert!((weightless.mobilised - 1.4f64.ln()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn issue_015_a_tension_that_weight_alone_would_use_up_does_not_bulge_between_the_ends() {
+        // From 45° to the horizontal down a pipe: weight alone would leave 0.1 N of 1.58 N, and the
+        // cable hangs on with 1 N.
+        let found = WeightedCapstan::between([1.58, 1.008], 0.78, [1.5, -1.5]).expect("friction leads there");
+        let most = (0..=20).map(|k| found.at(0.039 * f64::from(k))).fold(0.0, f64::max);
+        assert!(most <= 1.58 && found.mobilised < 0.65, "{most} N, {}", found.mobilised);
+    }
+}
