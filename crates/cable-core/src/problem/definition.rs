@@ -205,10 +205,16 @@ impl Problem {
     /// the weight of lumps, or EA·1e-6 without one.
     #[must_use]
     pub fn force_scale(&self) -> f64 {
+        self.whole_load().max(1e-6 * self.axial_stiffness)
+    }
+
+    /// The whole distributed load, point loads and the weight of lumps, N.
+    #[must_use]
+    pub fn whole_load(&self) -> f64 {
         let loads: f64 = self.loads.iter().map(|l| l.force.at(0.0).norm()).sum::<f64>()
             + self.supports.iter().map(|s| s.force.at(0.0).norm()).sum::<f64>();
         let gravity = if self.linear_density > 0.0 { self.weight.norm() / self.linear_density } else { 0.0 };
         let lumps: f64 = self.supports.iter().map(|s| s.mass * gravity).sum();
-        (self.body_force(0.0).norm() * self.length + loads + lumps).max(1e-6 * self.axial_stiffness)
+        self.body_force(0.0).norm() * self.length + loads + lumps
     }
 }

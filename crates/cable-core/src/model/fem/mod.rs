@@ -243,10 +243,7 @@ impl FemModel {
         let (start, spans) =
             if begins && self.starts_from_spans { self.start_from_spans() } else { (SpansStart::Unknown, None) };
         if begins && !matches!(start, SpansStart::Accepted(_)) {
-            if self.statics.settle(&self.dragged).is_ok() {
-                self.dynamics.start_from_shape(&self.statics.state(), &self.dragged);
-            }
-            self.start_from_coarse_mesh();
+            self.start_from_own_statics();
         }
         let has_equilibrium = matches!(start, SpansStart::Accepted(_) | SpansStart::Rejected);
         let first = self.dynamics.cable.state();
@@ -318,28 +315,51 @@ impl FemModel {
         Some(Warning::new(cause, &self.problem.cable.name, s, [off, limit]))
     }
 
-    /// Starts a fine mesh from the equilibrium of a coarse one (nested iteration): slack runs along
-    /// the bars in waves, in as many steps of relaxation as there are bars.
-    fn start_from_coarse_mesh(&mut self) {
+    /// Starts from the equilibrium of a cable whose equilibrium is found more easily: on a coarser
+    /// mesh (nested iteration), as slack runs along the bars in waves, in as many steps of
+    /// relaxation as there are bars; and of less axial stiffness, as the search among bars that
+    /// hardly stretch is the stiffer a problem the less they do, and where they come to rest is
+    /// hardly another place.
+    fn start_from_easier_cable(&mut self) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
         let tuning = self.tuning().clone();
-        if fine <= tuning.start.two_mesh_bars {
+        let segments = if fine > tuning.start.two_mesh_bars {
+            Some(fine / tuning.start.mesh_ratio)
+        } else {
+            self.settings.segments
+        };
+        let enough = tuning.start.search_stiffness_loads * self.problem.whole_load();
+        let own = self.problem.axial_stiffness;
+        let axial_stiffness = if enough > 0.0 && enough < own { enough } else { own };
+        if segments == self.settings.segments && axial_stiffness == own {
             return;
         }
-        let settings = Settings { segments: Some(fine / tuning.start.mesh_ratio), ..self.settings };
-        let Ok(coarse) = Self::with_tuning(self.problem.clone(), settings, tuning) else { return };
-        let mut coarse = Self { dragged: self.dragged.clone(), ..coarse.without_spans_start() };
+        let problem = Problem { axial_stiffness, ..Problem::clone(&self.problem) };
+        let settings = Settings { segments, ..self.settings };
+        let Ok(easier) = Self::with_tuning(Arc::new(problem), settings, tuning.clone()) else { return };
+        let mut easier = Self { dragged: self.dragged.clone(), present: Part::Dynamics, ..easier };
         if let Some(to) = self.robot_pose {
-            coarse.set_robot_pose(to);
+            easier.set_robot_pose(to);
         }
-        if coarse.settle().is_err() {
+        easier.dynamics.solver.work_left = WorkBudget::Left(tuning.equilibrium.max_work);
+        easier.start_from_own_statics();
+        if easier.settle_dynamics(false).is_err() {
             return;
         }
         let before = self.dynamics.clone();
         let time_s = before.cable.time();
-        if self.dynamics.warm_start(&coarse.solution(), time_s, &self.dragged).is_err() {
+        if self.dynamics.warm_start(&easier.solution(), time_s, &self.dragged).is_err() {
             self.dynamics = before;
         }
+    }
+
+    /// Starts where the cable would rest among no obstacles, and then where one rests that is
+    /// solved more easily.
+    fn start_from_own_statics(&mut self) {
+        if self.statics.settle(&self.dragged).is_ok() {
+            self.dynamics.start_from_shape(&self.statics.state(), &self.dragged);
+        }
+        self.start_from_easier_cable();
     }
 
     /// Finds the equilibrium of a stiff cable as an elastica, from that of a flexible one; None

@@ -542,6 +542,11 @@ pub struct StartTuning {
     /// Ratio of the bar lengths of the two meshes. Smaller: more meshes, each nearer to the next.
     /// Larger: the coarse solution differs from that of the fine mesh.
     pub mesh_ratio: usize,
+    /// Axial stiffness, in whole loads, from which on the search for the initial equilibrium begins
+    /// at that of a cable which is no stiffer. Smaller: that cable stretches by more (by one part
+    /// in so many), and rests elsewhere. Larger: slack cables in folds find no rest (with 2e5 to
+    /// 1e7 loads 9 of 300 over posts and beams; with 1e4 none).
+    pub search_stiffness_loads: f64,
     /// Most bars to which a mesh is refined by itself. More: 1e-3 is met by more scenes, each twice
     /// as dear as with half as many.
     pub max_refined_bars: usize,
@@ -573,6 +578,7 @@ impl Default for StartTuning {
             max_stiff_force_change: 0.5,
             two_mesh_bars: 500,
             mesh_ratio: 8,
+            search_stiffness_loads: 1e4,
             max_refined_bars: 800,
             max_mark_turn_rad: 2.8,
             marks_per_bar: 1.5,
