@@ -231,7 +231,8 @@ pub(super) fn solve(strand: &mut CableRun, course: &Course, work: &mut Work) -> 
                     continue;
                 }
             } else if done {
-                // For as long as it gains: where a tension vanishes, Newton's method is of the first order.
+                // For as long as it gains: where a tension vanishes, Newton's method is of the
+                // first order.
                 if content && worst < 0.5 * polished && is_rough(strand, course, worst) {
                     (polished, iterations) = (worst, iterations + 1);
                     if step(strand, course, work) {
