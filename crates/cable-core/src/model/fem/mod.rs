@@ -317,9 +317,9 @@ impl FemModel {
 
     /// Starts from the equilibrium of a cable whose equilibrium is found more easily: on a coarser
     /// mesh (nested iteration), as slack runs along the bars in waves, in as many steps of
-    /// relaxation as there are bars; and of less axial stiffness, as the search among bars that
-    /// hardly stretch is the stiffer a problem the less they do, and where they come to rest is
-    /// hardly another place.
+    /// relaxation as there are bars; and of less axial stiffness (continuation), as the search among
+    /// bars that hardly stretch is ill-conditioned, and where they rest is hardly another place.
+    /// That one may begin at one that is easier still.
     fn start_from_easier_cable(&mut self) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
         let tuning = self.tuning().clone();
@@ -330,7 +330,8 @@ impl FemModel {
         };
         let enough = tuning.start.search_stiffness_loads * self.problem.whole_load();
         let own = self.problem.axial_stiffness;
-        let axial_stiffness = if enough > 0.0 && enough < own { enough } else { own };
+        let less = larger(enough, own / tuning.start.stiffness_ratio);
+        let axial_stiffness = if enough > 0.0 && less < own { less } else { own };
         if segments == self.settings.segments && axial_stiffness == own {
             return;
         }

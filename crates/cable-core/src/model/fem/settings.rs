@@ -547,6 +547,9 @@ pub struct StartTuning {
     /// in so many), and rests elsewhere. Larger: slack cables in folds find no rest (with 2e5 to
     /// 1e7 loads 9 of 300 over posts and beams; with 1e4 none).
     pub search_stiffness_loads: f64,
+    /// Ratio of the axial stiffnesses of two such cables. Smaller: more of them. Larger: the next
+    /// does not come to rest from where the one before did.
+    pub stiffness_ratio: f64,
     /// Most bars to which a mesh is refined by itself. More: 1e-3 is met by more scenes, each twice
     /// as dear as with half as many.
     pub max_refined_bars: usize,
@@ -579,6 +582,7 @@ impl Default for StartTuning {
             two_mesh_bars: 500,
             mesh_ratio: 8,
             search_stiffness_loads: 1e4,
+            stiffness_ratio: 10.0,
             max_refined_bars: 800,
             max_mark_turn_rad: 2.8,
             marks_per_bar: 1.5,
