@@ -29,6 +29,7 @@ mod recovery;
 mod rows;
 mod runs;
 mod session;
+mod sliders;
 mod spans;
 mod speed;
 mod stories;
