@@ -34,6 +34,7 @@ mod spans;
 mod speed;
 mod stories;
 mod timing;
+mod torn;
 mod truth;
 mod units;
 mod walk;
