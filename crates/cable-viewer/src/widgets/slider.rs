@@ -104,7 +104,8 @@ pub fn ui(ui: &mut Ui, value: f64, rail: Rail) -> Slid {
     });
     let widget = widget.show_value(false).clamping(SliderClamping::Edits).logarithmic(rail.logarithmic);
     let response = ui.add(widget.smallest_positive(LEAST_OF_TOP * high));
-    let value = if response.is_pointer_button_down_on() || response.dragged() {
+    // Also in the frame in which it is let go of.
+    let value = if response.interact_pointer_pos().is_some() {
         dragged(ui, &response, value, rail, asked)
     } else {
         ui.data_mut(|d| d.remove_temp::<Anchor>(response.id));
@@ -116,15 +117,22 @@ pub fn ui(ui: &mut Ui, value: f64, rail: Rail) -> Slid {
 /// The value while a pointer holds the slider; `asked`: what is below the pointer on the rail.
 fn dragged(ui: &Ui, response: &Response, value: f64, rail: Rail, asked: Option<f64>) -> Option<f64> {
     let x = response.interact_pointer_pos()?.x;
-    let (now_s, fine) = ui.input(|i| (i.time, i.modifiers.shift));
-    let Some(mut anchor) = ui.data(|d| d.get_temp::<Anchor>(response.id)) else {
+    let (now_s, fine, pressed) = ui.input(|i| (i.time, i.modifiers.shift, i.pointer.press_origin()));
+    let known = ui.data(|d| d.get_temp::<Anchor>(response.id)).filter(|_| !response.drag_started());
+    let mut anchor = if let Some(anchor) = known {
+        anchor
+    } else {
         let radius = 0.5 * response.rect.height();
         let run = response.rect.width() - 2.0 * radius;
         let knob = response.rect.left() + radius + rail.share(value) as f32 * run;
-        let jump = asked.filter(|_| (x - knob).abs() > radius);
-        let anchor = Anchor { value: jump.unwrap_or(value), x, fine, last: (x, now_s) };
-        ui.data_mut(|d| d.insert_temp(response.id, anchor));
-        return jump;
+        // A slow frame shows the pointer where it has gone to since.
+        let from = pressed.map_or(x, |p| p.x);
+        if (from - knob).abs() > radius {
+            let value = asked.unwrap_or(value);
+            ui.data_mut(|d| d.insert_temp(response.id, Anchor { value, x, fine, last: (x, now_s) }));
+            return asked;
+        }
+        Anchor { value, x: from, fine, last: (from, now_s) }
     };
     let (last_x, moved_s) = anchor.last;
     if fine != anchor.fine || (x != last_x && now_s - moved_s > REST_S) {

@@ -62,11 +62,43 @@ fn a_knob_that_is_taken_moves_its_value_by_half_a_percent_a_point_at_first() {
     let nice = length_m(&harness);
     assert!((10.9..11.3).contains(&nice) && (nice * 100.0 - (nice * 100.0).round()).abs() < 1e-9, "{nice}");
     press(&harness, knob + Vec2::new(4.0, 0.0), false);
-    harness.run_steps(2);
+    harness.run_steps(3);
+    assert_eq!(length_m(&harness), nice, "to let go of it changes nothing");
     // One drag is one edit.
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(2);
     assert_eq!(length_m(&harness), 10.8);
+}
+
+/// The first frame that sees the press may see the pointer elsewhere already, and a frame may see the
+/// last movement with the release.
+#[test]
+fn frames_that_come_late_change_nothing() {
+    let (mut harness, knob) = form();
+    let by = |points: f32| knob + Vec2::new(points, 0.0);
+    harness.hover_at(knob);
+    harness.run_steps(2);
+    press(&harness, knob, true);
+    harness.hover_at(by(12.0));
+    harness.run_steps(2);
+    let first = length_m(&harness);
+    assert!((11.5..12.0).contains(&first), "{first}");
+    harness.hover_at(by(16.0));
+    press(&harness, by(16.0), false);
+    harness.run_steps(3);
+    let last = length_m(&harness);
+    assert!((12.0..13.0).contains(&last) || last == first, "{last}");
+    // Taken again at once.
+    let (mut harness, knob) = form();
+    take(&mut harness, knob);
+    lead(&mut harness, knob, 16.0);
+    press(&harness, knob + Vec2::new(16.0, 0.0), false);
+    harness.step();
+    let after = length_m(&harness);
+    take(&mut harness, knob + Vec2::new(2.0, 0.0));
+    assert_eq!(length_m(&harness), after);
+    press(&harness, knob + Vec2::new(2.0, 0.0), false);
+    harness.run_steps(2);
 }
 
 #[test]
