@@ -15,8 +15,8 @@ type Section = (&'static str, PanelUi);
 
 /// The outline of the scene, and in a small window the form of the selected thing.
 const EDIT: &[Section] = &[("Outline", panels::scene::outline::ui), (SELECTED, panels::selected::ui)];
-/// Warnings but the worst, the form of the selected thing, then the readouts. Where a place on the cable is
-/// marked its tension stands above the readouts, else at the end.
+/// Warnings but the worst, the form of the selected thing, then the readouts. Where a place on the
+/// cable is marked its tension stands above the readouts, else at the end.
 const READ: &[Section] = &[
     (WARNINGS, panels::warnings::ui),
     (SELECTED, panels::selected::ui),
@@ -109,6 +109,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         side(ui, Panel::left("edit"), part(OUTLINE_WIDTH, width), |ui| scroll(ui, "edit", EDIT, state, commands));
     }
     let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
+    canvas::offer_to_follow(ui, canvas.response.rect, state, commands);
     first_steps::ui(ui, canvas.response.rect, state, commands);
     highlight::frame(ui.ctx());
 }
@@ -201,7 +202,8 @@ fn is_new<T: Copy + PartialEq + Send + Sync + 'static>(ui: &Ui, key: (&str, &str
 fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, commands: &mut Vec<Command>) {
     let shown = newly_wanted(ui, (id, sections), state);
     // The bar stands beside figures, not over their last letters.
-    ui.spacing_mut().scroll.floating_allocated_width = BAR;
+    let bar = &mut ui.spacing_mut().scroll;
+    (bar.floating_allocated_width, bar.bar_width) = (BAR, BAR);
     // Contents that are too wide scroll: they must not push the canvas aside.
     ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
         let width = ui.available_width();

@@ -18,8 +18,8 @@ use crate::units::system::System;
 use crate::widgets::highlight;
 use crate::widgets::tick::{choose, tick};
 
-/// Width of the worst warning in the strip as a part of what is left, and the most, points: the name
-/// of the scene stands beside it.
+/// Width of the worst warning in the strip as a part of what is left, and the most, points: the
+/// name of the scene stands beside it.
 const WARNING_WIDTH: (f32, f32) = (0.6, 300.0);
 
 /// The menu bar; `with_warning`: no panel says the worst warning.
@@ -132,7 +132,7 @@ fn help(text: &str) -> &'static str {
         "Save" => "To the same file; the old one stays intact if saving fails",
         "Save as…" => "To another file",
         "Import map…" => "Terrain and beams from a table or an SVG, added to the scene",
-        "Export picture…" => "The canvas with its legend, as PNG",
+        "Export picture…" => "The canvas with its legend, as PNG or SVG",
         "Open run…" => "A folder with a recording",
         "Save run…" => "The whole recording, as tables in a folder",
         "Quit" => "Asks first if the scene is not saved",

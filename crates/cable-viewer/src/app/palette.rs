@@ -23,7 +23,7 @@ const SYNONYMS: [(&str, &str); 27] = [
     ("save run", "export record csv table"),
     ("save as", "export write"),
     ("export the graph", "save plot chart picture image csv svg png"),
-    ("export picture", "save image png screenshot canvas scene view drawing snapshot"),
+    ("export picture", "save image png svg screenshot canvas scene view drawing snapshot"),
     ("add obstacle", "insert create ground terrain pipe wall"),
     ("open a file", "load read"),
     ("import map", "terrain ground svg csv"),

@@ -63,9 +63,6 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     };
     draw(&mut view, state);
     badge(ui, rect, state, commands);
-    if torn.is_some_and(|torn| is_out_of_view(state, torn.piece)) {
-        offer(ui, rect, commands);
-    }
 }
 
 /// A view that was not moved by hand goes with a cable that is torn off and falls, and back to the
@@ -87,8 +84,12 @@ fn is_out_of_view(state: &AppState, [low, high]: [Point; 2]) -> bool {
     (0..2).any(|k| high[k] < left[k] || low[k] > right[k])
 }
 
-/// A way to what has left the picture, where the user moved the view: it is not moved unasked.
-fn offer(ui: &Ui, rect: Rect, commands: &mut Vec<Command>) {
+/// A way to a torn cable that has left the picture, where the user moved the view: it is not moved
+/// unasked.
+pub fn offer_to_follow(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>) {
+    if !bounds::torn(state).is_some_and(|torn| is_out_of_view(state, torn.piece)) {
+        return;
+    }
     let foot = egui::pos2(rect.center().x, rect.max.y - 40.0);
     let area = egui::Area::new(egui::Id::unique("out of view")).fixed_pos(foot).pivot(egui::Align2::CENTER_BOTTOM);
     area.order(egui::Order::Middle).show(ui.ctx(), |ui| {
