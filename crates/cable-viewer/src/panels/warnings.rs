@@ -37,6 +37,8 @@ enum Severity {
 /// One entry of the list.
 struct Entry {
     severity: Severity,
+    /// It is about what the cable carries, which comes first among equals.
+    of_tension: bool,
     /// What it is about, as long as it lasts; figures are in the title.
     kind: String,
     title: String,
@@ -164,12 +166,22 @@ fn entries(state: &AppState) -> Vec<Entry> {
         list.extend(answer.warnings.iter().map(|w| of_warning(state, answer, w)));
     }
     // A stable sort: equals stay in the order of the answer.
-    list.sort_by_key(|e| e.severity);
+    list.sort_by_key(|e| (e.severity, !e.of_tension));
     list
 }
 
 fn entry(severity: Severity, text: String) -> Entry {
-    Entry { severity, kind: String::new(), title: String::new(), parts: None, text, at_m: None, item: None, fix: None }
+    Entry {
+        severity,
+        of_tension: false,
+        kind: String::new(),
+        title: String::new(),
+        parts: None,
+        text,
+        at_m: None,
+        item: None,
+        fix: None,
+    }
 }
 
 fn capital(text: &str) -> String {
@@ -226,6 +238,10 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     let whole = format!("{title} at {along}{of}{told}{since}");
     Entry {
         severity,
+        of_tension: matches!(
+            warning.kind,
+            WarningKind::Broken | WarningKind::BreakingTension | WarningKind::MayBreak | WarningKind::ServiceTension
+        ),
         kind: format!("{title} {}", warning.cable),
         parts: Some([
             // The long name leaves no room for the limit.

@@ -105,3 +105,21 @@ fn the_line_of_the_worst_warning_leads_to_its_place_and_takes_the_same_room_with
     harness.run_steps(3);
     assert!(harness.state().state.view.camera.points_per_m > 1.5 * before);
 }
+
+/// Issue 20: while a cable is pulled, "Support blocked" stood on top, and 318 % of the service
+/// tension below it.
+#[test]
+fn issue_020_a_tension_above_its_limit_comes_first_among_equals() {
+    let mut scene = catalog::tank();
+    scene.cables[0].service_tension_n = 20.0;
+    let mut harness = open(scene);
+    let live = &mut harness.state_mut().state.live;
+    let mut answer = (**live.snapshot.solution.as_ref().unwrap()).clone();
+    answer.warnings.sort_by_key(|w| w.kind == WarningKind::ServiceTension);
+    assert!(answer.warnings.iter().any(|w| w.kind == WarningKind::Kink), "{:?}", answer.warnings);
+    live.snapshot.solution = Some(std::sync::Arc::new(answer));
+    harness.run_steps(2);
+    let first = harness.get_by_label("Details of warning 1").rect().center().y;
+    let row = harness.get_by_label_contains("Above service tension at").rect();
+    assert!(row.y_range().contains(first), "{row} beside {first}");
+}
