@@ -52,7 +52,8 @@ pub fn table(s: &Solution, figures: &Figures) -> String {
     if let Some(next) = &s.next_cheaper {
         let _ = writeln!(t, "Next cheaper      {next}");
     }
-    let _ = writeln!(t, "Time              {} s", s.time_s);
+    // Of the scene, not of the computation.
+    let _ = writeln!(t, "Scene time        {} s", s.time_s);
     let name = s.cables.get(top.cable).map_or("", |c| &c.name);
     let _ = writeln!(t, "Greatest tension  {:.6} N, at {:.4} m of `{name}`", top.tension_n, top.arc_length_m);
     for c in &s.cables {

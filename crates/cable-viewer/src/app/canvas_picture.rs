@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use cable_core::files;
 use egui::{CentralPanel, Frame, Label, Margin, Panel, RichText, Theme, Ui, UiBuilder};
 
 use crate::app::menu;
@@ -29,7 +30,7 @@ const SIDES: [f64; 2] = [64.0, 4096.0];
 /// The font knows its letters from the second frame on.
 const FRAMES: usize = 2;
 
-/// Draws the canvas to a PNG file.
+/// Draws the canvas to a PNG or SVG file.
 ///
 /// # Errors
 /// In words: the path is of another kind, or refuses.
@@ -38,14 +39,21 @@ pub fn save(state: &mut AppState, theme: Theme, path: &Path) -> Result<(), Strin
     let (view, beside, selection) = (state.view.clone(), state.ui.legend_beside, state.selection.clone());
     (state.selection.selected, state.selection.hovered) = (None, None);
     state.selection.also.clear();
-    state.view.camera.fitted_to = None;
+    (state.view.camera.fitted_to, state.view.camera.follows) = (None, false);
     state.ui.legend_beside = true;
-    let picture = draw(state, theme);
+    let frame = draw(state, theme);
     (state.view, state.ui.legend_beside, state.selection) = (view, beside, selection);
-    picture_file::save(path, &picture)
+    let ground = frame.ctx().global_style().visuals.panel_fill;
+    match path.extension() {
+        Some(e) if e.eq_ignore_ascii_case("svg") => {
+            files::write_atomic(path, frame.svg(ground).as_bytes()).map_err(|e| e.to_string())
+        }
+        Some(e) if e.eq_ignore_ascii_case("png") => picture_file::save(path, &frame.picture(ground)),
+        _ => Err("its name must end in .png or .svg".to_owned()),
+    }
 }
 
-fn draw(state: &mut AppState, theme: Theme) -> image::RgbaImage {
+fn draw(state: &mut AppState, theme: Theme) -> Offscreen {
     let [low, high] = state.view.visible_m;
     let side = |k: usize| (high[k] - low[k]).abs() * state.view.camera.points_per_m;
     let [width, height] = [0, 1].map(|k| side(k).clamp(SIDES[0], SIDES[1]).round() as f32);
@@ -63,7 +71,7 @@ fn draw(state: &mut AppState, theme: Theme) -> image::RgbaImage {
             CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, &mut Vec::new()));
         });
     }
-    offscreen.picture(offscreen.ctx().global_style().visuals.panel_fill)
+    offscreen
 }
 
 /// Words on the left, the legend on the right, or below where there is no room.

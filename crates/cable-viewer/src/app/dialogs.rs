@@ -23,7 +23,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
             Dialog::Export { path, sheet } => {
                 ui.heading("Export the part of the graph in view");
                 ui.add_space(6.0);
-                format(ui, path);
+                format(ui, path, &[CSV, SVG, PNG]);
                 let note = "CSV has every sample in view in SI units; SVG and PNG are drawings of it";
                 if let Some(path) = ask(ui, ("", "Save"), ("Ends in .csv, .svg or .png", note), path, commands) {
                     commands.push(Command::File(FileCommand::Export(path, sheet.clone())));
@@ -31,8 +31,10 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
             }
             Dialog::ExportPicture { path } => {
                 let note = "The canvas as it is in view, with its legend and the greatest tension above it";
-                let title = "Export the canvas as a picture";
-                if let Some(path) = ask(ui, (title, "Save"), ("Ends in .png", note), path, commands) {
+                ui.heading("Export the canvas as a picture");
+                ui.add_space(6.0);
+                format(ui, path, &[PNG, SVG]);
+                if let Some(path) = ask(ui, ("", "Save"), ("Ends in .png or .svg", note), path, commands) {
                     commands.push(Command::File(FileCommand::ExportPicture(path)));
                 }
             }
@@ -87,15 +89,17 @@ fn typed_at_once(ui: &Ui, field: &egui::Response) {
     }
 }
 
+/// A kind of file: its name, its ending and what it is.
+type Format = (&'static str, &'static str, &'static str);
+const CSV: Format = ("CSV", "csv", "A table of numbers");
+const SVG: Format = ("SVG", "svg", "A drawing that stays sharp at any size");
+const PNG: Format = ("PNG", "png", "A picture");
+
 /// The format of an exported graph, which is the ending of its path.
-fn format(ui: &mut Ui, path: &mut String) {
+fn format(ui: &mut Ui, path: &mut String, formats: &[Format]) {
     ui.horizontal(|ui| {
         ui.label("Format");
-        for (name, ending, help) in [
-            ("CSV", "csv", "A table of numbers"),
-            ("SVG", "svg", "A drawing that stays sharp at any size"),
-            ("PNG", "png", "A picture"),
-        ] {
+        for &(name, ending, help) in formats {
             let typed = Path::new(path.trim());
             let on = typed.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));
             let named = typed.file_stem().is_some();

@@ -1,7 +1,7 @@
 //! The layout says where panels and canvas are.
 
 use egui::style::ScrollAnimation;
-use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, RichText, ScrollArea, Ui, vec2};
+use egui::{CentralPanel, CollapsingHeader, Frame, Id, Panel, ScrollArea, Ui, UiBuilder, vec2};
 
 use crate::app::{first_steps, menu, tutorial_bar};
 use crate::canvas::layers::{legend, safe_reach};
@@ -15,8 +15,8 @@ type Section = (&'static str, PanelUi);
 
 /// The outline of the scene, and in a small window the form of the selected thing.
 const EDIT: &[Section] = &[("Outline", panels::scene::outline::ui), (SELECTED, panels::selected::ui)];
-/// Warnings, the form of the selected thing, then the readouts. Where a place on the cable is
-/// marked its tension stands above the readouts, else at the end.
+/// Warnings but the worst, the form of the selected thing, then the readouts. Where a place on the
+/// cable is marked its tension stands above the readouts, else at the end.
 const READ: &[Section] = &[
     (WARNINGS, panels::warnings::ui),
     (SELECTED, panels::selected::ui),
@@ -64,21 +64,24 @@ fn part((fraction, [least, most]): (f32, [f32; 2]), of: f32) -> f32 {
 /// own size.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     highlight::seek(ui.ctx(), tutorial_bar::points_at(state));
-    Panel::top("menu").show(ui, |ui| menu::ui(ui, state, commands));
-    if state.ui.tutorial.is_some() {
-        Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
-    }
-    Panel::bottom("playback").show(ui, |ui| panels::playback::ui(ui, state, commands));
     let [width, height] = ui.ctx().content_rect().size().into();
     let graphs = height >= LEAST_FOR_GRAPHS;
     let open = state.ui.panels;
     let wide = width >= WIDE && graphs;
+    // The worst warning stands above what scrolls in a panel, or else in the strip at the top.
+    let told_in_panel = if wide { open.results } else { open.edit || open.results };
+    Panel::top("menu").show(ui, |ui| menu::ui(ui, !told_in_panel, state, commands));
+    if state.ui.tutorial.is_some() {
+        Panel::top("guide").show(ui, |ui| tutorial_bar::strip(ui, state, commands));
+    }
+    Panel::bottom("playback").show(ui, |ui| panels::playback::ui(ui, state, commands));
     state.ui.legend_beside = wide && open.results;
     if wide && open.results {
         side(ui, Panel::right("read"), part(INSPECTOR_WIDTH, width), |ui| {
             legend::beside(ui, state);
             safe_reach::legend_beside(ui, state);
             panels::readouts::head(ui, state, commands);
+            panels::warnings::worst(ui, state, commands);
             ui.separator();
             scroll(ui, "read", READ, state, commands);
         });
@@ -106,6 +109,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         side(ui, Panel::left("edit"), part(OUTLINE_WIDTH, width), |ui| scroll(ui, "edit", EDIT, state, commands));
     }
     let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
+    canvas::offer_to_follow(ui, canvas.response.rect, state, commands);
     first_steps::ui(ui, canvas.response.rect, state, commands);
     highlight::frame(ui.ctx());
 }
@@ -145,12 +149,10 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
                 ui.selectable_value(&mut tab, Tab::Graphs, "Graphs")
                     .on_hover_text("Tension and more, over time and along the cable");
             }
-            let warnings = state.live.snapshot.solution.as_ref().map_or(0, |s| s.warnings.len());
-            if state.document.fault.is_some() || state.live.snapshot.error.is_some() || warnings > 0 {
-                ui.add(egui::Label::new(RichText::new("See results").color(ui.visuals().warn_fg_color)).truncate());
-            }
         });
         ui.data_mut(|d| d.insert_temp(id, tab));
+        panels::warnings::worst(ui, state, commands);
+        ui.separator();
         match tab {
             Tab::Graphs if graphs => panels::plots::ui(ui, state, commands),
             Tab::Read => scroll(ui, "read", READ, state, commands),
@@ -182,7 +184,8 @@ fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -
     }
     // The form stands on the right where there is such a panel, else below the outline.
     match (selected, id == "read", state.ui.legend_beside) {
-        (true, true, true) => sections.first().map(|(title, _)| *title),
+        (true, true, true) if panels::warnings::has_more(state) => Some(WARNINGS),
+        (true, true, true) => Some(SELECTED),
         (true, false, false) => Some(SELECTED),
         _ => None,
     }
@@ -199,7 +202,8 @@ fn is_new<T: Copy + PartialEq + Send + Sync + 'static>(ui: &Ui, key: (&str, &str
 fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, commands: &mut Vec<Command>) {
     let shown = newly_wanted(ui, (id, sections), state);
     // The bar stands beside figures, not over their last letters.
-    ui.spacing_mut().scroll.floating_allocated_width = BAR;
+    let bar = &mut ui.spacing_mut().scroll;
+    (bar.floating_allocated_width, bar.bar_width) = (BAR, BAR);
     // Contents that are too wide scroll: they must not push the canvas aside.
     ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
         let width = ui.available_width();
@@ -209,19 +213,28 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
                 SELECTED => state.selection.selected.is_none() || (id == "read") != state.ui.legend_beside,
                 MARKED => state.analysis.tension_marker.is_none(),
                 UNMARKED => state.analysis.tension_marker.is_some(),
+                WARNINGS => !panels::warnings::has_more(state),
                 _ => false,
             };
             if hidden {
+                if *title == WARNINGS && id == "read" {
+                    hold_still(ui, ui.cursor().top());
+                }
                 continue;
             }
             let panel =
                 if *title == READOUTS && state.ui.legend_beside { &(panels::readouts::rest as PanelUi) } else { panel };
             let top = ui.cursor().top();
-            let section = CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| {
-                // One section that is too wide does not widen the others.
-                ui.set_max_width(width);
-                panel(ui, state, commands);
+            // What comes and goes above changes no identity below: a drag in a section would end.
+            let named = UiBuilder::new().scope_id(ui.scope_id().with(*title));
+            let section = ui.scope_builder(named, |ui| {
+                CollapsingHeader::new(*title).default_open(true).show_unindented(ui, |ui| {
+                    // One section that is too wide does not widen the others.
+                    ui.set_max_width(width);
+                    panel(ui, state, commands);
+                })
             });
+            let section = section.inner;
             if *title == WARNINGS && id == "read" {
                 hold_still(ui, top);
             }

@@ -23,7 +23,7 @@ const SYNONYMS: [(&str, &str); 27] = [
     ("save run", "export record csv table"),
     ("save as", "export write"),
     ("export the graph", "save plot chart picture image csv svg png"),
-    ("export picture", "save image png screenshot canvas scene view drawing snapshot"),
+    ("export picture", "save image png svg screenshot canvas scene view drawing snapshot"),
     ("add obstacle", "insert create ground terrain pipe wall"),
     ("open a file", "load read"),
     ("import map", "terrain ground svg csv"),
@@ -44,7 +44,12 @@ const SYNONYMS: [(&str, &str); 27] = [
     ("chart error", "work precision accuracy tolerance speed mesh compare"),
 ];
 
-/// Everything, with the words it is found by.
+/// Opens a scene of the catalogue.
+fn open_scene(id: &str) -> Command {
+    Command::File(FileCommand::OpenCatalogue(id.to_owned()))
+}
+
+/// Everything, with the name it is shown and found by.
 fn entries(state: &AppState) -> Vec<(String, Command)> {
     let panels = state.ui.panels;
     let show = |panels| Command::View(ViewCommand::ShowPanels(panels));
@@ -125,9 +130,7 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
     all.extend(
         TUTORIALS.iter().enumerate().map(|(k, t)| (format!("Guide: {}", t.title), Command::File(tutorials::open(k)))),
     );
-    all.extend(catalog::all().into_iter().map(|(id, scene)| {
-        (format!("Open scene: {}", scene.name), Command::File(FileCommand::OpenCatalogue(id.to_owned())))
-    }));
+    all.extend(catalog::all().into_iter().map(|(id, scene)| (format!("Open scene: {}", scene.name), open_scene(id))));
     all
 }
 
@@ -135,6 +138,10 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
 fn found(text: &str, state: &AppState) -> Vec<(String, Command)> {
     let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
     let mut all = entries(state);
+    // A scene is known by its file's name too.
+    let whole = text.trim().to_lowercase();
+    let scene_of_text = open_scene(&whole);
+    let is_id = |command: &Command| *command == scene_of_text;
     let matches = |name: &str, also: bool| {
         let mut text = name.to_lowercase();
         if also {
@@ -143,9 +150,14 @@ fn found(text: &str, state: &AppState) -> Vec<(String, Command)> {
         }
         words.iter().all(|w| text.contains(w))
     };
-    all.retain(|(name, _)| matches(name, true));
-    // Commands of that name come before those of which it is a synonym.
-    all.sort_by_key(|(name, _)| !matches(name, false));
+    let part_of_id = |command: &Command| match command {
+        Command::File(FileCommand::OpenCatalogue(id)) => !whole.is_empty() && id.contains(&whole),
+        _ => false,
+    };
+    all.retain(|(name, command)| matches(name, true) || part_of_id(command));
+    // Commands of that name come before those of which it is a synonym, and the scene of that file
+    // before all.
+    all.sort_by_key(|(name, command)| (!is_id(command), !matches(name, false)));
     all
 }
 
@@ -196,6 +208,9 @@ mod tests {
             ["export", "screenshot", "save image", "canvas png"].iter().all(|t| found(t)[0].0 == "Export picture…")
         );
         assert!(found("add").iter().any(|(name, _)| name == "Add obstacle: beam"));
+        for (id, scene) in catalog::all() {
+            assert_eq!(found(id)[0].0, format!("Open scene: {}", scene.name), "{id}");
+        }
         assert_eq!(found("hold this")[0].0, "Pin this result");
         assert_eq!(found("hold")[0].0, "Pin a recorded run…");
     }

@@ -1,6 +1,6 @@
 //! A strip leads through a guided scene, and a menu begins one.
 
-use egui::Ui;
+use egui::{Align, Label, Layout, Ui};
 
 use crate::app::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand, ViewCommand};
@@ -42,26 +42,62 @@ pub fn strip(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     if done && !last {
         commands.push(go(at(place.step + 1)));
     }
-    ui.horizontal_wrapped(|ui| {
-        ui.strong(format!("{}, step {} of {}", guide.title, place.step + 1, guide.steps.len()));
-        ui.label(step.text);
-        if done {
-            ui.weak("Done");
+    let title = format!("{}, step {} of {}", guide.title, place.step + 1, guide.steps.len());
+    let mut buttons = |ui: &mut Ui, which: Part| match which {
+        Part::Done if done => drop(ui.weak("Done")),
+        Part::Done => {}
+        Part::Back => {
+            let back = ui.add_enabled(place.step > 0, egui::Button::new("Back"));
+            if back.on_hover_text("The step before").clicked() {
+                commands.push(go(at(place.step.saturating_sub(1))));
+            }
         }
-        let back = ui.add_enabled(place.step > 0, egui::Button::new("Back"));
-        if back.on_hover_text("The step before").clicked() {
-            commands.push(go(at(place.step.saturating_sub(1))));
-        }
-        if last {
+        Part::Next if last => {
             let next = (place.tutorial + 1) % TUTORIALS.len();
             if ui.button("Next scene").on_hover_text(TUTORIALS[next].title).clicked() {
                 commands.push(Command::File(tutorials::open(next)));
             }
-        } else if ui.button("Next").on_hover_text("The next step, whether this one was done or not").clicked() {
-            commands.push(go(at(place.step + 1)));
         }
-        if ui.button("End guide").on_hover_text("The scene stays open").clicked() {
-            commands.push(go(None));
+        Part::Next => {
+            if ui.button("Next").on_hover_text("The next step, whether this one was done or not").clicked() {
+                commands.push(go(at(place.step + 1)));
+            }
         }
+        Part::End => {
+            if ui.button("End guide").on_hover_text("The scene stays open").clicked() {
+                commands.push(go(None));
+            }
+        }
+    };
+    let parts = [Part::Done, Part::Back, Part::Next, Part::End];
+    if ui.available_width() < ONE_ROW {
+        ui.horizontal_wrapped(|ui| {
+            ui.strong(title);
+            ui.label(step.text);
+            parts.into_iter().for_each(|part| buttons(ui, part));
+        });
+        return;
+    }
+    // A second row would move all that is below as steps come and go.
+    ui.horizontal(|ui| {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            parts.into_iter().rev().for_each(|part| buttons(ui, part));
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.strong(title);
+                ui.add(Label::new(step.text).truncate()).on_hover_text(step.text);
+            });
+        });
     });
 }
+
+/// What stands beside the words of a step.
+#[derive(Clone, Copy)]
+enum Part {
+    Done,
+    Back,
+    Next,
+    End,
+}
+
+/// In a narrower window (points) a step takes the rows that it needs: its words would be cut.
+const ONE_ROW: f32 = 1000.0;

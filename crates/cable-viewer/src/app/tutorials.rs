@@ -149,12 +149,12 @@ pub const TUTORIALS: [Tutorial; 6] = [
             }),
             act(
                 "Select robot",
-                "Click the robot: on the right stands why it is as fast as it is: slope, ground, the pull of the cable. Drive on and it stalls or slips",
+                "Click the robot: on the right stands what slows it: slope, ground, cable. Drive on and it stalls or slips",
                 |s| s.selection.selected == Some(Item::Robot),
             ),
             act(
                 "Find safe reach",
-                "Press Find safe reach on the right: where it can go and come back below the service tension is drawn along the ground",
+                "Press Find safe reach on the right: it draws where the robot stays below the service tension",
                 |s| matches!(s.analysis.safe_reach.progress, crate::jobs::safe_reach::Progress::Done(..)),
             ),
         ],
@@ -173,7 +173,7 @@ pub const TUTORIALS: [Tutorial; 6] = [
             ),
             read(
                 "Export Along the cable",
-                "Export… beside a graph writes what is in view as CSV, SVG or PNG; Save run… in the File menu keeps everything",
+                "Export… beside a graph writes it as CSV, SVG or PNG; Save run… in the File menu keeps everything",
             ),
         ],
     },

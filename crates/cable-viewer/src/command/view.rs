@@ -44,6 +44,8 @@ pub enum ViewCommand {
     },
     /// The whole scene in view.
     Fit,
+    /// A torn cable stays in view until the view is moved.
+    Follow,
     /// The cable's middle in the middle, same scale.
     Recentre,
     /// A point in the middle, same scale, m.
@@ -123,7 +125,8 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         }
         ViewCommand::Pan(delta) => state.view.camera.pan(delta),
         ViewCommand::Zoom { about_m, factor } => state.view.camera.zoom(about_m, factor),
-        ViewCommand::Fit => state.view.camera.fit_wanted = true,
+        ViewCommand::Fit => (state.view.camera.fit_wanted, state.view.camera.follows) = (true, false),
+        ViewCommand::Follow => state.view.camera.follows = true,
         ViewCommand::Recentre => {
             let [low, high] = crate::geometry::bounds::cables(state);
             state.view.camera.centre_on([0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])]);

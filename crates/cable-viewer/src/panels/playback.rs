@@ -1,6 +1,6 @@
 //! The playback panel pauses, steps and resets time and sets its speed.
 
-use egui::{Button, Slider, SliderClamping, Ui};
+use egui::{Button, Ui};
 
 use crate::command::{Command, PlaybackCommand};
 use crate::state::{AppState, Freshness, Playback};
@@ -9,6 +9,7 @@ use crate::units::unit::Unit;
 use crate::units::{format, labels};
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
+use crate::widgets::slider::{self, Rail};
 
 /// Below this share of the speed asked for, the shortfall is named: smaller ones are jitter of the
 /// clock.
@@ -48,18 +49,13 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let label = ui.label("Speed").id;
-    let mut speed = state.live.playback.speed;
-    let response = ui.add(
-        Slider::new(&mut speed, Playback::MIN_SPEED..=Playback::MAX_SPEED)
-            .logarithmic(true)
-            .clamping(SliderClamping::Always)
-            .show_value(false),
-    );
-    field::name(&response, "Speed slider");
-    if response.changed() {
+    let rail = Rail { ends: [Playback::MIN_SPEED, Playback::MAX_SPEED], logarithmic: true };
+    let slid = slider::ui(ui, state.live.playback.speed, rail);
+    field::name(&slid.response, "Speed slider");
+    if let Some(speed) = slid.value {
         commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));
     }
-    response.on_hover_text("Simulated seconds per second, 0.01× to 4×");
+    slid.response.on_hover_text(format!("Simulated seconds per second, 0.01× to 4×\n{}", slider::law(true)));
     let entry = field::number(ui, "Speed", Unit::TIMES, state.live.playback.speed, SPEED_WIDTH);
     if let Some(speed) = entry.value {
         commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));

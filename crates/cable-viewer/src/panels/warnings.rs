@@ -37,6 +37,8 @@ enum Severity {
 /// One entry of the list.
 struct Entry {
     severity: Severity,
+    /// It is about what the cable carries, which comes first among equals.
+    of_tension: bool,
     /// What it is about, as long as it lasts; figures are in the title.
     kind: String,
     title: String,
@@ -50,45 +52,84 @@ struct Entry {
     fix: Option<Fix>,
 }
 
-/// Draws it.
+/// Draws all but the worst, which stands above everything that scrolls.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let entries = entries(state);
-    // Whether the rest is the only one is not known yet; a cable that touches nothing remembers
-    // none.
-    let touches = |answer: &Solution| answer.cables.iter().any(|c| !c.contacts.is_empty());
-    let answer = state.live.snapshot.solution.as_deref().filter(|_| state.live.snapshot.seeks_histories);
-    let seeking = state.is_current() && answer.is_some_and(touches);
-    let seeking_row = |ui: &mut Ui| {
-        ui.weak("Looking for other resting places…")
-            .on_hover_text("The figures hold for the shape shown; friction may allow others, which are being sought");
-    };
-    if entries.is_empty() {
-        ui.horizontal(|ui| {
-            if seeking {
-                seeking_row(ui);
-            } else if state.is_current() {
-                icon::sign(ui, Icon::Check, ui.visuals().text_color());
-                ui.weak("No warnings");
-            } else {
-                ui.weak("Warnings follow once this is solved");
-            }
-        });
-        return;
-    }
     let high = SHARE * ui.ctx().content_rect().height();
     let area = ScrollArea::vertical().id_salt("warnings").max_height(high).min_scrolled_height(high);
     area.auto_shrink([false, true]).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 2.0;
-        for (k, entry) in entries.iter().take(MAX_ROWS).enumerate() {
+        for (k, entry) in entries.iter().enumerate().take(MAX_ROWS).skip(1) {
             row(ui, k, entry, commands);
         }
         if entries.len() > MAX_ROWS {
             ui.weak(format!("and {} more", entries.len() - MAX_ROWS));
         }
-        if seeking {
-            seeking_row(ui);
+        if seeks(state) {
+            seeking(ui);
         }
     });
+}
+
+/// Returns whether there is more to say than what [`worst`] says.
+pub fn has_more(state: &AppState) -> bool {
+    let count = entries(state).len();
+    count > 1 || (count == 1 && seeks(state))
+}
+
+/// The worst, as a line, or that there is none, in as much room: what lies below does not move as
+/// warnings come and go. Its words stand below it once they are asked for.
+pub fn worst(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
+    let entries = entries(state);
+    if let Some(entry) = entries.first() {
+        let high = SHARE * ui.ctx().content_rect().height();
+        let area = ScrollArea::vertical().id_salt("worst warning").max_height(high).min_scrolled_height(high);
+        area.auto_shrink([false, true]).show(ui, |ui| {
+            ui.spacing_mut().item_spacing.y = 2.0;
+            row(ui, 0, entry, commands);
+        });
+        return;
+    }
+    ui.horizontal(|ui| {
+        if seeks(state) {
+            seeking(ui);
+        } else if state.is_current() {
+            icon::sign(ui, Icon::Check, ui.visuals().text_color());
+            ui.weak("No warnings");
+        } else {
+            ui.weak("Warnings follow once this is solved");
+        }
+    });
+}
+
+/// The worst where no panel says it, cut at a width (points).
+pub fn worst_in_strip(ui: &mut Ui, width: f32, state: &AppState, commands: &mut Vec<Command>) {
+    let entries = entries(state);
+    let Some(worst) = entries.first() else { return };
+    let (colour, sign) = look(ui, worst.severity);
+    let room = vec2(width, ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(room, Layout::right_to_left(Align::Center), |ui| {
+        let line = ui.add(Button::new(line(ui, worst)).frame(false).truncate());
+        field::name(&line, "Worst warning");
+        let more = if entries.len() > 1 { format!("\n\nand {} more", entries.len() - 1) } else { String::new() };
+        if line.on_hover_text(format!("{}{more}", worst.text)).clicked() {
+            show(worst, commands);
+        }
+        icon::sign(ui, sign, colour);
+    });
+}
+
+/// Returns whether it is still sought if the rest is the only one; a cable that touches nothing
+/// remembers none.
+fn seeks(state: &AppState) -> bool {
+    let touches = |answer: &Solution| answer.cables.iter().any(|c| !c.contacts.is_empty());
+    let answer = state.live.snapshot.solution.as_deref().filter(|_| state.live.snapshot.seeks_histories);
+    state.is_current() && answer.is_some_and(touches)
+}
+
+fn seeking(ui: &mut Ui) {
+    ui.weak("Looking for other resting places…")
+        .on_hover_text("The figures hold for the shape shown; friction may allow others, which are being sought");
 }
 
 /// How many there are, as a row that leads to the worst.
@@ -125,12 +166,22 @@ fn entries(state: &AppState) -> Vec<Entry> {
         list.extend(answer.warnings.iter().map(|w| of_warning(state, answer, w)));
     }
     // A stable sort: equals stay in the order of the answer.
-    list.sort_by_key(|e| e.severity);
+    list.sort_by_key(|e| (e.severity, !e.of_tension));
     list
 }
 
 fn entry(severity: Severity, text: String) -> Entry {
-    Entry { severity, kind: String::new(), title: String::new(), parts: None, text, at_m: None, item: None, fix: None }
+    Entry {
+        severity,
+        of_tension: false,
+        kind: String::new(),
+        title: String::new(),
+        parts: None,
+        text,
+        at_m: None,
+        item: None,
+        fix: None,
+    }
 }
 
 fn capital(text: &str) -> String {
@@ -187,6 +238,10 @@ fn of_warning(state: &AppState, answer: &Solution, warning: &Warning) -> Entry {
     let whole = format!("{title} at {along}{of}{told}{since}");
     Entry {
         severity,
+        of_tension: matches!(
+            warning.kind,
+            WarningKind::Broken | WarningKind::BreakingTension | WarningKind::MayBreak | WarningKind::ServiceTension
+        ),
         kind: format!("{title} {}", warning.cable),
         parts: Some([
             // The long name leaves no room for the limit.

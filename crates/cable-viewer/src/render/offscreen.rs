@@ -4,6 +4,7 @@ use egui::{Color32, Context, FullOutput, Pos2, RawInput, Rect, Ui, Vec2, Viewpor
 use image::RgbaImage;
 
 use crate::render::raster::{self, Textures};
+use crate::render::svg;
 
 /// Time between two frames, s.
 const FRAME_S: f32 = 1.0 / 60.0;
@@ -56,6 +57,12 @@ impl Offscreen {
         }
         self.textures.set(&mut output.textures_delta);
         self.last = Some(output);
+    }
+
+    /// The last frame as SVG, on a ground of one colour.
+    #[must_use]
+    pub fn svg(&self, ground: Color32) -> String {
+        svg::write(self.last.as_ref().map_or(&[], |output| &output.shapes), self.size, ground)
     }
 
     /// The last frame as a picture, on a ground of one colour.

@@ -14,11 +14,13 @@ pub struct Camera {
     pub fit_wanted: bool,
     /// Size of the canvas that the scene was fitted to, points, until the view is moved by hand.
     pub fitted_to: Option<[f32; 2]>,
+    /// A piece that is torn off and falls is kept in view, until the view is moved by hand.
+    pub follows: bool,
 }
 
 impl Default for Camera {
     fn default() -> Self {
-        Self { centre_m: [0.0; 2], points_per_m: 50.0, fit_wanted: true, fitted_to: None }
+        Self { centre_m: [0.0; 2], points_per_m: 50.0, fit_wanted: true, fitted_to: None, follows: false }
     }
 }
 
@@ -53,6 +55,24 @@ impl Camera {
         ]
     }
 
+    /// Moves the view by as little as brings a rectangle (m) into the canvas within free borders
+    /// (points), at the same scale, and returns whether it had to; what is larger than the canvas
+    /// is centred.
+    pub fn keep_in_view(&mut self, canvas: Rect, [low, high]: [Point; 2], border: [f32; 4]) -> bool {
+        if !(low.iter().chain(&high).all(|v| v.is_finite()) && canvas.is_positive()) {
+            return false;
+        }
+        let before = self.centre_m;
+        let [left, right, top, bottom] = border.map(|points| f64::from(points) / self.points_per_m);
+        let half = [canvas.width(), canvas.height()].map(|points| f64::from(points) / (2.0 * self.points_per_m));
+        for (k, [under, over]) in [[left, right], [bottom, top]].into_iter().enumerate() {
+            // The centre with the upper end at its border, and with the lower one.
+            let (least, most) = (high[k] + over - half[k], low[k] - under + half[k]);
+            self.centre_m[k] = if least > most { 0.5 * (least + most) } else { self.centre_m[k].clamp(least, most) };
+        }
+        self.centre_m != before
+    }
+
     /// Moves the world with the pointer.
     pub fn pan(&mut self, delta: Vec2) {
         self.leave_fit();
@@ -80,9 +100,10 @@ impl Camera {
         self.centre_m = p;
     }
 
-    /// The view is moved by hand: it is not fitted any more, and not again once an answer comes.
+    /// The view is moved by hand: it is not fitted any more, and not again once an answer comes,
+    /// and follows nothing.
     fn leave_fit(&mut self) {
-        (self.fit_wanted, self.fitted_to) = (false, None);
+        (self.fit_wanted, self.fitted_to, self.follows) = (false, None, false);
     }
 
     /// Puts a world rectangle (least and greatest corner, m) in view, with free borders (points).
@@ -116,7 +137,8 @@ mod tests {
 
     #[test]
     fn screen_and_world_are_inverse_and_zoom_keeps_the_point_under_the_pointer() {
-        let mut camera = Camera { centre_m: [3.0, -2.0], points_per_m: 37.0, fit_wanted: false, fitted_to: None };
+        let mut camera =
+            Camera { centre_m: [3.0, -2.0], points_per_m: 37.0, fit_wanted: false, fitted_to: None, follows: false };
         let pointer = pos2(431.0, 222.0);
         let before = camera.to_world(CANVAS, pointer);
         assert!(camera.to_screen(CANVAS, before).distance(pointer) < 1e-3);

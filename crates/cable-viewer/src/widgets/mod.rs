@@ -2,6 +2,7 @@
 //!
 //! - `field`: number and text fields that keep what is typed until it can be read
 //! - `property`: one quantity in a row with name, slider, value and reset
+//! - `slider`: a slider that is fine about the value it has
 //! - `tick`: boxes to tick and rings to choose by
 //! - `time_table`: a vector that changes with time, as a table
 //! - `icon`: painted signs
@@ -12,5 +13,6 @@ pub mod highlight;
 pub mod icon;
 pub mod property;
 pub mod readout;
+pub mod slider;
 pub mod tick;
 pub mod time_table;

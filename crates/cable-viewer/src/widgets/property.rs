@@ -1,10 +1,11 @@
 //! A property row edits one quantity: name, slider, typed value with its unit, reset.
 
-use egui::{Response, RichText, Slider, SliderClamping, Ui};
+use egui::{Response, RichText, Ui};
 
 use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
+use crate::widgets::slider::{self, Rail};
 
 /// What a quantity is called, shown in and usually worth.
 #[derive(Clone, Copy, Debug)]
@@ -52,10 +53,6 @@ const RESET_WIDTH: f32 = 18.0;
 /// Width of the names, points: “Bending stiffness ≈” fits.
 pub const NAME_WIDTH: f32 = 122.0;
 
-/// Smallest value above zero that a logarithmic slider from zero resolves, as a fraction of its
-/// top.
-const LEAST_OF_TOP: f64 = 1e-4;
-
 /// Draws the row; faults stand below it.
 pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
     let mut change = Change::default();
@@ -81,7 +78,7 @@ pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
         let label_id = label.on_hover_ui(|ui| explanation(ui, quantity, known)).id;
         if !narrow {
             ui.spacing_mut().slider_width = (left - spent).max(LEAST_SLIDER);
-            slider(ui, quantity, known, &mut change);
+            slide(ui, quantity, known, &mut change);
         }
         let entry = field::number(ui, quantity.name, quantity.unit, known.value, FIELD_WIDTH);
         let response = entry.response.labelled_by(label_id);
@@ -100,7 +97,7 @@ pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
     if narrow {
         ui.spacing_mut().slider_width = ui.available_width() - 4.0;
         let mut slid = Change::default();
-        slider(ui, quantity, known, &mut slid);
+        slide(ui, quantity, known, &mut slid);
         if change.value.is_none() {
             change = Change { done: change.done || slid.done, ..slid };
         }
@@ -111,25 +108,19 @@ pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
     change
 }
 
-fn slider(ui: &mut Ui, quantity: &Quantity, known: &Provenance, change: &mut Change) {
+fn slide(ui: &mut Ui, quantity: &Quantity, known: &Provenance, change: &mut Change) {
     let si = quantity.unit.display().si;
-    let [low, high] = quantity.usual.map(|v| v / si);
-    let mut shown = known.value / si;
-    if !shown.is_finite() {
-        shown = low;
+    let rail = Rail { ends: quantity.usual.map(|v| v / si), logarithmic: quantity.logarithmic };
+    let slid = slider::ui(ui, known.value / si, rail);
+    field::name(&slid.response, &format!("{} slider", quantity.name));
+    if let Some(value) = slid.value {
+        change.value = Some(value * si);
     }
-    let widget = Slider::new(&mut shown, low..=high)
-        .show_value(false)
-        .clamping(SliderClamping::Edits)
-        .logarithmic(quantity.logarithmic)
-        .smallest_positive(LEAST_OF_TOP * high);
-    let response = ui.add(widget);
-    field::name(&response, &format!("{} slider", quantity.name));
-    if response.changed() {
-        change.value = Some(shown * si);
-    }
-    change.done |= response.drag_stopped() || response.lost_focus();
-    response.on_hover_ui(|ui| explanation(ui, quantity, known));
+    change.done |= slid.done;
+    slid.response.on_hover_ui(|ui| {
+        explanation(ui, quantity, known);
+        ui.weak(slider::law(quantity.logarithmic));
+    });
 }
 
 fn reset(ui: &mut Ui, quantity: &Quantity, known: &Provenance, typed_wrong: bool) -> bool {

@@ -308,7 +308,7 @@ fn readouts_tell_the_figures_and_where() {
 fn warnings_show_their_place_and_offer_the_fix() {
     let mut state = state();
     warn(&mut state);
-    let mut harness = open_with(state, panels::warnings::ui);
+    let mut harness = open_with(state, crate::fixture::warnings);
     harness.get_by_label_contains("Above service tension at 0.00");
     assert!(harness.query_by_label("Show warning 1").is_none(), "one line each");
     click(&mut harness, "Details of warning 1");
@@ -326,7 +326,7 @@ fn a_broken_scene_and_a_dead_solver_are_said_with_their_fix() {
     state.document.fault = state.document.scene.validate().err();
     state.live.snapshot.error = Some(NoAnswer::Panicked { message: "something".to_owned() });
     state.solver.status = WorkerStatus::Dead("the solver thread has ended".to_owned());
-    let mut harness = open_with(state, panels::warnings::ui);
+    let mut harness = open_with(state, crate::fixture::warnings);
     harness.get_by_label_contains("last scene that could be solved");
     click(&mut harness, "Set to 10.00 m");
     assert_eq!(harness.state().state.document.fault, None);

@@ -298,3 +298,13 @@ pub fn wrapped() -> AppState {
     state.live.snapshot.solution = Some(Arc::new(answer));
     state
 }
+
+/// All warnings as the window has them: the worst, and below it the others.
+pub fn warnings(
+    ui: &mut egui::Ui,
+    state: &cable_viewer::state::AppState,
+    commands: &mut Vec<cable_viewer::command::Command>,
+) {
+    cable_viewer::panels::warnings::worst(ui, state, commands);
+    cable_viewer::panels::warnings::ui(ui, state, commands);
+}

@@ -191,7 +191,7 @@ fn warnings() {
         state
     };
     // Tall: they take two fifths of a window.
-    picture("warnings", warned, panels::warnings::ui, [320.0, 520.0]);
+    picture("warnings", warned, crate::fixture::warnings, [320.0, 520.0]);
 }
 
 #[test]

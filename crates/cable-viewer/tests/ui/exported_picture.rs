@@ -37,7 +37,7 @@ fn the_canvas_is_exported_with_its_legend_and_stays_as_it_is() {
     harness.run_steps(3);
     // Another ending is refused, and what was typed is asked again.
     type_path(&mut harness, &folder.join("scene.jpg"));
-    harness.get_by_label_contains("must end in .png");
+    harness.get_by_label_contains("must end in .png or .svg");
     apply(&mut harness, Command::File(FileCommand::SetDialog(None)));
     let file = folder.join("scene.png");
     type_path(&mut harness, &file);
@@ -61,4 +61,35 @@ fn the_canvas_is_exported_with_its_legend_and_stays_as_it_is() {
     assert!(picture.get_pixel(4, 4).0.iter().all(|v| *v > 200));
     assert_eq!(before, (harness.state().state.view.camera, harness.state().state.selection.selected));
     assert!(harness.state().state.ui.legend_beside);
+}
+
+/// Issue 20: the canvas could be had as pixels only.
+#[test]
+fn issue_020_the_canvas_is_exported_as_svg_with_words_and_lines() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("scene.svg");
+    let mut harness = open(catalog::tank());
+    apply(&mut harness, Command::File(FileCommand::ExportPicture(file.clone())));
+    harness.run_steps(2);
+    let text = std::fs::read_to_string(&file).unwrap();
+    assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
+    assert_eq!(text.matches("<g ").count(), text.matches("</g>").count());
+    for word in [">Tank", ">x (m)<", "verified"] {
+        assert!(text.contains(word), "{word}");
+    }
+    // The cable in the colours of its map, and no figure that cannot be drawn.
+    let most = harness.state().state.view.colour.map.at(1.0).to_array();
+    let near = |c: &str| {
+        let part = |k: usize| c.get(2 * k..2 * k + 2).and_then(|p| u8::from_str_radix(p, 16).ok());
+        (0..3).all(|k| part(k).is_some_and(|v| v.abs_diff(most[k]) < 12))
+    };
+    let polygons = text.lines().filter(|l| l.starts_with("<polygon"));
+    assert!(polygons.filter_map(|l| l.split("fill=\"#").nth(1)).any(near));
+    assert!(text.matches("<line ").count() > 50 && text.matches("<polygon ").count() > 3);
+    for wrong in ["NaN", "inf\"", "<image"] {
+        assert!(!text.contains(wrong), "{wrong}");
+    }
+    if let Some(to) = std::env::var_os("KEEP_PICTURES") {
+        std::fs::copy(&file, std::path::Path::new(&to).join("canvas.svg")).unwrap();
+    }
 }

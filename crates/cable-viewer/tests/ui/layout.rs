@@ -370,3 +370,47 @@ fn a_result_that_is_pinned_by_name_is_seen() {
     let unpin = harness.get_by_label("Unpin all").rect();
     assert!(harness.ctx.content_rect().contains_rect(unpin), "{unpin:?}");
 }
+
+/// Issue 20: with the pointer on it the bar of a panel grew over last letters ("172.1 N").
+#[test]
+fn issue_020_the_bar_of_a_panel_lies_beside_its_figures_under_the_pointer_too() {
+    let mut harness = open(catalog::tank_robot());
+    select(&mut harness, Item::Support { cable: 0, support: 0 });
+    harness.hover_at(egui::pos2(1274.0, 400.0));
+    harness.run_steps(30);
+    let (mut found, mut bars) = (Vec::new(), Vec::new());
+    for shape in harness.output().shapes.iter().filter(|s| s.clip_rect.left() > 1000.0) {
+        texts(&shape.shape, &mut found);
+        if let egui::Shape::Rect(r) = &shape.shape
+            && r.rect.left() > 1250.0
+            && r.rect.height() > 100.0
+        {
+            bars.push(r.rect);
+        }
+    }
+    // Below what does not scroll.
+    let rows = found.iter().filter(|(_, r)| r.top() > 230.0);
+    let ends = rows.map(|(_, r)| r.right()).fold(0.0, f32::max);
+    let begins = bars.iter().map(|r| r.left()).fold(f32::INFINITY, f32::min);
+    assert!(begins.is_finite() && ends > 1250.0, "{bars:?}");
+    assert!(begins >= ends - 1.0, "words end at {ends}, the bar begins at {begins}");
+}
+
+/// Issue 20: a step of a guide took two rows at 1024×640 and moved all that is below.
+#[test]
+fn issue_020_a_step_of_a_guide_is_one_row() {
+    let mut harness = open(catalog::tank_robot());
+    harness.set_size(Vec2::new(1024.0, 640.0));
+    for (tutorial, guide) in cable_viewer::app::tutorials::TUTORIALS.iter().enumerate() {
+        for step in 0..guide.steps.len() {
+            let place = cable_viewer::state::tutorial_place::TutorialPlace { tutorial, step };
+            harness.state_mut().state.ui.tutorial = Some(place);
+            harness.run_steps(1);
+            let end = harness.get_by_label("End guide").rect();
+            let mut found = Vec::new();
+            harness.output().shapes.iter().for_each(|s| texts(&s.shape, &mut found));
+            assert!(found.iter().any(|(text, _)| text == guide.steps[step].text), "{}, step {step}", guide.title);
+            assert!(end.bottom() < 54.0 && end.right() <= 1024.0, "{}, step {step}: {end}", guide.title);
+        }
+    }
+}

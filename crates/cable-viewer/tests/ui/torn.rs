@@ -1,0 +1,76 @@
+//! A cable that is torn off at both ends fell out of the picture.
+
+use cable_core::scene::catalog;
+use cable_viewer::ViewerApp;
+use cable_viewer::command::{Command, PlaybackCommand, ViewCommand};
+use egui::{Rect, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use crate::{apply, open};
+
+/// A span that breaks at both of its ends as soon as time runs.
+fn weak() -> Harness<'static, ViewerApp> {
+    let mut scene = catalog::hanging_span();
+    (scene.cables[0].breaking_tension_n, scene.cables[0].service_tension_n) = (30.0, 20.0);
+    scene.cables[0].breaking_time_s = 0.0;
+    open(scene)
+}
+
+/// Where the longest piece of the cable is on screen.
+fn piece(harness: &Harness<'_, ViewerApp>) -> (Rect, Rect) {
+    let canvas = harness.get_by_label("Canvas").rect();
+    let state = &harness.state().state;
+    let solution = state.live.snapshot.solution.as_ref().unwrap();
+    let longest = solution.cables[0].pieces().max_by_key(|p| p.len()).unwrap();
+    let points: Vec<egui::Pos2> = longest.iter().map(|n| state.view.camera.to_screen(canvas, [n.x_m, n.y_m])).collect();
+    (canvas, Rect::from_points(&points))
+}
+
+fn ends_in_view(harness: &Harness<'_, ViewerApp>) -> bool {
+    let canvas = harness.get_by_label("Canvas").rect();
+    let camera = harness.state().state.view.camera;
+    [[0.0, 5.0], [10.0, 5.0]].iter().all(|p| canvas.contains(camera.to_screen(canvas, *p)))
+}
+
+#[test]
+fn a_view_that_was_not_moved_follows_what_falls_and_a_reset_brings_it_back() {
+    let mut harness = weak();
+    let scale = harness.state().state.view.camera.points_per_m;
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    for k in 0..12 {
+        harness.run_steps(15);
+        let (canvas, piece) = piece(&harness);
+        assert!(canvas.contains(piece.center()), "after {k} quarters of a second: {piece} in {canvas}");
+    }
+    let solution = harness.state().state.live.snapshot.solution.clone().unwrap();
+    assert!(!solution.cables[0].breaks.is_empty());
+    assert!(!ends_in_view(&harness), "it fell far: {} s", solution.time_s);
+    assert_eq!(harness.state().state.view.camera.points_per_m, scale, "as large as it was");
+    apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
+    harness.run_steps(4);
+    assert!(ends_in_view(&harness));
+}
+
+#[test]
+fn a_view_that_was_moved_is_left_alone_and_offers_to_follow() {
+    let mut harness = weak();
+    apply(&mut harness, Command::View(ViewCommand::Pan(Vec2::new(20.0, 0.0))));
+    let camera = harness.state().state.view.camera;
+    apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
+    assert!(harness.query_by_label("Follow the cable").is_none());
+    harness.run_steps(180);
+    assert_eq!(harness.state().state.view.camera, camera);
+    harness.get_by_label("Follow the cable").click();
+    harness.run_steps(3);
+    let (canvas, fallen) = piece(&harness);
+    assert!(canvas.contains(fallen.center()), "{fallen} in {canvas}");
+    harness.run_steps(60);
+    let (_, fallen) = piece(&harness);
+    assert!(canvas.contains(fallen.center()), "it is followed: {fallen} in {canvas}");
+    // The hand that moves the view has it.
+    apply(&mut harness, Command::View(ViewCommand::Pan(Vec2::new(0.0, 3000.0))));
+    let camera = harness.state().state.view.camera;
+    harness.run_steps(10);
+    assert_eq!(harness.state().state.view.camera, camera);
+}
