@@ -19,8 +19,6 @@
 
 mod incubation_mean;
 mod peaks;
-#[cfg(test)]
-mod tests;
 
 pub use peaks::Limit;
 
@@ -225,3 +223,6 @@ impl TensionGauge {
         self.keep();
     }
 }
+
+#[cfg(test)]
+mod tests;
