@@ -1,4 +1,4 @@
-//! The elastic catenary over its whole range of shapes, stiffness and slack.
+//! This bench times the elastic catenary over its whole range of shapes, stiffness and slack.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 #![allow(missing_docs)] // criterion's macros

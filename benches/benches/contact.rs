@@ -1,4 +1,4 @@
-//! Contact queries against terrain of 1000 edges.
+//! This bench times contact queries against terrain of 1000 edges.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 #![allow(missing_docs)] // criterion's macros

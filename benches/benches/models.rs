@@ -1,4 +1,5 @@
-//! `settle` and `step` of every model on the same catalogue scenes at N = 20, 100, 1000 elements.
+//! This bench times `settle` and `step` of every model on the same catalogue scenes at N = 20, 100,
+//! 1000 elements.
 //!
 //! A model that cannot answer a scene is skipped with a note.
 

@@ -18,7 +18,7 @@ use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 /// Inner step of `fem`, s.
 const STEP_S: f64 = 1.0 / 240.0;
 
-/// Whether every bench is only to be tried once (`cargo bench -- --test`).
+/// Returns whether every bench is only to be tried once (`cargo bench -- --test`).
 fn only_tried() -> bool {
     std::env::args().any(|a| a == "--test")
 }

@@ -1,6 +1,6 @@
-//! Every scene of the catalogue, a group each: `fem`, `mass-spring` and `spans` side by side,
-//! settling and stepping a frame, with the error against a reference printed before the times (of
-//! friction, after its motion: see `cable_benches::compare`).
+//! This bench times every scene of the catalogue, a group each: `fem`, `mass-spring` and `spans`
+//! side by side, settling and stepping a frame, with the error against a reference printed before
+//! the times (of friction, after its motion: see `cable_benches::compare`).
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 #![allow(missing_docs)] // criterion's macros

@@ -1,5 +1,5 @@
-//! One rest of a scene, or one second of its motion after that, and nothing else, to count
-//! instructions.
+//! This example does one rest of a scene, or one second of its motion after that, and nothing else,
+//! to count instructions.
 //!
 //! `cargo build --release -p cable-benches --example scene_cost`, then `valgrind --tool=callgrind
 //! --toggle-collect='*::measured_*' target/release/examples/scene_cost assets/scenes/tank.toml fem

@@ -1,5 +1,5 @@
-//! So many steps of `spans` and nothing else, to count instructions: those of 300 steps less those
-//! of 100, over 200, are those of one, whatever the start took.
+//! This example takes so many steps of `spans` and nothing else, to count instructions: those of
+//! 300 steps less those of 100, over 200, are those of one, whatever the start took.
 //!
 //! `cargo build --release -p cable-benches --example spans_steps`, then
 //! `valgrind --tool=callgrind target/release/examples/spans_steps 10 1 solver 300`: ridges, corners

@@ -1,5 +1,5 @@
-//! Log–log charts as SVG text. Four fixed panels need axes, marks and a legend and nothing else,
-//! which is less code than a plotting library's set-up and no dependency.
+//! Log–log charts are written as SVG text. Four fixed panels need axes, marks and a legend and
+//! nothing else, which is less code than a plotting library's set-up and no dependency.
 
 use std::fmt::Write;
 
@@ -13,7 +13,7 @@ pub struct Series {
     pub colour: &'static str,
     /// Corners of its mark: 0 a disc, 3, 4 … a polygon, so that colour is not needed either.
     pub corners: u32,
-    /// Whether a line joins its points.
+    /// True if a line joins its points.
     pub joined: bool,
     /// x, y, both > 0.
     pub points: Vec<(f64, f64)>,
@@ -32,7 +32,7 @@ pub struct Panel {
     pub x_decades: (i32, i32),
     /// Decades shown.
     pub y_decades: (i32, i32),
-    /// What is drawn.
+    /// The layers that are drawn.
     pub series: Vec<Series>,
 }
 

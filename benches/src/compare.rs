@@ -1,5 +1,5 @@
-//! Every scene of the catalogue, `fem`, `mass-spring` and `spans` side by side: error against a
-//! reference, and cost.
+//! For every scene of the catalogue `fem`, `mass-spring` and `spans` are compared side by side:
+//! error against a reference, and cost.
 //!
 //! Where nothing rubs or nothing moves the question is where it rests; where friction decides and a
 //! support is drawn, which place of the many it comes to at the end of that motion, slowly: there
@@ -45,7 +45,7 @@ impl Question {
         if rubs && last > 0.0 && last <= LONGEST_MOTION_S { Self::EndOfMotion(last) } else { Self::Rest }
     }
 
-    /// How it reads beside the name of a scene.
+    /// Returns how it reads beside the name of a scene.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -76,10 +76,10 @@ impl Question {
     }
 }
 
-/// What is compared against.
+/// The answer that is compared against.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// What gave it.
+    /// Its source.
     pub by: String,
     /// Relative uncertainty; 0 for a closed form.
     pub uncertainty: f64,
@@ -105,8 +105,8 @@ pub struct Row {
     pub said: Option<f64>,
 }
 
-/// Whether elements of so fine a mesh are shorter than a cable that lies in itself is thick: each
-/// then touches its neighbours' neighbours, and an answer takes minutes.
+/// Returns whether elements of so fine a mesh are shorter than a cable that lies in itself is
+/// thick: each then touches its neighbours' neighbours, and an answer takes minutes.
 #[must_use]
 pub fn lies_in_itself(scene: &Scene, segments: usize) -> bool {
     scene.cables.iter().any(|c| c.self_contact && c.length_m < c.diameter_m * segments as f64)
@@ -165,8 +165,8 @@ impl Reference {
     }
 }
 
-/// Where nodes have a point of the material, m: on the cubic with the direction of the tension at
-/// both nodes, or on a straight line where there is none.
+/// Returns where nodes have a point of the material, m: on the cubic with the direction of the
+/// tension at both nodes, or on a straight line where there is none.
 fn position(nodes: &[Node], arc_length_m: f64) -> Option<[f64; 2]> {
     let next = nodes.partition_point(|n| n.arc_length_m < arc_length_m).clamp(1, nodes.len().checked_sub(1)?);
     let [a, b] = [nodes.get(next - 1)?, nodes.get(next)?];

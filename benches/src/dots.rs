@@ -1,4 +1,5 @@
-//! A dot plot as SVG text: one line a scene, error on the left, cost on the right, a mark a model.
+//! A dot plot is written as SVG text: one line a scene, error on the left, cost on the right, a
+//! mark a model.
 
 use std::fmt::Write;
 

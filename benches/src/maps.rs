@@ -1,4 +1,5 @@
-//! Maps of stability: what a model does over two parameters, cell by cell, against a closed form.
+//! Maps of stability show what a model does over two parameters, cell by cell, against a closed
+//! form.
 //!
 //! A cell is right, refused with a cause, says that it is uncertain, or is wrong in silence. A
 //! refusal where another model is right counts against the model, and is told apart.
@@ -59,7 +60,7 @@ pub struct Axis {
     pub label: &'static str,
     /// First and last value.
     pub range: [f64; 2],
-    /// Whether its values are evenly spaced in their logarithm.
+    /// True if its values are evenly spaced in their logarithm.
     pub logarithmic: bool,
 }
 
@@ -79,7 +80,7 @@ pub struct Asked {
     error: f64,
     /// The last answer.
     answer: Solution,
-    /// Whether a warning on the way said that it is uncertain.
+    /// True if a warning on the way said that it is uncertain.
     warned: bool,
 }
 
@@ -88,7 +89,7 @@ pub struct Asked {
 pub struct Map {
     /// Short name, as in files.
     pub id: &'static str,
-    /// What is asked.
+    /// The question.
     pub about: &'static str,
     /// Who is asked.
     pub model: Model,
@@ -102,7 +103,7 @@ pub struct Map {
 }
 
 impl Map {
-    /// What the model does at two values; with the error, where there is an answer.
+    /// Returns what the model does at two values; with the error, where there is an answer.
     #[must_use]
     pub fn cell(&self, at: [f64; 2]) -> (Verdict, Option<f64>) {
         match (self.ask)(self.model, at) {
@@ -213,7 +214,7 @@ pub fn maps() -> Vec<Map> {
     out
 }
 
-/// Whether warnings say that an answer is uncertain.
+/// Returns whether warnings say that an answer is uncertain.
 fn warned(answer: &Solution) -> bool {
     let kinds = [WarningKind::Accuracy, WarningKind::Stabilised];
     answer.warnings.iter().any(|w| kinds.contains(&w.kind))

@@ -1,5 +1,5 @@
-//! Motions with one figure to be read off each, and what that figure should be: what convergence is
-//! measured on.
+//! Convergence is measured on these motions; each has one figure to be read off, and its exact
+//! value.
 
 use std::time::Instant;
 
@@ -24,7 +24,7 @@ pub struct Motion {
     pub exact: Option<fn() -> Vec2>,
 }
 
-/// What a run measured.
+/// The figures that a run measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Measured {
     /// The figure, a place (m) or a number with 0 beside it.
@@ -305,7 +305,7 @@ fn calkin_march_s(length: f64, x: f64) -> f64 {
     (0..n).map(|k| h * slope((f64::from(k) + 0.5) * h)).sum()
 }
 
-/// When what is let go is let go, s.
+/// The time when what is let go is let go, s.
 const LET_GO_S: f64 = 0.01;
 
 /// A cable of 10 m that lets go at both ends, 1 m above what may be there.

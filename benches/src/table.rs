@@ -50,12 +50,12 @@ impl Record {
         self.0[2] == model.name()
     }
 
-    /// Whether it is the very answer that it would be compared with.
+    /// Returns whether it is the very answer that it would be compared with.
     fn is_its_reference(&self) -> bool {
         self.0[7] == self.0[2] || self.0[7] == format!("{}, {} elements", self.0[2], self.0[3])
     }
 
-    /// Whether it is in the dot plot.
+    /// Returns whether it is in the dot plot.
     fn is_shown(&self) -> bool {
         self.0[3] == DOT_SEGMENTS || self.0[3].is_empty()
     }

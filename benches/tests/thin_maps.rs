@@ -1,4 +1,4 @@
-//! The maps of stability, thin: 3 × 3 cells each, none of them wrong in silence.
+//! The maps of stability have 3 × 3 cells each here, and none of them is wrong in silence.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

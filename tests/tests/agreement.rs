@@ -1,5 +1,5 @@
-//! Two models that share no solver, over random scenes: what `fem` says with ever more elements
-//! tends to what `spans` says.
+//! Two models that share no solver agree over random scenes: what `fem` says with ever more
+//! elements tends to what `spans` says.
 //!
 //! Both begin with the same rest and the same friction in it ([`Mechanics::warm_start`]), then an
 //! end is drawn about without inertia.

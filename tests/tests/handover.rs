@@ -42,8 +42,8 @@ fn greatest(a: &CableSolution) -> f64 {
     a.nodes.iter().map(|n| n.tension_n).fold(0.0, f64::max)
 }
 
-/// How far the nodes of one answer are from the curve of another, m, and the greatest difference of
-/// the supports' forces, of the greatest tension.
+/// Returns how far the nodes of one answer are from the curve of another, m, and the greatest
+/// difference of the supports' forces, of the greatest tension.
 fn apart(fine: &CableSolution, coarse: &CableSolution) -> (f64, f64) {
     let mut shape = 0.0_f64;
     for n in &coarse.nodes {

@@ -296,7 +296,7 @@ fn heavy_capstans_follow_their_law() {
     println!("heavy capstans: worst {:.1e} ({})", worst.0, worst.1);
 }
 
-/// Whether two tails hanging over something hold each other.
+/// Returns whether two tails hanging over something hold each other.
 fn holds(tails: [f64; 2], shape: Option<Shape>, over: f64, mu: f64, route: &[[f64; 2]]) -> Result<(), SolveError> {
     let length = tails[0] + over + tails[1];
     let (a, b) = (route[0], route[route.len() - 1]);

@@ -1,7 +1,8 @@
-//! Speed against accuracy: the error of the largest tension and of the shape against what an answer
-//! costs, for a slack and a nearly taut span, into `docs/charts/speed_accuracy.csv` and `.svg`; and
-//! every scene of the catalogue, `fem`, `mass-spring` and `spans` side by side, into `scenes.csv`,
-//! `scenes.svg` (100 elements) and `scenes_ladder.svg` (25 to 400).
+//! This program charts speed against accuracy: the error of the largest tension and of the shape
+//! against what an answer costs, for a slack and a nearly taut span, into
+//! `docs/charts/speed_accuracy.csv` and `.svg`; and every scene of the catalogue, `fem`,
+//! `mass-spring` and `spans` side by side, into `scenes.csv`, `scenes.svg` (100 elements) and
+//! `scenes_ladder.svg` (25 to 400).
 //!
 //! Run from the root of the repository: `cargo run --release -p cable-benches --bin charts`; with
 //! `-- scenes` only the catalogue is measured, with `-- draw` the scenes are drawn again from their

@@ -1,6 +1,6 @@
-//! How errors of motions fall with elements and steps: each motion of [`cable_benches::motion`] on
-//! a ladder of meshes at the finest step, and of steps on the finest mesh, into
-//! `docs/convergence.md`.
+//! This program shows how errors of motions fall with elements and steps. It runs each motion of
+//! [`cable_benches::motion`] on a ladder of meshes at the finest step, and of steps on the finest
+//! mesh, into `docs/convergence.md`.
 //!
 //! Run from the root of the repository: `cargo run --release -p cable-benches --bin convergence`;
 //! `-- swing fold` takes some motions and prints their tables without writing them.

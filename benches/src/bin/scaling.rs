@@ -1,4 +1,5 @@
-//! The page of scaling: time and memory over elements, contacts, corners of the ground, and cables.
+//! This program writes the page of scaling: time and memory over elements, contacts, corners of the
+//! ground, and cables.
 //!
 //! Run from the root of the repository: `cargo run --release -p cable-benches --bin scaling-page`.
 //! It writes `docs/charts/scaling.csv`, `scaling.svg` and `scaling.md`.

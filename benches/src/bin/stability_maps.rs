@@ -1,4 +1,4 @@
-//! Maps of stability, see [`cable_benches::maps`]: 20 × 20 cells each.
+//! This program draws the maps of stability ([`cable_benches::maps`]) with 20 × 20 cells each.
 //!
 //! Run from the root of the repository:
 //! `cargo run --release -p cable-benches --bin stability-maps`. It writes `docs/charts/maps.csv`,
@@ -69,7 +69,7 @@ fn cells(map: &Map) -> Vec<Cell> {
     numbered.into_iter().map(|(_, cell)| cell).collect()
 }
 
-/// How many cells have each verdict, but for none.
+/// Returns how many cells have each verdict, but for none.
 fn counts(cells: &[Cell]) -> Vec<String> {
     let count = |v: Verdict| cells.iter().filter(|c| c.verdict == v).count();
     Verdict::ALL.iter().filter(|v| count(**v) > 0).map(|v| format!("{} {}", count(*v), v.name())).collect()

@@ -1,6 +1,6 @@
-//! Work–precision charts: the error of every model over what it costs, on its meshes and steps, for
-//! every scene of the catalogue and every motion of [`cable_benches::motion`], with other programs
-//! beside them.
+//! This program draws work–precision charts: the error of every model over what it costs, on its
+//! meshes and steps, for every scene of the catalogue and every motion of
+//! [`cable_benches::motion`], with other programs beside them.
 //!
 //! Run from the root of the repository:
 //! `cargo run --release -p cable-benches --bin work-precision`. It measures, and writes

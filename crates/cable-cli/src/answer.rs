@@ -8,7 +8,7 @@ use cable_core::solution::{
 use cable_core::summary::{CableSummary, Compared, EndStiffness, NeglectedBending, Setting};
 use cable_core::timeline::RunPeaks;
 use cable_core::verify::Verification;
-use cable_core::{ErrorEstimates, UnitSystem};
+use cable_core::{ErrorEstimates, Model, SolveError, UnitSystem};
 use serde::Serialize;
 
 /// The output of `solve --json`, and of `run --json` for each time.
@@ -64,7 +64,7 @@ pub struct ComparedEntry {
     /// None where it has no answer.
     #[serde(flatten)]
     pub answer: Option<Compared>,
-    /// Why it has none.
+    /// The reason why it has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
 }
@@ -200,6 +200,14 @@ pub struct NoAnswer {
     pub reason: String,
     pub converged: bool,
     pub error: String,
+}
+
+impl NoAnswer {
+    /// Says why a model has no answer, and at which time (s).
+    pub fn new(model: Model, reason: Option<&ModelReason>, time_s: Option<f64>, error: &SolveError) -> Self {
+        let reason = reason.map_or_else(|| "no answer".to_owned(), ToString::to_string);
+        Self { time_s, model: model.name(), reason, converged: false, error: error.to_string() }
+    }
 }
 
 /// The answer of a solution, or the name of the number in it that is not finite.

@@ -5,12 +5,16 @@
 
 mod answer;
 mod args;
+mod check;
+mod input;
 mod output;
 mod run;
+mod schema;
 mod signals;
 mod solve;
 mod summary;
 mod table;
+mod waiting;
 
 use std::process::ExitCode;
 
@@ -24,8 +28,8 @@ fn main() -> ExitCode {
     let done = match arguments.command {
         Command::Solve(a) => solve::solve(&a),
         Command::Run(a) => run::run(a),
-        Command::Check { scene } => solve::check(&scene),
-        Command::Schema => solve::schema(),
+        Command::Check { scene } => check::check(&scene),
+        Command::Schema => schema::schema(),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

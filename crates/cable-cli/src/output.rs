@@ -9,7 +9,7 @@ use cable_core::{Error, SceneError, SolveError};
 
 use crate::signals::Signal;
 
-/// Why a command did not end well.
+/// The reason why a command did not end well.
 #[derive(Debug)]
 pub enum Failure {
     /// The scene is wrong.

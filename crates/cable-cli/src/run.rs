@@ -19,11 +19,11 @@ use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
 use cable_core::{Scene, Settings, Simulation, SolveError};
 
 use crate::Done;
-use crate::answer::{Figures, RunPeaksEntry, answer};
+use crate::answer::{Figures, NoAnswer, RunPeaksEntry, answer};
 use crate::args::RunArguments;
+use crate::input::{asked_scene, settings};
 use crate::output::{Failure, Printer, Progress};
 use crate::signals::Signals;
-use crate::solve::{asked_scene, no_answer, settings};
 use crate::table::table;
 
 /// Most output times of a run: 1e7 of them with 100 nodes are 100 GB of tables, which nobody meant.
@@ -378,11 +378,11 @@ fn walk(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs, mut
 
 fn stopped(outputs: &mut Outputs, simulation: &Simulation, error: SolveError) -> Failure {
     let reached_s = simulation.time_s();
-    if outputs.arguments.common.json
-        && let Err(e) =
-            no_answer(&mut outputs.printer, simulation.model(), Some(simulation.reason()), Some(reached_s), &error)
-    {
-        return e;
+    if outputs.arguments.common.json {
+        let answer = NoAnswer::new(simulation.model(), Some(simulation.reason()), Some(reached_s), &error);
+        if let Err(e) = outputs.printer.json(&answer).and_then(|()| outputs.printer.flush()) {
+            return e;
+        }
     }
     let place = outputs.folder.place().unwrap_or_else(|| outputs.arguments.out.clone());
     Failure::Run { reached_s, out: place, error: Box::new(error) }

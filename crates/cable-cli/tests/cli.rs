@@ -1,4 +1,4 @@
-//! The program from outside: arguments, exit codes, what it prints and writes.
+//! These tests run the program from outside: arguments, exit codes, what it prints and writes.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

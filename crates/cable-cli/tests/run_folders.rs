@@ -1,5 +1,5 @@
-//! Run folders from outside: whatever ends a run, its tables read back, and nothing that was there
-//! before is lost.
+//! These tests make run folders from outside: whatever ends a run, its tables read back, and
+//! nothing that was there before is lost.
 //!
 //! The full campaign (200 kills, 50 interrupts and 50 terminations, and a disk of 2 MiB, which
 //! needs root to be mounted):

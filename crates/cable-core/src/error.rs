@@ -18,7 +18,7 @@ pub use self::shape_fault::ShapeFault;
 pub use self::span::SpanError;
 pub use self::unsupported::{Unsupported, UnsupportedReach};
 
-/// Why a scene is refused.
+/// The reason why a scene is refused.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneError {
     /// Place in the scene, for example `cables[0].length_m`.
@@ -258,7 +258,7 @@ pub enum NearKind {
     Obstacle,
 }
 
-/// Why a model has no answer.
+/// The reason why a model has no answer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SolveError {
     /// The iteration did not converge.
@@ -388,7 +388,7 @@ pub enum SolveError {
         residual_n: f64,
         /// Its place.
         place: Box<Place>,
-        /// Why the last try failed.
+        /// The reason why the last try failed.
         cause: FailureCause,
     },
 }

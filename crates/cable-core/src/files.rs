@@ -16,8 +16,8 @@ use crate::scene::Scene;
 use crate::scene::file::MAX_TEXT_BYTES;
 use crate::solution::Solution;
 
-/// Why a file could not be read or written. The data in memory is untouched, and so is the old
-/// file.
+/// The reason why a file could not be read or written. The data in memory is untouched, and so is
+/// the old file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FileError {
     /// It cannot be opened or read.
@@ -59,7 +59,7 @@ pub enum FileError {
     RunFolder {
         /// The folder.
         path: String,
-        /// Why not.
+        /// The reason why it is not.
         fault: RunFolderFault,
     },
     /// It cannot be written.
@@ -73,7 +73,7 @@ pub enum FileError {
     },
 }
 
-/// Why a folder takes no run. Nothing in it was touched.
+/// The reason why a folder takes no run. Nothing in it was touched.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RunFolderFault {
     /// It is no run's.
@@ -127,7 +127,7 @@ impl FileError {
 /// Reads and validates a scene file.
 ///
 /// # Errors
-/// Why it cannot be read, or what is wrong with the scene.
+/// The reason why it cannot be read, or what is wrong with the scene.
 pub fn load_scene(path: impl AsRef<Path>) -> Result<Scene, FileError> {
     let path = path.as_ref();
     // Three bytes more for a byte order mark.
@@ -139,7 +139,7 @@ pub fn load_scene(path: impl AsRef<Path>) -> Result<Scene, FileError> {
 /// Saves a scene: whole or not at all. Comments of a file it replaces are lost.
 ///
 /// # Errors
-/// Why it cannot be written; the old file is then as it was.
+/// The reason why it cannot be written; the old file is then as it was.
 pub fn save_scene(path: impl AsRef<Path>, scene: &Scene) -> Result<(), FileError> {
     write_atomic(path, scene.to_toml().as_bytes())
 }
@@ -147,7 +147,7 @@ pub fn save_scene(path: impl AsRef<Path>, scene: &Scene) -> Result<(), FileError
 /// Reads a whole file of at most `limit_bytes`, and no byte more of a larger one.
 ///
 /// # Errors
-/// Why it cannot be read.
+/// The reason why it cannot be read.
 pub fn read_limited(path: impl AsRef<Path>, limit_bytes: u64) -> Result<Vec<u8>, FileError> {
     let path = path.as_ref();
     // Asked before opening: opening a pipe would wait for its other end.
@@ -168,7 +168,7 @@ pub fn read_limited(path: impl AsRef<Path>, limit_bytes: u64) -> Result<Vec<u8>,
 /// Writes a whole file: into a temporary file beside it, flushed to the disk, then renamed over it.
 ///
 /// # Errors
-/// Why it cannot be written; the old file is then as it was.
+/// The reason why it cannot be written; the old file is then as it was.
 pub fn write_atomic(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), FileError> {
     write_atomic_with(path, |out| out.write_all(bytes))
 }
@@ -177,7 +177,7 @@ pub fn write_atomic(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), FileErro
 /// the file.
 ///
 /// # Errors
-/// Why it cannot be written, or what `fill` met; the old file is then as it was.
+/// The reason why it cannot be written, or what `fill` met; the old file is then as it was.
 pub fn write_atomic_with(
     path: impl AsRef<Path>,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -195,7 +195,7 @@ pub fn write_atomic_with(
 /// Removes a file. One that is not there is removed already.
 ///
 /// # Errors
-/// Why it cannot be removed.
+/// The reason why it cannot be removed.
 pub fn remove(path: impl AsRef<Path>) -> Result<(), FileError> {
     let path = path.as_ref();
     match fs::remove_file(path) {
@@ -207,7 +207,7 @@ pub fn remove(path: impl AsRef<Path>) -> Result<(), FileError> {
 /// Makes a folder and those above it, for a run.
 ///
 /// # Errors
-/// Why it cannot be made.
+/// The reason why it cannot be made.
 pub fn create_folder(path: impl AsRef<Path>) -> Result<(), FileError> {
     let path = path.as_ref();
     fs::create_dir_all(path).map_err(|e| FileError::write(path, &e))
@@ -317,7 +317,7 @@ impl RunFolder {
     /// writes its scene and that it is partial.
     ///
     /// # Errors
-    /// Why the folder takes no run, or a file in it cannot be made.
+    /// The reason why the folder takes no run, or a file in it cannot be made.
     pub fn create(
         folder: impl AsRef<Path>,
         scene: &Scene,
@@ -705,7 +705,8 @@ pub enum RunRemark {
     Partial {
         /// Time of its last instant, s; None: it has none.
         reached_s: Option<f64>,
-        /// Why it stopped, if it said so: else it was cut off, or is still being written.
+        /// The reason why it stopped, if it said so: else it was cut off, or is still being
+        /// written.
         stop: Option<RunStop>,
     },
     /// Part of a table was not read.

@@ -1,8 +1,20 @@
 //! A simulation is the object that users hold: a scene, a model for each cable, and their state.
-//! `simulation/coupling.rs` steps robot and cables together.
+//!
+//! | room | content |
+//! |---|---|
+//! | `simulation.rs` | [`Simulation`]: settle, step, reset, edit |
+//! | `simulation/model_fallback.rs` | answers that break a law are refused, and the next model is asked |
+//! | `simulation/coupling.rs` | robot and cables in one step; `simulation/speed_search.rs`: the speed at which both agree |
+//! | `simulation/non_unique_equilibrium.rs` | warnings of equilibria that are one of many |
+//! | `simulation/loading_histories.rs` | tensions that other loading histories would have left |
+//! | `simulation/next_cheaper.rs` | error of the next cheaper model |
 
 mod coupling;
+mod loading_histories;
+mod model_fallback;
 mod next_cheaper;
+mod non_unique_equilibrium;
+mod speed_search;
 
 use std::sync::Arc;
 
@@ -12,16 +24,14 @@ use crate::error::SolveError;
 use crate::kinematics::{self, AlongCable};
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
-use crate::model::catenary::other_balances;
-use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::{Inertia, MIN_TOLERANCE, Mechanics, Model, ModelSource, Settings, StepReport};
 use crate::problem::{Problem, problems};
 use crate::robot::Vehicle;
 use crate::scene::Scene;
 use crate::solution::ErrorEstimates;
 use crate::solution::{
-    CableSolution, Cost, Energy, Histories, MaxTension, ModelReason, NextCheaper, Node, ShownEquilibrium, Solution,
-    Warning, WarningCause, WarningKind,
+    CableSolution, Cost, Energy, MaxTension, ModelReason, NextCheaper, Node, Solution, Warning, WarningCause,
+    WarningKind,
 };
 use crate::state::State;
 use crate::verify::{Depth, Verification, Verifier};
@@ -73,6 +83,16 @@ pub struct Simulation {
     next_cheaper: Option<NextCheaper>,
 }
 
+/// A model that was chosen for a scene.
+struct Choice {
+    /// The model that answers report.
+    model: Model,
+    /// What builds it.
+    source: ModelSource,
+    /// The reason that answers report.
+    reason: ModelReason,
+}
+
 /// The series of instants that an instant belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Instant {
@@ -108,17 +128,22 @@ impl Simulation {
     pub fn for_question(scene: Scene, model: Model, settings: Settings, question: Question) -> Result<Self, Error> {
         let problems = problems(&scene)?;
         if model != Model::Auto {
-            let reason = ModelReason::Requested;
-            return Self::from_source(scene, &problems, settings, model, ModelSource::Registered(model), reason);
+            let source = ModelSource::Registered(model);
+            return Self::from_choice(
+                scene,
+                &problems,
+                settings,
+                Choice { model, source, reason: ModelReason::Requested },
+            );
         }
         let (chosen, reason) = auto::choose_for_all(&problems, question);
         let source = ModelSource::Registered(auto::built_for(chosen));
-        let built = Self::from_source(scene.clone(), &problems, settings, chosen, source, reason);
+        let built = Self::from_choice(scene.clone(), &problems, settings, Choice { model: chosen, source, reason });
         let mut this = match built {
             Err(Error::Solve(SolveError::Unsupported { feature, .. })) if chosen != Model::MOST_CAPABLE => {
                 let reason = ModelReason::NoAnswer(Box::new(SolveError::Unsupported { model: chosen, feature }));
-                let source = ModelSource::Registered(Model::MOST_CAPABLE);
-                Self::from_source(scene, &problems, settings, Model::MOST_CAPABLE, source, reason)?
+                let (model, source) = (Model::MOST_CAPABLE, ModelSource::Registered(Model::MOST_CAPABLE));
+                Self::from_choice(scene, &problems, settings, Choice { model, source, reason })?
             }
             built => built?,
         };
@@ -144,18 +169,13 @@ impl Simulation {
             return Self::with_settings(scene, model, settings);
         }
         let problems = problems(&scene)?;
-        Self::from_source(scene, &problems, settings, source.model(), source, ModelReason::Requested)
+        let choice = Choice { model: source.model(), source, reason: ModelReason::Requested };
+        Self::from_choice(scene, &problems, settings, choice)
     }
 
-    /// Builds every cable by one source; model and reason are those that answers report.
-    fn from_source(
-        scene: Scene,
-        problems: &[Arc<Problem>],
-        settings: Settings,
-        model: Model,
-        source: ModelSource,
-        reason: ModelReason,
-    ) -> Result<Self, Error> {
+    /// Builds every cable by the model that was chosen.
+    fn from_choice(scene: Scene, problems: &[Arc<Problem>], settings: Settings, choice: Choice) -> Result<Self, Error> {
+        let Choice { model, source, reason } = choice;
         let cables = problems.iter().map(|p| BreakableCable::new(source.clone(), p.clone(), settings));
         let cables = cables.collect::<Result<Vec<_>, SolveError>>()?;
         let answers = cables.iter().map(BreakableCable::answer).collect();
@@ -313,140 +333,6 @@ impl Simulation {
             self.start = Some(self.cables.clone());
         }
         Ok(self.solution())
-    }
-
-    /// Settles by one model after the other until the answer obeys every law.
-    fn settle_until_sound(&mut self) -> Result<(), SolveError> {
-        let mut first: Option<SolveError> = None;
-        loop {
-            let found = self.for_each_cable(BreakableCable::settle).and_then(|()| {
-                self.refresh(Instant::AtRest);
-                self.check_sound()
-            });
-            let Err(error) = found else { return Ok(()) };
-            let error = match self.cables.iter().find_map(BreakableCable::refusal) {
-                Some(refusal) if matches!(error, SolveError::Unsound { .. }) => {
-                    SolveError::clearer(refusal.clone(), error)
-                }
-                _ => error,
-            };
-            // A cable that is said to have no resting place is not asked of another model.
-            let last = matches!(error, SolveError::NoRestingPlace { .. } | SolveError::Unsupported { .. });
-            let next = !last && self.switch_model(&error);
-            first = Some(match first {
-                Some(before) => SolveError::clearer(before, error),
-                None => error,
-            });
-            if !next {
-                return first.map_or(Ok(()), Err);
-            }
-        }
-    }
-
-    /// Verifies the present answers.
-    fn check_sound(&self) -> Result<(), SolveError> {
-        // The answer of a model that is a second opinion, asked for by name, is reported with the
-        // laws that it breaks, and not refused. A cable that broke at rest is where it was when it
-        // broke.
-        let told =
-            self.requested.capabilities().findings_are_told || self.cables.iter().any(|c| !c.breaks().is_empty());
-        match self.verification.worst().filter(|_| !told) {
-            None => Ok(()),
-            Some(finding) => Err(SolveError::Unsound { model: self.model, finding: Box::new(finding.clone()) }),
-        }
-    }
-
-    /// Gives the scene to the next more general model, where the user left the choice; returns
-    /// whether there was one.
-    fn switch_model(&mut self, why: &SolveError) -> bool {
-        if self.requested != Model::Auto {
-            return false;
-        }
-        let mut other = false;
-        for cable in &mut self.cables {
-            other |= cable.fall_back(why);
-        }
-        if other || self.source.model() == Model::MOST_CAPABLE {
-            return other;
-        }
-        let source = ModelSource::Registered(Model::MOST_CAPABLE);
-        let others = self.cables.iter().map(|c| c.rebuilt(source.clone()));
-        let Ok(next) = others.collect::<Result<Vec<_>, SolveError>>() else { return false };
-        self.reason = ModelReason::Unsound(Box::new(why.clone()));
-        (self.cables, self.source, self.model) = (next, source, Model::MOST_CAPABLE);
-        self.set_robot_pose();
-        true
-    }
-
-    /// Warns of equilibria that are one of many: of every cable that friction holds, whichever
-    /// model answered, with the tensions that other histories leave where `spans` finds them; and
-    /// of cables without friction that slide over pulleys, where there are several.
-    fn warn_not_unique(&mut self) {
-        for (k, (cable, answer)) in self.cables.iter().zip(&self.answers).enumerate() {
-            let problem = cable.problem();
-            let name = &problem.cable.name;
-            if !problem.rubs(answer) {
-                let told = self.warnings.iter().any(|w| w.kind == WarningKind::NotUnique && w.cable == *name);
-                if told || !cable.breaks().is_empty() {
-                    continue;
-                }
-                let others = other_balances(problem, answer, cable.time_s());
-                self.warnings.extend(others.map(|histories| {
-                    let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
-                    Warning::new(cause, name, 0.0, [0.0; 2])
-                }));
-                continue;
-            }
-            let of_cable = |w: &Warning| w.kind == WarningKind::NotUnique && w.cable == *name;
-            let laid = |problem: &Arc<Problem>| {
-                let laid = initial_equilibrium(problem, Settings::default(), &[], None).ok()??;
-                laid.warnings.into_iter().find(of_cable)
-            };
-            // A cable that leaves a wheel is laid over posts in their place.
-            let posts = || problem.wheels_as_posts.as_ref().and_then(|posts| laid(&posts.problem));
-            let seek = || laid(&Arc::new(problem.clone())).or_else(posts);
-            let known = self.warnings.iter().position(|w| of_cable(w) && w.cause.histories().is_some());
-            if known.is_none() && self.warnings.iter().any(of_cable) {
-                continue;
-            }
-            // A model that has chosen says which it shows; what others there are is asked here.
-            let at = known.unwrap_or_else(|| {
-                let cause = WarningCause::ManyEquilibria {
-                    shown: ShownEquilibrium::FromRoute,
-                    histories: Histories::NotSought,
-                };
-                self.warnings.push(Warning::new(cause, name, 0.0, [0.0; 2]));
-                self.warnings.len() - 1
-            });
-            let unknown = self.warnings[at].cause.histories() == Some(&Histories::NotSought);
-            let sought = if unknown && self.settings.histories { seek() } else { None };
-            let others = || if self.settings.histories { self.other_histories(k) } else { None };
-            let found = match (known, sought) {
-                (None, Some(sought)) => {
-                    self.warnings[at] = sought;
-                    None
-                }
-                (_, Some(sought)) => sought.cause.histories().cloned(),
-                (_, None) if unknown => others(),
-                (_, None) => None,
-            };
-            let cause = &mut self.warnings[at].cause;
-            let histories = found.or_else(|| cause.histories().cloned());
-            if let (Some(histories), WarningCause::ManyEquilibria { histories: told, .. }) = (histories, cause) {
-                *told = histories.beside(answer);
-            }
-        }
-    }
-
-    /// Other histories of a cable for which `spans` has no answer; None where they cannot be
-    /// sought.
-    fn other_histories(&self, k: usize) -> Option<Histories> {
-        let cable = self.cables.get(k)?.to_explore()?;
-        Some(cable.histories(|other| {
-            let mut answers = self.answers.clone();
-            answers[k].clone_from(other);
-            self.verify(&answers).is_sound()
-        }))
     }
 
     /// Advances time with inertia by `dt_s` (s).

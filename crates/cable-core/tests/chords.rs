@@ -43,7 +43,8 @@ fn between([a, b]: [P; 2], [c, d]: [P; 2]) -> f64 {
     all.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// How far the centre line's chord comes below the clearance it must keep from an obstacle, m.
+/// Returns how far the centre line's chord comes below the clearance it must keep from an obstacle,
+/// m.
 fn cut(shape: &Shape, radius: f64, chord: [P; 2]) -> f64 {
     let line = |points: &[P], closed: bool| {
         let last = if closed { points.len() } else { points.len() - 1 };

@@ -1,5 +1,5 @@
-//! Whether every figure's stated error covers its true one, and how closely: `fem` and
-//! `mass-spring` beside answers without a mesh (`catenary`, `spans`), or where there are none
+//! This test asks whether every figure's stated error covers its true one, and how closely: `fem`
+//! and `mass-spring` beside answers without a mesh (`catenary`, `spans`), or where there are none
 //! beside a much finer mesh, over random scenes in twelve families.
 //!
 //! Of a finer mesh only differences of the two are known, and so they are called. What is below
@@ -72,8 +72,8 @@ impl Drawn {
         self.hold * back.max(a - 2.0 * b + 2.0 * c - u)
     }
 
-    /// How far the hand is from its start after each stroke: the change of tension, a triangle over
-    /// each front, over EA.
+    /// Returns how far the hand is from its start after each stroke: the change of tension, a
+    /// triangle over each front, over EA.
     fn moves(&self) -> [f64; 3] {
         let stretch = |k: usize, slope: f64| 0.5 * slope * self.hold * self.fronts[k].powi(2) / self.stiffness;
         let (drawn, back, again) = (stretch(0, 1.0), stretch(1, 2.0), stretch(2, 2.0));
@@ -168,8 +168,8 @@ fn beam(dice: &mut Dice, friction: f64) -> Scene {
     led(Shape::Polygon { points_m }, friction, (route, longer, density), stiffness)
 }
 
-/// Where the hand goes from the last support: to and fro along its cable, in steps that add up to
-/// some of its stretch and of its slack.
+/// Returns where the hand goes from the last support: to and fro along its cable, in steps that add
+/// up to some of its stretch and of its slack.
 fn strokes(dice: &mut Dice, scene: &Scene, turns: usize) -> Vec<Vec2> {
     let c = &scene.cables[0];
     let end = c.supports[c.supports.len() - 1].at_m.unwrap();

@@ -29,7 +29,7 @@ fn force_on(sim: &Simulation, support: usize) -> f64 {
     s.reaction_x_n.hypot(s.reaction_y_n)
 }
 
-/// When the end of the folded chain is let go, s.
+/// The time when the end of the folded chain is let go, s.
 const LET_GO: f64 = 0.01;
 
 /// A chain of 1 m and 1 kg hung by both ends, a link apart, one of which is let go.
@@ -40,8 +40,8 @@ fn folded_chain(links: usize) -> Scene {
     scene
 }
 
-/// How far the end has fallen (m) and the pull on the hook (in weights of the chain) after each
-/// step `h` (s).
+/// Returns how far the end has fallen (m) and the pull on the hook (in weights of the chain) after
+/// each step `h` (s).
 fn fall(links: usize, model: Model, h: f64) -> Vec<[f64; 2]> {
     let mut sim = settled(&folded_chain(links), model);
     while sim.time_s() < LET_GO - 0.5 * h {

@@ -1,4 +1,4 @@
-//! FEM statics with bending stiffness against every case of the families `elastica` and
+//! FEM statics with bending stiffness is compared with every case of the families `elastica` and
 //! `stiff_catenary` of `tests/data/statics.json`: a ladder in the number of bars for every value
 //! the references give, identities that need no solver beside them, and what is said of sharp
 //! bends.

@@ -29,8 +29,8 @@ fn tension(stage: usize, s: f64) -> f64 {
     [drawn, back, again][stage]
 }
 
-/// How far the hand has moved after each stage, m: the change of tension, a triangle over the
-/// front, over EA.
+/// Returns how far the hand has moved after each stage, m: the change of tension, a triangle over
+/// the front, over EA.
 fn moves(stiffness: f64) -> [f64; 3] {
     let r = FRICTION * MASS * G;
     let stretch = |k: usize, slope: f64| 0.5 * slope * r * FRONTS[k] * FRONTS[k] / stiffness;

@@ -184,7 +184,7 @@ fn scene(seed: u64) -> (&'static str, Scene) {
     (name, s)
 }
 
-/// How deep a point is inside an obstacle, of the cable's centre line, m.
+/// Returns how deep a point is inside an obstacle, of the cable's centre line, m.
 fn depth(shape: &Shape, [x, y]: [f64; 2]) -> f64 {
     let to = |p: [f64; 2], q: [f64; 2]| {
         let (d, e) = ([q[0] - p[0], q[1] - p[1]], [x - p[0], y - p[1]]);

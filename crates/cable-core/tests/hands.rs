@@ -108,8 +108,8 @@ fn hand(sim: &Simulation) -> (Vec2, Vec2, f64) {
     (Vec2::new(hand.x_m, hand.y_m), Vec2::new(hand.force_x_n, hand.force_y_n), hand.stiffness_n_per_m)
 }
 
-/// What the cable pulls with at its right end, N: the tension at the node before, and what the
-/// element between weighs.
+/// Returns what the cable pulls with at its right end, N: the tension at the node before, and what
+/// the element between weighs.
 fn pull(sim: &Simulation) -> Vec2 {
     let nodes = &sim.answers()[0].nodes;
     let c = &sim.scene().cables[0];

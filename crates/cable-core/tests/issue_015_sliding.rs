@@ -31,7 +31,7 @@ fn settle(scene: &Scene, model: Model) -> Result<Solution, SolveError> {
     Simulation::new(scene.clone(), model).unwrap().settle()
 }
 
-/// How much more friction is asked for, %; None where it rests.
+/// Returns how much more friction is asked for, %; None where it rests.
 fn missing(scene: &Scene, model: Model) -> Option<f64> {
     match settle(scene, model) {
         Ok(_) => None,

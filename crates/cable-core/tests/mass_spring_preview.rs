@@ -59,7 +59,7 @@ fn weights([m1, m2]: [f64; 2], density: f64, (radius, friction): (f64, f64), seg
     scene
 }
 
-/// How far the cable has run over the pulley after 1 s in steps of `h` (s), m.
+/// Returns how far the cable has run over the pulley after 1 s in steps of `h` (s), m.
 fn ran(scene: &Scene, h: f64) -> f64 {
     let mut sim = begun(scene, Stepping::Preview);
     let start = arc(&sim);

@@ -1,6 +1,6 @@
-//! Momentum over every step of a motion: what it changes by is the impulse of what acts, impacts
-//! included. The account is the model's own; that it is one of what is shown (momentum of the
-//! nodes, weight of the scene, the answer before) is asked here as well.
+//! Over every step of a motion momentum changes by the impulse of what acts, impacts included. The
+//! account is the model's own; that it is one of what is shown (momentum of the nodes, weight of
+//! the scene, the answer before) is asked here as well.
 //!
 //! All of it: `cargo test --locked -p cable-core --test momentum -- --nocapture` (violent scenes:
 //! `--test violent`).

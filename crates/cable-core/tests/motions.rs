@@ -125,7 +125,7 @@ fn reference(scene: &Scene, end: f64, way: Way) -> Result<Reference, String> {
     Ok(Reference { most, range, scatter: all[1] / all[0] - 1.0 })
 }
 
-/// How a run compares with its reference.
+/// The comparison of a run with its reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Same {
     /// Within 2 %.

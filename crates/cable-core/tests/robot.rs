@@ -1,4 +1,4 @@
-//! A robot and its cable together.
+//! A robot and its cable move together.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, missing_docs)] // a failing test is meant to panic
 

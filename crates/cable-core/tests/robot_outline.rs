@@ -31,8 +31,8 @@ fn robot(simulation: &Simulation) -> RobotReport {
     simulation.solution().robot.unwrap()
 }
 
-/// Whether the cable crosses the outline, or has a node in it: by polygons alone, not by what the
-/// solver uses.
+/// Returns whether the cable crosses the outline, or has a node in it: by polygons alone, not by
+/// what the solver uses.
 fn crosses(simulation: &Simulation) -> Option<String> {
     let outline: Outline = robot_outline(simulation.scene(), 0.5).unwrap();
     let r = robot(simulation);

@@ -92,7 +92,7 @@ fn buried(simulation: &Simulation) -> Option<String> {
     found.map(|(p, name)| format!("t = {:.3} s: {p:?} in {name}", simulation.time_s())).next()
 }
 
-/// What is checked of every frame.
+/// The checks of every frame.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Check {
     /// That nothing of the cable is inside an obstacle.

@@ -1,4 +1,4 @@
-//! A robot that snaps its cable taut: the peak of the pull is that of robot and cable, whatever the
+//! A robot snaps its cable taut: the peak of the pull is that of robot and cable, whatever the
 //! step, and each joule of it is that of a force.
 //!
 //! `cargo test --locked --test robot_snap -- --nocapture` tells the figures.
@@ -31,7 +31,7 @@ fn hanging() -> Scene {
     scene
 }
 
-/// What a run shows.
+/// The figures that a run shows.
 #[derive(Clone, Copy, Debug, Default)]
 struct Snap {
     /// Greatest mean tension over the time that it takes to break, N.

@@ -1,4 +1,5 @@
-//! Run folders: what takes the place of what, wherever it stops; what is refused is not touched.
+//! A run folder takes the place of another wherever the run stops, and one that is refused is not
+//! touched.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

@@ -39,7 +39,7 @@ fn top(sim: &Simulation) -> f64 {
     sim.solution().cables[0].nodes.iter().map(|n| n.y_m).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Whether two bars of the cable cross.
+/// Returns whether two bars of the cable cross.
 fn crosses(sim: &Simulation) -> bool {
     let nodes = &sim.solution().cables[0].nodes;
     let x: Vec<Vec2> = nodes.iter().map(|n| Vec2::new(n.x_m, n.y_m)).collect();

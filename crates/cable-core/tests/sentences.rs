@@ -1,4 +1,4 @@
-//! The sentences of warnings, errors and verdicts, in SI and in US units.
+//! Warnings, errors and verdicts are sentences, in SI and in US units.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 use cable_core::error::{

@@ -89,7 +89,7 @@ fn scene(seed: u64) -> (&'static str, Scene) {
     (name, s)
 }
 
-/// What is wrong with the answer of a scene; `Err`: it was refused.
+/// Returns what is wrong with the answer of a scene; `Err`: it was refused.
 fn faults(s: &Scene) -> Result<Vec<String>, String> {
     let mut sim = Simulation::new(s.clone(), Model::Auto).map_err(|e| e.to_string())?;
     let answer = sim.settle().map_err(|e| e.to_string())?;

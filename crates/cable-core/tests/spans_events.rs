@@ -1,6 +1,6 @@
-//! What `spans` must do around events: tension does not jump where contacts come, go, join or fall
-//! slack; what is held still stays; several supports, loads in wind, undersides and turns round
-//! posts.
+//! Around events `spans` obeys these rules: tension does not jump where contacts come, go, join or
+//! fall slack; what is held still stays; several supports, loads in wind, undersides and turns
+//! round posts.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
@@ -269,7 +269,7 @@ fn loads_and_wind_over_a_post() {
     assert!(answer.contacts[0].tension_after_n / answer.contacts[0].tension_before_n < (0.2f64 * 2.0).exp());
 }
 
-/// Whether a point is below the ground, by the points of the ground alone.
+/// Returns whether a point is below the ground, by the points of the ground alone.
 fn below(points: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
     points.windows(2).any(|w| {
         let [[x0, y0], [x1, y1]] = [w[0], w[1]];

@@ -1,5 +1,6 @@
-//! Where a cable loses its tension `spans` says so, of what kind, and not before: each kind beside
-//! a judge that knows nothing of the solver, and so for what it must still take on the way there.
+//! `spans` says where a cable loses its tension, of what kind, and not before. Each kind is
+//! compared with a judge that knows nothing of the solver, and so for what it must still take on
+//! the way there.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

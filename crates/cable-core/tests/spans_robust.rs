@@ -31,7 +31,7 @@ const RADIUS: f64 = 0.01;
 /// A scene and what a hand does to it.
 struct Case {
     scene: Scene,
-    /// Where each end goes, move by move.
+    /// The places to which each end goes, move by move.
     moves: Vec<[Vec2; 2]>,
 }
 
@@ -260,9 +260,9 @@ const HAIRPIN: f64 = 0.06;
 /// Tension of a lay that is lost, of the greatest.
 const FADED: f64 = 0.05;
 
-/// Whether the last answer before a loss shows, by its shape alone, what the error says: a span
-/// that folds or goes slack has its ends above each other (the first or the last span folds, one
-/// between contacts goes slack), a lay that goes slack has hardly any tension left.
+/// Returns whether the last answer before a loss shows, by its shape alone, what the error says: a
+/// span that folds or goes slack has its ends above each other (the first or the last span folds,
+/// one between contacts goes slack), a lay that goes slack has hardly any tension left.
 fn shows(answer: &CableSolution, loss: TensionLoss, s: f64) -> Result<(), String> {
     let length = answer.nodes.last().unwrap().arc_length_m;
     let mut contacts: Vec<[f64; 2]> = answer.contacts.iter().map(|c| [c.begins_m, c.ends_m]).collect();

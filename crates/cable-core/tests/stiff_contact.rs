@@ -74,7 +74,7 @@ struct Case {
     length: f64,
     tips: [Tip; 2],
     shapes: Vec<Shape>,
-    /// Where a load acts, and what.
+    /// The place of a load, and its force.
     load: Option<(f64, V)>,
     friction: f64,
 }
@@ -117,7 +117,7 @@ struct Shooting<'a> {
     steps: usize,
     /// Pieces that the cable between two events is cut into.
     cuts: Vec<usize>,
-    /// Whether the cable ends on its last contact.
+    /// True if the cable ends on its last contact.
     lies: bool,
 }
 

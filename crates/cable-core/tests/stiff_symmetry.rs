@@ -155,9 +155,9 @@ fn rest(scene: &Scene) -> Result<CableSolution, String> {
     Ok(sim.solution().cables[0].clone())
 }
 
-/// How far from the cable the line through its nodes is read at most, m: half of what a line
-/// through every second node leaves, which is sixteen times as much of a curve of the fourth order
-/// and four times as much where the bend has a kink.
+/// Returns how far from the cable the line through its nodes is read at most, m: half of what a
+/// line through every second node leaves, which is sixteen times as much of a curve of the fourth
+/// order and four times as much where the bend has a kink.
 fn reading(cable: &CableSolution) -> f64 {
     let coarse: Vec<_> = cable.nodes.iter().step_by(2).copied().collect();
     let off = |n: &Node| place(&coarse, n.arc_length_m).map_or(0.0, |at| (at - n.at()).norm());

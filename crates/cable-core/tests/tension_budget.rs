@@ -1,4 +1,4 @@
-//! Where a tension comes from: the terms add up, and each is what an answer says of it by itself.
+//! The terms of a tension budget add up, and each is what an answer says of it by itself.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

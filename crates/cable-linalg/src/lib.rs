@@ -27,7 +27,7 @@ pub const BENDING_HALF_BANDWIDTH: usize = 5;
 /// Widest half-bandwidth there is.
 pub const WIDEST: usize = 8;
 
-/// Why a matrix could not be factorised.
+/// The reason why a matrix could not be factorised.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum FactorError {
     /// The matrix is not positive definite, or holds a number that is not finite.

@@ -9,7 +9,7 @@ use cable_viewer::ViewerApp;
 use cable_viewer::app::{gallery, screenshot};
 use cable_viewer::command::Command;
 use cable_viewer::io::{autosave, scene_file};
-use cable_viewer::render::software::Software;
+use cable_viewer::render::software_adapter_shader::Software;
 use clap::Parser;
 
 /// The cable simulator's window.

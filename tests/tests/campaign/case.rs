@@ -5,7 +5,7 @@ use cable_core::{Load, Model};
 
 pub type Point = [f64; 2];
 
-/// What must come out.
+/// The verdict that must come out.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Expect {
     /// There is a resting place.

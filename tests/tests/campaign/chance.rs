@@ -1,4 +1,4 @@
-//! Numbers drawn from a seed, the same on every machine.
+//! Numbers are drawn from a seed, the same on every machine.
 
 /// A linear congruential generator (D. Knuth, "The art of computer programming", volume 2, 1981,
 /// 3.3.4) whose high bits are used.

@@ -20,7 +20,7 @@ const REPEATS: usize = 3;
 /// A setting that takes so many times as long as the cheapest is not asked with more elements.
 const TOO_DEAR: f64 = 30.0;
 
-/// What came out of all scenes.
+/// The outcome of all scenes.
 #[derive(Debug, Default)]
 pub struct Choices {
     /// Scenes with a reference.
@@ -49,7 +49,8 @@ fn ask(case: &Case, model: Model, segments: Option<usize>) -> Option<(Solution, 
     Some((found?, least))
 }
 
-/// How far the forces on both ends are from those of a reference, in parts of its greatest tension.
+/// Returns how far the forces on both ends are from those of a reference, in parts of its greatest
+/// tension.
 fn off(case: &Case, answer: &Solution, reference: &Solution) -> f64 {
     let (own, right) = (end_forces(answer), end_forces(reference));
     let greatest = judge::greatest(&case.scene, &case.scene.cables[0], &reference.cables[0]);

@@ -1,4 +1,4 @@
-//! Closed forms, written for these tests alone.
+//! These closed forms are written for the tests alone.
 
 use super::case::{Point, apart};
 

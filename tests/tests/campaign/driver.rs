@@ -1,4 +1,4 @@
-//! From families and seeds to verdicts.
+//! The driver makes verdicts of families and seeds.
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -26,7 +26,7 @@ pub struct Plan {
     pub names: Vec<String>,
     /// How many relations each case is asked.
     pub relations: usize,
-    /// Whether `fem` with 300 elements is asked for a second opinion.
+    /// True if `fem` with 300 elements is asked for a second opinion.
     pub second_model: bool,
     /// Longest time for an answer, s; what takes longer is refused.
     pub limit_s: u64,
@@ -39,7 +39,7 @@ impl Default for Plan {
     }
 }
 
-/// What came out of a family.
+/// The outcome of a family.
 #[derive(Default)]
 pub struct Tally {
     pub family: &'static str,
@@ -59,7 +59,7 @@ pub struct Tally {
     pub slowest: (f64, u64),
 }
 
-/// What came out of a case.
+/// The outcome of a case.
 #[derive(Default)]
 struct Verdict {
     answered: bool,
@@ -224,8 +224,8 @@ fn solve(scene: &Scene, model: Model, segments: Option<usize>, limit_s: u64) -> 
     }
 }
 
-/// Whether the answer says itself that it breaks a law: only `mass-spring` may, where it was asked
-/// for by name.
+/// Returns whether the answer says itself that it breaks a law: only `mass-spring` may, where it
+/// was asked for by name.
 fn unsound(answer: &Solution) -> bool {
     answer.model == Model::MassSpring && answer.verification.as_ref().is_some_and(|v| !v.is_sound())
 }

@@ -99,8 +99,8 @@ impl World {
         }
     }
 
-    /// Where a piece is nearest to each corner and each round within `reach` of it, as parts of the
-    /// piece.
+    /// Returns where a piece is nearest to each corner and each round within `reach` of it, as
+    /// parts of the piece.
     fn passed(&self, a: V, b: V, reach: f64) -> Vec<f64> {
         let way = sub(b, a);
         let mut out = Vec::new();
@@ -153,7 +153,7 @@ impl World {
     }
 }
 
-/// How far a force is outside the cone of sums of what each contact may do.
+/// Returns how far a force is outside the cone of sums of what each contact may do.
 fn outside(force: V, near: &[&Near]) -> f64 {
     let turned = |n: V, mu: f64| [n[0] - mu * n[1], n[1] + mu * n[0]];
     let rays: Vec<V> =
@@ -174,7 +174,7 @@ fn outside(force: V, near: &[&Near]) -> f64 {
     best
 }
 
-/// What is wrong with an answer: one line a law, the worst of each.
+/// Returns what is wrong with an answer: one line a law, the worst of each.
 pub fn faults(scene: &Scene, answer: &Solution) -> Vec<String> {
     let mut out = Vec::new();
     if answer.cables.len() != scene.cables.len() {

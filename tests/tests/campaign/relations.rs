@@ -175,7 +175,7 @@ pub fn relation(scene: &Scene, which: usize) -> Relation {
     Relation { name, scene: changed, back }
 }
 
-/// How many there are.
+/// Their number.
 pub const COUNT: usize = 7;
 
 /// Forces on the first and last support of the first cable, N.

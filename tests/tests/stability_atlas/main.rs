@@ -1,4 +1,4 @@
-//! The stability atlas: where methods are known to fail, what each model does there.
+//! The stability atlas shows what each model does where methods are known to fail.
 //!
 //! Every regime has an answer that does not come from the model asked: a closed form, a balance, a
 //! bound on energy, a wall nothing may enter. A model may be right, may refuse with a typed error,
@@ -88,11 +88,11 @@ impl Verdict {
 
 /// A regime: its name, what the figure is, and what a model does in it.
 pub struct Regime {
-    /// What makes it hard.
+    /// The reason why it is hard.
     pub name: &'static str,
-    /// What the error is of.
+    /// The quantity of the error.
     pub figure: &'static str,
-    /// What a model does there.
+    /// The behaviour of a model there.
     pub judge: fn(Model) -> Result<Verdict, SolveError>,
 }
 
@@ -152,8 +152,8 @@ fn ranks(csv: &str) -> Vec<(String, u8)> {
     csv.lines().skip(1).map(row).collect()
 }
 
-/// What every model does in every regime, by regime; each thread takes the next one that nobody has
-/// begun.
+/// Returns what every model does in every regime, by regime; each thread takes the next one that
+/// nobody has begun.
 fn verdicts(regimes: &[Regime]) -> Vec<Vec<Verdict>> {
     let jobs: Vec<(usize, Model)> = (0..regimes.len()).flat_map(|r| Model::SOLVERS.map(|m| (r, m))).collect();
     let (next, done) = (AtomicUsize::new(0), Mutex::new(vec![Vec::new(); regimes.len()]));

@@ -84,7 +84,7 @@ fn snap(model: Model) -> Result<Verdict, SolveError> {
     gained(sim, 1.0 / 60.0, 240)
 }
 
-/// How deep nodes are in what is there, over the cable's radius.
+/// Returns how deep nodes are in what is there, over the cable's radius.
 fn deepest(sim: &Simulation, depth: impl Fn(Vec2) -> f64) -> f64 {
     let radius = 0.5 * sim.scene().cables[0].diameter_m;
     let deep = sim.states()[0]

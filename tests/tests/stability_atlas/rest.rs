@@ -7,8 +7,8 @@ use cable_core::{Model, SolveError};
 
 use super::{G, Regime, Verdict, cable, load, simulation};
 
-/// Where a cable of weight `w` (N/m) ends that leaves the origin with tension components `h`, `v`
-/// (N).
+/// Returns where a cable of weight `w` (N/m) ends that leaves the origin with tension components
+/// `h`, `v` (N).
 fn end([h, v]: [f64; 2], w: f64, length: f64, ea: f64) -> [f64; 2] {
     let top = v + w * length;
     let hung = if h.abs() < 1e-9 * w * length { 0.0 } else { h / w * ((top / h).asinh() - (v / h).asinh()) };

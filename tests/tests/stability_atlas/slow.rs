@@ -1,4 +1,4 @@
-//! Friction, slowly: what lagged and penalty methods lose, creep away or lock.
+//! Slow motions with friction: lagged and penalty methods lose tension, creep away or lock.
 
 use cable_core::scene::{Motion, Obstacle, Scene, Shape, Support};
 use cable_core::{Model, SolveError};

@@ -1,7 +1,8 @@
 //! The pieces of a cable are read as one cable again: arc lengths from its start, supports in the
 //! scene's order.
 
-use super::{BreakableCable, Piece};
+use super::BreakableCable;
+use super::piece::Piece;
 use crate::problem::SupportPoint;
 use crate::solution::{Assumptions, CableSolution, MomentumAccount, SupportReaction};
 use crate::state::State;

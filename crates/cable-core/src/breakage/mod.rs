@@ -2,11 +2,11 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `mod.rs` | [`BreakableCable`]: steps, and the search for the instant of a break |
+//! | `mod.rs` | [`BreakableCable`]: its pieces in a step, and what becomes of one that breaks |
+//! | `piece.rs` | one piece in a step: the search for the instant of a break |
 //! | `partition.rs` | which supports and loads belong to which piece |
 //! | `rupture.rs` | where and when the breaking tension is first reached |
 //! | `answer.rs` | the pieces read as one cable |
-//! | `histories.rs` | what other loading histories would leave |
 //!
 //! A model knows one unbroken cable. Where the tension reaches the breaking tension,
 //! [`BreakableCable`] stops the model there, distributes supports and loads over two shorter
@@ -14,8 +14,8 @@
 //! velocities of that instant. Every model can break, and none knows that it can.
 
 mod answer;
-mod histories;
 mod partition;
+mod piece;
 mod rupture;
 #[cfg(test)]
 mod tests;
@@ -23,27 +23,16 @@ mod tests;
 use std::sync::Arc;
 
 use partition::{CablePart, Cut};
+use piece::{BreakPoint, Piece, StepOutcome};
 
 use crate::error::{SolveError, Unsupported};
-use crate::math::RigidPose;
-use crate::math::{Vec2, larger, smaller};
-use crate::model::gauge::{Limit, TensionGauge};
+use crate::math::{RigidPose, Vec2, smaller};
+use crate::model::gauge::TensionGauge;
 use crate::model::input_filter::default_hand_stiffness;
-use crate::model::{Inertia, Mechanics, Model, ModelSource, OwnedResources, RobotContact, Settings, StepReport};
+use crate::model::{Inertia, Model, ModelSource, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::{Problem, SupportPoint};
-use crate::scene::SupportKind;
-use crate::solution::{CableSolution, Cost, ModelReason, MomentumAccount, TensionPeak, TensionPeaks};
+use crate::solution::{ModelReason, TensionPeaks};
 use crate::state::State;
-
-/// Longest step that a cable which breaks in it takes from its last place before, s. Longer: the
-/// place of the break is blurred; shorter: more steps for each break. It is the inner step of
-/// `fem`.
-const BREAK_SEARCH_STEP_S: f64 = 1.0 / 240.0;
-
-/// Looks in a step without inertia that ends beyond the breaking tension. The moment of the break
-/// is interpolated between two of them: with 16 the end of a cable pulled from slack to taut in one
-/// step is found to 1e-2 of the step.
-const QUASI_STATIC_SUBSTEPS: f64 = 16.0;
 
 /// Steps after a break in which a piece is not watched: the models start with a first-order step,
 /// and the free end is met by a wave of its own. Fewer: false breaks beside the first; more: true
@@ -53,17 +42,8 @@ const QUASI_STATIC_SUBSTEPS: f64 = 16.0;
 /// cable does.
 const UNWATCHED_STEPS: u32 = 2;
 
-/// A rest of a step shorter than this part of it is left out: at a millionth of a step the forces
-/// of inertia are rounding.
-const MIN_STEP_REMAINDER: f64 = 0.1;
-
 /// Most pieces of one cable. More are no longer a cable that breaks but a step that fails.
 const MAX_PIECES: usize = 32;
-
-/// A pulley is off the cable when a new end is this near, in elements. Smaller: the end runs into
-/// the pulley, where there is no element left on one side; larger: it drops off visibly early. 2
-/// leaves a moving node beside the pulley.
-const PULLEY_RELEASE_ELEMENTS: f64 = 2.0;
 
 /// Fastest motion of a support that is followed while masses move, m/s. Slower: motions are refused
 /// that every model follows; faster: `mass-spring` cuts velocities, and air, which no model has,
@@ -100,35 +80,10 @@ pub(crate) struct BreakableCable {
     robot_pose: Option<RigidPose>,
     /// The greatest tensions since they were last forgotten, in motion.
     peaks: Option<TensionPeaks>,
-    /// When that was, s.
+    /// The time when that was, s.
     since_s: f64,
     /// A motion that is too fast for masses that move.
     too_fast: Option<Unsupported>,
-}
-
-/// A part of the cable that holds together.
-struct Piece {
-    mechanics: Box<dyn Mechanics>,
-    part: CablePart,
-    /// The answer at its present instant, in its own arc lengths.
-    answer: CableSolution,
-    unwatched_steps: u32,
-    /// Not watched before, s.
-    unwatched_until_s: f64,
-    /// Its tension in the inner steps of its model, in its own arc lengths.
-    gauge: TensionGauge,
-    /// Its momentum since the caller's step began, as far as there is an account of it.
-    account: Option<MomentumAccount>,
-}
-
-/// The break of a piece.
-struct BreakPoint {
-    /// When, s.
-    time_s: f64,
-    /// The state of the piece then.
-    state: State,
-    /// The place on it.
-    at: rupture::Rupture,
 }
 
 /// The hold that draws a support.
@@ -138,12 +93,6 @@ enum Grasp {
     Rigid,
     /// A spring pulls it there.
     Spring,
-}
-
-/// The outcome of a step of a piece.
-enum StepOutcome {
-    Intact,
-    Broke(Box<BreakPoint>),
 }
 
 impl BreakableCable {
@@ -174,7 +123,12 @@ impl BreakableCable {
 
     /// The same cable by another model: where it is, or at its route where it has not begun.
     pub fn rebuilt(&self, source: ModelSource) -> Result<Self, SolveError> {
-        let mut next = Self::new(source, self.problem.clone(), self.settings)?;
+        self.rebuilt_with(source, self.settings)
+    }
+
+    /// The same with other settings.
+    pub fn rebuilt_with(&self, source: ModelSource, settings: Settings) -> Result<Self, SolveError> {
+        let mut next = Self::new(source, self.problem.clone(), settings)?;
         if self.time_s() > 0.0 {
             next.carry(self)?;
         }
@@ -193,14 +147,20 @@ impl BreakableCable {
         self.pieces.first().map_or(self.source.model(), |p| p.mechanics.model())
     }
 
-    /// Why it is that model, where that changed on the way.
+    /// Returns why it is that model, where that changed on the way.
     pub fn reason(&self) -> Option<&ModelReason> {
         self.pieces.iter().find_map(|p| p.mechanics.reason())
     }
 
-    /// Why the model that was asked first has no answer, where another one gave the present one.
+    /// Returns why the model that was asked first has no answer, where another one gave the present
+    /// one.
     pub fn refusal(&self) -> Option<&SolveError> {
         self.pieces.iter().find_map(|p| p.mechanics.refusal())
+    }
+
+    /// The settings with which it was built.
+    pub fn settings(&self) -> Settings {
+        self.settings
     }
 
     /// The whole cable's problem.
@@ -224,7 +184,7 @@ impl BreakableCable {
         self.peaks = None;
         for piece in &mut self.pieces {
             piece.gauge.forget();
-            add(&mut sum, piece.mechanics.settle()?);
+            sum.add(piece.mechanics.settle()?);
             piece.refresh_answer();
         }
         sum.warnings.extend(self.problem.notes.iter().cloned());
@@ -251,10 +211,10 @@ impl BreakableCable {
         while inertia == Inertia::QuasiStatic
             && let Some(at) = self.problem.turn_between(self.time_s(), end_s)
         {
-            add(&mut sum, self.advance_on(at - self.time_s(), inertia)?);
+            sum.add(self.advance_on(at - self.time_s(), inertia)?);
             left = end_s - self.time_s();
         }
-        add(&mut sum, self.advance_on(left, inertia)?);
+        sum.add(self.advance_on(left, inertia)?);
         Ok(sum)
     }
 
@@ -500,196 +460,6 @@ impl BreakableCable {
     }
 }
 
-impl Piece {
-    fn new(mechanics: Box<dyn Mechanics>, part: CablePart, gauge: TensionGauge) -> Self {
-        let answer = mechanics.solution();
-        Self { answer, mechanics, part, unwatched_steps: 0, unwatched_until_s: f64::NEG_INFINITY, gauge, account: None }
-    }
-
-    fn refresh_answer(&mut self) {
-        self.answer = self.mechanics.solution();
-    }
-
-    /// Adds the account of the step just made.
-    fn accumulate_momentum(&mut self) {
-        self.account = match (self.account, self.answer.momentum) {
-            (Some(before), Some(now)) => Some(before.then(&now)),
-            (before, now) => now.or(before),
-        };
-    }
-
-    /// Mean length of an element, m.
-    fn element(&self) -> f64 {
-        self.part.length() / self.answer.nodes.len().saturating_sub(1).max(1) as f64
-    }
-
-    /// Advances until it breaks, at most by `dt_s`.
-    fn advance(
-        &mut self,
-        dt_s: f64,
-        inertia: Inertia,
-        breaking_n: Option<f64>,
-        sum: &mut StepReport,
-    ) -> Result<StepOutcome, SolveError> {
-        match (inertia, breaking_n) {
-            (Inertia::Dynamic, breaking_n) => self.advance_dynamic(dt_s, breaking_n, sum),
-            (Inertia::QuasiStatic, Some(breaking_n)) => self.advance_quasi_static(dt_s, breaking_n, sum),
-            (Inertia::QuasiStatic, None) => {
-                self.gauge.forget();
-                add(sum, self.mechanics.advance(dt_s, inertia)?);
-                self.refresh_answer();
-                Ok(StepOutcome::Intact)
-            }
-        }
-    }
-
-    /// With inertia: it breaks where the gauge says so, which sees the inner steps. A step in which
-    /// that happens is taken again in parts, to have the cable where it breaks.
-    fn advance_dynamic(
-        &mut self,
-        dt_s: f64,
-        breaking_n: Option<f64>,
-        sum: &mut StepReport,
-    ) -> Result<StepOutcome, SolveError> {
-        let looks = (dt_s / BREAK_SEARCH_STEP_S - 1e-9).ceil().max(1.0);
-        if looks > 1.0 && self.unwatched_steps == 0 {
-            // What cannot break is never taken again.
-            let before = breaking_n.map(|_| (self.mechanics.boxed_clone(), self.gauge.clone()));
-            let report = self.gauged_step(dt_s, breaking_n)?;
-            let Some(before) = before.filter(|_| self.gauge.reached().is_some()) else {
-                self.refresh_answer();
-                self.accumulate_momentum();
-                add(sum, report);
-                return Ok(StepOutcome::Intact);
-            };
-            (self.mechanics, self.gauge) = before;
-        }
-        let (mut left_s, h) = (dt_s, dt_s / looks);
-        let mut peaks: Option<TensionPeaks> = None;
-        for _ in 0..looks as usize {
-            let state = self.mechanics.state();
-            let step_s = if left_s < 1.5 * h { left_s } else { h };
-            let breaking_n = breaking_n.filter(|_| self.unwatched_steps == 0);
-            let done = self.gauged_step(step_s, breaking_n);
-            self.refresh_answer();
-            self.accumulate_momentum();
-            add(sum, done?);
-            self.gauge.add_peaks(peaks);
-            peaks = self.gauge.peaks();
-            left_s -= step_s;
-            self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
-            if let Some(reached) = self.gauge.reached() {
-                let now = self.mechanics.state();
-                let fraction = ((reached.time_s - state.time_s) / (now.time_s - state.time_s)).clamp(0.0, 1.0);
-                let at =
-                    rupture::Rupture { node: rupture::nearest(&self.answer.nodes, reached.arc_length_m), fraction };
-                let state =
-                    if 1.0 - fraction < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, fraction) };
-                return Ok(StepOutcome::Broke(Box::new(BreakPoint { time_s: reached.time_s, state, at })));
-            }
-        }
-        Ok(StepOutcome::Intact)
-    }
-
-    /// A step with inertia in which a mean of so much is looked for, N; None: the cable cannot
-    /// break.
-    fn gauged_step(&mut self, dt_s: f64, breaking_n: Option<f64>) -> Result<StepReport, SolveError> {
-        let tension_n = breaking_n.unwrap_or(f64::INFINITY);
-        let limit = Limit { tension_n, from_s: self.unwatched_until_s, within_m: self.may_break_within() };
-        self.gauge.watch(limit);
-        self.mechanics.advance_gauged(dt_s, Inertia::Dynamic, &mut self.gauge)
-    }
-
-    /// Without inertia it breaks at once.
-    fn advance_quasi_static(
-        &mut self,
-        dt_s: f64,
-        breaking_n: f64,
-        sum: &mut StepReport,
-    ) -> Result<StepOutcome, SolveError> {
-        let inertia = Inertia::QuasiStatic;
-        self.gauge.forget();
-        if rupture::greatest(&self.answer.nodes) < breaking_n {
-            let before = (self.mechanics.boxed_clone(), std::mem::take(&mut self.answer));
-            let report = match self.mechanics.advance(dt_s, inertia) {
-                Ok(report) => report,
-                Err(error) => {
-                    self.answer = before.1;
-                    return Err(error);
-                }
-            };
-            self.refresh_answer();
-            if rupture::greatest(&self.answer.nodes) < breaking_n {
-                self.unwatched_steps = self.unwatched_steps.saturating_sub(QUASI_STATIC_SUBSTEPS as u32);
-                add(sum, report);
-                return Ok(StepOutcome::Intact);
-            }
-            (self.mechanics, self.answer) = before;
-        }
-        let (mut left_s, h) = (dt_s, dt_s / QUASI_STATIC_SUBSTEPS);
-        for _ in 0..QUASI_STATIC_SUBSTEPS as usize {
-            let (state, nodes) = (self.mechanics.state(), std::mem::take(&mut self.answer.nodes));
-            let step_s = if left_s < 1.5 * h { left_s } else { h };
-            let done = self.mechanics.advance(step_s, inertia);
-            self.refresh_answer();
-            add(sum, done?);
-            left_s -= step_s;
-            let now = self.mechanics.state();
-            let awake = self.unwatched_steps == 0;
-            self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
-            let [low, high] = self.may_break_within();
-            if awake && let Some(at) = rupture::first(&nodes, &self.answer.nodes, breaking_n, |s| low <= s && s <= high)
-            {
-                let time_s = state.time_s + (now.time_s - state.time_s) * at.fraction;
-                let rest = 1.0 - at.fraction;
-                let state = if rest < MIN_STEP_REMAINDER { now } else { rupture::between(&state, &now, at.fraction) };
-                return Ok(StepOutcome::Broke(Box::new(BreakPoint { time_s, state, at })));
-            }
-        }
-        Ok(StepOutcome::Intact)
-    }
-
-    /// The arc lengths (its own, m) between which it may break: not at an end that is free since a
-    /// break.
-    fn may_break_within(&self) -> [f64; 2] {
-        let least = 0.5 * self.element();
-        let new = |end: Option<&Option<usize>>| end == Some(&None);
-        let low = if new(self.part.supports.first()) { least } else { f64::NEG_INFINITY };
-        let high = if new(self.part.supports.last()) { self.part.length() - least } else { f64::INFINITY };
-        [low, high]
-    }
-
-    /// The greatest tensions of the last advance, with the nodes at its end where it did not break,
-    /// in arc lengths of the whole cable.
-    fn peaks(&self) -> Option<TensionPeaks> {
-        let mut peaks = self.gauge.peaks()?;
-        if self.gauge.reached().is_none() {
-            let time_s = self.mechanics.time_s();
-            for n in &self.answer.nodes {
-                if n.tension_n > peaks.greatest.tension_n {
-                    peaks.greatest = TensionPeak { tension_n: n.tension_n, arc_length_m: n.arc_length_m, time_s };
-                }
-            }
-        }
-        peaks.greatest.arc_length_m += self.part.from;
-        peaks.held.arc_length_m += self.part.from;
-        Some(peaks)
-    }
-
-    /// A pulley that a new end has come to.
-    fn pulley_at_new_end(&self, whole: &Problem) -> Option<usize> {
-        let supports = &self.part.supports;
-        let [start, end] = [supports.first(), supports.last()].map(|s| s == Some(&None));
-        let near = PULLEY_RELEASE_ELEMENTS * self.element();
-        supports.iter().zip(&self.answer.supports).find_map(|(k, r)| {
-            let k = (*k)?;
-            let pulley = whole.supports.get(k)?.kind == SupportKind::Pulley;
-            let off = (start && r.arc_length_m <= near) || (end && self.part.length() - r.arc_length_m <= near);
-            (pulley && off).then_some(k)
-        })
-    }
-}
-
 /// Returns what is to be said of a motion that is too fast.
 fn too_fast(support: &SupportPoint) -> Option<Unsupported> {
     let (speed_m_per_s, time_s) = support.motion.as_ref()?.fastest();
@@ -699,48 +469,6 @@ fn too_fast(support: &SupportPoint) -> Option<Unsupported> {
         time_s,
         limit_m_per_s: MAX_SUPPORT_SPEED,
     })
-}
-
-fn add(sum: &mut StepReport, more: StepReport) {
-    let Cost { iterations, halved_steps, residual_n, inner_step_s } = more.cost;
-    sum.cost.iterations += iterations;
-    sum.cost.halved_steps += halved_steps;
-    // Not `max`: what is not a number must show.
-    sum.cost.residual_n = larger(sum.cost.residual_n, residual_n);
-    if inner_step_s > sum.cost.inner_step_s {
-        sum.cost.inner_step_s = inner_step_s;
-    }
-    for warning in more.warnings {
-        // Of the parts of a step each says the same again.
-        let again = warning.to_string();
-        sum.warnings.retain(|w| w.kind != warning.kind || w.to_string() != again);
-        sum.warnings.push(warning);
-    }
-}
-
-impl Piece {
-    fn checkpoint(&self) -> Self {
-        self.with(self.mechanics.copy_to_keep())
-    }
-
-    /// A copy with a copy of its mechanics.
-    fn with(&self, mechanics: Box<dyn Mechanics>) -> Self {
-        Self {
-            mechanics,
-            part: self.part.clone(),
-            answer: self.answer.clone(),
-            unwatched_steps: self.unwatched_steps,
-            unwatched_until_s: self.unwatched_until_s,
-            gauge: self.gauge.clone(),
-            account: self.account,
-        }
-    }
-}
-
-impl Clone for Piece {
-    fn clone(&self) -> Self {
-        self.with(self.mechanics.boxed_clone())
-    }
 }
 
 impl Clone for BreakableCable {

@@ -262,7 +262,7 @@ fn two_pieces_have_the_mass_and_the_momentum_of_the_whole() {
             let strand = &mut sim.cables_mut()[0];
             let whole = strand.pieces[0].mechanics.state();
             let at = super::rupture::Rupture { node, fraction: 1.0 };
-            let point = super::BreakPoint { time_s: whole.time_s, state: whole.clone(), at };
+            let point = super::piece::BreakPoint { time_s: whole.time_s, state: whole.clone(), at };
             strand.split(0, &point, Inertia::Dynamic).unwrap();
             let now: Vec<State> = strand.pieces.iter().map(|p| p.mechanics.state()).collect();
             assert_eq!(now.len(), 2);

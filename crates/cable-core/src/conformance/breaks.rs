@@ -7,7 +7,7 @@ use crate::scene::{Motion, Scene};
 use crate::simulation::Simulation;
 use crate::solution::WarningKind;
 
-/// When the cable is as long as its breaking strain says, s.
+/// The time at which the cable is as long as its breaking strain says, s.
 const BREAKS_AT_S: f64 = 2.0;
 
 /// A cable of 10 m that is drawn evenly from 10 to 12 m in 4 s, and breaks at 11 m: T = EA (d/L −

@@ -4,7 +4,7 @@
 use super::span::SpanError;
 use crate::math::Vec2;
 
-/// Why nothing can hold the loads.
+/// The reason why nothing can hold the loads.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum NoEquilibrium {

@@ -1,6 +1,6 @@
 //! This file lists the reasons for which a free span has no shape.
 
-/// Why a span has no answer.
+/// The reason why a span has no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpanError {
     /// A number that is not finite or not positive where it must be.

@@ -102,7 +102,7 @@ pub enum Unsupported {
         support: String,
         /// Its greatest speed, m/s.
         speed_m_per_s: f64,
-        /// When that is, s.
+        /// The time when that is, s.
         time_s: f64,
         /// The greatest speed that is followed, m/s.
         limit_m_per_s: f64,
@@ -133,7 +133,7 @@ impl Unsupported {
     }
 }
 
-/// Why a question about the safe reach has no answer.
+/// The reason why a question about the safe reach has no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum UnsupportedReach {

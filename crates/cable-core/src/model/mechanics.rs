@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::gauge::TensionGauge;
 use super::settings::Settings;
 use crate::error::SolveError;
-use crate::math::{RigidPose, Vec2};
+use crate::math::{RigidPose, Vec2, larger};
 use crate::model_id::Model;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, ModelReason, Warning};
@@ -28,6 +28,26 @@ pub struct StepReport {
     pub cost: Cost,
     /// Warnings about this step (velocity capped, support held …).
     pub warnings: Vec<Warning>,
+}
+
+impl StepReport {
+    /// Adds the report of a further part of a step.
+    pub(crate) fn add(&mut self, more: Self) {
+        let Cost { iterations, halved_steps, residual_n, inner_step_s } = more.cost;
+        self.cost.iterations += iterations;
+        self.cost.halved_steps += halved_steps;
+        // Not `max`: what is not a number must show.
+        self.cost.residual_n = larger(self.cost.residual_n, residual_n);
+        if inner_step_s > self.cost.inner_step_s {
+            self.cost.inner_step_s = inner_step_s;
+        }
+        for warning in more.warnings {
+            // Of the parts of a step each says the same again.
+            let again = warning.to_string();
+            self.warnings.retain(|w| w.kind != warning.kind || w.to_string() != again);
+            self.warnings.push(warning);
+        }
+    }
 }
 
 /// The contact of a cable with the outline of the robot.
@@ -59,12 +79,13 @@ pub trait Mechanics: Send {
     /// The kind of this model.
     fn model(&self) -> Model;
 
-    /// Why it is this model, where that changed on the way.
+    /// Returns why it is this model, where that changed on the way.
     fn reason(&self) -> Option<&ModelReason> {
         None
     }
 
-    /// Why the model that was asked first has no answer, where another one gave the present one.
+    /// Returns why the model that was asked first has no answer, where another one gave the present
+    /// one.
     fn refusal(&self) -> Option<&SolveError> {
         None
     }

@@ -3,7 +3,7 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `mechanics.rs` | the trait and its reports; `settings.rs`: [`Settings`]; `gauge.rs`: tensions of the inner steps |
+//! | `mechanics.rs` | the trait and its reports; `settings.rs`: [`Settings`]; `gauge/`: tensions of the inner steps |
 //! | `registry.rs` | one entry a model: name, capabilities, constructor; [`build`] |
 //! | `auto.rs`, `switching.rs` | the choice of a model, and two models that take turns |
 //! | `initial_equilibrium.rs`, `input_filter.rs`, `layered.rs`, `similar.rs`, `leavable_wheels.rs`, `arc_nodes.rs`, `mobilised_friction.rs` | what several models share |

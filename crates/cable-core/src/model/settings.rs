@@ -1,4 +1,4 @@
-//! The settings of a model: how finely and how exactly it works, checked before it is built.
+//! The settings say how finely and how exactly a model works; they are checked before it is built.
 
 use serde::{Deserialize, Serialize};
 

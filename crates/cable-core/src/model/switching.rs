@@ -48,7 +48,7 @@ pub struct SwitchingModel {
     /// Pose to which the outline of the robot was led.
     robot_pose: Option<RigidPose>,
     reason: Option<ModelReason>,
-    /// Why `spans` has no rest, where `fem` found one.
+    /// The reason why `spans` has no rest, where `fem` found one.
     refusal: Option<SolveError>,
     /// Answers until the next offer, and after that.
     interval: [usize; 2],

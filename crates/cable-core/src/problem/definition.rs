@@ -86,7 +86,7 @@ pub struct SupportPoint {
     pub force: Series,
     /// Lumped mass, kg.
     pub mass: f64,
-    /// When it lets go, s.
+    /// The time when it lets go, s.
     pub release: Option<f64>,
 }
 

@@ -24,7 +24,7 @@ pub enum RunStatus {
     Replacing,
 }
 
-/// Why a run ended before its end. `run.toml` holds it as a sentence.
+/// The reason why a run ended before its end. `run.toml` holds it as a sentence.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum RunStop {
@@ -134,7 +134,7 @@ pub struct Manifest {
     pub version: u32,
     /// Its progress.
     pub status: RunStatus,
-    /// Why a partial run ended, where it ended with a word.
+    /// The reason why a partial run ended, where it ended with a word.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ended: Option<RunStop>,
     /// Time of its last instant, s, where it ended with a word.

@@ -9,7 +9,7 @@ use super::whole::WholeRecords;
 use crate::scene::Scene;
 use crate::solution::{Solution, Warning, WarningCause, WarningKind};
 
-/// Why a table was not written: the path or device is named by the caller, who knows it.
+/// The reason why a table was not written: the path or device is named by the caller, who knows it.
 #[derive(Debug)]
 pub enum WriteError {
     /// The row could not be written, or not flushed.
@@ -78,7 +78,7 @@ pub enum WrittenNumber {
     Warning(Warning),
 }
 
-/// Why a table was not read.
+/// The reason why a table was not read.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ReadError {
     /// It is not the table it should be.

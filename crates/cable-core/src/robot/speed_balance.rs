@@ -171,7 +171,8 @@ impl TrackGrip {
         bounded(own, self.tracks(q, Limit::Above), self.tracks(q, Limit::Below))
     }
 
-    /// What a vehicle does that comes from one speed to another (m/s), and why it goes no faster.
+    /// Returns what a vehicle does that comes from one speed to another (m/s), and why it goes no
+    /// faster.
     fn going(&self, from: f64, to: f64, traction: Traction) -> Going {
         let against = if self.drives { -to } else { to.abs() };
         match (self.drives, traction) {

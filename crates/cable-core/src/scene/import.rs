@@ -53,7 +53,7 @@ pub enum ImportChange {
     AxisTurned,
 }
 
-/// Why a text is not imported.
+/// The reason why a text is not imported.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ImportFault {
     /// The unit has no length.

@@ -82,7 +82,7 @@ impl Motion {
         }
     }
 
-    /// When it comes to its last rest, s.
+    /// Returns when it comes to its last rest, s.
     #[must_use]
     pub fn end_s(&self) -> f64 {
         self.times_s.last().copied().unwrap_or(0.0)

@@ -77,7 +77,7 @@ pub struct Support {
     /// Fixed, clamped, pulley: how it moves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
-    /// When it lets go, s.
+    /// The time when it lets go, s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub release_s: Option<f64>,
 }

@@ -6,15 +6,12 @@
 //! ```text
 //! v' = V(S(v'))
 //! ```
-//! A faster robot is pulled back harder, so V∘S falls as v' grows: there is one such speed, between
-//! any that comes out too fast and any that comes out too slow. It is sought by the secant through
-//! the last two trials, and halfway between where that leaves them (regula falsi with bisection: G.
-//! Dahlquist and Å. Björck, "Numerical Methods", Prentice-Hall, 1974). What the governor
-//! reaches anyway needs one trial, a cable that pulls evenly harder one or two.
+//! There is one such speed, which `speed_search.rs` seeks.
 //!
 //! The step is that of the cable where that is shorter: then both see each other at every instant
 //! that either of them knows.
 
+use super::speed_search::{SpeedSearch, Trial};
 use super::{Instant, Simulation};
 use crate::breakage::BreakableCable;
 use crate::error::SolveError;
@@ -24,14 +21,6 @@ use crate::model::Inertia;
 use crate::robot::{self, Drive, Going, Pulls, Vehicle};
 use crate::scene::{Cable, SupportKind};
 use crate::solution::Cost;
-
-/// Trials of a step. Fewer: a robot that squeezes its cable against a wall is stopped a little
-/// early; more: that takes longer.
-const MAX_TRIALS: usize = 12;
-
-/// Speeds that come out too slow and too fast are the same when they are this near to each other,
-/// m/s: what presses between robot and wall jumps there.
-const SPEED_TOLERANCE: f64 = 1e-4;
 
 /// Longest step of a robot whose cables have no inertia, s: they pull evenly.
 const QUASI_STATIC_STEP_S: f64 = 1.0 / 120.0;
@@ -54,55 +43,6 @@ enum TrialOutcome {
     Again(f64),
     /// It cannot go on, and why.
     Stuck(Going),
-}
-
-/// A trial of a step.
-#[derive(Clone, Copy, Debug)]
-struct Trial {
-    /// Speed at its end, m/s.
-    speed: f64,
-    /// Excess of the speed that comes out, m/s.
-    off: f64,
-}
-
-/// Knowledge of the speed that is sought.
-#[derive(Clone, Copy, Debug)]
-struct Search {
-    left: usize,
-    last: Option<Trial>,
-    /// The fastest that comes out faster, and the slowest that comes out slower.
-    low: Option<f64>,
-    high: Option<f64>,
-}
-
-impl Search {
-    fn new() -> Self {
-        Self { left: MAX_TRIALS, last: None, low: None, high: None }
-    }
-
-    /// The next speed to try after a trial, m/s; None where nothing is left between, or no trial.
-    fn next(&mut self, now: Trial) -> Option<f64> {
-        self.left = self.left.checked_sub(1)?;
-        let before = self.last.replace(now);
-        match now.off > 0.0 {
-            true => self.low = Some(now.speed),
-            false => self.high = Some(now.speed),
-        }
-        if let (Some(low), Some(high)) = (self.low, self.high)
-            && high - low < SPEED_TOLERANCE
-        {
-            return None;
-        }
-        let slope = before.map_or(-1.0, |b| (now.off - b.off) / (now.speed - b.speed));
-        let wanted = now.speed - now.off / if slope < -1.0 { slope } else { -1.0 };
-        Some(match (self.low, self.high) {
-            (Some(low), Some(high)) if !(low < wanted && wanted < high) => 0.5 * (low + high),
-            // A force that would throw it back stops it first.
-            (None, Some(high)) if wanted < 0.0 && 0.0 < high => 0.0,
-            (Some(low), None) if wanted > 0.0 && 0.0 > low => 0.0,
-            _ => wanted,
-        })
-    }
 }
 
 impl Simulation {
@@ -139,7 +79,7 @@ impl Simulation {
         let drive = vehicle.begin(step.h, begun);
         let start = vehicle.clone();
         let kept: Vec<BreakableCable> = self.cables.iter().map(BreakableCable::checkpoint).collect();
-        let (mut speed, mut search, mut iterations) = (start.foreseen(drive), Search::new(), 0);
+        let (mut speed, mut search, mut iterations) = (start.foreseen(drive), SpeedSearch::new(), 0);
         loop {
             self.cost = Cost::default();
             let tried = self.try_speed(step, &start, drive, speed, &mut search);
@@ -174,7 +114,7 @@ impl Simulation {
         start: &Vehicle,
         drive: Drive,
         speed: f64,
-        search: &mut Search,
+        search: &mut SpeedSearch,
     ) -> TrialOutcome {
         let Some(to) = start.come_to(drive, speed) else { return TrialOutcome::Stuck(Going::Blocked) };
         self.lead(start.hitch_at(to), to.placement(), step.hitches);

@@ -35,7 +35,7 @@ pub struct Solution {
     pub time_s: f64,
     /// The model that gave it.
     pub model: Model,
-    /// Why that model.
+    /// The reason for that model.
     pub reason: ModelReason,
     /// The error of the next cheaper choice, of a choice by `auto` at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]

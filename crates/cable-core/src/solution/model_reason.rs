@@ -3,7 +3,7 @@
 
 use crate::error::SolveError;
 
-/// Why an answer comes from its model.
+/// The reason why an answer comes from its model.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum ModelReason {
@@ -42,7 +42,7 @@ pub enum ModelReason {
     Unsound(Box<SolveError>),
     /// The bending stiffness of flexible cables was settled, too.
     Bending {
-        /// Why that model.
+        /// The reason for that model.
         reason: Box<Self>,
         /// The bending stiffness that was used.
         bending: LikelyBending,

@@ -107,7 +107,7 @@ pub struct RobotReport {
     /// Work of the forces on it since it began.
     #[serde(default)]
     pub work: RobotWork,
-    /// Why it is as fast as it is.
+    /// The reason why it is as fast as it is.
     pub going: Going,
     /// The leg of its path it is on; None by hand or at the end.
     pub leg: Option<usize>,

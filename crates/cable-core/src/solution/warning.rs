@@ -200,7 +200,7 @@ impl WarningKind {
 pub enum WarningCause {
     /// Tension above the service tension.
     AboveService {
-        /// When in the step, s; None = at rest.
+        /// The time in the step, s; None = at rest.
         time_s: Option<f64>,
     },
     /// Tension above the breaking tension for an instant too short to break the cable.
@@ -352,7 +352,7 @@ pub enum WarningCause {
     },
     /// The cable slid from where it was laid to where it rests.
     SlidFromRoute {
-        /// Why it did.
+        /// The reason why it did.
         why: SlideReason,
     },
     /// Nothing held the cable, and it slid on.
@@ -412,7 +412,7 @@ pub enum WarningCause {
 pub struct MeanTension {
     /// Time over which it is taken, s.
     pub over_s: f64,
-    /// When it is greatest, s.
+    /// The time when it is greatest, s.
     pub time_s: f64,
 }
 
@@ -564,7 +564,7 @@ pub struct EndMove {
     pub greatest_n: f64,
 }
 
-/// Why a cable slid from where it was laid.
+/// The reason why a cable slid from where it was laid.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "kebab-case")]
 #[non_exhaustive]

@@ -35,7 +35,7 @@ pub struct NeglectedBending {
     pub greatest_tension_n: Option<f64>,
     /// Change of each figure with it, no less than the error of the answer with it.
     pub changes: ErrorEstimates,
-    /// Why there is no answer with it.
+    /// The reason why there is no answer with it.
     pub unknown: Option<Error>,
 }
 

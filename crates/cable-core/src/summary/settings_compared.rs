@@ -52,7 +52,7 @@ pub struct Compared {
 /// The scene at rest with a setting, beside an answer of the same scene.
 ///
 /// # Errors
-/// Why the setting has no answer.
+/// The reason why the setting has no answer.
 pub fn answer_with(setting: Setting, scene: &Scene, given: &Solution, settings: Settings) -> Result<Compared, Error> {
     let settings = Settings { segments: setting.elements, histories: false, ..settings };
     // A number of elements that the scene gives would stand for every setting.

@@ -36,9 +36,10 @@ const WINDOW_S: f64 = 0.05;
 /// covered and 80 are between half and ten times the error; with 2 they are 91 and 84, with 4 they
 /// are 97 and 71.
 const ERROR_FACTOR: f64 = 3.0;
-/// Where the finest is so much nearer to the second than to the third they converge, and what it
-/// differs by from the second counts alone. Steps of the second order have 0.375. With less, free
-/// swings are said to be up to 20 times as wrong as they are; with more, fewer figures are covered.
+/// Where the finest is so much nearer to the second than to the third they converge, and
+/// what it differs by from the second counts alone. Steps of the second order have 0.375. With
+/// less, free swings are said to be up to 20 times as wrong as they are; with more, fewer figures
+/// are covered.
 const CONVERGENCE_RATIO: f64 = 0.6;
 /// The logarithm of the greatest tension of a window may be so many times as far down and up on
 /// finer meshes as it is apart in the three runs. With [2, 2] 9 in 100 runs on four times as many
@@ -58,7 +59,7 @@ pub(super) struct CoarseRuns {
     inertia: Inertia,
     /// Steps that the fine run has made.
     count: u64,
-    /// When the present window began, s.
+    /// The time when the present window began, s.
     window_began_s: f64,
     own: Vec<RecentPeaks>,
     /// Ranges of the windows before, a cable.

@@ -59,7 +59,7 @@ pub(super) struct EnergyGrowth {
 struct EnergyMinimum {
     /// Itself, J.
     energy_j: f64,
-    /// When it was, s.
+    /// The time when it was, s.
     time_s: f64,
     /// Work that had been done, J.
     work_j: f64,

@@ -1,4 +1,4 @@
-//! Random numbers of the random scenes, the same on every machine.
+//! The random numbers of random scenes are the same on every machine.
 
 #![allow(dead_code)] // no test needs all of it
 

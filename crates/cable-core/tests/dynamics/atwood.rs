@@ -27,8 +27,8 @@ fn over_a_pulley([m1, m2]: [f64; 2], density: f64, (radius, friction): (f64, f64
     scene
 }
 
-/// How far the rope has run over the pulley `time` (s) after it was let go, and what it should be;
-/// m.
+/// Returns how far the rope has run over the pulley `time` (s) after it was let go, and what it
+/// should be; m.
 fn run(radius: f64, density: f64, segments: usize, steps: u32) -> [f64; 2] {
     let [m1, m2] = [5.0, 5.5];
     let scene = over_a_pulley([m1, m2], density, (radius, 0.0), segments);

@@ -9,7 +9,7 @@ use super::measure::{G, cable, climbs, spread_energy, started};
 
 const LENGTH: f64 = 10.0;
 
-/// Where it is looked at, times in a second.
+/// The looks at it in a second.
 const LOOKS: usize = 20;
 
 /// Way of the tip of so many links in the first second, m.

@@ -36,7 +36,8 @@ fn folded(n: usize) -> Vec<f64> {
     (0..n).map(angle).collect()
 }
 
-/// When a depth of `FALLEN` is passed, s: `step` advances by `h` (s) and returns the depth (m).
+/// Returns when a depth of `FALLEN` is passed, s: `step` advances by `h` (s) and returns the depth
+/// (m).
 fn passed(h: f64, mut step: impl FnMut() -> f64) -> f64 {
     let (mut t, mut last) = (0.0, 0.0);
     loop {

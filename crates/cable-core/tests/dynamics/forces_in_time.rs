@@ -7,7 +7,7 @@ use cable_core::{Load, Model, Simulation, Vec2};
 
 use super::measure::{G, Mass, cable, ladder, lump, settled, started};
 
-/// When the cable is let go, s.
+/// The time when the cable is let go, s.
 const RELEASE: f64 = 0.1;
 
 #[test]

@@ -1,5 +1,6 @@
-//! In-plane modes of a shallow suspended cable (H. M. Irvine and T. K. Caughey, "The linear theory
-//! of free vibrations of a suspended cable", Proc. R. Soc. A 341, 1974). Span l, ω̄ = ωl √(m/H):
+//! The in-plane modes of a shallow suspended cable follow from closed forms (H. M. Irvine and T. K.
+//! Caughey, "The linear theory of free vibrations of a suspended cable", Proc. R. Soc. A 341,
+//! 1974). Span l, ω̄ = ωl √(m/H):
 //! ```text
 //! antisymmetric   ω̄ = 2nπ                                     symmetric   tan(ω̄/2) = ω̄/2 − (4/λ²)(ω̄/2)³
 //! λ² = (ml/H · g)² · EA l/(H Lₑ),   Lₑ ≈ l(1 + 8(d/l)²)

@@ -1,4 +1,4 @@
-//! Supports that let go: the middle of mass then falls by ½g t², whatever the cable does; the end
+//! When supports let go, the middle of mass then falls by ½g t², whatever the cable does; the end
 //! of a soft hanging cable does not know of it for L/c.
 
 use cable_core::scene::{Support, SupportKind};

@@ -7,7 +7,7 @@ use cable_core::{Model, Settings, Simulation, Vec2};
 use super::explicit_chain::Chain;
 use super::peaks::{Tensions, spread};
 
-/// When both ends let go, s. Until then it hangs still.
+/// The time when both ends let go, s. Until then it hangs still.
 const RELEASE_S: f64 = 0.025;
 
 /// Loss time of a cable that may rub, s.

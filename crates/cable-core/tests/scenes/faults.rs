@@ -1,4 +1,4 @@
-//! What is refused: every field with every fault, broken texts, impossible geometry.
+//! Faulty scenes are refused: every field with every fault, broken texts, impossible geometry.
 
 use cable_core::error::SceneFault;
 use cable_core::scene::{Obstacle, Shape, catalog};

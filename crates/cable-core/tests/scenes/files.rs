@@ -86,7 +86,7 @@ fn a_folder_that_may_not_be_written_keeps_its_file() {
     fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
 }
 
-/// Where [`a_child_saves_for_ever`] saves to.
+/// The place where [`a_child_saves_for_ever`] saves to.
 const SAVE_TO: &str = "CABLE_TEST_SAVE_TO";
 
 /// Two scenes of very different length, so that a file half of each could not be read.

@@ -1,4 +1,4 @@
-//! Scenes: files in and out, what is refused and how, presets, the catalogue, motion.
+//! These tests read and write scenes: files in and out, faults, presets, the catalogue, motion.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

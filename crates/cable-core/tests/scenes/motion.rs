@@ -1,4 +1,4 @@
-//! The C² curve a support follows.
+//! A support follows a C² curve.
 
 use cable_core::Vec2;
 use cable_core::scene::Motion;

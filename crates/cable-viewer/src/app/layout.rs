@@ -28,7 +28,8 @@ const READ: &[Section] = &[
     ("Friction range", panels::analysis::friction_range::ui),
 ];
 
-/// Where there is a panel of their own for them, their head stands above what scrolls there.
+/// Where there is a panel of their own for them, their head stands above what scrolls
+/// there.
 const READOUTS: &str = "Readouts";
 const WARNINGS: &str = "Warnings";
 const SAFE_REACH: &str = "Safe reach";

@@ -64,9 +64,9 @@ pub struct ViewerApp {
     /// Numbers of the edits not yet answered and when they were sent, oldest first; at most
     /// [`MAX_ASKED`].
     asked: VecDeque<(u64, Instant)>,
-    /// Where recent files are listed, and what stands there.
+    /// The file in which recent files are listed, and what stands there.
     recent_list: Option<(PathBuf, Vec<PathBuf>)>,
-    /// Where it is noted that the first steps are done, until that is.
+    /// The file in which it is noted that the first steps are done, until that is.
     first_steps_mark: Option<PathBuf>,
     /// Since when an answer has been sought.
     solving_since: Option<Instant>,

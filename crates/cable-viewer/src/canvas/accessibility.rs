@@ -1,5 +1,5 @@
-//! What a screen reader, and the tests, find on the canvas: a name for each thing where it is
-//! painted, and the scene in words.
+//! A screen reader, and the tests, find on the canvas a name for each thing where it is painted,
+//! and the scene in words.
 
 use cable_core::math::Point;
 use cable_core::solution::ContactState;

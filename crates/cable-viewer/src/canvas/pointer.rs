@@ -1,4 +1,4 @@
-//! The pointer on the canvas: hover, pick, drag, frame, pan, zoom, add a waypoint or a leg.
+//! The pointer on the canvas can hover, pick, drag, frame, pan, zoom, and add a waypoint or a leg.
 
 use cable_core::scene::Shape;
 use egui::{CursorIcon, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui};

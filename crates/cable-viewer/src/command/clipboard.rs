@@ -8,15 +8,18 @@ use cable_core::scene::{Shape, Support, SupportKind};
 use cable_core::{Cable, Obstacle};
 
 use crate::command::effects::Effects;
-use crate::command::items::{shifted, unique, waypoint_place};
+use crate::command::move_item::shifted;
+use crate::command::name::unique;
 use crate::command::support_kind::of_kind;
+use crate::command::waypoint::waypoint_place;
 use crate::geometry::hit_test;
 use crate::geometry::supports::support_position;
 use crate::state::clipboard::{Clipboard, Thing};
 use crate::state::{AppState, Item};
 
-/// Where something goes that is pasted with no pointer over the canvas: this far from where it was,
-/// m. Less: it hides what it was copied from; more: it is out of view in a small scene.
+/// A thing that is pasted with no pointer over the canvas goes this far from
+/// where it was, m. Less: it hides what it was copied from; more: it is out of view in a small
+/// scene.
 const PASTE_OFFSET_M: Point = [0.5, 0.5];
 
 /// Keeps what is picked; as text it is a table of points.

@@ -17,7 +17,7 @@ use crate::io::graph_sheet::Sheet;
 use crate::io::saved_run::{SavedRun, read_run};
 use crate::io::scene_file;
 use crate::record::run::Run;
-use crate::record::samples::Sample;
+use crate::record::sample::Sample;
 use crate::state::dialog::{Dialog, Replacement};
 use crate::state::tutorial_place::TutorialPlace;
 use crate::state::{AppState, Document, Reference};

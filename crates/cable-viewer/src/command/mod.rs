@@ -3,19 +3,25 @@
 //!
 //! - `scene`, `view`, `playback`, `file`: the commands and what each does
 //! - `effects`: what applying them asks of the worker and the window
-//! - `items`, `support_kind`, `route`: rules of edits that several commands share
+//! - `move_item`, `surface_projection`, `remove_item`, `waypoint`, `hitch`, `name`, `support_kind`,
+//!   `route`: rules of edits that several commands share
 //! - `clipboard`, `import`: copy, paste, and maps from tables and drawings
 
 pub mod clipboard;
 pub mod effects;
 pub mod file;
+mod hitch;
 mod import;
-mod items;
+mod move_item;
+mod name;
 pub mod playback;
+mod remove_item;
 mod route;
 pub mod scene;
 pub mod support_kind;
+mod surface_projection;
 pub mod view;
+mod waypoint;
 
 pub use crate::command::effects::{Effects, submit_edit, submit_new_scene, submit_undone};
 pub use crate::command::file::FileCommand;

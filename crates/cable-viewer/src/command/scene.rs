@@ -5,10 +5,12 @@ use cable_core::scene::{Environment, RobotTask, Support};
 use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
 use crate::command::effects::{Effects, next_number, submit_edit, submit_undone};
-use crate::command::items::{
-    add_waypoint, drop_lost_selection, hitched, move_item, remove_all, set, set_robot, unique,
-};
+use crate::command::hitch::{hitched, set_robot};
+use crate::command::move_item::{move_item, set};
+use crate::command::name::unique;
 use crate::command::playback::{self, PlaybackCommand};
+use crate::command::remove_item::{drop_lost_selection, remove_all};
+use crate::command::waypoint::add_waypoint;
 use crate::command::{clipboard, route};
 use crate::state::undo::EditKind;
 use crate::state::{AppState, Item};
@@ -59,7 +61,7 @@ pub enum SceneCommand {
     Move {
         /// What.
         item: Item,
-        /// Where to, m.
+        /// The target, m.
         to_m: Point,
     },
     /// Puts several things at points, m.
@@ -68,16 +70,16 @@ pub enum SceneCommand {
     AddWaypoint {
         /// Index of the cable.
         cable: usize,
-        /// Where on the cable, m (decides its place among the supports).
+        /// The place on the cable, m (decides its place among the supports).
         arc_length_m: f64,
-        /// Where it holds the cable, m.
+        /// The place where it holds the cable, m.
         at_m: Point,
     },
     /// Another robot, or none: what hung on it is then fixed where it hung.
     SetRobot(Option<Robot>),
     /// A leg of the robot's path to a place, m: after the leg that is picked, else at its end.
     AddLeg {
-        /// Where to, m.
+        /// The target, m.
         to_x_m: f64,
     },
     /// Another cable like the current one, beside it.
@@ -197,8 +199,8 @@ fn ends_at_earlier_run(state: &AppState, command: &SceneCommand) -> bool {
     scene.is_some() && to == scene && !state.live.has_run()
 }
 
-/// Whether the pointer pulls a support, while masses move, to where the cable does not reach, and
-/// the user wants that to pull instead of being refused.
+/// Returns whether the pointer pulls a support, while masses move, to where the cable does not
+/// reach, and the user wants that to pull instead of being refused.
 fn pulls_past_length(state: &AppState, before: &Scene, cable: usize, support: usize) -> bool {
     let held = Item::Support { cable, support };
     let by_spring = state.selection.grab.is_some_and(|g| g.item == held) && !is_quasi_static(state.solver.model);

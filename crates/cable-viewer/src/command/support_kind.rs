@@ -14,7 +14,7 @@ pub const KINDS: [(SupportKind, &str, &str); 6] = [
     (SupportKind::Free, "Free", "Nothing holds it"),
 ];
 
-/// Why a kind cannot be chosen here, if it cannot.
+/// Returns why a kind cannot be chosen here, if it cannot.
 #[must_use]
 pub fn refusal(kind: SupportKind, end: bool, robot: bool) -> Option<&'static str> {
     match kind {

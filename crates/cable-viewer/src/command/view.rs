@@ -56,16 +56,16 @@ pub enum ViewCommand {
     ShowPanels(OpenPanels),
     /// Asks where to export the graph of this title to.
     ExportGraph(&'static str),
-    /// How the cable is coloured.
+    /// The colouring of the cable.
     SetColour(ColourScale),
-    /// What is drawn.
+    /// The layers that are drawn.
     SetLayers(Layers),
     /// Light or dark.
     SetTheme(egui::ThemePreference),
     /// Looks for where the robot or an end can be taken, or ends that and keeps what was found, or
     /// forgets it.
     Reach(bool),
-    /// What of it is asked and shown.
+    /// The part of it that is asked and shown.
     SetReach(safe_reach::Choice),
     /// Shows what less and more friction does, or not any more; least and greatest friction over
     /// that of the scene.

@@ -14,7 +14,7 @@ pub const LOAD_POINTS: f64 = 4.8;
 /// Shortest and longest arrow of a load, points.
 pub const LOAD_LENGTH: [f64; 2] = [18.0, 220.0];
 
-/// Where a load acts now and its force, N.
+/// Returns where a load acts now and its force, N.
 pub fn load_at(state: &AppState, load: usize) -> Option<(Point, Point)> {
     let load = state.document.scene.loads.get(load)?;
     let solution = state.live.snapshot.solution.as_ref()?;
@@ -39,7 +39,7 @@ pub fn load_arrow(force: Point) -> Vec2 {
     vec2((force[0] / size * length) as f32, (-force[1] / size * length) as f32)
 }
 
-/// Where the head of a load's arrow is, m.
+/// Returns where the head of a load's arrow is, m.
 #[must_use]
 pub fn head_at(state: &AppState, load: usize) -> Option<Point> {
     let (tail, force) = load_at(state, load)?;

@@ -8,7 +8,7 @@ use crate::geometry::robot::path_flags;
 use crate::geometry::supports::support_position;
 use crate::state::{AppState, Item};
 
-/// Where a thing that can be dragged is, m; None for one that cannot.
+/// Returns where a thing that can be dragged is, m; None for one that cannot.
 #[must_use]
 pub fn of(state: &AppState, item: Item) -> Option<Point> {
     match item {
@@ -39,8 +39,8 @@ pub fn of(state: &AppState, item: Item) -> Option<Point> {
     }
 }
 
-/// What moves when a thing is moved by a vector (m): it, or all that is picked if it is; each with
-/// where it goes to, m.
+/// Returns what moves when a thing is moved by a vector (m): it, or all that is picked if it is;
+/// each with where it goes to, m.
 #[must_use]
 pub fn moved(state: &AppState, item: Item, by_m: Point) -> Vec<(Item, Point)> {
     let items = if state.selection.contains(item) { state.selection.picks() } else { vec![item] };

@@ -9,7 +9,7 @@ use crate::geometry::robot::{path_flags, robot_outline};
 use crate::geometry::supports::support_position;
 use crate::state::{AppState, Item};
 
-/// How near counts as on it, points.
+/// The distance that counts as on it, points.
 const SUPPORT: f32 = 13.0;
 const CORNER: f32 = 8.0;
 const LINE: f32 = 7.0;
@@ -76,8 +76,8 @@ pub fn handles_shown(state: &AppState, index: usize) -> bool {
     }
 }
 
-/// How near counts as on a corner, points: less where corners are close, so that the body can still
-/// be picked.
+/// Returns how near counts as on a corner, points: less where corners are close, so that the body
+/// can still be picked.
 fn corner_reach(state: &AppState, points: &[Point], corner: usize) -> f32 {
     let Some(&p) = points.get(corner) else { return 0.0 };
     let neighbours = [corner.checked_sub(1), corner.checked_add(1)].into_iter().flatten().filter_map(|k| points.get(k));
@@ -130,7 +130,7 @@ pub fn nearest_on(state: &AppState, cable: usize, p: Point) -> Option<f64> {
     best.map(|(_, s)| s)
 }
 
-/// Where on a segment (0 to 1) a point is nearest.
+/// Returns where on a segment (0 to 1) a point is nearest.
 fn along(a: Point, b: Point, p: Point) -> f64 {
     let d = [b[0] - a[0], b[1] - a[1]];
     let l2 = d[0] * d[0] + d[1] * d[1];

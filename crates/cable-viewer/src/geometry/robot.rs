@@ -9,7 +9,7 @@ use cable_core::scene::robot::Pose;
 use crate::state::AppState;
 use crate::units::labels;
 
-/// How it stands: while time runs where the answer has it, else where it is being put.
+/// Returns how it stands: while time runs where the answer has it, else where it is being put.
 pub fn robot_pose(state: &AppState) -> Option<(Pose, &'static RobotPreset)> {
     let robot = state.document.scene.robot.as_ref()?;
     let preset = robot_preset(&robot.preset)?;

@@ -10,7 +10,7 @@ use crate::state::AppState;
 /// Nearer than this to where it is drawn, a support is there, m.
 pub const COINCIDENCE_M: f64 = 1e-3;
 
-/// What the answer says of a support.
+/// Returns what the answer says of a support.
 pub fn reaction(state: &AppState, cable: usize, support: usize) -> Option<&SupportReaction> {
     state.live.snapshot.solution.as_ref()?.cables.get(cable)?.supports.get(support)
 }
@@ -22,7 +22,7 @@ pub fn is_broken(state: &AppState, cable: usize) -> bool {
     solution.and_then(|s| s.cables.get(cable)).is_some_and(|c| !c.breaks.is_empty())
 }
 
-/// Where a support is on screen now: where the scene puts it, or where the cable took it.
+/// Returns where a support is on screen now: where the scene puts it, or where the cable took it.
 #[must_use]
 pub fn support_position(state: &AppState, cable: usize, support: usize) -> Option<Point> {
     let s = state.document.scene.cables.get(cable)?.supports.get(support)?;
@@ -48,8 +48,8 @@ pub fn support_position(state: &AppState, cable: usize, support: usize) -> Optio
     }
 }
 
-/// Where a support is that a hand draws while masses move, and where the spring between them ends,
-/// or where it is drawn to without one, m; None where it is there.
+/// Returns where a support is that a hand draws while masses move, and where the spring between
+/// them ends, or where it is drawn to without one, m; None where it is there.
 #[must_use]
 pub fn hand_spring(state: &AppState, cable: usize, support: usize) -> Option<[Point; 2]> {
     if let Some(now) = reaction(state, cable, support)

@@ -17,14 +17,14 @@ pub struct Autosave {
     path: PathBuf,
     /// What the file holds, if this window wrote it.
     written: Option<Scene>,
-    /// When the scene first differed from it.
+    /// The time when the scene first differed from it.
     changed: Option<Instant>,
     /// Writing to a disk can take long: the window does not wait.
     writer: Option<JoinHandle<Result<(), String>>>,
     fault: Option<String>,
 }
 
-/// Where unsaved changes are kept; None on a machine without a place for them.
+/// Returns where unsaved changes are kept; None on a machine without a place for them.
 #[must_use]
 pub fn default_path() -> Option<PathBuf> {
     let folder = |variable: &str| std::env::var_os(variable).map(PathBuf::from).filter(|p| p.is_absolute());
@@ -46,13 +46,13 @@ impl Autosave {
         &self.path
     }
 
-    /// Why the last copy was not written.
+    /// Returns why the last copy was not written.
     #[must_use]
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
     }
 
-    /// What a window that died has left: nothing, a scene, or what is wrong with the file.
+    /// Returns what a window that died has left: nothing, a scene, or what is wrong with the file.
     #[must_use]
     pub fn found(&self) -> Option<Result<Scene, String>> {
         match files::load_scene(&self.path) {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use cable_core::{Solution, files};
 
-/// What is asked, and the word a column has.
+/// The question, and the word a column has.
 pub const QUESTIONS: [(&str, &str); 4] = [
     ("useful", "It is useful for my work"),
     ("clear", "It is clear what I see"),
@@ -24,7 +24,7 @@ const MAX_BYTES: u64 = 16 << 20;
 pub struct Answers {
     /// 1 to 5; None: not answered yet.
     pub marks: [Option<u8>; QUESTIONS.len()],
-    /// What confused.
+    /// The things that confused.
     pub words: String,
 }
 
@@ -35,7 +35,7 @@ pub struct Context<'a> {
     pub scene: &'a str,
     /// The answer.
     pub answer: Option<&'a Solution>,
-    /// Why there is none.
+    /// The reason why there is none.
     pub error: Option<String>,
 }
 

@@ -15,7 +15,7 @@ pub fn load(path: &Path) -> Result<Scene, String> {
 /// Writes a scene; the old file stays whole until the new one is.
 ///
 /// # Errors
-/// Why it could not, in words.
+/// The reason why it could not, in words.
 pub fn save(path: &Path, scene: &Scene) -> Result<(), String> {
     files::save_scene(path, scene).map_err(|e| e.to_string())
 }

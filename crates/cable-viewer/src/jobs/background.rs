@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How far it is.
+/// Its progress.
 #[derive(Clone, Debug, Default)]
 pub enum Progress<T> {
     /// Nothing was asked.
@@ -13,9 +13,9 @@ pub enum Progress<T> {
     None,
     /// Share done, 0 to 1, and what is known so far, where that can be shown.
     Running(f64, Option<T>),
-    /// What came of it.
+    /// The result.
     Done(T),
-    /// Why nothing came of it.
+    /// The reason why there is no result.
     Failed(String),
 }
 
@@ -75,7 +75,7 @@ impl<T: Clone + Send + 'static> Job<T> {
         Self { shared }
     }
 
-    /// How far it is.
+    /// Returns how far it is.
     #[must_use]
     pub fn progress(&self) -> Progress<T> {
         self.shared.progress.lock().unwrap_or_else(PoisonError::into_inner).clone()

@@ -8,9 +8,9 @@ use cable_core::{Scene, Solution};
 
 use crate::jobs::background;
 
-/// What was found, and what was asked.
+/// The findings, and the question.
 pub type Outcome = (Arc<FrictionRange>, Arc<FrictionQuery>);
-/// How far it is.
+/// Its progress.
 pub type Progress = background::Progress<Outcome>;
 
 /// Longest run that is followed, s: three runs of it. Longer: a minute of both cores for a ribbon;
@@ -24,7 +24,7 @@ pub struct FrictionRangeState {
     pub on: bool,
     /// Least and greatest friction over that of the scene.
     pub factors: [f64; 2],
-    /// How far it is.
+    /// Its progress.
     pub progress: Progress,
 }
 
@@ -55,13 +55,13 @@ impl Job {
         Self { job: background::Job::start("friction range", work, shown), ask }
     }
 
-    /// What was asked.
+    /// Returns what was asked.
     #[must_use]
     pub fn ask(&self) -> &FrictionQuery {
         &self.ask
     }
 
-    /// How far it is.
+    /// Returns how far it is.
     #[must_use]
     pub fn progress(&self) -> Progress {
         self.job.progress()
@@ -71,8 +71,8 @@ impl Job {
 /// Least move of a support between two answers that is a hand's, m: less is rounding.
 const MIN_MOVE_M: f64 = 1e-9;
 
-/// What hands did in a run: where supports that move by nothing else went, and what the robot was
-/// told.
+/// Returns what hands did in a run: where supports that move by nothing else went, and what the
+/// robot was told.
 #[must_use]
 pub fn hands(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
     let by_hand = scene.cables.iter().enumerate().flat_map(|(cable, c)| {

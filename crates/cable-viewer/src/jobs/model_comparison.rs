@@ -9,7 +9,7 @@ use cable_core::{Error, Model, Scene, Settings, Simulation, Solution};
 
 use crate::jobs::background;
 
-/// What came of a model.
+/// The result of a model.
 #[derive(Clone, Debug)]
 pub struct Answer {
     /// The model.
@@ -27,7 +27,7 @@ pub struct Outcome {
     pub answers: Vec<Answer>,
 }
 
-/// How far it is.
+/// Its progress.
 pub type Progress = background::Progress<Outcome>;
 /// Models being asked.
 pub type Job = background::Job<Outcome>;

@@ -9,7 +9,7 @@ use crate::jobs::background;
 
 /// One a cable that is likely to be stiff and was answered without it.
 pub type Outcome = Arc<Vec<NeglectedBending>>;
-/// How far it is.
+/// Its progress.
 pub type Progress = background::Progress<Outcome>;
 
 /// The question: of which answer.
@@ -23,12 +23,12 @@ pub struct Query {
     pub answer: Arc<Solution>,
 }
 
-/// What was asked last, and what came of it.
+/// The last question and its result.
 #[derive(Clone, Debug, Default)]
 pub struct NeglectedBendingState {
     /// The question; None: nothing was asked of what is on screen.
     pub query: Option<Query>,
-    /// How far it is.
+    /// Its progress.
     pub progress: Progress,
 }
 
@@ -50,13 +50,13 @@ impl Job {
         Self { job: background::Job::start("bending stiffness", work, shown), answer }
     }
 
-    /// Whether it is this question that it answers.
+    /// Returns whether it is this question that it answers.
     #[must_use]
     pub fn is_of(&self, query: &Query) -> bool {
         Arc::ptr_eq(&self.answer, &query.answer)
     }
 
-    /// How far it is.
+    /// Returns how far it is.
     #[must_use]
     pub fn progress(&self) -> Progress {
         self.job.progress()

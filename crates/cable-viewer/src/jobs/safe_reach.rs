@@ -27,7 +27,7 @@ const RETURN_COARSENING: f64 = 2.0;
 /// takes longer than finding it.
 const MIN_PROGRESS_STEP: f64 = 0.01;
 
-/// What is taken somewhere.
+/// The thing that is taken somewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReachSubject {
     /// The robot, along its ground.
@@ -41,7 +41,7 @@ pub enum ReachSubject {
     },
 }
 
-/// What the user chose.
+/// The choice of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choice {
     /// What is taken somewhere; None: the robot, else what is picked, else what moves, else an end.
@@ -58,14 +58,14 @@ impl Default for Choice {
     }
 }
 
-/// What there is of it.
+/// The state of the search.
 #[derive(Clone, Debug, Default)]
 pub struct SafeReachState {
-    /// What the user chose.
+    /// The choice of the user.
     pub choice: Choice,
-    /// How far it is.
+    /// Its progress.
     pub progress: Progress,
-    /// When the search began.
+    /// The time when the search began.
     pub began: Option<Instant>,
     /// The share of a search that was stopped, 0 to 1: the map is what was found until then.
     pub stopped: Option<f64>,
@@ -75,23 +75,23 @@ pub struct SafeReachState {
 /// nothing, say little of the others.
 const FIRST_ESTIMATE: f64 = 0.04;
 
-/// How much longer a search takes that took some time for a share, s; None where that says too
-/// little.
+/// Returns how much longer a search takes that took some time for a share, s; None where that says
+/// too little.
 #[must_use]
 pub fn remaining_s(share: f64, elapsed_s: f64) -> Option<f64> {
     (FIRST_ESTIMATE..=1.0).contains(&share).then(|| elapsed_s * (1.0 - share) / share)
 }
 
-/// What the map asks for.
+/// The question of a map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReachQuery {
     /// The scene.
     pub scene: Scene,
-    /// Where time has run: how its cables lie now.
+    /// The state where time has run: how its cables lie now.
     pub now: Option<Arc<Solution>>,
     /// Mesh and accuracy.
     pub settings: Settings,
-    /// What is taken somewhere.
+    /// The thing that is taken somewhere.
     pub moved: ReachSubject,
     /// Lower left and upper right corner of what is looked at, m.
     pub corners_m: [Point; 2],
@@ -99,7 +99,7 @@ pub struct ReachQuery {
     pub across: usize,
 }
 
-/// What was found.
+/// The findings.
 #[derive(Clone, Debug)]
 pub enum Maps {
     /// Of a robot.
@@ -121,7 +121,7 @@ impl Maps {
 
 /// The map, and the scene it is of.
 pub type Outcome = (Maps, Arc<Scene>);
-/// How far it is.
+/// Its progress.
 pub type Progress = background::Progress<Outcome>;
 /// A map being computed.
 pub type Job = background::Job<Outcome>;
@@ -136,7 +136,7 @@ impl SafeReachState {
         }
     }
 
-    /// How much longer the search takes, s, as far as that can be told.
+    /// Returns how much longer the search takes, s, as far as that can be told.
     #[must_use]
     pub fn remaining_s(&self) -> Option<f64> {
         let Progress::Running(share, _) = self.progress else { return None };

@@ -25,7 +25,7 @@ const SIDE_BY_SIDE: f32 = 480.0;
 /// Lowest graph that can still be read, points.
 const LEAST_HEIGHT: f32 = 90.0;
 
-/// How much of the past can be followed.
+/// The lengths of the past that can be followed.
 const WINDOWS: [(Option<f64>, &str); 4] =
     [(Some(10.0), "Last 10 s"), (Some(60.0), "Last 60 s"), (Some(300.0), "Last 300 s"), (None, "All")];
 

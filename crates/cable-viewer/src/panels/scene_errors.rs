@@ -15,9 +15,9 @@ use crate::widgets::field;
 /// A change that puts a fault right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fix {
-    /// What the button says.
+    /// The text of the button.
     pub label: String,
-    /// What it does.
+    /// Its effect.
     pub command: Command,
 }
 
@@ -45,7 +45,7 @@ pub fn sentence(fault: &SceneFault) -> String {
     }
 }
 
-/// What is wrong with the scene, if anything: which property of what, and why.
+/// Returns what is wrong with the scene, if anything: which property of what, and why.
 #[must_use]
 pub fn whole(state: &AppState) -> Option<String> {
     let found = state.document.fault.as_ref()?;
@@ -65,7 +65,7 @@ fn ceil_hundredth(length: f64) -> f64 {
     (length * 100.0 - 1e-9).ceil() / 100.0
 }
 
-/// What would put the scene's fault right, where one change does.
+/// Returns what would put the scene's fault right, where one change does.
 #[must_use]
 pub fn fix(state: &AppState) -> Option<Fix> {
     let fault = state.document.fault.as_ref()?;

@@ -16,9 +16,9 @@ const LEAST_RAIL: f32 = 60.0;
 /// How near to a mark the pointer tells what it is, points.
 const MARK_REACH: f32 = 4.0;
 
-/// Why its controls are off.
+/// The reason why its controls are off.
 const NOTHING: &str = "Nothing is recorded yet: press play";
-/// Why what leads back to the present is off.
+/// The reason why the control that leads back to the present is off.
 const PRESENT: &str = "The latest frame is shown";
 
 /// Draws it in a row of its own.

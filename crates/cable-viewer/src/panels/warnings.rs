@@ -1,5 +1,5 @@
-//! Warnings panel: what is wrong, where, why, what it does to the result, and the fix where one
-//! change is one.
+//! The panel of warnings says what is wrong, where, why, what it does to the result, and offers the
+//! fix where one change is one.
 
 use cable_core::scene::SupportKind;
 use cable_core::solution::{Warning, WarningKind};
@@ -23,7 +23,7 @@ const MAX_ROWS: usize = 30;
 /// are out of sight when something is wrong; less: a second warning is.
 const SHARE: f32 = 0.42;
 
-/// How bad something is.
+/// The severity of something.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Severity {
     /// The result does not hold, or the cable breaks.
@@ -39,15 +39,15 @@ struct Entry {
     severity: Severity,
     /// It is about what the cable carries, which comes first among equals.
     of_tension: bool,
-    /// What it is about, as long as it lasts; figures are in the title.
+    /// Its subject, as long as it lasts; figures are in the title.
     kind: String,
     title: String,
     /// The title in two parts: what, and figures with their place.
     parts: Option<[String; 2]>,
     text: String,
-    /// Where to look, m.
+    /// The place to look at, m.
     at_m: Option<[f64; 2]>,
-    /// What to pick.
+    /// The thing to pick.
     item: Option<Item>,
     fix: Option<Fix>,
 }
@@ -398,7 +398,7 @@ fn look(ui: &Ui, severity: Severity) -> (Color32, Icon) {
     }
 }
 
-/// What it is, and smaller its figures with their place.
+/// Returns what it is, and smaller its figures with their place.
 fn line(ui: &Ui, entry: &Entry) -> LayoutJob {
     let mut job = LayoutJob::default();
     let mut push = |text: &str, style: TextStyle, colour: Color32| {

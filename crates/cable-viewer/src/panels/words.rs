@@ -1,4 +1,4 @@
-//! Words for what a scene file calls by short names.
+//! The panels have words for what a scene file calls by short names.
 
 use crate::panels::cable::property::PROPERTIES;
 use crate::units::format;

@@ -51,8 +51,8 @@ impl Cursors {
         ui.data_mut(|d| d.insert_temp(id(title), places));
     }
 
-    /// What they read: values of the first line at each, and the difference; symbols with how many
-    /// SI units they hold.
+    /// Returns what they read: values of the first line at each, and the difference; symbols with
+    /// how many SI units they hold.
     #[must_use]
     pub fn text(&self, [(x_symbol, x_si), (y_symbol, si)]: [(&str, f64); 2], line: Option<&Series>) -> Option<String> {
         let line = line?;

@@ -12,14 +12,14 @@ const PAN: f64 = 0.125;
 /// seconds.
 const STEP: f64 = 0.01;
 
-/// What keys asked of a graph.
+/// The edits that keys ask of a graph.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct KeyInput {
     /// The part in view was changed.
     pub zoomed: bool,
-    /// Where the last cursor is to be, in the unit of the axis.
+    /// The place where the last cursor is to be, in the unit of the axis.
     pub cursor: Option<f64>,
-    /// Where the next cursor is set by Enter, in the unit of the axis.
+    /// The place where the next cursor is set by Enter, in the unit of the axis.
     pub next: f64,
 }
 

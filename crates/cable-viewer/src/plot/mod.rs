@@ -70,12 +70,12 @@ const BAND_OPACITY: f32 = 0.45;
 /// Length of a line in the legend, points.
 const SWATCH: f32 = 16.0;
 
-/// What the user asked of the graphs.
+/// The choices of the user for the graphs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GraphView {
-    /// What goes up.
+    /// The quantity that goes up.
     pub measure: Measure,
-    /// What goes up in a second graph over time.
+    /// The quantity that goes up in a second graph over time.
     pub second: Option<Measure>,
     /// The view follows the data.
     pub follow: bool,
@@ -97,13 +97,13 @@ impl Default for GraphView {
     }
 }
 
-/// What a graph shows and how.
+/// The content and form of a graph.
 pub struct Graph<'a> {
     /// Names the graph to tests and screen readers.
     pub title: &'a str,
     /// Graphs of one group have the same way right: their ends and their cursors are linked.
     pub group: &'a str,
-    /// What goes up, and its unit.
+    /// The quantity that goes up, and its unit.
     pub measure: Measure,
     /// What goes right, its unit, and how many SI units that holds, such as `Time`, `s`, 1.
     pub across: (&'a str, Unit),
@@ -126,7 +126,7 @@ pub struct Graph<'a> {
     pub export: bool,
 }
 
-/// What the user did to a graph.
+/// The edits of the user to a graph.
 #[derive(Debug, Default)]
 pub struct GraphResponse {
     /// It was zoomed: it is not to follow the data any more.
@@ -292,7 +292,7 @@ fn speak(
     figure.ctx.accesskit_node_builder(figure.id, |node| node.set_description(spoken.as_str()));
 }
 
-/// What the ribbon is called.
+/// The name of the ribbon.
 const RIBBON: &str = "with less and more friction";
 
 /// The ribbon of less and more friction, behind the lines.
@@ -340,7 +340,7 @@ fn hovered_id(group: &str) -> Id {
     Id::unique(("hovered", group.to_owned()))
 }
 
-/// Where the pointer is in a graph of a group, SI.
+/// Returns where the pointer is in a graph of a group, SI.
 #[must_use]
 pub fn hovered(ctx: &egui::Context, group: &str) -> Option<f64> {
     ctx.data(|d| d.get_temp::<Option<f64>>(hovered_id(group))).flatten()
@@ -410,8 +410,8 @@ fn tick_across(mark: GridMark, shown: &RangeInclusive<f64>, symbol: &str) -> Str
     if mark.value > end { String::new() } else { tick_with_unit(mark, shown, symbol) }
 }
 
-/// What the colours mean, on one line above the graph, where it hides nothing. Limits out of view
-/// are not drawn and so not named; what finds no room is told on hover.
+/// Returns what the colours mean, on one line above the graph, where it hides nothing. Limits out
+/// of view are not drawn and so not named; what finds no room is told on hover.
 fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> (Id, bool) {
     let mut entries: Vec<(String, Color32, bool)> =
         lines.iter().enumerate().map(|(k, l)| (l.name.clone(), line_style(l, k).0, l.reference.is_some())).collect();

@@ -6,7 +6,7 @@ use egui::Ui;
 
 use crate::plot::{Graph, GraphResponse, GraphView, TIME, in_view, show};
 use crate::record::measure::{Measure, per_newton};
-use crate::record::samples::Sample;
+use crate::record::sample::Sample;
 use crate::record::series::{Series, envelope, thin};
 use crate::render::colour::Quantity;
 use crate::state::AppState;

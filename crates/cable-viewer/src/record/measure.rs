@@ -2,7 +2,7 @@
 
 use cable_core::Cable;
 
-use crate::record::samples::Sample;
+use crate::record::sample::Sample;
 use crate::render::colour::Quantity;
 use crate::units::format::{self, significant};
 use crate::units::{system, unit};
@@ -12,7 +12,7 @@ pub type OverTime = (&'static str, ReadOff);
 /// Reads a value (SI) off a sample.
 pub type ReadOff = fn(&Sample) -> f64;
 
-/// What goes up.
+/// The quantity that goes up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// A quantity of the cable, along it or its greatest over time.
@@ -50,7 +50,7 @@ impl Measure {
         Self::LEADS.iter().find(|(m, _)| m.leads_as(self)).map(|(_, of)| *of)
     }
 
-    /// Whether the line of this one is that of another.
+    /// Returns whether the line of this one is that of another.
     #[must_use]
     pub fn leads_as(self, other: Self) -> bool {
         self == other || matches!((self, other), (Self::Cable(_), Self::Cable(_)))
@@ -67,7 +67,7 @@ impl Measure {
         }
     }
 
-    /// What it is, on hover.
+    /// Returns what it is, on hover.
     #[must_use]
     pub fn help(self) -> &'static str {
         match self {

@@ -1,6 +1,6 @@
-//! A long line with the least and greatest sample of every block of it, of every block of blocks,
-//! and so on: what a screen can show of any part of it is found in a time that grows with the
-//! columns of the screen, not with the samples.
+//! A pyramid is a long line with the least and greatest sample of every block of it, of every block
+//! of blocks, and so on: what a screen can show of any part of it is found in a time that grows
+//! with the columns of the screen, not with the samples.
 
 /// Samples in a block, blocks in a block of blocks. Larger: more to look through at the ends;
 /// smaller: more memory (a third of the line at 4).

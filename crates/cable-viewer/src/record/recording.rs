@@ -1,5 +1,5 @@
-//! What was seen since the last start: every answer within a memory budget, what happened in
-//! between, and which of it is shown.
+//! The recording keeps what was seen since the last start: every answer within a memory budget, the
+//! events in between, and which of it is shown.
 
 use std::sync::Arc;
 
@@ -86,7 +86,7 @@ impl Recording {
         }
     }
 
-    /// What began when, oldest first.
+    /// Returns what began when, oldest first.
     #[must_use]
     pub fn events(&self) -> &[Event] {
         &self.events
@@ -128,7 +128,7 @@ impl Recording {
         ended && !self.looped
     }
 
-    /// How much is kept, in words.
+    /// Returns how much is kept, in words.
     #[must_use]
     pub fn about(&self) -> String {
         let megabytes = self.frames.bytes() as f64 / f64::from(1 << 20);
@@ -138,7 +138,7 @@ impl Recording {
     }
 }
 
-/// Whether a kind is something that happens, not a remark on the answer.
+/// Returns whether a kind is something that happens, not a remark on the answer.
 fn marks(kind: WarningKind) -> bool {
     !matches!(
         kind,

@@ -6,7 +6,7 @@ use cable_core::Solution;
 
 use crate::record::measure::Measure;
 use crate::record::pyramid::Pyramid;
-use crate::record::samples::Sample;
+use crate::record::sample::Sample;
 
 /// Most pictures kept of a run that is compared with; its lines in the graphs keep every sample.
 /// Enough: ten minutes at one a second, and a run of 20 s (a drive of the robot from the riser and
@@ -16,7 +16,7 @@ use crate::record::samples::Sample;
 /// small machine; fewer: the cable of a fast run jumps.
 const MAX_PICTURES: usize = 600;
 
-/// What a run was.
+/// The description of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
     /// The leading line of each measure over time, SI, in the order of [`Measure::LEADS`].
@@ -25,7 +25,7 @@ pub struct Run {
     peaks: Vec<Option<Peak>>,
     /// Some of its answers, oldest first.
     answers: Vec<Arc<Solution>>,
-    /// How many warnings began in it.
+    /// The number of warnings that began in it.
     pub events: usize,
 }
 

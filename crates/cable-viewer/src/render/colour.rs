@@ -6,7 +6,7 @@ use egui::Color32;
 
 use crate::units::system;
 
-/// How the cable is coloured.
+/// The colouring of the cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
     /// Which quantity.
@@ -23,7 +23,7 @@ impl Default for ColourScale {
     }
 }
 
-/// What the colour shows.
+/// The quantity that the colour shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// Tension, N.
@@ -176,7 +176,7 @@ impl ColourScale {
         [low, high.max(low + least)]
     }
 
-    /// Where a value lies in a range, 0 to 1 inside.
+    /// Returns where a value lies in a range, 0 to 1 inside.
     #[must_use]
     pub fn fraction(value: f64, [low, high]: [f64; 2]) -> f64 {
         (value - low) / (high - low)

@@ -3,13 +3,14 @@
 //!
 //! - `colour`: a quantity along the cable as a colour
 //! - `theme`: the palettes of light and dark
-//! - `software`: egui's picture, drawn faster where there is no GPU
-//! - `offscreen`, `raster`: frames without a window, and their pixels without a graphics adapter
+//! - `software_adapter_shader`: egui's picture, drawn faster where there is no GPU
+//! - `offscreen`, `triangle_rasteriser`: frames without a window, and their pixels without a
+//!   graphics adapter
 //! - `svg`: a frame's shapes as a drawing
 
 pub mod colour;
 pub mod offscreen;
-pub mod raster;
-pub mod software;
+pub mod software_adapter_shader;
 pub mod svg;
 pub mod theme;
+pub mod triangle_rasteriser;

@@ -1,10 +1,10 @@
-//! Frames of egui without a window or a graphics adapter, and their picture.
+//! Frames of egui are drawn as pictures without a window or a graphics adapter.
 
 use egui::{Color32, Context, FullOutput, Pos2, RawInput, Rect, Ui, Vec2, ViewportId};
 use image::RgbaImage;
 
-use crate::render::raster::{self, Textures};
 use crate::render::svg;
+use crate::render::triangle_rasteriser::{self, Textures};
 
 /// Time between two frames, s.
 const FRAME_S: f32 = 1.0 / 60.0;
@@ -71,7 +71,7 @@ impl Offscreen {
         let size = [self.size.x, self.size.y].map(|s| (s * self.pixels_per_point).round() as u32);
         let shapes = self.last.as_ref().map_or_else(Vec::new, |output| output.shapes.clone());
         let primitives = self.ctx.tessellate(shapes, self.pixels_per_point);
-        raster::draw(&primitives, &self.textures, (size, self.pixels_per_point, ground))
+        triangle_rasteriser::draw(&primitives, &self.textures, (size, self.pixels_per_point, ground))
     }
 }
 

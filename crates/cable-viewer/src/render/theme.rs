@@ -2,7 +2,7 @@
 
 use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Stroke, TextStyle, Theme, Visuals};
 
-/// What the canvas paints with.
+/// The colours of the canvas.
 #[derive(Clone, Copy, Debug)]
 pub struct Palette {
     /// Behind everything.

@@ -9,16 +9,16 @@ use crate::jobs::{friction_range, neglected_bending, safe_reach, work_precision}
 use crate::record::run::Run;
 use crate::units::labels;
 
-/// What is asked beyond the answer itself.
+/// The questions beyond the answer itself.
 #[derive(Debug, Default)]
 pub struct Analysis {
     /// Answers kept on screen to compare with.
     pub references: Vec<Reference>,
-    /// What every model says of a scene.
+    /// The answers of every model to a scene.
     pub models: model_comparison::Progress,
-    /// Where on a cable it is shown where the tension comes from.
+    /// The place on a cable at which it is shown where the tension comes from.
     pub tension_marker: Option<TensionMarker>,
-    /// Where the robot or an end can be taken.
+    /// The places to which the robot or an end can be taken.
     pub safe_reach: safe_reach::SafeReachState,
     /// What neglecting bending stiffness changes.
     pub neglected_bending: neglected_bending::NeglectedBendingState,
@@ -33,7 +33,7 @@ pub struct Analysis {
 pub struct TensionMarker {
     /// Index of the cable.
     pub cable: usize,
-    /// Where on it, m.
+    /// The place on it, m.
     pub arc_length_m: f64,
     /// The end the sum begins at.
     pub from: cable_core::analysis::tension_budget::StartEnd,
@@ -58,7 +58,7 @@ impl Reference {
     /// Most that are held: more lines cannot be told apart.
     pub const MAX_COUNT: usize = 8;
 
-    /// What to draw beside a picture of a time, s: the same time of its run.
+    /// Returns what to draw beside a picture of a time, s: the same time of its run.
     #[must_use]
     pub fn picture(&self, time_s: f64) -> &Solution {
         self.run.as_ref().and_then(|r| r.at(time_s)).unwrap_or(&self.solution)

@@ -17,15 +17,15 @@ use crate::state::view::Appearance;
 pub struct AppState {
     /// The scene being edited.
     pub document: Document,
-    /// What is picked, hovered, dragged and copied.
+    /// The things that are picked, hovered, dragged and copied.
     pub selection: Selection,
-    /// How the scene is drawn.
+    /// The view of the scene.
     pub view: Appearance,
-    /// What the worker is asked for.
+    /// The settings that the worker is asked for.
     pub solver: Solver,
-    /// What it answered, and how time runs.
+    /// Its answer, and how time runs.
     pub live: Live,
-    /// What is asked beyond the answer itself.
+    /// The questions beyond the answer itself.
     pub analysis: Analysis,
     /// The window around the scene.
     pub ui: Ui,

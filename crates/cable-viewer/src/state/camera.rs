@@ -1,4 +1,4 @@
-//! The part of the world on screen: metres to points and back. f64 until the last step.
+//! The camera turns metres of the world into points on screen and back, in f64 until the last step.
 
 use cable_core::math::Point;
 use egui::{Pos2, Rect, Vec2, pos2};

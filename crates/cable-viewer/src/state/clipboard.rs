@@ -4,7 +4,7 @@ use cable_core::math::Point;
 use cable_core::scene::Support;
 use cable_core::{Cable, Load, Obstacle};
 
-/// What was copied.
+/// The things that were copied.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clipboard {
     /// The things.

@@ -91,7 +91,7 @@ pub enum Dialog {
     Feedback {
         /// So far.
         answers: Answers,
-        /// Where to keep it, as typed so far.
+        /// The place to keep it at, as typed so far.
         path: String,
     },
     /// The guides, and what else to begin with.

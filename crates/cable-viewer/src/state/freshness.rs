@@ -1,5 +1,5 @@
-//! Whether what is on screen answers the scene as it is: figures, warnings and verdicts are only
-//! shown as such where it does.
+//! The freshness tells whether what is on screen answers the scene as it is: figures, warnings and
+//! verdicts are only shown as such where it does.
 
 use crate::state::app_state::AppState;
 
@@ -22,7 +22,7 @@ pub enum Freshness {
 }
 
 impl AppState {
-    /// Whether what is on screen answers the scene as it is.
+    /// Returns whether what is on screen answers the scene as it is.
     #[must_use]
     pub fn freshness(&self) -> Freshness {
         let Self { live, solver, .. } = self;

@@ -7,17 +7,18 @@ use cable_core::timeline::RunPeaks;
 use cable_core::wording::Sentence;
 use cable_core::{Error, Scene, Solution, UnitSystem};
 
+use crate::record::history::History;
 use crate::record::recording::Recording;
-use crate::record::samples::{History, Sample};
+use crate::record::sample::Sample;
 
 /// A support that is farther than this from where it was has been moved since, m. Less: rounding
 /// counts as moving.
 pub const MIN_MOVE_M: f64 = 1e-6;
 
-/// What the worker answered, and how time runs.
+/// The answer of the worker, and how time runs.
 #[derive(Debug)]
 pub struct Live {
-    /// Whether and how fast time runs.
+    /// The playback: whether and how fast time runs.
     pub playback: Playback,
     /// The answer on screen: the latest, or an earlier one of the recording.
     pub snapshot: Snapshot,
@@ -160,7 +161,7 @@ fn supports_as_in(answer: &Solution, scene: &Scene) -> bool {
     })
 }
 
-/// Whether and how fast time runs.
+/// The playback: whether and how fast time runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Playback {
     /// Time stands still.
@@ -176,7 +177,7 @@ impl Playback {
     pub const MAX_SPEED: f64 = 4.0;
 }
 
-/// Why a scene has no answer.
+/// The reason why a scene has no answer.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NoAnswer {
     /// The model has none, or the scene cannot be solved.
@@ -221,7 +222,7 @@ pub struct Snapshot {
     pub peaks: Vec<RunPeaks>,
     /// Wall time of the solve or of the steps it took, s.
     pub solve_wall_s: f64,
-    /// Why the present scene has no answer.
+    /// The reason why the present scene has no answer.
     pub error: Option<NoAnswer>,
     /// `solution` is not of the present scene (it failed, or is still being solved).
     pub stale: bool,

@@ -12,7 +12,7 @@ use crate::jobs::safe_reach::{ReachSubject, movable};
 use crate::state::app_state::AppState;
 use crate::state::selection::Item;
 
-/// Whether an ask is the one that what is on screen asks.
+/// Returns whether an ask is the one that what is on screen asks.
 #[must_use]
 pub fn friction_query_fits(state: &AppState, ask: &FrictionQuery) -> bool {
     ask.span_s == run_time_s(state)
@@ -22,7 +22,7 @@ pub fn friction_query_fits(state: &AppState, ask: &FrictionQuery) -> bool {
         && ask.scene == *answered_scene(state)
 }
 
-/// What is on screen asks; None while it moves or has no answer.
+/// Returns what is on screen asks; None while it moves or has no answer.
 #[must_use]
 pub fn friction_query(state: &AppState) -> Option<FrictionQuery> {
     let still = state.live.playback.paused && state.selection.grab.is_none() && state.document.fault.is_none();
@@ -42,7 +42,7 @@ fn answered_scene(state: &AppState) -> &Scene {
     state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene)
 }
 
-/// How long time has run.
+/// Returns how long time has run.
 fn run_time_s(state: &AppState) -> f64 {
     let now_s = state.live.latest.solution.as_ref().map_or(0.0, |s| s.time_s);
     now_s.min(MAX_RUN_S)
@@ -70,7 +70,7 @@ pub fn bending_query(state: &AppState) -> Option<neglected_bending::Query> {
     Some(neglected_bending::Query { scene, settings: state.solver.settings, answer })
 }
 
-/// Whether what was asked is of the answer on screen.
+/// Returns whether what was asked is of the answer on screen.
 #[must_use]
 pub fn bending_query_fits(state: &AppState) -> bool {
     let shown = state.live.snapshot.solution.as_ref();
@@ -83,7 +83,7 @@ pub fn bending_query_fits(state: &AppState) -> bool {
         .is_some_and(|(ask, shown)| Arc::ptr_eq(&ask.answer, shown))
 }
 
-/// What is taken somewhere: what was chosen, if it is still there.
+/// Returns what is taken somewhere: what was chosen, if it is still there.
 #[must_use]
 pub fn reach_target(state: &AppState) -> Option<ReachSubject> {
     let all = movable(&state.document.scene);

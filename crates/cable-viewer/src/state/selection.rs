@@ -4,24 +4,24 @@ use cable_core::math::Point;
 
 use crate::state::clipboard::Clipboard;
 
-/// What is picked, hovered, dragged and copied.
+/// The things that are picked, hovered, dragged and copied.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
-    /// What the user picked.
+    /// The thing that the user picked.
     pub selected: Option<Item>,
-    /// What was picked besides: moved, copied and removed with it.
+    /// The things that were picked besides: they are moved, copied and removed with it.
     pub also: Vec<Item>,
     /// Two corners of the frame being drawn round things to pick, m.
     pub frame_m: Option<[Point; 2]>,
-    /// What was copied.
+    /// The things that were copied.
     pub clipboard: Clipboard,
-    /// What the pointer is over.
+    /// The thing that the pointer is over.
     pub hovered: Option<Item>,
-    /// What is being dragged.
+    /// The thing that is being dragged.
     pub grab: Option<Grab>,
     /// The support that the pointer holds by a spring while time runs.
     pub spring_support: Option<(usize, usize)>,
-    /// Where the pointer is, m; None outside the canvas.
+    /// The place where the pointer is, m; None outside the canvas.
     pub cursor_m: Option<Point>,
 }
 
@@ -32,7 +32,7 @@ impl Selection {
         self.selected.into_iter().chain(self.also.iter().copied()).collect()
     }
 
-    /// Whether a thing is picked.
+    /// Returns whether a thing is picked.
     #[must_use]
     pub fn contains(&self, item: Item) -> bool {
         self.selected == Some(item) || self.also.contains(&item)

@@ -2,14 +2,14 @@
 
 use cable_core::{Model, Settings};
 
-/// What the worker is asked for, and how it is doing.
+/// The settings that the worker is asked for, and its state.
 #[derive(Clone, Debug)]
 pub struct Solver {
     /// The model asked for.
     pub model: Model,
     /// Mesh and accuracy asked for.
     pub settings: Settings,
-    /// How the solver thread is doing.
+    /// The state of the solver thread.
     pub status: WorkerStatus,
     /// Number of the last edit sent to the worker.
     pub edits_sent: u64,
@@ -35,7 +35,7 @@ impl Default for Solver {
     }
 }
 
-/// How the solver thread is doing.
+/// The state of the solver thread.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum WorkerStatus {
     /// Waiting for work.

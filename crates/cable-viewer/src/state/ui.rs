@@ -9,9 +9,9 @@ use crate::state::tutorial_place::TutorialPlace;
 /// Which parts of the window are open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OpenPanels {
-    /// What is edited, on the left.
+    /// The form on the left, in which things are edited.
     pub edit: bool,
-    /// What is read off, on the right.
+    /// The panel on the right, from which figures are read.
     pub results: bool,
     /// Timeline and graphs, below.
     pub graphs: bool,
@@ -40,7 +40,7 @@ pub struct Ui {
     pub first_steps: FirstSteps,
     /// The tutorial that is on.
     pub tutorial: Option<TutorialPlace>,
-    /// Why unsaved changes could not be kept for recovery.
+    /// The reason why unsaved changes could not be kept for recovery.
     pub autosave_fault: Option<String>,
     /// The file or folder that was exported or saved last, until another dialog opens.
     pub written: Option<PathBuf>,

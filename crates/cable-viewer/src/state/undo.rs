@@ -1,4 +1,4 @@
-//! Undo and redo: the scenes before and after the present one, a drag being one entry.
+//! Undo and redo keep the scenes before and after the present one; a drag is one entry.
 
 use cable_core::Scene;
 
@@ -77,7 +77,7 @@ impl Undo {
         Some(scene)
     }
 
-    /// Whether there is something to undo, to redo.
+    /// Returns whether there is something to undo, to redo.
     #[must_use]
     pub fn available(&self) -> (bool, bool) {
         (!self.before.is_empty(), !self.after.is_empty())

@@ -6,16 +6,16 @@ use crate::render::colour::ColourScale;
 use crate::state::camera::Camera;
 use crate::units::system::System;
 
-/// How the scene is drawn.
+/// The view of the scene.
 #[derive(Clone, Debug)]
 pub struct Appearance {
     /// The part of the world on screen.
     pub camera: Camera,
     /// The part of the world that the canvas shows, lower left and upper right corner, m.
     pub visible_m: [Point; 2],
-    /// How the cable is coloured.
+    /// The colouring of the cable.
     pub colour: ColourScale,
-    /// What is drawn.
+    /// The layers that are drawn.
     pub layers: Layers,
     /// Units on screen; files stay SI.
     pub units: System,
@@ -36,7 +36,7 @@ impl Default for Appearance {
     }
 }
 
-/// What is drawn on the canvas.
+/// The layers of the canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layers {
     /// Grid lines and axes.

@@ -79,7 +79,7 @@ const LENGTH: [Scale; 2] =
     [(&[("m", 1.0, 1.0), ("mm", 1e-3, 1e-3), ("µm", 1e-6, 0.0)], 0), (&[("ft", FOOT, FOOT), ("in", 0.0254, 0.0)], 0)];
 const ENERGY: [Scale; 2] = [(&[("kJ", 1e3, 1e4), ("J", 1.0, 0.0)], 1), (&[("ft·lbf", FOOT * POUND_FORCE, 0.0)], 0)];
 
-/// What a figure on screen is of.
+/// The quantity of a figure on screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// N.

@@ -6,7 +6,7 @@ pub const DIGITS: usize = 4;
 /// A unit a quantity is shown in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
-    /// What stands behind the number; empty for plain numbers.
+    /// The symbol behind the number; empty for plain numbers.
     pub symbol: &'static str,
     /// SI units in one of it.
     pub si: f64,

@@ -17,12 +17,12 @@ struct Draft {
     fault: Option<String>,
 }
 
-/// What a field says this frame.
+/// The outcome of a field in this frame.
 #[derive(Debug)]
 pub struct Entry<T> {
     /// A new value, entered just now.
     pub value: Option<T>,
-    /// Why the text in the field cannot be read.
+    /// The reason why the text in the field cannot be read.
     pub fault: Option<String>,
     /// The field itself.
     pub response: Response,

@@ -47,7 +47,7 @@ pub fn offer(response: &Response, name: &str) {
     ctx.data_mut(|d| d.insert_temp(id(), Sought { seen, scrolled: true, ..sought }));
 }
 
-/// Where the control that is pointed at is in sight, after all were drawn.
+/// Returns where the control that is pointed at is in sight, after all were drawn.
 #[must_use]
 pub fn seen(ctx: &Context) -> Option<Rect> {
     ctx.data(|d| d.get_temp::<Sought>(id()))?.seen

@@ -1,11 +1,11 @@
-//! Small painted signs: the same on every machine, whatever fonts it has.
+//! Icons are small painted signs, the same on every machine, whatever fonts it has.
 
 use egui::epaint::{PathShape, Shape, Stroke};
 use egui::{
     Align2, Atom, Button, Color32, FontId, IdSalt, IntoAtoms, Painter, Pos2, Rect, Response, Sense, Ui, Vec2, pos2,
 };
 
-/// What is painted.
+/// The sign that is painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Icon {
     /// Time runs.

@@ -29,13 +29,13 @@ pub struct Provenance {
     pub value: f64,
     /// What reset returns to, SI, and where that comes from in a few words.
     pub origin: Option<(f64, String)>,
-    /// Where the value comes from and how sure it is, for the hover text.
+    /// The source of the value and how sure it is, for the hover text.
     pub source: Option<String>,
     /// The value is estimated: a mark says so.
     pub estimated: bool,
 }
 
-/// What a row asks for.
+/// The edit that a row asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Change {
     /// A new value, SI.

@@ -29,7 +29,7 @@ pub struct Knots {
     pub values: Vec<Point>,
 }
 
-/// What a table is of.
+/// The quantity of a table.
 pub struct Table<'a> {
     /// Names its fields: `Time 1 of wind`, `right 1 of wind`.
     pub of: &'a str,

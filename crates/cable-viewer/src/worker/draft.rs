@@ -1,5 +1,5 @@
-//! Drafts: what is shown of a slow scene while it is being moved, until the hand rests and the
-//! answer is due.
+//! A draft is shown of a slow scene while it is being moved, until the hand rests and the answer is
+//! due.
 //!
 //! A draft of `fem` is not sought at rest, it falls there: each edit puts few segments where the
 //! last draft was and lets a frame of time pass, so it costs the same however far the hand jumped.
@@ -120,8 +120,9 @@ fn carry(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {
 /// in a scene out of all size.
 const SEARCH_RADIUS_M: f64 = 1e3;
 
-/// Whether a cable that was carried over would lie inside an obstacle that was not there, or not
-/// there, before: contact begins at a surface, so it would stay inside. It is laid anew instead.
+/// Returns whether a cable that was carried over would lie inside an obstacle that was not there,
+/// or not there, before: contact begins at a surface, so it would stay inside. It is laid anew
+/// instead.
 #[must_use]
 pub fn buried(edit: &Edit, old: &Simulation) -> bool {
     let obstacles = &edit.scene.obstacles;
@@ -138,7 +139,7 @@ pub fn buried(edit: &Edit, old: &Simulation) -> bool {
     })
 }
 
-/// Whether the cables are the same ones, so that where they are can be carried over.
+/// Returns whether the cables are the same ones, so that where they are can be carried over.
 #[must_use]
 pub fn same_cables(edit: &Edit, old: &Simulation) -> bool {
     let (a, b) = (&old.scene().cables, &edit.scene.cables);

@@ -75,7 +75,7 @@ enum Phase {
     },
     /// A coarse mesh that follows the hand while time runs.
     CoarseMotion {
-        /// When the hand moved last.
+        /// The time when the hand moved last.
         moved_at: Instant,
     },
     /// The answer to the scene before: the last edit has none, and time stands.
@@ -100,7 +100,7 @@ struct Hand {
     cable: usize,
     /// Index of the support.
     support: usize,
-    /// Where the hand is, m.
+    /// The place where the hand is, m.
     at_m: Point,
 }
 
@@ -726,7 +726,7 @@ fn laid(scene: &Scene, model: Model, settings: Settings) -> Result<Simulation, E
     Ok(laid)
 }
 
-/// Whether a model that was asked for by name lets time run without inertia: it has none.
+/// Returns whether a model that was asked for by name lets time run without inertia: it has none.
 #[must_use]
 pub fn is_quasi_static(model: Model) -> bool {
     !model.capabilities().inertia

@@ -1,4 +1,4 @@
-//! Whether a cable has passed an obstacle between two shapes of it, and the way it takes now.
+//! Winding numbers tell whether a cable has passed an obstacle between two shapes of it.
 //!
 //! The two shapes and the moves of the ends enclose an area. An obstacle that stays where it is and
 //! that the area goes round was passed: the cable cannot get from one shape to the other without
@@ -46,7 +46,7 @@ fn inner_point(shape: &Shape) -> Option<Vec2> {
     }
 }
 
-/// How often a closed line goes round a point, anticlockwise.
+/// Returns how often a closed line goes round a point, anticlockwise.
 fn winding(line: &[Vec2], about: Vec2) -> i32 {
     let next = line.iter().skip(1).chain(line.first());
     let crossings = line.iter().zip(next).map(|(a, b)| {

@@ -65,7 +65,7 @@ pub struct Drag {
     pub cable: usize,
     /// Index of the support.
     pub support: usize,
-    /// Where to, m.
+    /// The target, m.
     pub to_m: Point,
     /// A hand holds it by a spring; else it goes there whatever that takes.
     pub by_spring: bool,
@@ -130,5 +130,30 @@ impl Request {
             && self.playback.is_none()
             && self.robot.is_none()
             && self.steps == 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn later_requests_win_and_steps_are_bounded() {
+        let scene = cable_core::scene::catalog::hanging_span();
+        let edit = |fresh, name: &str| {
+            let mut scene = scene.clone();
+            scene.name = name.to_owned();
+            let (model, settings) = (cable_core::Model::Auto, cable_core::Settings::default());
+            Request { edit: Some(Edit { scene, model, settings, fresh, as_laid: false }), ..Request::default() }
+        };
+        let mut waiting = edit(true, "first");
+        for _ in 0..1000 {
+            waiting.merge(Request { steps: 1, ..Request::default() });
+        }
+        waiting.merge(edit(false, "last"));
+        let merged = waiting.edit.expect("an edit");
+        assert_eq!(merged.scene.name, "last");
+        assert!(merged.fresh, "the new scene must not inherit the old one's state");
+        assert!(waiting.steps <= 60);
     }
 }

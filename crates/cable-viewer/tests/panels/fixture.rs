@@ -11,7 +11,7 @@ use cable_core::solution::{
 use cable_core::{Load, Model, Scene};
 use cable_viewer::command::effects::Effects;
 use cable_viewer::command::{self, Command};
-use cable_viewer::record::samples::Sample;
+use cable_viewer::record::sample::Sample;
 use cable_viewer::state::{AppState, Reference, Snapshot};
 use egui_kittest::Harness;
 

@@ -23,7 +23,7 @@ fn click(harness: &mut Harness<'_, ViewerApp>, label: &str) {
     harness.run_steps(2);
 }
 
-/// Where a point of the world is on screen.
+/// Returns where a point of the world is on screen.
 fn screen(harness: &Harness<'_, ViewerApp>, p: [f64; 2]) -> Pos2 {
     let canvas = harness.get_by_label("Canvas").rect();
     state(harness).view.camera.to_screen(canvas, p)

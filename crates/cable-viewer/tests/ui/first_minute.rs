@@ -1,5 +1,5 @@
-//! The first minute of somebody who has never seen the window: what to do, where to begin, and a
-//! file to open.
+//! Somebody who has never seen the window learns in the first minute what to do, where to begin,
+//! and how to open a file.
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;

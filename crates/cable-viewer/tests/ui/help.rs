@@ -1,5 +1,5 @@
-//! What helps: guided scenes, hover help and a name on every control, the picture in words, the
-//! keyboard alone.
+//! The window helps its user: guided scenes, hover help and a name on every control, the picture in
+//! words, the keyboard alone.
 
 use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;

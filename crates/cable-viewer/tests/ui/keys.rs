@@ -1,4 +1,4 @@
-//! What had needed a pointer, by keys: the view, graphs, picking several things; and dialogs in the
+//! Keys do what had needed a pointer: the view, graphs, picking several things. Dialogs fit the
 //! smallest window.
 
 use cable_core::scene::catalog;

@@ -1,5 +1,4 @@
-//! Room for the picture: how much of the window the canvas has, and that nothing but the user
-//! changes that.
+//! The canvas has enough of the window, and nothing but the user changes how much.
 
 use cable_core::analysis::tension_budget::StartEnd;
 use cable_core::scene::catalog;

@@ -1,4 +1,4 @@
-//! Pictures of the canvas compared with those in `tests/snapshots`. After an intended change:
+//! Pictures of the canvas are compared with those in `tests/snapshots`. After an intended change:
 //! `UPDATE_SNAPSHOTS=1 cargo test -p cable-viewer --test ui`.
 
 use cable_core::error::{SceneError, SceneFault};

@@ -1,4 +1,4 @@
-//! Time: play, pause, step, reset, and dragging a support while time runs.
+//! A user plays, pauses, steps and resets time, and drags a support while it runs.
 
 use cable_core::scene::{Shape, catalog};
 use cable_core::solution::WarningKind;

@@ -1,4 +1,4 @@
-//! T6 to T8 by hand: how far an answer can be relied on, and the motion of any point of the cable.
+//! These tests show how far an answer can be relied on, and the motion of any point of the cable.
 
 use cable_core::scene::catalog;
 use cable_core::{Model, Settings};

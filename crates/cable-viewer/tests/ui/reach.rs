@@ -1,4 +1,4 @@
-//! Where the robot or an end can be taken: asked for, seen, told and ended, by a user.
+//! A user asks where the robot or an end can be taken, sees and reads it, and ends the search.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! What a window that died has left, and the robot.
+//! A window recovers what one that died has left; the robot is recovered, too.
 
 use cable_core::Robot;
 use cable_core::scene::{SupportKind, catalog};

@@ -133,7 +133,7 @@ fn s04_the_cable_stays_out_of_the_robot() {
     assert!(warnings >= 2 && read.bottom() < 500.0, "{warnings} warnings, {read}");
 }
 
-/// How deep a point is in a polygon, m; 0 outside.
+/// Returns how deep a point is in a polygon, m; 0 outside.
 fn inside(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
     let edges = || polygon.iter().zip(polygon.iter().cycle().skip(1));
     let crossed =
@@ -146,7 +146,7 @@ fn inside(polygon: &[[f64; 2]], [x, y]: [f64; 2]) -> f64 {
     if crossed.count() % 2 == 1 { edges().map(far).fold(f64::MAX, f64::min) } else { 0.0 }
 }
 
-/// How deep a point is in level ground, a box or a post, m; 0 outside.
+/// Returns how deep a point is in level ground, a box or a post, m; 0 outside.
 fn depth(shape: &Shape, p: [f64; 2]) -> f64 {
     match shape {
         Shape::Terrain { points_m } => {

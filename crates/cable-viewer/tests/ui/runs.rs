@@ -9,7 +9,7 @@ use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use cable_viewer::record::measure::Measure;
 use cable_viewer::record::run::Run;
-use cable_viewer::record::samples::Sample;
+use cable_viewer::record::sample::Sample;
 use cable_viewer::state::AppState;
 use cable_viewer::state::dialog::Replacement;
 use egui_kittest::Harness;

@@ -1,5 +1,5 @@
-//! The `spans` model in the window: contacts as stretches, slip fronts, where a tension comes from,
-//! drags without a sawtooth.
+//! The window shows the `spans` model: contacts as stretches, slip fronts, where a tension comes
+//! from, drags without a sawtooth.
 
 use cable_core::analysis::tension_budget::{Cause, StartEnd, tension_budget};
 use cable_core::scene::{Obstacle, Shape, Support, SupportKind, catalog};

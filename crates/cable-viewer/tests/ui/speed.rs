@@ -1,6 +1,6 @@
-//! How fast the window is drawn (printed, never asserted): cables of 1000 and 100 000 segments over
-//! ground of 1000 points at 1280×800, through the same renderer as the pictures, in software where
-//! there is no GPU.
+//! These tests print how fast the window is drawn, and assert nothing of it: cables of 1000 and 100
+//! 000 segments over ground of 1000 points at 1280×800, through the same renderer as the pictures,
+//! in software where there is no GPU.
 //!
 //! The figures: `cargo test --workspace --test ui speed -- --nocapture --test-threads 1`.
 
@@ -10,7 +10,7 @@ use cable_core::scene::{Obstacle, Shape, catalog};
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::render::software::Software;
+use cable_viewer::render::software_adapter_shader::Software;
 use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, wgpu};
 use egui::Vec2;
 use egui_kittest::{Harness, TestRenderer};
@@ -280,8 +280,9 @@ fn software_drawing_looks_the_same_at(scale: f32) {
 /// printed and not asserted: a 60th of a second is 16.7 ms.
 #[test]
 fn speed_of_graphs() {
+    use cable_viewer::record::history::History;
     use cable_viewer::record::run::Run;
-    use cable_viewer::record::samples::{History, Sample};
+    use cable_viewer::record::sample::Sample;
     let sample = |k: u32| {
         let t = f64::from(k) / 240.0;
         let pull = 500.0 + 80.0 * (0.7 * t).sin() + 20.0 * (31.0 * t).sin();

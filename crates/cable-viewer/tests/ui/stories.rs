@@ -1,4 +1,4 @@
-//! What the users asked for, done by hand: each test is named after its story.
+//! Each test does by hand what a user asked for, and is named after that story.
 
 use cable_core::record::read_history;
 use cable_core::robot::{Going, RobotReport};

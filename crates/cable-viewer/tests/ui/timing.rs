@@ -1,5 +1,5 @@
-//! The worker on its own thread: how long an edit takes to be on screen (printed, never asserted),
-//! and that a flood of edits ends at the last one.
+//! The worker runs on its own thread: printed is how long an edit takes to be on screen, asserted
+//! that a flood of edits ends at the last one.
 //!
 //! The figures: `cargo test --workspace --test ui timed -- --nocapture --test-threads 1`.
 

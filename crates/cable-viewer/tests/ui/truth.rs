@@ -68,7 +68,7 @@ fn settled(harness: &Harness<'_, ViewerApp>) -> bool {
     harness.state().settled() && !state(harness).live.snapshot.draft
 }
 
-/// What does not depend on how long it took.
+/// Returns what does not depend on how long it took.
 fn figures(answer: &Solution) -> impl PartialEq + std::fmt::Debug + use<> {
     (
         answer.time_s,

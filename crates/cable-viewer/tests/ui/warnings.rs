@@ -1,5 +1,5 @@
-//! Warnings as rows: a line each, whatever the width of the panel; the place by a click, the words
-//! on demand.
+//! Warnings are rows of a line each, whatever the width of the panel; a click leads to the place,
+//! and the words come on demand.
 
 use cable_core::scene::catalog;
 use cable_core::solution::WarningKind;

@@ -1,4 +1,4 @@
-//! Cables that touch nothing.
+//! The cables of this family touch nothing.
 
 use crate::case::{Case, Expect, Point, apart, cable, clamp, fixed, flat, load, load_end as loaded, post, put};
 use crate::chance::Chance;
@@ -7,7 +7,7 @@ use cable_core::scene::preset::cable_presets;
 use cable_core::scene::{STANDARD_GRAVITY, Scene, Support, SupportKind};
 use cable_core::{Model, scene};
 
-/// What a closed form says of a free span.
+/// Returns what a closed form says of a free span.
 fn known(scene: Scene) -> Case {
     let c = &scene.cables[0];
     let weight = c.linear_density_kg_per_m * scene.environment.gravity_m_per_s2;

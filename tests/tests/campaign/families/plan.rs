@@ -1,4 +1,4 @@
-//! Cables seen from above.
+//! The cables of this family are seen from above.
 
 use crate::case::{Case, Point, apart, block, cable, fixed, post, put, way};
 use crate::chance::Chance;

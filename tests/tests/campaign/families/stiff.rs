@@ -1,4 +1,4 @@
-//! Cables with bending stiffness.
+//! The cables of this family have bending stiffness.
 
 use crate::case::{Case, apart, block, cable, clamp, fixed, flat, load_end, put};
 use crate::chance::Chance;

@@ -1,4 +1,4 @@
-//! Cables over, under and round posts, beams and wheels.
+//! The cables of this family run over, under and round posts, beams and wheels.
 
 use crate::case::{Case, Expect, Point, apart, block, cable, fixed, flat, load_end, post, put, way, wheel};
 use crate::chance::Chance;

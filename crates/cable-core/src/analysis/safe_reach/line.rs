@@ -175,7 +175,7 @@ pub fn robot_reach(
     Ok(map)
 }
 
-/// Why it got no farther.
+/// The reason why it got no farther.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Obstruction {
     /// The cable cannot bear it.

@@ -10,7 +10,7 @@
 //! | `equilibrium` | equilibria in contact, and steps without inertia |
 //! | `time` | BDF2, step sizes, sleep, hands, momentum, checkpoints |
 //! | `newton` | one step: its initial guess, its Newton iterations, and what bounds them |
-//! | `system` | input and energies of a step: value, gradient and banded Hessian |
+//! | `system` | input and energies of a step: value, gradient and banded Hessian; contacts in `system/contact` |
 //! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
 //! | `obstacle` | the robot's outline; does the cable run through an obstacle? |
 //! | `transfer` | the first state along the route; states and answers of other models |

@@ -81,8 +81,9 @@ use equilibrium::error_estimate::{Estimate, Start};
 use equilibrium::quasi_static::{find_equilibrium, quasi_static_step};
 use forces::{nodal, tension};
 use integrator::is_preview;
+use mesh::cable_mesh::Mesh;
 use mesh::edit::even_out;
-use mesh::nodes::{Mesh, first_support_arc_lengths};
+use mesh::node_placement::first_support_arc_lengths;
 use settings::Tuning;
 use xpbd::sub_step::preview;
 

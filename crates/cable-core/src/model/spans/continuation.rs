@@ -46,7 +46,7 @@ pub(in crate::model::spans) struct StepStats {
 /// The end of a continuation that did not come to its instant.
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct Stopped {
-    /// Why it ended.
+    /// The reason why it ended.
     pub failure: Failure,
     /// The part of the way that was gone.
     pub done: f64,

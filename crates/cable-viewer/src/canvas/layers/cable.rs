@@ -1,5 +1,5 @@
-//! The cable: one mesh of ribbons (casing, warning outline, colours), so that thousands of nodes
-//! cost one draw call.
+//! The cable is drawn as one mesh of ribbons (casing, warning outline, colours), so that thousands
+//! of nodes cost one draw call.
 
 use cable_core::solution::Node;
 use egui::{Color32, Mesh, Pos2, Stroke, Vec2, vec2};

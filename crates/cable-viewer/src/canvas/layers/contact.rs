@@ -1,6 +1,6 @@
-//! Where the cable lies on something: a band along it, filled where it holds, hollow where it
-//! slides, with a tick at each slip front. Blue and orange are told apart by colour-blind eyes;
-//! filled and hollow by every eye.
+//! A contact is drawn as a band along the cable, filled where it holds, hollow where it slides,
+//! with a tick at each slip front. Blue and orange are told apart by colour-blind eyes; filled and
+//! hollow by every eye.
 
 use cable_core::solution::{CableSolution, ContactPart, ContactReport, ContactState, Node};
 use egui::{Mesh, Painter, Pos2, Rect, Stroke, StrokeKind, vec2};

@@ -1,5 +1,5 @@
-//! Forces as arrows: contacts, loads, reactions, wind. One length scale for all, by the square
-//! root, so that small ones stay visible beside large ones.
+//! Forces of contacts, loads, supports and wind are drawn as arrows. One length scale for all, by
+//! the square root, so that small ones stay visible beside large ones.
 
 use cable_core::math::Point;
 use cable_core::solution::{CableSolution, ContactReport, ContactState};

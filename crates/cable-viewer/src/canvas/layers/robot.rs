@@ -16,7 +16,7 @@ const TRACK_HEIGHT: f64 = 0.28;
 /// Wheels drawn in a track.
 const WHEELS: u8 = 4;
 
-/// Where its name stands and what it says: its name, and why it goes as it does.
+/// Returns where its name stands and what it says: its name, and why it goes as it does.
 #[must_use]
 pub fn title(state: &AppState) -> Option<(Point, String)> {
     let (pose, preset) = robot_pose(state)?;

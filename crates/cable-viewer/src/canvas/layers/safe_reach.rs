@@ -115,8 +115,8 @@ fn stroke(palette: &Palette, ends: [Pos2; 2], width: f32) -> [Shape; 2] {
     [line(width + 2.0, palette.background), line(width, palette.risk)]
 }
 
-/// Where a value is passed in a square: its ends on the sides, between which tension grows by even
-/// factors.
+/// Returns where a value is passed in a square: its ends on the sides, between which tension grows
+/// by even factors.
 fn crossing(at: [Pos2; 4], values: [f64; 4], limit: f64) -> Vec<[Pos2; 2]> {
     let log = |v: f64| v.max(1e-9).ln();
     let on = |k: usize| {

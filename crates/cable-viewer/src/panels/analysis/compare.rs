@@ -180,7 +180,7 @@ fn runs(ui: &mut Ui, state: &AppState) {
     });
 }
 
-/// What is compared.
+/// The answers that are compared.
 struct Figures {
     tension_n: f64,
     sag_m: Option<f64>,
@@ -256,8 +256,8 @@ fn remembered(ui: &Ui, k: usize, held: &Reference, state: &AppState) -> Arc<Vec<
     lines
 }
 
-/// What differs in the input of a held answer and the present one, line by line of their files; the
-/// models first.
+/// Returns what differs in the input of a held answer and the present one, line by line of their
+/// files; the models first.
 #[must_use]
 pub fn differences(held: &Reference, state: &AppState) -> Vec<String> {
     let mut out = Vec::new();

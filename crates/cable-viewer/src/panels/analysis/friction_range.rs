@@ -1,5 +1,5 @@
-//! Friction that is not known well: how much less and more of it there may be, and what that does
-//! to the tension.
+//! This panel asks how much less and more friction there may be, and shows what that does to the
+//! tension.
 
 use egui::{Grid, ProgressBar, Ui};
 

@@ -1,5 +1,5 @@
-//! Where the robot or an end can be taken without passing the service tension, and where its cable
-//! would snag: asked for, and read off.
+//! This panel asks where the robot or an end can be taken without passing the service tension, and
+//! shows where the cable would snag.
 
 use std::time::Duration;
 

@@ -176,7 +176,7 @@ fn colour(term: &Contribution) -> Color32 {
     }
 }
 
-/// What adds, from left to right; below it what takes away, from there back to the tension.
+/// Returns what adds, from left to right; below it what takes away, from there back to the tension.
 fn bar(ui: &mut Ui, found: &TensionBudget, listed: &[Contribution], title: &dyn Fn(&Contribution) -> String) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 2.0 * ROW + 2.0), Sense::hover());
     let words: Vec<String> = listed.iter().map(|t| format!("{} {}", title(t), format::force(t.tension_n))).collect();

@@ -1,4 +1,4 @@
-//! The chart of error over cost: every model on several meshes, beside the tolerance asked for.
+//! The chart of error over cost has every model on several meshes, beside the tolerance asked for.
 
 use std::collections::BTreeMap;
 

@@ -9,7 +9,7 @@ use crate::widgets::property::Quantity;
 pub struct Property {
     /// Its key in a scene file.
     pub key: &'static str,
-    /// How it is shown.
+    /// Its form on screen.
     pub quantity: Quantity,
     /// Reads it, SI.
     pub get: fn(&Cable) -> f64,

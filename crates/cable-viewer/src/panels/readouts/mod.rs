@@ -355,8 +355,8 @@ fn bending_stiffness(
     });
 }
 
-/// What came of comparing an answer with one that has the likely bending stiffness, in short and in
-/// full; None where nobody asked.
+/// Returns what came of comparing an answer with one that has the likely bending stiffness, in
+/// short and in full; None where nobody asked.
 fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(String, String)> {
     if !bending_query_fits(state) {
         return None;

@@ -1,5 +1,5 @@
-//! The robot: which, where, which way. A first one stands where it can, with the end of the cable
-//! on its hitch.
+//! The form of the robot says which it is, where it stands and which way. A first one stands where
+//! it can, with the end of the cable on its hitch.
 
 use cable_core::scene::ground::Ground;
 use cable_core::scene::preset::{self, RobotPreset};

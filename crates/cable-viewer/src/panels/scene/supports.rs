@@ -25,7 +25,7 @@ struct Row<'a> {
     value: &'a Support,
     /// It is the cable's start or end.
     end: bool,
-    /// Where it is now, m, and where on the cable, m.
+    /// Its present place, m, and that on the cable, m.
     now: (Point, f64),
 }
 
@@ -72,7 +72,7 @@ fn kind_name(kind: SupportKind) -> &'static str {
     KINDS.iter().find(|(k, ..)| *k == kind).map_or("", |(_, text, _)| text)
 }
 
-/// Where a support is in the present answer, else where the scene says.
+/// Returns where a support is in the present answer, else where the scene says.
 fn place_now(state: &AppState, cable: usize, support: usize, of: &Cable) -> (Point, f64) {
     // An answer with other supports is of an earlier scene: its places are those of the neighbours.
     let solved = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable));

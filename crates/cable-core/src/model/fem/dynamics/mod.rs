@@ -16,6 +16,7 @@ use crate::model::fem::remesh::adapt::remesh;
 use crate::model::fem::results;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::{HandDrive, Pacing, Rollback, SolverMemory};
+use crate::model::fem::state::fold_imperfection::open_collinear_folds;
 use crate::model::fem::state::momentum::MovingMass;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 use crate::model::fem::time::bdf2::{Weights, keep_balanced_tensions, report_held_back, set_inertia};
@@ -26,14 +27,14 @@ use crate::model::input_filter::held_warning;
 use crate::model::{Inertia, StepReport};
 use crate::solution::{CableSolution, Cost, Warning, WarningCause};
 
-/// What the steps of an advance have in common.
+/// The request that the steps of an advance have in common.
 #[derive(Clone, Copy, Debug)]
 struct StepRequest<'a> {
     /// End of the advance, s: without inertia hands draw supports evenly to where they are to be
     /// then.
     due: f64,
     inertia: Inertia,
-    /// Where supports are dragged to, m.
+    /// The places to which supports are dragged, m.
     dragged: &'a [Option<Vec2>],
 }
 
@@ -112,7 +113,7 @@ impl Dynamics {
             return Ok(self.report(Converged::default(), 0, 0.0));
         }
         if inertia == Inertia::Dynamic && self.cable.motion.step_before == 0.0 && self.cable.meets_nothing() {
-            self.cable.motion.open_folds(&self.cable.mesh);
+            open_collinear_folds(&self.cable.mesh, &mut self.cable.motion.positions);
         }
         let pieces = match inertia {
             Inertia::Dynamic => (dt_s / self.pacing.pace.longest_step() - 1e-9).ceil().max(1.0),

@@ -20,8 +20,8 @@ use crate::state::State;
 /// 10 000 bars on a floor that was 0.7 of the work); more: coarser rests.
 const LENGTH_ROUNDINGS: f64 = 2.0;
 
-/// Why a cable that nothing but friction holds does not rest where it was brought: the forces that
-/// each node alone may leave unbalanced add up.
+/// Returns why a cable that nothing but friction holds does not rest where it was brought: the
+/// forces that each node alone may leave unbalanced add up.
 pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoEquilibrium> {
     if cable.problem.supports.iter().any(|s| s.at.is_some()) || cable.contacts.own.shape.is_on() {
         return None;

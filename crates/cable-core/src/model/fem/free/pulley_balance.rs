@@ -40,7 +40,7 @@ const STEP_ROOM_FRACTION: f64 = 0.4;
 /// Least cable between a pulley and the next stop, in parts of the cable.
 const END_CABLE_FRACTION: f64 = 1e-7;
 
-/// Why there is no answer.
+/// The reason why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Failure {
     /// The span that starts at this stop could not be solved; the force left, N.
@@ -123,7 +123,7 @@ impl Network {
     /// Solves everything, friction from where the material was laid.
     ///
     /// # Errors
-    /// Why there is no answer.
+    /// The reason why there is no answer.
     pub fn solve(&mut self) -> Result<(), Failure> {
         self.steps = 0;
         let wheels = self.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.radius > 0.0));

@@ -3,9 +3,9 @@
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::arc_nodes;
 use crate::model::fem::free::pulley_balance::Network;
-use crate::model::fem::free::pulley_wheels;
 use crate::model::fem::free::span::elements;
 use crate::model::fem::free::stations::{Hold, Layout, SpanEnds, Stop};
+use crate::model::fem::free::wheel_arcs;
 use crate::problem::Problem;
 use crate::solution::{Node, SupportReaction};
 
@@ -133,12 +133,12 @@ fn anchor(network: &Network, k: usize, cable_radius: f64, out: &mut Vec<Point>) 
                 curvature,
                 force,
             };
-            let turn = pulley_wheels::turn(&wheel, before);
+            let turn = wheel_arcs::turn(&wheel, before);
             let curvature = turn / stop.lap;
             out.push(tangent(meets, stop.arc_length, before, curvature));
             let count = arc_nodes::parts(wheel.radius, turn, cable_radius);
             let start = wheel.contact[0].y.atan2(wheel.contact[0].x);
-            let tension = |f: f64| pulley_wheels::tension(&wheel, &network.material, [before, after], f);
+            let tension = |f: f64| wheel_arcs::tension(&wheel, &network.material, [before, after], f);
             let material = arc_nodes::material(count, |f| tension(f) / network.material.axial_stiffness);
             for (i, share) in (1..count).zip(material) {
                 let f = i as f64 / count as f64;

@@ -8,15 +8,18 @@
 use crate::numerics::HalvedSteps;
 use std::sync::Arc;
 
-use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
+use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::free::beam::equilibrium::{Beam, Outcome, STEP_TOLERANCE};
+use crate::model::fem::free::beam::refinement::{Refined, refine};
 use crate::model::fem::free::dual_weighted_residual;
-use crate::model::fem::free::element::Material;
+use crate::model::fem::free::failure_report::solve_error;
 use crate::model::fem::free::pulley_balance::{Failure, Network};
 use crate::model::fem::free::results;
 use crate::model::fem::free::results::Point;
 use crate::model::fem::free::stations::{Hold, Layout, place};
+use crate::model::fem::free::straight_route::straight_points;
+use crate::model::fem::free::weight_hint::material_at;
 use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
@@ -37,15 +40,6 @@ const ESTIMATE_FRACTION: f64 = 0.5;
 const ORDER: f64 = 4.0;
 /// Rounds of mesh refinement.
 const MAX_MESHES: usize = 6;
-/// Weight given to a weightless cable without loads, in parts of EA: far below the strain that
-/// rounding hides.
-const HINT_OF_WEIGHT_UNLOADED: f64 = 1e-18;
-/// Weight given to a weightless cable, in parts of its loads: where it is slack it has no shape
-/// of its own, this gives it that of a very light one. Far below any tension asked for.
-const HINT_OF_WEIGHT: f64 = 1e-12;
-/// Smoothing tension in parts of the load, see [`Material::smoothing`]. Seen only where the tension
-/// falls to it; at 1e-9 a fold at EA 1e9 closed to 1e-8 m only, for want of digits of the force.
-const SMOOTHING: f64 = 1e-7;
 /// Longest move of a support in one slow step where friction must remember the way, in parts of the
 /// cable length.
 const SLOW_MOVE: f64 = 0.01;
@@ -118,42 +112,8 @@ impl Statics {
             problem,
             settings,
         };
-        new.lay_straight();
+        new.points = straight_points(&new.problem, new.segments, &new.slid);
         Ok(new)
-    }
-
-    /// The straight way through the supports, before the first answer; ends that hang hang down.
-    fn lay_straight(&mut self) {
-        let mut layout = Layout::new(&self.problem, self.time, &[], &self.slid);
-        layout.cut(self.segments);
-        let Some((first, last)) = layout.anchored() else { return };
-        let down = self.problem.body_force(self.time);
-        let down = if down.norm() > 0.0 { down / down.norm() } else { Vec2::new(0.0, -1.0) };
-        let stops = &layout.stops;
-        let at = |k: usize| -> Vec2 {
-            let anchor = |j: usize| stops[j].point(0).unwrap_or_default();
-            let (a, b) = (
-                (0..=k).rev().find(|&j| stops[j].anchors()).unwrap_or(first),
-                (k..stops.len()).find(|&j| stops[j].anchors()).unwrap_or(last),
-            );
-            if k < first || k > last {
-                return anchor(a.max(first).min(last))
-                    + down * (stops[k].arc_length - stops[a.max(first).min(last)].arc_length).abs();
-            }
-            let width = stops[b].arc_length - stops[a].arc_length;
-            let f = if width > 0.0 { (stops[k].arc_length - stops[a].arc_length) / width } else { 0.0 };
-            anchor(a) + (anchor(b) - anchor(a)) * f
-        };
-        let point = |arc_length: f64, at: Vec2| Point { arc_length, at, ..Point::default() };
-        self.points.clear();
-        for k in 0..stops.len() - 1 {
-            let (a, b, s, d) = (at(k), at(k + 1), stops[k].arc_length, stops[k + 1].arc_length - stops[k].arc_length);
-            for e in 0..stops[k].cells {
-                let f = e as f64 / stops[k].cells as f64;
-                self.points.push(point(s + d * f, a + (b - a) * f));
-            }
-        }
-        self.points.push(point(layout.length, at(stops.len() - 1)));
     }
 
     /// Finds the resting place at the present time; `dragged` are the hand-set support positions,
@@ -221,7 +181,7 @@ impl Statics {
         if layout.stops.len() < 2 || layout.anchored().is_none() {
             return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
-        let (material, hinted) = self.material(time, &layout);
+        let (material, hinted) = material_at(&self.problem, time, &layout);
         let (mut segments, mut iterations) = (self.segments, 0);
         layout.cut(segments);
         let mut network = Network::new(layout, material);
@@ -230,7 +190,7 @@ impl Statics {
         }
         let rubs = network.rubs() && self.problem.bending_stiffness == 0.0;
         let first = if rubs { self.begin_rubbing(&mut network, dragged) } else { solve_smooth(&mut network) };
-        let first = first.map_err(|f| self.error(&network, f))?;
+        let first = first.map_err(|f| solve_error(&self.problem, &network, self.time, f))?;
         iterations += network.steps;
         if self.problem.bending_stiffness > 0.0 {
             if self.problem.supports.iter().any(|s| s.kind == SupportKind::Pulley) {
@@ -248,7 +208,7 @@ impl Statics {
             segments = ((segments as f64 * factor.clamp(1.2, 4.0)).ceil() as usize).min(MOST_SEGMENTS);
             network.layout.cut(segments);
             if network.pulley_states.is_empty() { network.solve() } else { network.balance_with_friction() }
-                .map_err(|f| self.error(&network, f))?;
+                .map_err(|f| solve_error(&self.problem, &network, self.time, f))?;
             iterations += network.steps;
             estimate = dual_weighted_residual::relative_error(&mut network);
         }
@@ -326,7 +286,7 @@ impl Statics {
             let halfway: Vec<Option<Vec2>> =
                 (0..dragged.len()).map(|k| Some((dragged[k]? + self.support_at(k).or(dragged[k])?) * 0.5)).collect();
             let layout = cut(Layout::new(&self.problem, middle, &halfway, &self.slid));
-            let (material, _) = self.material(middle, &layout);
+            let (material, _) = material_at(&self.problem, middle, &layout);
             let mut step = Network::new(layout, material);
             step.start_from(old);
             if !step.remember_from(old) {
@@ -364,51 +324,31 @@ impl Statics {
         }
     }
 
-    /// Rest with bending stiffness, from the flexible cable: on a mesh and on that of half the
-    /// bars, whose difference tells the error (fourth order: a fifteenth of it is left).
+    /// Rest with bending stiffness, from the flexible cable.
     fn bend(&mut self, network: Network, time: f64, hinted: bool) -> Result<StepReport, SolveError> {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         // A stiff cable has a shape of its own: it needs no hint of weight.
         let body = if hinted { Vec2::zeros() } else { network.material.body };
-        let mut coarse = Beam::new(&network, self.problem.bending_stiffness, body).wound_as(&self.problem.route);
-        let mut outcome = coarse.solve();
-        let mut iterations = network.steps + coarse.steps;
-        let (mut estimate, mut moved) = (None, None);
-        while !given && outcome == Outcome::Stable && coarse.bars() < MOST_SEGMENTS {
-            let mut fine = coarse.halved();
-            outcome = fine.solve();
-            iterations += fine.steps - coarse.steps;
-            let found = dual_weighted_residual::halving_error(&coarse, &fine);
-            estimate = Some(found);
-            moved = Some(2.0 / 15.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
-            coarse = fine;
-            if found <= ESTIMATE_FRACTION * self.settings.tolerance {
-                break;
-            }
-        }
-        if given && outcome == Outcome::Stable {
-            // The given mesh is kept; the finer one only tells its error, sixteen fifteenths of the
-            // change.
-            let mut fine = coarse.halved();
-            if fine.solve() == Outcome::Stable {
-                estimate = Some(16.0 * dual_weighted_residual::halving_error(&coarse, &fine));
-                moved = Some(2.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
-            }
-        }
+        let stiff = Beam::new(&network, self.problem.bending_stiffness, body).wound_as(&self.problem.route);
+        let wanted = if given { None } else { Some(ESTIMATE_FRACTION * self.settings.tolerance) };
+        let Refined { beam, outcome, steps, estimate, moved } = refine(stiff, wanted, MOST_SEGMENTS);
+        let iterations = network.steps + steps;
         match outcome {
             Outcome::Stable => {}
             Outcome::Unstable => return Err(SolveError::Indefinite { model: Model::Fem }),
-            Outcome::Failed => return Err(self.error(&network, Failure::Span(0, coarse.residual))),
+            Outcome::Failed => {
+                return Err(solve_error(&self.problem, &network, self.time, Failure::Span(0, beam.residual)));
+            }
         }
         self.time = time;
         // A mesh that the user gives is answered at its nodes.
-        self.points = coarse.points(!given);
-        self.rested = Some((coarse.layout().clone(), coarse.stop_forces()));
+        self.points = beam.points(!given);
+        self.rested = Some((beam.layout().clone(), beam.stop_forces()));
         (self.estimate, self.moved) = (estimate.map(|e| larger(e, STEP_TOLERANCE)), moved);
-        let cost = Cost { iterations, residual_n: coarse.residual, ..Cost::default() };
+        let cost = Cost { iterations, residual_n: beam.residual, ..Cost::default() };
         self.network = Some(network);
         // A stiff cable has a shape of its own without weight, too.
-        self.beam = Some(coarse);
+        self.beam = Some(beam);
         let warnings = self.warnings(false);
         Ok(StepReport { cost, warnings })
     }
@@ -418,26 +358,6 @@ impl Statics {
     pub fn bows(&self) -> Vec<Vec<Node>> {
         let nodes = |b: &Beam| b.points(true).iter().map(|p| p.node(&self.problem)).collect();
         self.beam.as_ref().map_or_else(Vec::new, |b| std::iter::once(b).chain(&b.other_bows()).map(nodes).collect())
-    }
-
-    /// Values that the elements share, and true if a weightless cable was given a hint of weight.
-    fn material(&self, time: f64, layout: &Layout) -> (Material, bool) {
-        let problem = &self.problem;
-        let mut body = problem.body_force(time);
-        let loads: f64 = layout.stops.iter().map(|s| s.load.norm()).sum();
-        let hinted = !(body.norm() > 0.0);
-        if hinted {
-            let whole =
-                if loads > 0.0 { HINT_OF_WEIGHT * loads } else { HINT_OF_WEIGHT_UNLOADED * problem.axial_stiffness };
-            body = Vec2::new(0.0, -whole / problem.length);
-        }
-        let material = Material {
-            axial_stiffness: problem.axial_stiffness,
-            thermal_stretch: problem.thermal_stretch,
-            body,
-            smoothing: SMOOTHING * (body.norm() * problem.length + loads),
-        };
-        (material, hinted)
     }
 
     fn warnings(&self, hinted: bool) -> Vec<Warning> {
@@ -459,32 +379,6 @@ impl Statics {
             warn(WarningCause::CoarseTension { elements: self.segments }, estimate, self.settings.tolerance);
         }
         out
-    }
-
-    /// A failure in the words of the user.
-    fn error(&self, network: &Network, failure: Failure) -> SolveError {
-        let name = |k: usize| {
-            let support =
-                network.layout.stops.get(k).and_then(|s| s.support).and_then(|i| self.problem.supports.get(i));
-            support.map_or_else(|| "?".to_owned(), |s| s.name.clone())
-        };
-        let not_converged = |k: usize, residual_n: f64| SolveError::NotConverged {
-            model: Model::Fem,
-            iterations: network.steps,
-            residual_n,
-            place: network.layout.stops.get(k).map_or_else(Box::<Place>::default, |s| {
-                self.problem.place(s.arc_length, s.point(0).unwrap_or(Vec2::repeat(f64::NAN)), self.time)
-            }),
-        };
-        match failure {
-            Failure::Span(k, residual) | Failure::Unbalanced(k, residual) => not_converged(k, residual),
-            Failure::RunsOut(k) => {
-                SolveError::NoRestingPlace { why: NoEquilibrium::RunsOut { pulley: name(k).to_owned() } }
-            }
-            Failure::LeavesWheel(k) => {
-                SolveError::NoRestingPlace { why: NoEquilibrium::LeavesWheel { pulley: name(k).to_owned() } }
-            }
-        }
     }
 
     /// Takes over a state of the same cable.

@@ -25,8 +25,8 @@ use crate::math::Vec2;
 use crate::model::fem::newton::gap_constraint::Stop;
 use crate::model::fem::settings::NewtonTuning;
 use crate::model::fem::system::assembly::System;
-use crate::model::fem::system::friction_state::ContactPair;
-use crate::model::fem::system::self_contact::Coupling;
+use crate::model::fem::system::contact::contact_pair::ContactPair;
+use crate::model::fem::system::contact::self_contact::Coupling;
 use crate::model::fem::system::step_context::{StepContext, longest};
 
 /// The contacts that a step is about to make.
@@ -94,7 +94,7 @@ impl PredictedContacts {
     fn find_contacts(&mut self, step: &StepContext<'_>, x: &[Vec2], direction: &[f64]) {
         let StepContext { problem, mesh, contacts, .. } = *step;
         let reach = |e: usize| contacts.barrier.reach + longest(direction.get(2 * e..2 * e + 4).unwrap_or(direction));
-        contacts.find_within_each(problem, mesh, x, reach, &mut self.touches);
+        contacts.search.find(problem, mesh, x, reach, &mut self.touches);
     }
 
     /// Solves again, with contacts ahead as constraints; `system` is pinned, and `direction` the

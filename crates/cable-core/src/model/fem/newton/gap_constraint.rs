@@ -3,9 +3,9 @@
 use crate::contact::self_contact::SelfPair;
 use crate::math::{Vec2, cross, larger};
 use crate::model::fem::system::assembly::System;
-use crate::model::fem::system::friction_state::ContactPair;
+use crate::model::fem::system::contact::contact_pair::ContactPair;
+use crate::model::fem::system::contact::self_contact::{Coupling, couple};
 use crate::model::fem::system::mesh::Mesh;
-use crate::model::fem::system::self_contact::{Coupling, couple};
 
 /// The point or edge about which a bar turns.
 #[derive(Clone, Copy, Debug)]

@@ -18,15 +18,16 @@ use crate::math::{Mat2, Vec2, larger, smaller};
 use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
 use crate::model::fem::system::assembly::System;
-use crate::model::fem::system::contact_energy::{add_floor, add_friction, add_touch};
-use crate::model::fem::system::friction_state::ContactPair;
+use crate::model::fem::system::bar_energy;
+use crate::model::fem::system::contact::contact_energy::{add_floor, add_friction, add_touch};
+use crate::model::fem::system::contact::contact_pair::ContactPair;
+use crate::model::fem::system::contact::self_contact;
+use crate::model::fem::system::contact::self_contact::{Coupling, SelfContactLaws};
 use crate::model::fem::system::mesh::Mesh;
-use crate::model::fem::system::self_contact::{Coupling, SelfContactLaws};
 use crate::model::fem::system::step_context::StepContext;
 use crate::model::fem::system::step_input::{
     Converged, Failure, FailureCause, StepInput, Unknowns, WORK_MAGNITUDE_FRACTION, WorkBudget, node_scale,
 };
-use crate::model::fem::system::{bar_energy, self_contact};
 
 /// Energies are trusted to this part of the sum of their magnitudes.
 const ENERGY_NOISE: f64 = 1e-13;

@@ -47,7 +47,7 @@ impl Workspace {
             let x = &unknowns.positions;
             if slides == [false, false] {
                 let ends = [x[e], x[e + 1]];
-                if contacts.near.is_clear(
+                if contacts.search.lists.is_clear(
                     e,
                     [ends, [ends[0] + move_of(e) * free, ends[1] + move_of(e + 1) * free]],
                     most,
@@ -63,7 +63,7 @@ impl Workspace {
                 Path::between(&end(e), &end(e + 1)).ends
             };
             let sweep = Sweep::new(from, to, mesh.tuning.newton.kept_gap_fraction).at_most(most);
-            free *= match contacts.near.of(e, [from, to], sweep.margin) {
+            free *= match contacts.search.lists.of(e, [from, to], sweep.margin) {
                 Some([]) => 1.0,
                 Some(parts) => geometry.free_fraction_among(parts.iter().copied(), &sweep, mesh.rounds(e)),
                 None => geometry.free_fraction_round(&sweep, mesh.rounds(e)),

@@ -29,7 +29,8 @@ use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::moving_outline::MovingOutline;
 use crate::model::fem::state::step_setup::prepare_step;
 use crate::model::fem::state::support_stop::stopped_by_obstacles;
-use crate::model::fem::system::friction_state::{ContactPair, OutlineMotion};
+use crate::model::fem::system::contact::contact_pair::ContactPair;
+use crate::model::fem::system::contact::outline_motion::OutlineMotion;
 use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_context::StepContext;
 use crate::problem::{Problem, SupportPoint};
@@ -68,7 +69,7 @@ pub(in crate::model::fem) fn place_outline(cable: &mut CableState) {
     if let (Some(outline), Some(at)) = (&cable.outline, cable.motion.placement) {
         let world = &mut Arc::make_mut(&mut cable.problem).world;
         Arc::make_mut(world).place_outline(&outline.shape, at);
-        cable.contacts.near.clear();
+        cable.contacts.search.lists.clear();
     }
 }
 

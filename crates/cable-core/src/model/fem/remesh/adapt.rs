@@ -14,14 +14,14 @@ use crate::math::{Vec2, bounded, perp};
 use crate::model::Inertia;
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::remesh::arc_nodes::{move_marks, wind};
+use crate::model::fem::remesh::arc_marks::{move_marks, wind};
 use crate::model::fem::remesh::criteria::{Criteria, Share};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::momentum::attribute_to;
 use crate::model::fem::state::step_setup::renew_input;
-use crate::model::fem::system::floor_friction;
+use crate::model::fem::system::contact::floor_friction;
 
 /// The effect of a change of the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,8 +6,8 @@ use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::history::Motion;
 use crate::model::fem::state::meshing::Meshing;
+use crate::model::fem::state::motion::Motion;
 use crate::model::fem::system::step_context::StepContext;
 use crate::model::fem::system::step_input::load_scale;
 

@@ -5,9 +5,9 @@ use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::history::NodeMotion;
 use crate::model::fem::state::momentum::{MovingMass, attribute_to};
-use crate::model::fem::system::floor_friction;
+use crate::model::fem::state::motion::NodeMotion;
+use crate::model::fem::system::contact::floor_friction;
 
 /// Puts a node at an arc length (m) between nodes `k` − 1 and `k`.
 pub(in crate::model::fem) fn insert(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<SlidingNode>) {

@@ -1,6 +1,6 @@
 //! These modules change the nodes and bars of a cable between steps.
 
 pub(in crate::model::fem) mod adapt;
-pub(in crate::model::fem) mod arc_nodes;
+pub(in crate::model::fem) mod arc_marks;
 mod criteria;
 pub(in crate::model::fem) mod edit;

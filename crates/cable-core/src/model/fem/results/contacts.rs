@@ -6,8 +6,8 @@ use crate::model::fem::mesh::sliding_node::{Balanced, Load, SlideOver};
 use crate::model::fem::results::forces::LyingEnd;
 use crate::model::fem::results::self_contact;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::system::floor_friction::OverRound;
-use crate::model::fem::system::friction_state::ContactPair;
+use crate::model::fem::system::contact::contact_pair::ContactPair;
+use crate::model::fem::system::contact::floor_friction::OverRound;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// One report for each stretch of neighbouring contacts with one obstacle.

@@ -7,7 +7,7 @@ use crate::math::{Vec2, larger, perp};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::bar_weight::Weight;
-use crate::model::fem::system::friction_state::ContactPair;
+use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::time::loss_memory;
 

@@ -27,7 +27,7 @@ pub(in crate::model::fem) type Kinds = [Vec2; 4];
 /// The account of momentum since the caller's step began.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::model::fem) struct Account {
-    /// When it began, and up to when it goes, s.
+    /// The time at which it began, and that up to which it goes, s.
     pub(in crate::model::fem) from: f64,
     pub(in crate::model::fem) to: f64,
     /// Momentum as it began, kg m/s.

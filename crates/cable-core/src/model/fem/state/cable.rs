@@ -7,10 +7,11 @@ use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
 use crate::model::fem::mesh::sliding_node::{Load, SlideOver};
-use crate::model::fem::state::history::Motion;
 use crate::model::fem::state::meshing::Meshing;
+use crate::model::fem::state::motion::Motion;
 use crate::model::fem::state::moving_outline::MovingOutline;
-use crate::model::fem::system::friction_state::{ContactSet, slip_at_rest};
+use crate::model::fem::system::contact::contact_set::ContactSet;
+use crate::model::fem::system::contact::friction_contact::slip_at_rest;
 use crate::model::fem::system::loss_branches::Loss;
 use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_context::StepContext;
@@ -167,7 +168,7 @@ impl CableState {
     pub(in crate::model::fem) fn adapt_stiffness(&mut self, bounds: [f64; 2], ahead: f64) {
         if !self.meets_nothing() {
             let tension = self.mesh.greatest_tension(&self.motion.positions);
-            self.contacts.adapt_stiffness(tension, self.meshing.bar_weight, bounds, ahead);
+            self.contacts.adapt_stiffness([tension, self.meshing.bar_weight], bounds, ahead);
         }
     }
 

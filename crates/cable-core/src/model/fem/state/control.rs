@@ -4,7 +4,7 @@
 use crate::math::Vec2;
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::mixed_free::FreeStep;
-use crate::model::fem::state::history::Checkpoint;
+use crate::model::fem::state::checkpoint::Checkpoint;
 use crate::model::fem::state::stepping::{Sleep, StepSizeController};
 use crate::model::fem::system::step_input::{Unknowns, WorkBudget};
 

@@ -1,6 +1,6 @@
 //! The division of a cable into bars, and the nodes of its supports and loads.
 
-use crate::model::fem::system::friction_state::ContactPair;
+use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::model::fem::system::mesh::Mesh;
 use crate::problem::Series;
 

@@ -2,7 +2,7 @@
 //! the law at what it found.
 
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::system::floor_friction;
+use crate::model::fem::system::contact::floor_friction;
 use crate::model::fem::system::step_input::Unknowns;
 
 /// Factors of sliding nodes count as found when they change by less than this.

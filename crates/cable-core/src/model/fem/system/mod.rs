@@ -4,12 +4,9 @@
 pub(in crate::model::fem) mod assembly;
 pub(in crate::model::fem) mod bar_energy;
 pub(in crate::model::fem) mod bar_weight;
-pub(in crate::model::fem) mod contact_energy;
-pub(in crate::model::fem) mod floor_friction;
-pub(in crate::model::fem) mod friction_state;
+pub(in crate::model::fem) mod contact;
 pub(in crate::model::fem) mod loss_branches;
 pub mod mass;
 pub(in crate::model::fem) mod mesh;
-pub(in crate::model::fem) mod self_contact;
 pub(in crate::model::fem) mod step_context;
 pub(in crate::model::fem) mod step_input;

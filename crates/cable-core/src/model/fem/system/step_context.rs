@@ -3,11 +3,12 @@
 use crate::contact::friction;
 use crate::math::{Vec2, larger};
 use crate::model::fem::mesh::sliding_node::Load;
+use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::bar_weight::Weight;
-use crate::model::fem::system::friction_state::ContactSet;
+use crate::model::fem::system::contact::contact_set::ContactSet;
+use crate::model::fem::system::contact::floor_friction;
 use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::StepInput;
-use crate::model::fem::system::{bar_energy, floor_friction};
 use crate::problem::Problem;
 
 /// The input of the solve of a step: cable, mesh, contacts, and the input of the step.

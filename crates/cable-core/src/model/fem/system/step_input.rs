@@ -174,7 +174,7 @@ impl WorkBudget {
     }
 }
 
-/// Why a step failed.
+/// The reason why a step failed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Failure {
     /// Worst node.

@@ -13,7 +13,7 @@
 use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::history::Motion;
+use crate::model::fem::state::motion::Motion;
 use crate::model::fem::system::loss_branches::damping_time;
 use crate::model::fem::system::step_input::Unknowns;
 use crate::model::fem::time::loss_memory;

@@ -2,8 +2,8 @@
 
 use crate::model::fem::obstacle::moving_outline::place_outline;
 use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::checkpoint::Checkpoint;
 use crate::model::fem::state::control::Rollback;
-use crate::model::fem::state::history::Checkpoint;
 use crate::model::fem::state::step_setup::renew_input;
 
 impl Rollback {

@@ -13,7 +13,7 @@ use crate::math::Vec2;
 use crate::model::fem::state::account::{CONTACTS, Kinds, LOADS, SUPPORTS, WEIGHT, kind_of};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::momentum::MovingMass;
-use crate::model::fem::system::friction_state::ContactPair;
+use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::model::fem::system::step_input::Unknowns;
 use crate::model::fem::system::{bar_energy, bar_weight};
 use crate::model::fem::time::bdf2::Weights;

@@ -5,8 +5,8 @@ use crate::model::mass_spring::contact_memory::ContactMemory;
 use crate::model::mass_spring::dynamics::Clock;
 use crate::model::mass_spring::dynamics::momentum::Account;
 use crate::model::mass_spring::dynamics::supports::SupportDrives;
+use crate::model::mass_spring::mesh::cable_mesh::Mesh;
 use crate::model::mass_spring::mesh::edit::remesh;
-use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::solution::{Cost, Warning};
 
 part! {

@@ -5,7 +5,7 @@ use crate::math::{Vec2, bounded};
 use crate::model::Model;
 use crate::model::mass_spring::contact_memory::{ContactImpulse, ContactMemory};
 use crate::model::mass_spring::dynamics::momentum::Account;
-use crate::model::mass_spring::mesh::nodes::Mesh;
+use crate::model::mass_spring::mesh::cable_mesh::Mesh;
 
 /// Refuses to go on from where the middle of the cable is inside an obstacle: distances have no
 /// sign there, and what should push it out would hold it in. A shallow penetration is pushed

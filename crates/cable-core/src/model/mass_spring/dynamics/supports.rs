@@ -5,8 +5,8 @@ use crate::model::Settings;
 use crate::model::input_filter::{Hand, SmoothedTarget, held_warning, is_led};
 use crate::model::mass_spring::dynamics::Clock;
 use crate::model::mass_spring::dynamics::momentum::Account;
+use crate::model::mass_spring::mesh::cable_mesh::Mesh;
 use crate::model::mass_spring::mesh::edit::release_pulleys;
-use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::solution::Warning;
 
 part! {

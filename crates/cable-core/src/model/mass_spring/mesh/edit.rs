@@ -7,7 +7,7 @@
 //! not jump there.
 
 use crate::math::Vec2;
-use crate::model::mass_spring::mesh::nodes::Mesh;
+use crate::model::mass_spring::mesh::cable_mesh::Mesh;
 
 /// Material that stays beside a node that does not run through a pulley, m.
 pub(in crate::model::mass_spring) fn least_straight_length(mesh: &Mesh) -> f64 {

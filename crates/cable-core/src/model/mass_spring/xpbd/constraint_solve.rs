@@ -23,8 +23,8 @@
 //! from the last sub-step, is added.
 
 use crate::math::Vec2;
+use crate::model::mass_spring::mesh::cable_mesh::Mesh;
 use crate::model::mass_spring::mesh::edit::least_straight_length;
-use crate::model::mass_spring::mesh::nodes::Mesh;
 use crate::model::mass_spring::mesh::pulley::Pulley;
 
 /// Friction of the material on a pulley in a sub-step.

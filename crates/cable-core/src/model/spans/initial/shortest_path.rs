@@ -97,8 +97,8 @@ pub(in crate::model::spans) fn pull(route: &[Vec2], corners: &[Corner]) -> Optio
     Some(bends)
 }
 
-/// When the string leaves its last corner: the end crosses the line from the corner before through
-/// it.
+/// Returns when the string leaves its last corner: the end crosses the line from the corner before
+/// through it.
 fn leaves(start: Vec2, bends: &[Bend], from: Vec2, way: Vec2, done: f64) -> Option<f64> {
     let last = bends.last()?;
     let before = bends.len().checked_sub(2).and_then(|k| bends.get(k)).map_or(start, |b| b.corner.at);

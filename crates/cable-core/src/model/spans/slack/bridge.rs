@@ -14,8 +14,8 @@
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::loose::{Line, Part};
+use crate::model::spans::slack::drape::{Drape, HALVINGS};
 use crate::model::spans::slack::joint::Profile;
-use crate::model::spans::slack::{Drape, HALVINGS};
 use crate::numerics::bisect;
 
 /// Greatest distance from its support at which a span may end, of its length and the size of

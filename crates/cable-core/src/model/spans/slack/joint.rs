@@ -19,7 +19,7 @@
 
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::loose::{Line, Part, Stretch};
-use crate::model::spans::slack::{Drape, HALVINGS, LooseShapes, STRAIGHT_TURN};
+use crate::model::spans::slack::drape::{Drape, HALVINGS, LooseShapes, STRAIGHT_TURN};
 use crate::numerics::bisect;
 
 /// Doublings of the force across the load in the search for one that is too large.

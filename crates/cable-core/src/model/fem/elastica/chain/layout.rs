@@ -31,7 +31,7 @@ const SAME_PLACE_FRACTION: f64 = 1e-9;
 struct Station {
     /// Arc length, m.
     arc: f64,
-    /// Where a support holds it, m.
+    /// The place where a support holds it, m.
     position: Option<Vec2>,
     /// Direction in which it is clamped, rad.
     angle: Option<f64>,

@@ -46,7 +46,7 @@ const REDUCED_RESISTANCE_FACTOR: f64 = 1e-2;
 pub(super) struct Setting<'a> {
     pub(super) problem: &'a Problem,
     pub(super) time_s: f64,
-    /// Where supports are dragged to, m.
+    /// The places to which supports are dragged, m.
     pub(super) dragged: &'a [Option<Vec2>],
     /// The answer that says how much of its friction each contact mobilises; None: none rubs.
     pub(super) friction_source: Option<&'a CableSolution>,

@@ -1,4 +1,4 @@
-//! Drawing without a GPU.
+//! Where no GPU draws but Mesa's software Vulkan, a cheaper shader takes the place of egui's own.
 //!
 //! egui's own shader asks, for every pixel, whether it is to dither and whether it is to filter the
 //! font by hand. A GPU skips what is not asked for; Mesa's software Vulkan works out everything and
@@ -96,7 +96,7 @@ struct Part {
     fill: Fill,
 }
 
-/// What a triangle is filled with.
+/// The filling of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Fill {
     /// Colours and the font.
@@ -227,8 +227,8 @@ impl CallbackTrait for Picture {
     }
 }
 
-/// How each triangle can be drawn: large ones by themselves, small ones that ask the font for
-/// nothing where enough of them follow each other.
+/// Returns how each triangle can be drawn: large ones by themselves, small ones that ask the font
+/// for nothing where enough of them follow each other.
 fn fills(mesh: &Mesh) -> Vec<Fill> {
     let mut fills = Vec::with_capacity(mesh.indices.len() / 3);
     // Where the row of small white ones began, and twice its area, points².
@@ -268,7 +268,7 @@ fn alone(mesh: &Mesh, triangle: &[u32]) -> (f32, Option<Fill>) {
     (size, Some(if even && size > PLAIN { Fill::Solid } else { Fill::Plain }))
 }
 
-/// What stays on the device.
+/// The resources that stay on the device.
 struct Device {
     pipeline: wgpu::RenderPipeline,
     plain: wgpu::RenderPipeline,

@@ -4,7 +4,8 @@ use crate::contact::friction::{self, Branch};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::system::assembly::System;
-use crate::model::fem::system::friction_state::{ContactPair, ContactSet};
+use crate::model::fem::system::contact::contact_pair::ContactPair;
+use crate::model::fem::system::contact::contact_set::ContactSet;
 use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{StepInput, Unknowns, node_scale};
 

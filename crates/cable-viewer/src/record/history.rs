@@ -1,47 +1,10 @@
-//! The history keeps tension and reactions against time, of bounded length.
+//! The history keeps tension and reactions against time within a budget of memory: where that is
+//! full, the older half is thinned so that extremes survive.
 
 use std::collections::VecDeque;
 
-use cable_core::Solution;
-
-/// One instant.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sample {
-    /// Time, s.
-    pub time_s: f64,
-    /// Largest tension over all cables in any inner step since the sample before, N.
-    pub max_tension_n: f64,
-    /// Energy of motion, of height, of stretch and of bending, J.
-    pub energy_j: [f64; 4],
-    /// Speed of the robot along the ground, m/s, and the pull of the cable on it, N; None without
-    /// one.
-    pub robot: Option<[f64; 2]>,
-    /// Force of the cable on each support (cables one after the other, in the scene's order), N.
-    pub reactions_n: Vec<[f64; 2]>,
-}
-
-impl Sample {
-    /// What the history keeps of an answer.
-    #[must_use]
-    pub fn of(solution: &Solution) -> Self {
-        Self {
-            time_s: solution.time_s,
-            max_tension_n: solution.peaks().greatest.tension_n,
-            energy_j: [
-                solution.energy.kinetic_j,
-                solution.energy.gravity_j,
-                solution.energy.stretch_j,
-                solution.energy.bending_j,
-            ],
-            robot: solution.robot.map(|r| [r.speed_m_per_s, r.hitch_x_n.hypot(r.hitch_y_n)]),
-            reactions_n: solution
-                .cables
-                .iter()
-                .flat_map(|c| c.supports.iter().map(|s| [s.reaction_x_n, s.reaction_y_n]))
-                .collect(),
-        }
-    }
-}
+use crate::record::decimation::{mean, merged};
+use crate::record::sample::Sample;
 
 /// The samples since the last start, oldest first.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -177,81 +140,6 @@ impl History {
         self.means = [Vec::new(), Vec::new()];
         self.bytes = self.samples.iter().map(Sample::bytes).sum();
     }
-}
-
-impl Sample {
-    /// Its memory, bytes, with what the heap adds.
-    fn bytes(&self) -> usize {
-        /// Of a piece of heap.
-        const HEAP: usize = 16;
-        size_of::<Self>() + HEAP + size_of_val(self.reactions_n.as_slice())
-    }
-}
-
-/// Two samples in the place of several: of every line the least and the greatest, in the order they
-/// came in. None of none.
-fn merged(several: &[&Sample]) -> Vec<Sample> {
-    let middle = several.len() / 2;
-    let (Some(first), Some(half)) = (several.first(), several.get(middle)) else { return Vec::new() };
-    let order = |of: &dyn Fn(&Sample) -> f64| {
-        let (mut low, mut high) = (0, 0);
-        let (mut least, mut most) = (of(first), of(first));
-        for (k, sample) in several.iter().enumerate() {
-            let value = of(sample);
-            if value < least {
-                (low, least) = (k, value);
-            }
-            if value > most {
-                (high, most) = (k, value);
-            }
-        }
-        // All alike: two places all the same.
-        let two = if low == high { [0, middle] } else { [low.min(high), low.max(high)] };
-        two.map(|k| several[k])
-    };
-    let mut out = vec![(*first).clone(), (*half).clone()];
-    for (sample, from) in out.iter_mut().zip(order(&|s| s.max_tension_n)) {
-        sample.max_tension_n = from.max_tension_n;
-    }
-    for k in 0..first.energy_j.len() {
-        for (sample, from) in out.iter_mut().zip(order(&|s| s.energy_j[k])) {
-            sample.energy_j[k] = from.energy_j[k];
-        }
-    }
-    for k in 0..2 {
-        for (sample, from) in out.iter_mut().zip(order(&|s| s.robot.map_or(0.0, |r| r[k]))) {
-            if let (Some(mine), Some(theirs)) = (sample.robot.as_mut(), from.robot) {
-                mine[k] = theirs[k];
-            }
-        }
-    }
-    for k in 0..first.reactions_n.len() {
-        let size = |s: &Sample| s.reactions_n.get(k).map_or(0.0, |r| r[0].hypot(r[1]));
-        for (sample, from) in out.iter_mut().zip(order(&size)) {
-            if let (Some(mine), Some(theirs)) = (sample.reactions_n.get_mut(k), from.reactions_n.get(k)) {
-                *mine = *theirs;
-            }
-        }
-    }
-    out
-}
-
-/// The means of several samples, at the mean of their times; of forces that of their size, to the
-/// right. None of none.
-fn mean(several: &[&Sample]) -> Option<Sample> {
-    let mut mean = (*several.first()?).clone();
-    let count = several.len() as f64;
-    let of = |value: &dyn Fn(&Sample) -> f64| several.iter().map(|s| value(s)).sum::<f64>() / count;
-    mean.time_s = of(&|s| s.time_s);
-    mean.max_tension_n = of(&|s| s.max_tension_n);
-    for (k, energy_j) in mean.energy_j.iter_mut().enumerate() {
-        *energy_j = of(&|s| s.energy_j[k]);
-    }
-    mean.robot = mean.robot.map(|_| [0, 1].map(|k| of(&|s| s.robot.map_or(0.0, |r| r[k]))));
-    for (k, reaction_n) in mean.reactions_n.iter_mut().enumerate() {
-        *reaction_n = [of(&|s| s.reactions_n.get(k).map_or(0.0, |r| r[0].hypot(r[1]))), 0.0];
-    }
-    Some(mean)
 }
 
 #[cfg(test)]

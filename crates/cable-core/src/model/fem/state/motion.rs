@@ -1,18 +1,9 @@
-//! The history holds where the cable is and how it moves; a checkpoint is a state to which a failed
-//! step returns.
+//! The motion of a cable holds its present positions and velocities, and those of the steps before
+//! that the time integrator looks back to.
 
-use crate::math::{RigidPose, Vec2, cross, perp};
+use crate::math::{RigidPose, Vec2};
 use crate::model::fem::state::account::Account;
-use crate::model::fem::system::friction_state::ContactSet;
-use crate::model::fem::system::mesh::Mesh;
 use crate::model::input_filter::{Hand, SmoothedTarget};
-
-/// Distance (parts of a bar) by which the middle of a fold is moved aside. Less: the fold opens
-/// later than it would; more: its bars are stretched by half of the square of it.
-const ASIDE: f64 = 1e-4;
-
-/// Sine of the turn off a line below which a fold lies in it.
-const FOLD_LINE_SINE: f64 = 1e-6;
 
 /// Part by which steps may differ and count as even.
 const EVEN_STEP_TOLERANCE: f64 = 1e-9;
@@ -128,20 +119,6 @@ impl Motion {
         self.even_steps >= STEPS_BEFORE_BDF3 && self.is_even(h)
     }
 
-    /// Moves the middle of each fold that lies in one line a little aside, as a motion begins. In
-    /// the line itself a bar would have to pass through no length to turn over: a weight that fell
-    /// beside its slack cable hung in the fold.
-    pub(in crate::model::fem) fn open_folds(&mut self, mesh: &Mesh) {
-        let x = &mut self.positions;
-        for k in 1..x.len().saturating_sub(1) {
-            let (a, b) = (x[k] - x[k - 1], x[k + 1] - x[k]);
-            let size = a.norm() * b.norm();
-            if mesh.is_free(k) && a.dot(&b) < 0.0 && cross(a, b).abs() <= FOLD_LINE_SINE * size {
-                x[k] += perp(a) * ASIDE;
-            }
-        }
-    }
-
     /// Puts a node in before node `k`, at an arc length (m).
     pub(in crate::model::fem) fn insert_node(&mut self, k: usize, arc_length: f64, node: NodeMotion) {
         let half = 0.5 * self.step_before;
@@ -179,16 +156,4 @@ pub(in crate::model::fem) struct NodeMotion {
     /// Rates of the arc length at a sliding node, m/s.
     pub(in crate::model::fem) slide_rate: f64,
     pub(in crate::model::fem) previous_slide_rate: f64,
-}
-
-/// A state to go back to.
-#[derive(Clone, Debug)]
-pub(in crate::model::fem) struct Checkpoint {
-    pub(in crate::model::fem) motion: Motion,
-    pub(in crate::model::fem) mesh: Mesh,
-    pub(in crate::model::fem) contacts: ContactSet,
-    pub(in crate::model::fem) support_node: Vec<Option<usize>>,
-    /// Nodes of the loads; their number never changes.
-    pub(in crate::model::fem) load_node: Vec<usize>,
-    pub(in crate::model::fem) reaction: Vec<Vec2>,
 }

@@ -17,7 +17,7 @@ use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::system::bar_energy;
-use crate::model::fem::system::friction_state::ContactSet;
+use crate::model::fem::system::contact::contact_set::ContactSet;
 use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_context::StepContext;
 use crate::model::fem::system::step_input::{Converged, Failure, StepInput, Unknowns};

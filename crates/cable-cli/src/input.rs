@@ -1,0 +1,28 @@
+//! The input of a command is a scene file, and what the arguments say of it.
+
+use std::path::Path;
+
+use cable_core::model::Settings;
+use cable_core::{Scene, files};
+
+use crate::args::Common;
+use crate::output::Failure;
+
+/// Reads and validates a scene.
+pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
+    files::load_scene(path).map_err(Failure::File)
+}
+
+/// The scene, with what arguments say of it.
+pub fn asked_scene(a: &Common) -> Result<Scene, Failure> {
+    let mut scene = read_scene(&a.scene)?;
+    if let Some(mobilised) = a.mobilised {
+        scene.cables.iter_mut().for_each(|cable| cable.friction_mobilised = mobilised);
+    }
+    Ok(scene)
+}
+
+/// The settings that arguments ask for.
+pub fn settings(a: &Common) -> Settings {
+    Settings { tolerance: a.tolerance, ..Settings::default() }
+}

@@ -1,0 +1,13 @@
+//! The command `cable schema` prints the JSON Schema of a scene file.
+
+use cable_core::Scene;
+
+use crate::Done;
+use crate::output::Printer;
+
+/// Prints the JSON Schema of a scene file.
+pub fn schema() -> Done {
+    let mut out = Printer::new();
+    out.line(&format!("{:#}", Scene::json_schema()))?;
+    out.flush()
+}

@@ -1,0 +1,52 @@
+//! The mesh of a stiff cable is refined until its error estimate suffices.
+
+use crate::model::fem::free::beam::equilibrium::{Beam, Outcome};
+use crate::model::fem::free::dual_weighted_residual;
+
+/// A stiff cable on the mesh that suffices.
+pub(in crate::model::fem) struct Refined {
+    /// The cable.
+    pub(in crate::model::fem) beam: Beam,
+    /// Whether it rests.
+    pub(in crate::model::fem) outcome: Outcome,
+    /// Newton steps on all meshes.
+    pub(in crate::model::fem) steps: usize,
+    /// Estimated error of its tension, in parts of the greatest.
+    pub(in crate::model::fem) estimate: Option<f64>,
+    /// Estimated error of its shape, m.
+    pub(in crate::model::fem) moved: Option<f64>,
+}
+
+/// Solves a cable on a mesh and on that of half the bars, whose difference tells the error (fourth
+/// order: a fifteenth of it is left), until that is `wanted` or there are `most_bars`; None: on the
+/// mesh that is given.
+pub(in crate::model::fem) fn refine(mut coarse: Beam, wanted: Option<f64>, most_bars: usize) -> Refined {
+    let mut outcome = coarse.solve();
+    let mut steps = coarse.steps;
+    let (mut estimate, mut moved) = (None, None);
+    while let Some(wanted) = wanted
+        && outcome == Outcome::Stable
+        && coarse.bars() < most_bars
+    {
+        let mut fine = coarse.halved();
+        outcome = fine.solve();
+        steps += fine.steps - coarse.steps;
+        let found = dual_weighted_residual::halving_error(&coarse, &fine);
+        estimate = Some(found);
+        moved = Some(2.0 / 15.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
+        coarse = fine;
+        if found <= wanted {
+            break;
+        }
+    }
+    if wanted.is_none() && outcome == Outcome::Stable {
+        // The given mesh is kept; the finer one only tells its error, sixteen fifteenths of the
+        // change.
+        let mut fine = coarse.halved();
+        if fine.solve() == Outcome::Stable {
+            estimate = Some(16.0 * dual_weighted_residual::halving_error(&coarse, &fine));
+            moved = Some(2.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
+        }
+    }
+    Refined { beam: coarse, outcome, steps, estimate, moved }
+}

@@ -1,0 +1,33 @@
+//! A failure of the solver is reported in the words of the scene: which pulley runs out, or where
+//! the forces do not balance.
+
+use crate::error::{NoEquilibrium, Place, SolveError};
+use crate::math::Vec2;
+use crate::model::Model;
+use crate::model::fem::free::pulley_balance::{Failure, Network};
+use crate::problem::Problem;
+
+/// The error that a failure of a network means at a time (s), in the words of the scene.
+pub(super) fn solve_error(problem: &Problem, network: &Network, time: f64, failure: Failure) -> SolveError {
+    let name = |k: usize| {
+        let support = network.layout.stops.get(k).and_then(|s| s.support).and_then(|i| problem.supports.get(i));
+        support.map_or_else(|| "?".to_owned(), |s| s.name.clone())
+    };
+    let not_converged = |k: usize, residual_n: f64| SolveError::NotConverged {
+        model: Model::Fem,
+        iterations: network.steps,
+        residual_n,
+        place: network.layout.stops.get(k).map_or_else(Box::<Place>::default, |s| {
+            problem.place(s.arc_length, s.point(0).unwrap_or(Vec2::repeat(f64::NAN)), time)
+        }),
+    };
+    match failure {
+        Failure::Span(k, residual) | Failure::Unbalanced(k, residual) => not_converged(k, residual),
+        Failure::RunsOut(k) => {
+            SolveError::NoRestingPlace { why: NoEquilibrium::RunsOut { pulley: name(k).to_owned() } }
+        }
+        Failure::LeavesWheel(k) => {
+            SolveError::NoRestingPlace { why: NoEquilibrium::LeavesWheel { pulley: name(k).to_owned() } }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! The friction of pulleys remembers where it held the cable; the memory begins with a balance,
+//! with the answer of another model or with that of another mesh.
+
+use crate::math::{larger, perp};
+use crate::model::fem::free::pulley_balance::Network;
+use crate::model::fem::free::pulley_state::{FrictionState, PointFriction, PulleyState};
+use crate::model::fem::free::stations::Hold;
+use crate::model::spans::contact::wheel_friction::{OnWheel, WheelEnds, WheelFriction};
+use crate::solution::CableSolution;
+
+/// A node of an answer that is no farther than this from a wheel, of its radius, lies on it.
+const ON_WHEEL: f64 = 1e-9;
+
+impl Network {
+    /// The cable as the law of wheels sees it.
+    pub fn on_wheel(&self) -> OnWheel {
+        let m = &self.material;
+        OnWheel { load: m.body, thermal: m.thermal_stretch, stiffness: m.axial_stiffness }
+    }
+
+    /// True if friction at a pulley remembers.
+    pub fn rubs(&self) -> bool {
+        self.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.friction > 0.0))
+    }
+
+    /// Begins the memory of every pulley with the balance found; on each wheel friction is shared
+    /// evenly.
+    pub fn remember(&mut self) {
+        let on = self.on_wheel();
+        self.pulley_states = Vec::new();
+        for k in self.pulleys() {
+            let Some(mut pulley) = self.blank(k) else { continue };
+            let [before, after] = self.forces[k];
+            if let FrictionState::Wheel(w) = &mut pulley.friction {
+                let first = w.angle(before, 0.0);
+                let last = w.angle(after, first);
+                let last = if last < first - 1e-6 { last + std::f64::consts::TAU } else { larger(last, first) };
+                pulley.angles = [first, last];
+                let ends = [[first, pulley.material[0], before.norm()], [last, pulley.material[1], after.norm()]];
+                w.begin(&on, &ends);
+            }
+            self.pulley_states.push(pulley);
+        }
+    }
+
+    /// Begins the memory of every pulley with an answer of another model; false where that does not
+    /// say enough.
+    pub fn remember_answer(&mut self, answer: &CableSolution) -> bool {
+        let on = self.on_wheel();
+        let mut found = Vec::new();
+        for k in self.pulleys() {
+            let (Some(mut pulley), Some(wheel)) = (self.blank(k), self.wheel(k)) else { return false };
+            let Some(said) = pulley.support.and_then(|i| answer.supports.get(i)) else { return false };
+            match &mut pulley.friction {
+                FrictionState::Wheel(w) => {
+                    let mut points: Vec<[f64; 3]> = Vec::new();
+                    for node in &answer.nodes {
+                        let out = node.at() - wheel.center;
+                        let near = (out.norm() - wheel.radius).abs() <= ON_WHEEL * wheel.radius;
+                        let along = perp(out) * -self.clockwise_at(k, &wheel);
+                        let last = points.last().map_or(w.angle(along, 0.0), |p| p[0]);
+                        if near && node.tension_n > 0.0 {
+                            points.push([w.angle(along, last), node.arc_length_m, node.tension_n]);
+                        }
+                    }
+                    let (Some(a), Some(b)) = (points.first().copied(), points.last().copied()) else { return false };
+                    if b[0] < a[0] {
+                        return false;
+                    }
+                    w.begin(&on, &points);
+                    (pulley.angles, pulley.material) = ([a[0], b[0]], [a[1], b[1]]);
+                }
+                FrictionState::Point { held, .. } => {
+                    *held = said.arc_length_m;
+                    pulley.material = [*held; 2];
+                }
+            }
+            found.push(pulley);
+        }
+        self.pulley_states = found;
+        true
+    }
+
+    /// A pulley that remembers nothing yet, where the layout has it.
+    fn blank(&self, k: usize) -> Option<PulleyState> {
+        let wheel = self.wheel(k)?;
+        let stop = &self.layout.stops[k];
+        let friction = if wheel.radius > 0.0 {
+            FrictionState::Wheel(WheelFriction::new(wheel.radius, wheel.friction, self.clockwise_at(k, &wheel)))
+        } else {
+            let mode = if wheel.friction > 0.0 { PointFriction::Holds } else { PointFriction::Slides(0.0) };
+            FrictionState::Point { friction: wheel.friction, mode, held: stop.arc_length }
+        };
+        Some(PulleyState {
+            support: stop.support,
+            friction,
+            angles: [0.0; 2],
+            material: [stop.arc_length, stop.leaves()],
+        })
+    }
+
+    /// True if another network has the same pulleys; then their memory is taken over.
+    pub fn remember_from(&mut self, other: &Self) -> bool {
+        let support = |n: &Self, k: usize| n.layout.stops[k].support;
+        let own: Vec<Option<usize>> = self.pulleys().into_iter().map(|k| support(self, k)).collect();
+        let same = own.len() == other.pulley_states.len()
+            && own.iter().zip(&other.pulley_states).all(|(a, b)| *a == b.support);
+        if same {
+            self.pulley_states.clone_from(&other.pulley_states);
+        }
+        same
+    }
+
+    /// Takes the state after a step into the memory of friction.
+    pub fn commit_friction(&mut self) {
+        let on = self.on_wheel();
+        let mut pulley_states = std::mem::take(&mut self.pulley_states);
+        for (k, r) in self.pulleys().into_iter().zip(&mut pulley_states) {
+            let ends = self.ends_at(k, r);
+            match &mut r.friction {
+                FrictionState::Wheel(w) => w.commit(&on, &ends),
+                FrictionState::Point { held, .. } => *held = r.material[0],
+            }
+        }
+        self.pulley_states = pulley_states;
+    }
+
+    /// The ends of the cable on a wheel, as its friction remembers them.
+    pub(super) fn ends_at(&self, k: usize, r: &PulleyState) -> WheelEnds {
+        WheelEnds { p: r.angles, s: r.material, t: self.forces[k].map(|f| f.norm()) }
+    }
+}

@@ -1,0 +1,104 @@
+//! The contact search finds the pairs of bars and obstacles that are near each other, among the
+//! neighbours that were listed for a step.
+
+use crate::contact::neighbour_lists::NeighbourLists;
+use crate::contact::pairs::Pair;
+use crate::math::Vec2;
+use crate::model::fem::system::contact::contact_pair::ContactPair;
+use crate::model::fem::system::mesh::Mesh;
+use crate::problem::Problem;
+
+/// The search for contacts, with the obstacles that each bar can come near to in this step.
+#[derive(Clone, Debug, Default)]
+pub struct ContactSearch {
+    /// The listed obstacles of each bar.
+    pub lists: NeighbourLists,
+}
+
+impl ContactSearch {
+    /// Finds the contacts of the mesh at `x` (m), in order of arc length, of each bar and of the
+    /// node at its start those nearer than its own `reach` (m). Held nodes push on nothing.
+    pub fn find(
+        &self,
+        problem: &Problem,
+        mesh: &Mesh,
+        x: &[Vec2],
+        reach: impl Fn(usize) -> f64,
+        out: &mut Vec<ContactPair>,
+    ) {
+        out.clear();
+        if problem.world.is_empty() {
+            return;
+        }
+        let (geometry, last) = (problem.world.geometry(), x.len().saturating_sub(1));
+        let plain = |e: usize| mesh.sliding[e].is_none() && mesh.sliding[e + 1].is_none();
+        for node in 0..x.len() {
+            let reach = reach(if node < last { node } else { last.saturating_sub(1) });
+            if node < last && plain(node) && self.lists.is_clear(node, [[x[node], x[node + 1]]], reach) {
+                continue;
+            }
+            let ends = (node < last).then(|| mesh.straight(node, x));
+            let listed = match ends {
+                Some(ends) => self.lists.of(node, [ends], reach),
+                None => last.checked_sub(1).and_then(|e| self.lists.of(e, [mesh.straight(e, x)], reach)),
+            };
+            if listed.is_some_and(<[_]>::is_empty) {
+                continue;
+            }
+            if mesh.is_free(node) {
+                let before = node.checked_sub(1).map(|e| mesh.straight(e, x)[0]);
+                let chain = [before, Some(x[node]), ends.map(|e| e[1])];
+                let mut keep = |pair| out.push(ContactPair { node, on_segment: false, pair });
+                match listed {
+                    Some(parts) => geometry.node_pairs_among(parts.iter().copied(), &chain, reach, &mut keep),
+                    None => geometry.node_pairs(chain[0], x[node], chain[2], reach, &mut keep),
+                }
+            }
+            let Some(ends) = ends.filter(|_| mesh.is_free(node) || mesh.is_free(node + 1)) else { continue };
+            let rounds = mesh.rounds(node);
+            let mut keep = |pair: Pair| {
+                if !rounds.contains(&Some(pair.gap.feature)) {
+                    out.push(ContactPair { node, on_segment: true, pair });
+                }
+            };
+            match listed {
+                Some(parts) => geometry.segment_pairs_among(parts.iter().copied(), ends, reach, &mut keep),
+                None => geometry.segment_pairs(ends[0], ends[1], reach, &mut keep),
+            }
+        }
+    }
+
+    /// True if all bars stay further than `reach` (m) from everything on the way between places of
+    /// the nodes (m).
+    pub fn is_out_of_reach(&self, mesh: &Mesh, [from, to]: [&[Vec2]; 2], reach: f64) -> bool {
+        (0..mesh.rest_length.len()).all(|e| {
+            let ways = [mesh.straight(e, from), mesh.straight(e, to)];
+            self.lists.listed(e, ways, reach).is_some_and(<[_]>::is_empty)
+        })
+    }
+
+    /// Lists the obstacles nearer to each bar at `x` (m) than `within` (m), unless the present
+    /// lists have all those nearer than `needed` (m), and measures its gap.
+    pub fn list_neighbours(
+        &mut self,
+        problem: &Problem,
+        mesh: &Mesh,
+        x: &[Vec2],
+        needed: impl Fn(usize) -> f64,
+        within: impl Fn(usize) -> f64,
+    ) {
+        let bars = mesh.rest_length.len();
+        let suffices = |e: usize| self.lists.listed(e, [mesh.straight(e, x)], needed(e)).is_some();
+        if self.lists.len() == bars && (0..bars).all(suffices) {
+            for e in 0..bars {
+                self.lists.measure(problem.world.geometry(), e, mesh.straight(e, x));
+            }
+            return;
+        }
+        self.lists.clear();
+        self.lists.reserve(bars);
+        for e in 0..bars {
+            self.lists.push(problem.world.geometry(), mesh.straight(e, x), within(e));
+        }
+    }
+}

@@ -1,0 +1,294 @@
+//! The contact set has everything that a mesh touches in a step: the barrier, the search, and the
+//! friction with its normal forces, which are frozen during a solve.
+
+use crate::contact::barrier::Barrier;
+use crate::contact::friction;
+use crate::math::{Vec2, larger};
+use crate::model::fem::settings::ContactTuning;
+use crate::model::fem::system::contact::barrier_stiffness;
+use crate::model::fem::system::contact::contact_pair::ContactPair;
+use crate::model::fem::system::contact::contact_search::ContactSearch;
+use crate::model::fem::system::contact::friction_contact::{FrictionContact, of_node};
+use crate::model::fem::system::contact::friction_memory::FrictionMemory;
+use crate::model::fem::system::contact::outline_motion::OutlineMotion;
+use crate::model::fem::system::contact::self_contact::Own;
+use crate::model::fem::system::mesh::Mesh;
+use crate::problem::Problem;
+
+/// All contacts of a mesh with their history.
+#[derive(Clone, Debug)]
+pub struct ContactSet {
+    /// The tuned constants of contact.
+    pub tuning: ContactTuning,
+    /// The barrier.
+    pub barrier: Barrier,
+    /// Sliding at which friction is fully mobilised (ε), m.
+    pub slip: f64,
+    /// Friction of the present step.
+    pub friction_contacts: Vec<FrictionContact>,
+    /// The friction before its normal forces were taken anew.
+    before: Vec<FrictionContact>,
+    /// The sliding that is remembered.
+    memory: FrictionMemory,
+    scratch: Vec<ContactPair>,
+    /// The search for contacts.
+    pub search: ContactSearch,
+    /// Plan view: sliding of each node remembered, m.
+    pub floor_slid: Vec<Vec2>,
+    /// Contacts of the cable with itself.
+    pub own: Own,
+    /// Motion of the robot's outline in this step.
+    pub outline_motion: Option<OutlineMotion>,
+}
+
+impl ContactSet {
+    /// A set without contacts.
+    #[must_use]
+    pub fn new(barrier: Barrier, tuning: ContactTuning, nodes: usize) -> Self {
+        Self {
+            tuning,
+            barrier,
+            slip: tuning.slip_m,
+            friction_contacts: Vec::with_capacity(nodes),
+            before: Vec::with_capacity(nodes),
+            memory: FrictionMemory::with_room_for(nodes),
+            scratch: Vec::with_capacity(nodes),
+            search: ContactSearch::default(),
+            floor_slid: vec![Vec2::zeros(); nodes],
+            own: Own::default(),
+            outline_motion: None,
+        }
+    }
+
+    /// Copies another set; asks for no memory where there is room.
+    pub fn copy_from(&mut self, other: &Self) {
+        let Self { barrier, slip, friction_contacts, memory, floor_slid, own, outline_motion, .. } = other;
+        (self.barrier, self.slip) = (*barrier, *slip);
+        // With room for as many, so that a front of contact that runs on asks for none; and no
+        // more, or each copy would double it.
+        self.friction_contacts.clear();
+        self.friction_contacts.reserve_exact(friction_contacts.capacity());
+        self.friction_contacts.extend_from_slice(friction_contacts);
+        self.memory.copy_from(memory);
+        self.floor_slid.clone_from(floor_slid);
+        self.own.copy_from(own);
+        self.outline_motion = *outline_motion;
+    }
+
+    /// Sets the sliding at which friction is fully mobilised (m); every contact keeps its force.
+    pub fn set_slip(&mut self, slip: f64) {
+        let part = slip / self.slip;
+        if part == 1.0 {
+            return;
+        }
+        self.memory.scale(part);
+        self.friction_contacts.iter_mut().for_each(|r| r.slid *= part);
+        self.floor_slid.iter_mut().for_each(|s| *s *= part);
+        self.slip = slip;
+    }
+
+    /// Forgets all friction.
+    pub fn forget(&mut self) {
+        self.memory.clear();
+        self.friction_contacts.clear();
+        self.floor_slid.fill(Vec2::zeros());
+        self.own.forget();
+    }
+
+    /// Remembers that a contact has slid by so much, m.
+    pub fn remember(&mut self, touch: &ContactPair, slid: f64) {
+        self.memory.remember(touch, slid);
+    }
+
+    /// Finds the contacts of the mesh at `x` (m), in order of arc length. Held nodes push on
+    /// nothing.
+    pub fn find(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], out: &mut Vec<ContactPair>) {
+        self.find_within(problem, mesh, x, self.barrier.reach, out);
+    }
+
+    /// The same for contacts nearer than `reach` (m).
+    pub fn find_within(&self, problem: &Problem, mesh: &Mesh, x: &[Vec2], reach: f64, out: &mut Vec<ContactPair>) {
+        self.search.find(problem, mesh, x, |_| reach, out);
+    }
+
+    /// True if all bars stay out of reach of everything on the way between places of the nodes (m).
+    pub fn out_of_reach(&self, mesh: &Mesh, ways: [&[Vec2]; 2]) -> bool {
+        self.search.is_out_of_reach(mesh, ways, self.barrier.reach)
+    }
+
+    /// Lists the obstacles that each bar can come near to while its nodes move from `x` by no more
+    /// than `most` (m), with room to spare.
+    pub fn list_neighbours(&mut self, problem: &Problem, mesh: &Mesh, x: &[Vec2], most: impl Fn(usize) -> f64) {
+        if problem.world.is_empty() {
+            return;
+        }
+        let move_of = |e: usize| if most(e) > most(e + 1) { most(e) } else { most(e + 1) };
+        let (reach, tuning) = (self.barrier.reach, &self.tuning);
+        let needed = |e: usize| reach + move_of(e) + tuning.listed_move_m;
+        let within = |e: usize| reach + tuning.listed_steps * move_of(e) + 2.0 * tuning.listed_move_m;
+        self.search.list_neighbours(problem, mesh, x, needed, within);
+    }
+
+    /// Sets up friction for a step that began at `start`, with the contacts and normal forces at
+    /// `now` (m).
+    pub fn prepare(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
+        self.own.prepare(&self.barrier, mesh, now, start);
+        self.find_friction_contacts(problem, mesh, now, start);
+    }
+
+    /// The same for contacts with obstacles alone.
+    fn find_friction_contacts(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
+        let mut touches = std::mem::take(&mut self.scratch);
+        self.find(problem, mesh, now, &mut touches);
+        self.friction_contacts.clear();
+        for touch in &touches {
+            let limit = touch.pair.gap.friction * touch.load(&self.barrier);
+            // A contact that counts twice has pairs of both signs, and so has its friction.
+            let same = self
+                .friction_contacts
+                .iter_mut()
+                .rev()
+                .take_while(|r| r.touch.node == touch.node)
+                .find(|r| r.is_of(touch));
+            if let Some(rub) = same {
+                rub.limit += limit;
+            } else if limit != 0.0 {
+                let slid = self.memory.slid(touch);
+                let was = touch.interpolate(start);
+                let carried = self.outline_motion.filter(|c| c.obstacle == touch.pair.gap.obstacle);
+                let origin = carried.map_or(was, |c| c.carried(was));
+                self.friction_contacts.push(FrictionContact {
+                    touch: *touch,
+                    tangent: touch.tangent(),
+                    limit,
+                    slid,
+                    origin,
+                });
+            }
+        }
+        self.friction_contacts.retain(|r| r.limit != 0.0);
+        self.scratch = touches;
+    }
+
+    /// Sets the normal forces of friction to those at `now` (m) in a step that began at `start`,
+    /// unless they are the same: `same` decides that by the greatest change of a friction limit and
+    /// the greatest limit (N). Returns whether they were set.
+    pub fn renew_normal_forces(
+        &mut self,
+        problem: &Problem,
+        mesh: &Mesh,
+        [now, start]: [&[Vec2]; 2],
+        same: impl Fn(f64, f64) -> bool,
+    ) -> bool {
+        std::mem::swap(&mut self.friction_contacts, &mut self.before);
+        self.find_friction_contacts(problem, mesh, now, start);
+        let limit = |all: &[FrictionContact], touch: &ContactPair| {
+            of_node(all, touch.node).find(|r| r.is_of(touch)).map_or(0.0, |r| r.limit)
+        };
+        let (mut change, mut most) = (0.0, 0.0);
+        for rub in self.friction_contacts.iter().chain(&self.before) {
+            let (was, is) = (limit(&self.before, &rub.touch), limit(&self.friction_contacts, &rub.touch));
+            (change, most) = (larger(change, (is - was).abs()), larger(most, larger(is, was)));
+        }
+        let renewed = !same(change, most);
+        if renewed {
+            self.own.prepare(&self.barrier, mesh, now, start);
+        } else {
+            // The step is in balance with the limits before.
+            std::mem::swap(&mut self.friction_contacts, &mut self.before);
+        }
+        renewed
+    }
+
+    /// The contacts that were found last, each with its normal force, N.
+    pub fn loaded_contacts(&self) -> impl Iterator<Item = (&ContactPair, f64)> {
+        let same = |a: &ContactPair, b: &ContactPair| {
+            (a.node, a.on_segment, a.pair.gap.feature) == (b.node, b.on_segment, b.pair.gap.feature)
+        };
+        self.scratch.iter().enumerate().filter_map(move |(k, touch)| {
+            // Parts of the same contact are taken together, with the first of them.
+            let of_node = |t: &&ContactPair| t.node == touch.node;
+            let first = !self.scratch[..k].iter().rev().take_while(of_node).any(|t| same(t, touch));
+            let all = self.scratch[k..].iter().take_while(of_node).filter(|t| same(t, touch));
+            let load: f64 = all.map(|t| t.load(&self.barrier)).sum();
+            (first && load > 0.0).then_some((touch, load))
+        })
+    }
+
+    /// Friction force of a contact along its tangent at `x` (m), N.
+    pub fn tangential_force(&self, touch: &ContactPair, x: &[Vec2]) -> f64 {
+        let rub = of_node(&self.friction_contacts, touch.node).find(|r| r.is_of(touch));
+        rub.map_or(0.0, |r| -friction::at(r.sliding(x), r.limit, self.slip).1)
+    }
+
+    /// Sets the friction limit of every contact to a `part` of the way from that `before` to the
+    /// present one (0 where there is no contact); returns the greatest difference of the two, N.
+    pub fn blend_friction(&mut self, before: &[FrictionContact], part: f64) -> f64 {
+        let gone =
+            |now: &[FrictionContact], b: &FrictionContact| !of_node(now, b.touch.node).any(|n| n.is_of(&b.touch));
+        let gone: Vec<FrictionContact> = before.iter().filter(|b| gone(&self.friction_contacts, b)).copied().collect();
+        self.friction_contacts.extend(gone.iter().map(|b| FrictionContact { limit: 0.0, ..*b }));
+        self.friction_contacts.sort_by_key(|r| r.touch.node);
+        let mut off = 0.0;
+        for rub in &mut self.friction_contacts {
+            let was = of_node(before, rub.touch.node).find(|b| b.is_of(&rub.touch)).map_or(0.0, |b| b.limit);
+            off = larger(off, (rub.limit - was).abs());
+            rub.limit = if part < 1.0 { was + part * (rub.limit - was) } else { rub.limit };
+        }
+        self.friction_contacts.retain(|r| r.limit != 0.0);
+        off
+    }
+
+    /// Accepts the step from `start` to `end` (m): anchors follow what slid; `slide` is that of
+    /// sliding nodes (m).
+    pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {
+        self.prepare(problem, mesh, end, start);
+        self.own.commit(end, self.tuning.slip_m);
+        self.memory.commit(&mut self.friction_contacts, end, self.slip, self.tuning.remembered_steps);
+        if problem.floor_friction.is_some() {
+            for (k, (slid, (e, s))) in self.floor_slid.iter_mut().zip(end.iter().zip(start)).enumerate() {
+                let by = if mesh.sliding[k].is_some() { Vec2::new(slide[k], 0.0) } else { e - s };
+                *slid = friction::return_map_plane(*slid + by, self.slip);
+            }
+        }
+    }
+
+    /// True if there is nothing to touch: no obstacle, and the cable can pass itself.
+    pub(in crate::model::fem) fn meets_nothing(&self, problem: &Problem) -> bool {
+        problem.world.is_empty() && !self.own.shape.is_on()
+    }
+
+    /// Lets the barrier's stiffness follow the greatest tension (N): see
+    /// [`barrier_stiffness::follow_tension`].
+    pub(in crate::model::fem) fn adapt_stiffness(&mut self, forces: [f64; 2], bounds: [f64; 2], ahead: f64) {
+        barrier_stiffness::follow_tension(&mut self.barrier, &self.tuning, forces, bounds, ahead);
+    }
+
+    /// Friction force of a contact on the cable at `x` (m), N.
+    #[must_use]
+    pub fn friction_force(&self, rub: &FrictionContact, x: &[Vec2]) -> Vec2 {
+        -rub.tangent * friction::at(rub.sliding(x), rub.limit, self.slip).1
+    }
+
+    /// Force of the cable on an obstacle, N.
+    #[must_use]
+    pub fn force_on(&self, obstacle: usize, problem: &Problem, mesh: &Mesh, x: &[Vec2]) -> Vec2 {
+        let mut sum = Vec2::zeros();
+        let mut touches = Vec::new();
+        self.find(problem, mesh, x, &mut touches);
+        for touch in touches.iter().filter(|t| t.pair.gap.obstacle == obstacle) {
+            sum -= touch.pair.gap.normal * touch.load(&self.barrier);
+        }
+        for rub in self.friction_contacts.iter().filter(|r| r.touch.pair.gap.obstacle == obstacle) {
+            sum -= self.friction_force(rub, x);
+        }
+        sum
+    }
+
+    /// Renumbers what friction remembers: `change` gives the new number of a node, None if it is
+    /// gone.
+    pub fn renumber(&mut self, change: impl Fn(usize) -> Option<usize>) {
+        self.friction_contacts.clear();
+        self.memory.renumber(change);
+    }
+}

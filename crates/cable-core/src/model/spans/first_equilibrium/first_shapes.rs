@@ -1,0 +1,112 @@
+//! The first shapes from which an equilibrium is sought are tried in a fixed order.
+//!
+//! Every first shape has one energy, and each law below says what can keep Newton's method from its
+//! minimum. The shapes of [`FIRST_SHAPES`] are tried in order, the cheapest first, and each gives
+//! up one thing that the shapes before it assume:
+//!
+//! - **Friction.** The equilibrium with the least sliding lies nearest to the route, so friction
+//!   acts from there. A cable whose route is far from every such equilibrium slides to one: it is
+//!   sought without friction, where the energy alone decides, and friction holds it from then on. A
+//!   cable that is not held at both ends would run away, and keeps its friction.
+//! - **Slack.** The spans of a slack cable are no function of its ends. Shrunk until a tension of a
+//!   few weights draws it taut along its route, it is let out again step by step; more tension,
+//!   where the first was not enough.
+//! - **Tension.** A contact that would have to push shows that cable has no tension left there
+//!   ([`Failure::Compressed`]): only then may it lie loose on the ground.
+//! - **Posts as polygons.** A cable that nothing but friction holds may pass between the points
+//!   that stand for a post: more points, for it alone ([`posts_seen_nearer`]).
+
+use crate::model::spans::boundary_conditions::Layout;
+use crate::model::spans::initial::shortest_path::{RINGS, Ring};
+use crate::model::spans::settings::ContinuationSettings;
+
+/// A first shape from which an equilibrium is sought.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::model::spans) struct FirstShape {
+    pub(super) friction: FirstFriction,
+    pub(super) length: FirstLength,
+    pub(super) slack: SlackCable,
+    /// The points that stand for a post.
+    pub(super) posts: Ring,
+}
+
+/// The friction with which an equilibrium is sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) enum FirstFriction {
+    /// All of it.
+    FromTheStart,
+    /// None until the cable rests, then all of it.
+    OnceAtRest,
+}
+
+/// The length of cable with which an equilibrium is sought.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) enum FirstLength {
+    /// All of it.
+    Whole,
+    /// Shrunk to `first_tension_weights`, then let out.
+    Taut,
+    /// Shrunk to `second_tension_weights`, then let out.
+    VeryTaut,
+}
+
+/// Where a cable may lie without tension.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) enum SlackCable {
+    /// Nowhere.
+    Nowhere,
+    /// A strand that spreads on the ground along its route.
+    AlongRoute,
+    /// That, and cable that comes down on a smooth contact and has no tension left.
+    WhereTensionEnds,
+}
+
+/// All of the cable along its route with friction: most cables rest next to it.
+pub(super) const ALONG_ROUTE: FirstShape = FirstShape {
+    friction: FirstFriction::FromTheStart,
+    length: FirstLength::Whole,
+    slack: SlackCable::AlongRoute,
+    posts: RINGS[0],
+};
+
+/// The same cable, drawn taut.
+pub(super) const TAUT: FirstShape = FirstShape { length: FirstLength::Taut, ..ALONG_ROUTE };
+
+/// The first shapes in the order in which they are tried, each with what makes it necessary.
+pub(super) const FIRST_SHAPES: [FirstShape; 6] = [
+    ALONG_ROUTE,
+    // Friction holds no place near the route.
+    FirstShape { friction: FirstFriction::OnceAtRest, ..ALONG_ROUTE },
+    // Slack keeps Newton's method from the place without friction.
+    FirstShape { friction: FirstFriction::OnceAtRest, ..TAUT },
+    // A contact would have to push: cable there has no tension.
+    FirstShape { slack: SlackCable::WhereTensionEnds, ..ALONG_ROUTE },
+    // Slack keeps Newton's method from the place with friction.
+    TAUT,
+    // A stiff cable stretches so little that a few weights do not draw it taut.
+    FirstShape { friction: FirstFriction::OnceAtRest, length: FirstLength::VeryTaut, ..ALONG_ROUTE },
+];
+
+/// The first shapes that are tried after [`FIRST_SHAPES`] if nothing but friction holds a strand.
+pub(super) fn posts_seen_nearer(layout: &Layout) -> impl Iterator<Item = FirstShape> {
+    shapes_with_friction(layout).into_iter().skip(1)
+}
+
+/// The first shapes with friction that can tell how much of it a cable needs.
+pub(in crate::model::spans) fn shapes_with_friction(layout: &Layout) -> Vec<FirstShape> {
+    let held_by_friction = layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none));
+    let rings = if held_by_friction { &RINGS[..] } else { &RINGS[..1] };
+    let shapes = rings.iter().map(|posts| FirstShape { posts: *posts, ..ALONG_ROUTE });
+    shapes.chain(held_by_friction.then_some(TAUT)).collect()
+}
+
+impl FirstLength {
+    /// The tension, in weights of the cable, to which it is shrunk; None: not at all.
+    pub(super) fn tension_weights(self, tuned: &ContinuationSettings) -> Option<f64> {
+        match self {
+            Self::Whole => None,
+            Self::Taut => Some(tuned.first_tension_weights),
+            Self::VeryTaut => Some(tuned.second_tension_weights),
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! A homotopy in length: a slack cable is shortened until it is taut along its route, and paid out
+//! again step by step once it has an equilibrium.
+
+use crate::math::Vec2;
+use crate::model::spans::boundary::friction_memory::Mode;
+use crate::model::spans::boundary::loose::Loose;
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout};
+use crate::model::spans::continuation::StepStats;
+use crate::model::spans::failure::Failure;
+use crate::model::spans::first_equilibrium::first_shapes::{ALONG_ROUTE, FirstLength, FirstShape, SlackCable};
+use crate::model::spans::initial::{contacts, tension};
+use crate::model::spans::newton::Work;
+use crate::model::spans::slack::{self, LooseShapes};
+
+impl CableEquilibrium {
+    /// Lays the cable along its route in hardly any tension, whether or not it could lie there
+    /// loose.
+    pub(in crate::model::spans) fn lay_in_tension(
+        &mut self,
+        layout: &Layout,
+        goal: &BoundaryConditions,
+        work: &mut Work,
+    ) -> Result<StepStats, Failure> {
+        self.lay_along_route(layout, goal, FirstShape { slack: SlackCable::Nowhere, ..ALONG_ROUTE }, work)
+    }
+
+    /// Lays the cable along its route and finds its equilibrium: with all of its length, or shrunk
+    /// until it is taut and then let out again.
+    pub(in crate::model::spans) fn lay_along_route(
+        &mut self,
+        layout: &Layout,
+        goal: &BoundaryConditions,
+        shape: FirstShape,
+        work: &mut Work,
+    ) -> Result<StepStats, Failure> {
+        let tuned = &layout.settings.continuation;
+        let taut = shape.length.tension_weights(tuned);
+        let mut begin = goal.clone();
+        layout.set_course(&mut self.course, &begin);
+        let routes = self.lay_strands(layout, &begin, shape)?;
+        if let Some(taut) = taut {
+            begin.thermal = self.shrunk_thermal(layout, goal, taut);
+            begin.load *= tuned.first_load_fraction;
+            begin.forces.iter_mut().for_each(|f| *f *= tuned.first_load_fraction);
+            layout.set_course(&mut self.course, &begin);
+            for (strand, part) in self.strands.iter_mut().zip(&layout.strands) {
+                if part.supports.iter().all(Option::is_some) {
+                    tension::tighten(strand, &self.course);
+                }
+            }
+        }
+        self.instant = begin.clone();
+        let mut taken = self.step_from(layout, &begin, &routes, work)?;
+        if self.end_smoothness() {
+            taken = taken.and(self.step(layout, &begin, work)?);
+        }
+        if taut.is_none() {
+            return Ok(taken);
+        }
+        let heavy = BoundaryConditions { thermal: begin.thermal, ..goal.clone() };
+        taken = taken.and(self.travel(layout, &heavy, tuned.first_step, work)?);
+        Ok(taken.and(self.travel(layout, goal, tuned.first_step, work)?))
+    }
+
+    /// Lays each strand along its route; returns the routes, none for a strand that lies loose.
+    fn lay_strands(
+        &mut self,
+        layout: &Layout,
+        begin: &BoundaryConditions,
+        shape: FirstShape,
+    ) -> Result<Vec<Vec<Vec2>>, Failure> {
+        let may_lie_loose = shape.length == FirstLength::Whole && shape.slack != SlackCable::Nowhere;
+        self.strands.clear();
+        let mut routes = Vec::new();
+        for k in 0..layout.strands.len() {
+            let loose = if may_lie_loose {
+                slack::loose_strand(layout, k, &self.course, begin, LooseShapes::NoTension)
+            } else {
+                None
+            };
+            if let Some(strand) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
+                self.strands.push(strand);
+                routes.push(Vec::new());
+                continue;
+            }
+            let laid = contacts::strand_along_route(layout, k, &self.course, begin, shape.posts);
+            let no_way = Failure::ContactImpossible { s: layout.strands[k].material[0], at: begin.places[0] };
+            let (strand, route) = laid.ok_or(no_way)?;
+            self.strands.push(strand);
+            routes.push(route);
+        }
+        Ok(routes)
+    }
+
+    /// Lets the contacts rub that were met on the way to an equilibrium; returns whether there were
+    /// any.
+    fn end_smoothness(&mut self) -> bool {
+        let mut met = false;
+        for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts).filter(|c| c.smooth) {
+            c.smooth = false;
+            met = true;
+            if self.course.friction(c) > 0.0 {
+                c.mode = Mode::Hold;
+            }
+        }
+        met
+    }
+
+    /// The factor on lengths with which a tension of so many weights draws the cable along its
+    /// route.
+    fn shrunk_thermal(&self, layout: &Layout, goal: &BoundaryConditions, taut: f64) -> f64 {
+        let p = &layout.problem;
+        let drawn: f64 = goal.forces.iter().map(|f| f.norm()).sum();
+        let tension = taut * goal.load.norm() * p.length + drawn;
+        let mut least = goal.thermal;
+        for s in &self.strands {
+            let way = tension::taut_length(s, &self.course);
+            let taut = way / ((s.to - s.from) * (1.0 + tension / p.axial_stiffness));
+            if taut < least && taut > 0.0 {
+                least = taut;
+            }
+        }
+        least
+    }
+}

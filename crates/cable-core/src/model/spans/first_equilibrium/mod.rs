@@ -1,0 +1,174 @@
+//! The first equilibrium of a cable is sought from its route.
+//!
+//! | room | content |
+//! |---|---|
+//! | `mod.rs` | the search: one first shape after the other; equilibria from other answers and in heaps |
+//! | `first_shapes.rs` | the list of first shapes, and the law that makes each necessary |
+//! | `length_homotopy.rs` | a cable is shortened until it is taut, and paid out again |
+
+mod first_shapes;
+mod length_homotopy;
+
+pub(super) use first_shapes::{FirstShape, shapes_with_friction};
+
+use crate::math::Vec2;
+use crate::model::spans::boundary::friction_memory::Mode;
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout};
+use crate::model::spans::continuation::StepStats;
+use crate::model::spans::failure::Failure;
+use crate::model::spans::first_equilibrium::first_shapes::{
+    FIRST_SHAPES, FirstFriction, FirstLength, SlackCable, posts_seen_nearer,
+};
+use crate::model::spans::initial::from_solution;
+use crate::model::spans::newton::Work;
+use crate::model::spans::run::CableRun;
+use crate::model::spans::slack::{self, LooseShapes};
+use crate::solution::Node;
+
+/// Places at which the search for a first equilibrium may begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::model::spans) enum SearchStart {
+    /// With friction only.
+    WithFriction,
+    /// Without friction, too: friction holds the cable from then on.
+    AlsoWithoutFriction,
+}
+
+/// A search that found no equilibrium.
+#[derive(Debug)]
+pub(in crate::model::spans) struct NotFound {
+    /// The reason why there is none.
+    pub failure: Failure,
+    /// The cable as far as it was let out, where that stopped the search.
+    pub let_out: Option<Box<CableEquilibrium>>,
+}
+
+impl From<Failure> for NotFound {
+    fn from(failure: Failure) -> Self {
+        Self { failure, let_out: None }
+    }
+}
+
+impl CableEquilibrium {
+    /// The first equilibrium of a cable along its route.
+    ///
+    /// # Errors
+    /// The reason why none was found.
+    pub fn along_route(
+        layout: &Layout,
+        instant: &BoundaryConditions,
+        work: &mut Work,
+    ) -> Result<(Self, StepStats), NotFound> {
+        Self::along_route_from(layout, instant, SearchStart::AlsoWithoutFriction, work)
+    }
+
+    /// The same, with the places where the search may begin.
+    pub fn along_route_from(
+        layout: &Layout,
+        instant: &BoundaryConditions,
+        start: SearchStart,
+        work: &mut Work,
+    ) -> Result<(Self, StepStats), NotFound> {
+        // A cable that is not held at both ends would run to where it needs no friction.
+        let is_held = layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
+        let without_friction = start == SearchStart::AlsoWithoutFriction && is_held;
+        let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
+        let course = layout.course(layout.curves(), instant);
+        let (mut first, mut stopped, mut pushes) = (None, None, false);
+        for shape in FIRST_SHAPES.into_iter().chain(posts_seen_nearer(layout)) {
+            let begin = match shape.friction {
+                FirstFriction::FromTheStart => instant,
+                FirstFriction::OnceAtRest => &smooth,
+            };
+            if !(without_friction || begin.friction > 0.0) {
+                continue;
+            }
+            if shape.slack == SlackCable::WhereTensionEnds && !pushes {
+                continue;
+            }
+            let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
+            network.course.loose_where_tension_ends = shape.slack == SlackCable::WhereTensionEnds;
+            match network.find_from(layout, shape, [begin, instant], work) {
+                Ok(taken) => {
+                    network.course.loose_where_tension_ends = false;
+                    return Ok((network, taken));
+                }
+                Err(failure) => {
+                    pushes |= matches!(failure, Failure::Compressed { .. });
+                    if shape.length != FirstLength::Whole && stopped.is_none() {
+                        stopped = Some(NotFound { failure: failure.clone(), let_out: Some(Box::new(network)) });
+                    }
+                    first = first.or(Some(failure));
+                }
+            }
+        }
+        Err(stopped.unwrap_or_else(|| first.unwrap_or(Failure::Restless { s: 0.0 }).into()))
+    }
+
+    /// Seeks an equilibrium from one first shape, with the friction of `begin` and then that of
+    /// `goal`.
+    fn find_from(
+        &mut self,
+        layout: &Layout,
+        shape: FirstShape,
+        [begin, goal]: [&BoundaryConditions; 2],
+        work: &mut Work,
+    ) -> Result<StepStats, Failure> {
+        let taken = self.lay_along_route(layout, begin, shape, work)?;
+        if !(begin.friction < goal.friction) {
+            return Ok(taken);
+        }
+        let more = self.apply_friction(layout, goal, work)?;
+        Ok(StepStats { found_without_friction: true, ..taken.and(more) })
+    }
+
+    /// The cable in heaps where it comes down, hanging over crests, without tension where it lies.
+    pub fn in_heaps(layout: &Layout, instant: &BoundaryConditions) -> Option<Self> {
+        let course = layout.course(layout.curves(), instant);
+        let strand = |k: usize| slack::loose_strand(layout, k, &course, instant, LooseShapes::AnyTension);
+        let strands = (0..layout.strands.len()).map(strand).collect::<Option<Vec<CableRun>>>()?;
+        Some(Self { strands, course, instant: instant.clone() })
+    }
+
+    /// The equilibrium next to an answer of another model.
+    ///
+    /// # Errors
+    /// The reason why the cable does not rest there.
+    pub fn from_answer(
+        layout: &Layout,
+        instant: &BoundaryConditions,
+        nodes: &[Node],
+        work: &mut Work,
+    ) -> Result<Self, Failure> {
+        let mut first = None;
+        for unused in layout.settings.continuation.unused_cone_fractions {
+            let course = layout.course(layout.curves(), instant);
+            let Some(strands) = from_solution::strands_of(layout, &course, instant, nodes, 1.0 - unused) else {
+                continue;
+            };
+            let mut network = Self { strands, course, instant: instant.clone() };
+            match network.step(layout, instant, work) {
+                Ok(_) => return Ok(network),
+                Err(failure) => first = first.or(Some(failure)),
+            }
+        }
+        let at = nodes.first().map_or(Vec2::zeros(), Node::at);
+        Err(first.unwrap_or(Failure::ContactImpossible { s: 0.0, at }))
+    }
+
+    /// Lets friction act on a cable that rests without it, and rests with it all the more.
+    fn apply_friction(
+        &mut self,
+        layout: &Layout,
+        goal: &BoundaryConditions,
+        work: &mut Work,
+    ) -> Result<StepStats, Failure> {
+        layout.set_course(&mut self.course, goal);
+        for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
+            if self.course.friction(c) > 0.0 {
+                c.mode = Mode::Hold;
+            }
+        }
+        self.step(layout, goal, work)
+    }
+}

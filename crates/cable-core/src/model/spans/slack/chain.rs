@@ -1,0 +1,182 @@
+//! A chain is the cable over one crest, between two points without tension: its tension falls on
+//! both sides as in a cable that slides down there.
+
+use crate::math::{Vec2, larger};
+use crate::model::spans::boundary::capstan::Step;
+use crate::model::spans::boundary::loose::{Line, Part, Stretch};
+use crate::model::spans::slack::drape::{Drape, HALVINGS, plumb};
+use crate::numerics::bisect;
+
+impl Drape<'_> {
+    /// The stretches between two points without tension, or from or to a support. Where a support
+    /// hangs nearby and the crest draws the cable tight there, a span bridges to it; whether that
+    /// was done at the end. Else on which side it is drawn tight, if that is it.
+    pub(super) fn chain(
+        &self,
+        lines: &[Line],
+        held: [bool; 2],
+        near: [Option<Vec2>; 2],
+        out: &mut Vec<Part>,
+    ) -> Result<bool, Option<usize>> {
+        let weight = self.course.law.load.norm();
+        let hangs = |line: Option<&Line>| match line {
+            Some(Line::Hangs(ends)) => Some((*ends, plumb(self.course, self.rise(*ends).abs()))),
+            _ => None,
+        };
+        let hung = |(ends, s): ([Vec2; 2], f64)| {
+            let t = weight * s;
+            let tension = if self.rise(ends) > 0.0 { [0.0, t] } else { [t, 0.0] };
+            Part { arc_lengths: [0.0, s], tension, form: Line::Hangs(ends) }
+        };
+        let (first, last) = (hangs(lines.first()), hangs(lines.last()));
+        if let ([_], Some(alone)) = (lines, first) {
+            // From a support down, or up to one.
+            let begins = held[0] && self.rise(alone.0) < 0.0;
+            let ends = held[1] && self.rise(alone.0) > 0.0;
+            out.push(hung(alone));
+            return if begins || ends { Ok(false) } else { Err(None) };
+        }
+        if (held[0] && first.is_some()) || (held[1] && last.is_some()) {
+            return Err(None);
+        }
+        let ends = [first, last].map(|h| h.map_or(0.0, |(_, s)| weight * s));
+        let (mut stretches, mut walls): (Vec<Stretch>, Vec<Option<f64>>) = (Vec::new(), Vec::new());
+        for (k, line) in lines.iter().enumerate() {
+            match line {
+                Line::Lies(s) => (stretches.push(*s), walls.push(None)).0,
+                Line::Hangs(ends) if k > 0 => {
+                    let rise = self.rise(*ends);
+                    if let Some(wall) = walls.last_mut() {
+                        *wall = Some(plumb(self.course, rise.abs()).copysign(rise));
+                    }
+                }
+                _ => {}
+            }
+        }
+        let forth = self.profile(&stretches, &walls, 0, ends[0]).ok_or(None)?;
+        let back = self.profile(&stretches, &walls, 1, ends[1]).ok_or(None)?;
+        let begins_tight = !held[0] && back.leaves > ends[0] + self.most;
+        let ends_tight = !held[1] && forth.leaves > ends[1] + self.most;
+        let bridge = match (begins_tight, ends_tight) {
+            (true, false) => Some(near[0].and_then(|at| self.bridge(&back, at, 0)).ok_or(Some(0))?),
+            (false, true) => Some(near[1].and_then(|at| self.bridge(&forth, at, 1)).ok_or(Some(1))?),
+            (false, false) => None,
+            (true, true) => return Err(None),
+        };
+        let range = match &bridge {
+            Some(found) if begins_tight => found.line..stretches.len(),
+            Some(found) => 0..found.line + 1,
+            None => 0..stretches.len(),
+        };
+        if let Some(found) = bridge.as_ref().filter(|_| begins_tight) {
+            // In the place of what hung.
+            out.pop();
+            out.push(found.part.clone());
+        }
+        out.extend(first.map(hung));
+        // Over a kink goes the span of the greater tension; up to a bridge only the one holds.
+        let span = |k: usize| {
+            let [f, b] = [&forth, &back].map(|side| side.spans[k].as_ref().map_or(0.0, |(span, _)| span.tension[0]));
+            let by_start = if begins_tight || ends_tight { ends_tight } else { f >= b };
+            let side = if by_start { &forth } else { &back };
+            side.spans[k].as_ref().map(|(part, next)| {
+                (part, *next, side.stretches[k].coordinates[1], side.stretches[*next].coordinates[0], by_start)
+            })
+        };
+        let (mut k, mut entry) = (range.start, None);
+        while k < range.end {
+            let mut s = stretches[k];
+            let [mut f, mut b] = [forth.enters[k], back.enters[k]];
+            if let Some((p, by_start)) = entry {
+                s.coordinates[0] = p;
+                f = if by_start { f } else { 0.0 };
+            }
+            let beyond = if k + 1 < range.end { span(k) } else { None };
+            if let Some((_, _, p, _, by_start)) = beyond {
+                s.coordinates[1] = p;
+                b = if by_start { 0.0 } else { b };
+            }
+            if let Some(found) = bridge.as_ref().filter(|found| found.line == k) {
+                s.coordinates[usize::from(ends_tight)] = found.coordinate;
+            }
+            if begins_tight {
+                f = 0.0;
+            } else if ends_tight {
+                b = 0.0;
+            }
+            self.stretch(&s, [f, b], out);
+            match beyond {
+                Some((part, next, _, p, by_start)) => {
+                    out.push(part.clone());
+                    (k, entry) = (next, Some((p, by_start)));
+                }
+                None if k + 1 < range.end && walls[k].is_some() => return Err(None),
+                None => (k, entry) = (k + 1, None),
+            }
+        }
+        out.extend(last.map(hung));
+        if let Some(found) = bridge.filter(|_| ends_tight) {
+            out.push(found.part);
+            return Ok(true);
+        }
+        Ok(false)
+    }
+
+    /// A stretch in its parts: where the tension from its start holds, where there is none, where
+    /// that from its end does.
+    fn stretch(&self, s: &Stretch, [forth, back]: [f64; 2], out: &mut Vec<Part>) {
+        let (course, friction, [p0, p1]) = (self.course, s.friction(self.course), s.coordinates);
+        let forth_at = |p: f64| if p == p0 { forth } else { s.slide(course, p0, p, forth, -friction).tension };
+        let back_at = |p: f64| if p == p1 { back } else { s.slide(course, p1, p, back, friction).tension };
+        // Each ends at once or rises and falls again; from where it has fallen to nothing there is
+        // none.
+        let seek = |has: f64, not: f64, holds: &dyn Fn(f64) -> bool| {
+            if holds(not) { not } else { bisect([has, not], HALVINGS, holds)[0] }
+        };
+        let little = 1e-3 * (p1 - p0);
+        let goes = |t: f64, from: f64, to: f64, holds: &dyn Fn(f64) -> bool| match (t > 0.0, holds(from)) {
+            (true, _) => seek(if from < to { p0 } else { p1 }, to, holds),
+            (false, true) => seek(from, to, holds),
+            (false, false) => {
+                if from < to {
+                    p0
+                } else {
+                    p1
+                }
+            }
+        };
+        let mut ends = goes(forth, p0 + little, p1, &|p| forth_at(p) > 0.0);
+        let mut begins = goes(back, p1 - little, p0, &|p| back_at(p) > 0.0);
+        if begins < ends {
+            // Both: the greater.
+            let meet = if forth_at(ends) >= back_at(ends) {
+                ends
+            } else if forth_at(begins) <= back_at(begins) {
+                begins
+            } else {
+                seek(begins, ends, &|p| forth_at(p) >= back_at(p))
+            };
+            (ends, begins) = (meet, meet);
+        }
+        let mut push = |p: [f64; 2], m: f64, way: Step, tension: [f64; 2]| {
+            let form = Line::Lies(Stretch { coordinates: p, mobilised: m, ..*s });
+            out.push(Part { arc_lengths: [0.0, way.material.abs()], tension, form });
+        };
+        if ends > p0 {
+            let way = s.slide(course, p0, ends, forth, -friction);
+            push([p0, ends], -friction, way, [forth, larger(way.tension, 0.0)]);
+        }
+        if begins > ends || p0 == p1 {
+            push([ends, begins], 0.0, Step { material: self.rest_of(s, begins - ends), ..Step::none(0.0) }, [0.0; 2]);
+        }
+        if p1 > begins {
+            let way = s.slide(course, p1, begins, back, friction);
+            push([begins, p1], friction, way, [larger(way.tension, 0.0), back]);
+        }
+    }
+
+    /// Material without tension on a stretch of p, m.
+    fn rest_of(&self, s: &Stretch, p: f64) -> f64 {
+        p * s.place(self.course, s.coordinates[0]).stretch / self.course.law.stretch(0.0)
+    }
+}

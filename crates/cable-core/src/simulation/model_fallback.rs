@@ -1,0 +1,73 @@
+//! An answer that breaks a law of statics is refused; where the user left the choice of the model,
+//! the next more general model is asked for another.
+
+use super::{Instant, Simulation};
+use crate::breakage::BreakableCable;
+use crate::error::SolveError;
+use crate::model::{Model, ModelSource};
+use crate::solution::ModelReason;
+
+impl Simulation {
+    /// Settles by one model after the other until the answer obeys every law.
+    pub(super) fn settle_until_sound(&mut self) -> Result<(), SolveError> {
+        let mut first: Option<SolveError> = None;
+        loop {
+            let found = self.for_each_cable(BreakableCable::settle).and_then(|()| {
+                self.refresh(Instant::AtRest);
+                self.check_sound()
+            });
+            let Err(error) = found else { return Ok(()) };
+            let error = match self.cables.iter().find_map(BreakableCable::refusal) {
+                Some(refusal) if matches!(error, SolveError::Unsound { .. }) => {
+                    SolveError::clearer(refusal.clone(), error)
+                }
+                _ => error,
+            };
+            // A cable that is said to have no resting place is not asked of another model.
+            let last = matches!(error, SolveError::NoRestingPlace { .. } | SolveError::Unsupported { .. });
+            let next = !last && self.switch_model(&error);
+            first = Some(match first {
+                Some(before) => SolveError::clearer(before, error),
+                None => error,
+            });
+            if !next {
+                return first.map_or(Ok(()), Err);
+            }
+        }
+    }
+
+    /// Verifies the present answers.
+    pub(super) fn check_sound(&self) -> Result<(), SolveError> {
+        // The answer of a model that is a second opinion, asked for by name, is reported with the
+        // laws that it breaks, and not refused. A cable that broke at rest is where it was when it
+        // broke.
+        let told =
+            self.requested.capabilities().findings_are_told || self.cables.iter().any(|c| !c.breaks().is_empty());
+        match self.verification.worst().filter(|_| !told) {
+            None => Ok(()),
+            Some(finding) => Err(SolveError::Unsound { model: self.model, finding: Box::new(finding.clone()) }),
+        }
+    }
+
+    /// Gives the scene to the next more general model, where the user left the choice; returns
+    /// whether there was one.
+    pub(super) fn switch_model(&mut self, why: &SolveError) -> bool {
+        if self.requested != Model::Auto {
+            return false;
+        }
+        let mut other = false;
+        for cable in &mut self.cables {
+            other |= cable.fall_back(why);
+        }
+        if other || self.source.model() == Model::MOST_CAPABLE {
+            return other;
+        }
+        let source = ModelSource::Registered(Model::MOST_CAPABLE);
+        let others = self.cables.iter().map(|c| c.rebuilt(source.clone()));
+        let Ok(next) = others.collect::<Result<Vec<_>, SolveError>>() else { return false };
+        self.reason = ModelReason::Unsound(Box::new(why.clone()));
+        (self.cables, self.source, self.model) = (next, source, Model::MOST_CAPABLE);
+        self.set_robot_pose();
+        true
+    }
+}

@@ -1,0 +1,107 @@
+//! Things of the scene can be taken out, and the selection must not point at what is gone.
+
+use cable_core::Scene;
+use cable_core::scene::{Shape, Support};
+
+use crate::command::hitch::set_robot;
+use crate::state::{AppState, Item};
+
+/// Takes things out, none of them twice.
+pub fn remove_all(state: &mut AppState, mut items: Vec<Item>) {
+    // From the last to the first of each kind, corners and supports before what they are of: an
+    // index stays what it was.
+    let rank = |item: &Item| match *item {
+        Item::Corner { obstacle, corner } => (0, obstacle, corner),
+        Item::Support { cable, support } => (1, cable, support),
+        Item::Load(k) | Item::Head(k) => (2, k, 0),
+        Item::Leg(k) => (3, k, 0),
+        Item::Obstacle(k) => (4, k, 0),
+        Item::Cable(k) => (5, k, 0),
+        Item::Robot => (6, 0, 0),
+        Item::Scene | Item::Environment | Item::Solver => (7, 0, 0),
+    };
+    items.sort_by_key(|item| std::cmp::Reverse(rank(item)));
+    items.dedup_by_key(|item| rank(item));
+    items.sort_by_key(|item| rank(item).0);
+    for item in items {
+        remove(&mut state.document.scene, item);
+    }
+    (state.selection.selected, state.selection.also) = (None, Vec::new());
+}
+
+fn remove(scene: &mut Scene, item: Item) {
+    match item {
+        Item::Cable(k) if scene.cables.len() > 1 && k < scene.cables.len() => {
+            let gone = scene.cables.remove(k);
+            scene.loads.retain(|l| l.cable != gone.name);
+        }
+        Item::Cable(_) | Item::Scene | Item::Environment | Item::Solver => {}
+        Item::Robot => set_robot(scene, None),
+        Item::Support { cable, support } => {
+            let Some(c) = scene.cables.get_mut(cable) else { return };
+            let last = c.supports.len().saturating_sub(1);
+            if support == 0 || support == last {
+                if let Some(s) = c.supports.get_mut(support) {
+                    *s = Support::free(s.name.clone());
+                }
+            } else if support < last {
+                c.supports.remove(support);
+            }
+        }
+        Item::Obstacle(k) => {
+            if k < scene.obstacles.len() {
+                scene.obstacles.remove(k);
+            }
+        }
+        Item::Corner { obstacle, corner } => {
+            let Some(o) = scene.obstacles.get_mut(obstacle) else { return };
+            let (points, least) = match &mut o.shape {
+                Shape::Polygon { points_m } => (points_m, 3),
+                Shape::Terrain { points_m } | Shape::Polyline { points_m, .. } => (points_m, 2),
+                Shape::Circle { .. } => return,
+            };
+            if points.len() > least && corner < points.len() {
+                points.remove(corner);
+            }
+        }
+        Item::Leg(k) => {
+            if let Some(robot) = scene.robot.as_mut().filter(|r| k < r.path.len()) {
+                robot.path.remove(k);
+            }
+        }
+        Item::Load(k) | Item::Head(k) => {
+            if k < scene.loads.len() {
+                scene.loads.remove(k);
+            }
+        }
+    }
+}
+
+/// A selection that no longer exists must not point at its neighbour's panel.
+pub fn drop_lost_selection(state: &mut AppState) {
+    if state.selection.selected.is_some_and(|item| !exists(state, item)) {
+        state.selection.selected = None;
+    }
+    let mut also = std::mem::take(&mut state.selection.also);
+    also.retain(|item| exists(state, *item));
+    state.selection.also = also;
+}
+
+fn exists(state: &AppState, item: Item) -> bool {
+    let scene = &state.document.scene;
+    match item {
+        Item::Cable(k) => k < scene.cables.len(),
+        Item::Support { cable, support } => scene.cables.get(cable).is_some_and(|c| support < c.supports.len()),
+        Item::Obstacle(k) => k < scene.obstacles.len(),
+        Item::Corner { obstacle, corner } => scene.obstacles.get(obstacle).is_some_and(|o| match &o.shape {
+            Shape::Terrain { points_m } | Shape::Polygon { points_m } | Shape::Polyline { points_m, .. } => {
+                corner < points_m.len()
+            }
+            Shape::Circle { .. } => false,
+        }),
+        Item::Load(k) | Item::Head(k) => k < scene.loads.len(),
+        Item::Robot => scene.robot.is_some(),
+        Item::Leg(k) => scene.robot.as_ref().is_some_and(|r| k < r.path.len()),
+        Item::Scene | Item::Environment | Item::Solver => true,
+    }
+}

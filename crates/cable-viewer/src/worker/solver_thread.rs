@@ -1,0 +1,158 @@
+//! The thread solves what is requested, lets frames pass while time runs, and refines drafts once
+//! the hand rests.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use crate::worker::engine::{Engine, Report};
+use crate::worker::request::Request;
+use crate::worker::slots::{Shared, Solve, keep};
+use crate::worker::timing::{FRAME_S, LEAST_QUIET_S, QUIET_EDITS, QUIET_S};
+
+/// Called whenever there is something new to show.
+pub type Shown = Arc<dyn Fn() + Send + Sync>;
+
+/// Least share of a frame that a drag lets pass at once. Smaller: many short steps for a quick
+/// mouse; larger: the hand waits.
+const LEAST_SHARE: f64 = 0.4;
+
+/// Starts a thread; `thread` is its number.
+pub fn start(shared: &Arc<Shared>, shown: &Shown, engine: Engine, thread: u64) -> Option<JoinHandle<()>> {
+    let (shared, shown) = (Arc::clone(shared), Arc::clone(shown));
+    let run = move || work(&shared, &*shown, engine, thread);
+    std::thread::Builder::new().name("cable solver".to_owned()).spawn(run).ok()
+}
+
+fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
+    let frame = Duration::from_secs_f64(FRAME_S);
+    let mut next_tick = Instant::now();
+    let mut last_tick = next_tick;
+    // When a draft has stood long enough to be replaced by the answer, and an answer to be asked
+    // for other histories.
+    let mut refine_at = next_tick;
+    let mut edited_at: Option<Instant> = None;
+    loop {
+        let request = {
+            let mut slots = shared.lock();
+            if slots.thread == thread {
+                slots.busy = engine.draft();
+            }
+            loop {
+                if slots.stop || slots.thread != thread {
+                    return;
+                }
+                let now = Instant::now();
+                let due = match (engine.playing(), engine.draft(), engine.settling()) {
+                    (true, _, _) => Some(next_tick),
+                    (false, true, true) => Some(next_tick.min(refine_at)),
+                    (false, true, false) => Some(refine_at),
+                    (false, false, _) => engine.seeks_histories().then_some(refine_at),
+                };
+                if slots.request.is_some() || due.is_some_and(|at| now >= at) {
+                    break;
+                }
+                slots = match due {
+                    Some(at) => {
+                        let wait = shared.wake.wait_timeout(slots, at.saturating_duration_since(now));
+                        wait.unwrap_or_else(PoisonError::into_inner).0
+                    }
+                    None => shared.wake.wait(slots).unwrap_or_else(PoisonError::into_inner),
+                };
+            }
+            slots.busy = slots.request.is_some() || engine.draft();
+            slots.asked_at = None;
+            slots.request.take()
+        };
+        let refines = request.is_none() && !engine.playing() && (!engine.settling() || Instant::now() >= refine_at);
+        if refines || request.as_ref().is_some_and(Request::solves) {
+            let seeks_histories = request.is_none() && engine.seeks_histories();
+            let (began, engine) = (Instant::now(), Box::new(engine.spare()));
+            let solve = Solve { began, engine, request: request.clone(), seeks_histories };
+            shared.lock().solve = Some(solve);
+        }
+        let report = match request {
+            Some(request) => {
+                let drag = request.drag.is_some();
+                // A single edit is answered at once, a hand that goes on is waited for.
+                let draft_s = if engine.draft() || request.hurried {
+                    let between = edited_at.map_or(QUIET_S, |at| at.elapsed().as_secs_f64());
+                    (QUIET_EDITS * between).clamp(LEAST_QUIET_S, QUIET_S)
+                } else {
+                    0.0
+                };
+                if request.edit.is_some() {
+                    edited_at = Some(Instant::now());
+                }
+                let mut report = guarded(&mut engine, |e| e.handle(request));
+                let passed = last_tick.elapsed().as_secs_f64() / FRAME_S;
+                if drag && engine.playing() && passed > LEAST_SHARE {
+                    // The hand does not wait for the next frame: what has passed of this one is let
+                    // pass.
+                    last_tick = Instant::now();
+                    next_tick = last_tick + frame;
+                    report.merge(guarded(&mut engine, |e| e.tick_part(passed.min(1.0))));
+                }
+                let pause_s = if engine.draft() { draft_s } else { LEAST_QUIET_S };
+                refine_at = Instant::now() + Duration::from_secs_f64(pause_s);
+                if engine.draft() {
+                    next_tick = Instant::now() + frame;
+                }
+                report
+            }
+            None if !engine.playing() && engine.settling() && Instant::now() < refine_at => {
+                next_tick = Instant::now() + frame;
+                guarded(&mut engine, Engine::settle_frame)
+            }
+            None if !engine.playing() => guarded(&mut engine, Engine::refine),
+            None => {
+                // A late frame is not made up for: time runs slower instead of falling behind for
+                // ever.
+                last_tick = Instant::now();
+                next_tick = last_tick.max(next_tick + frame);
+                guarded(&mut engine, Engine::tick)
+            }
+        };
+        let mut slots = shared.lock();
+        if slots.thread != thread {
+            return;
+        }
+        slots.solve = None;
+        slots.reports += 1;
+        keep(&mut slots.report, report);
+        drop(slots);
+        shown();
+    }
+}
+
+/// Runs a job; a panic inside becomes a report with its words.
+pub fn guarded(engine: &mut Engine, job: impl FnOnce(&mut Engine) -> Report) -> Report {
+    match catch_unwind(AssertUnwindSafe(|| job(engine))) {
+        Ok(report) => report,
+        Err(payload) => {
+            let message = payload
+                .downcast_ref::<&str>()
+                .map(|s| (*s).to_owned())
+                .or_else(|| payload.downcast_ref::<String>().cloned())
+                .unwrap_or_else(|| "no message".to_owned());
+            engine.abandon(&message)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_in_the_solver_is_caught_and_said() {
+        let mut engine = Engine::default();
+        let report = guarded(&mut engine, |_| std::panic::panic_any("index out of bounds"));
+        assert!(report.snapshot.stale && report.paused_itself);
+        assert!(report.snapshot.error.is_some_and(|e| e.to_string().contains("index out of bounds")));
+        // It goes on with the next request.
+        let report = guarded(&mut engine, |e| e.handle(Request { reset: true, number: 3, ..Request::default() }));
+        assert_eq!(report.snapshot.edit, 3);
+    }
+}
