@@ -70,8 +70,8 @@ fn a_knob_that_is_taken_moves_its_value_by_half_a_percent_a_point_at_first() {
     assert_eq!(length_m(&harness), 10.8);
 }
 
-/// The first frame that sees the press may see the pointer elsewhere already, and a frame may see the
-/// last movement with the release.
+/// The first frame that sees the press may see the pointer elsewhere already, and a frame may see
+/// the last movement with the release.
 #[test]
 fn frames_that_come_late_change_nothing() {
     let (mut harness, knob) = form();

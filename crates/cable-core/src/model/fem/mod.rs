@@ -317,9 +317,9 @@ impl FemModel {
 
     /// Starts from the equilibrium of a cable whose equilibrium is found more easily: on a coarser
     /// mesh (nested iteration), as slack runs along the bars in waves, in as many steps of
-    /// relaxation as there are bars; and of less axial stiffness (continuation), as the search among
-    /// bars that hardly stretch is ill-conditioned, and where they rest is hardly another place.
-    /// That one may begin at one that is easier still.
+    /// relaxation as there are bars; and of less axial stiffness (continuation), as the search
+    /// among bars that hardly stretch is ill-conditioned, and where they rest is hardly another
+    /// place. That one may begin at one that is easier still.
     fn start_from_easier_cable(&mut self) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
         let tuning = self.tuning().clone();
