@@ -210,7 +210,7 @@ impl Problem {
 
     /// The whole distributed load, point loads and the weight of lumps, N.
     #[must_use]
-    pub fn whole_load(&self) -> f64 {
+    pub(crate) fn whole_load(&self) -> f64 {
         let loads: f64 = self.loads.iter().map(|l| l.force.at(0.0).norm()).sum::<f64>()
             + self.supports.iter().map(|s| s.force.at(0.0).norm()).sum::<f64>();
         let gravity = if self.linear_density > 0.0 { self.weight.norm() / self.linear_density } else { 0.0 };
