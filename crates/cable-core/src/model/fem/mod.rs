@@ -330,8 +330,8 @@ impl FemModel {
         };
         let enough = tuning.start.search_stiffness_loads * self.problem.whole_load();
         let own = self.problem.axial_stiffness;
-        let less = larger(enough, own / tuning.start.stiffness_ratio);
-        let axial_stiffness = if enough > 0.0 && less < own { less } else { own };
+        let less = own / tuning.start.stiffness_ratio;
+        let axial_stiffness = if enough > 0.0 && less >= enough { less } else { own };
         if segments == self.settings.segments && axial_stiffness == own {
             return;
         }
@@ -342,6 +342,7 @@ impl FemModel {
         if let Some(to) = self.robot_pose {
             easier.set_robot_pose(to);
         }
+        easier.dynamics.cable.meshing.slides = self.dynamics.cable.meshing.slides;
         easier.dynamics.solver.work_left = WorkBudget::Left(tuning.equilibrium.max_work);
         easier.start_from_own_statics();
         if easier.settle_dynamics(false).is_err() {

@@ -542,10 +542,10 @@ pub struct StartTuning {
     /// Ratio of the bar lengths of the two meshes. Smaller: more meshes, each nearer to the next.
     /// Larger: the coarse solution differs from that of the fine mesh.
     pub mesh_ratio: usize,
-    /// Axial stiffness, in whole loads, from which on the search for the initial equilibrium begins
-    /// at that of a cable which is no stiffer. Smaller: that cable stretches by more (by one part
-    /// in so many), and rests elsewhere. Larger: slack cables in folds find no rest (with 2e5 to
-    /// 1e7 loads 9 of 300 over posts and beams; with 1e4 none).
+    /// Least axial stiffness, in whole loads, of the cable at whose rest the search for the initial
+    /// equilibrium of a stiffer one begins. Smaller: that cable stretches by more, and rests
+    /// elsewhere. Larger: slack cables in folds find no rest (with 2e5 to 1e7 loads 9 of 300 over
+    /// posts and beams).
     pub search_stiffness_loads: f64,
     /// Ratio of the axial stiffnesses of two such cables. Smaller: more of them. Larger: the next
     /// does not come to rest from where the one before did.

@@ -106,8 +106,8 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
 }
 
 /// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the
-/// sliding node before, to where it leaves it, or halfway to the next. Its tension is what weight
-/// and friction that is mobilised evenly make of it.
+/// sliding node before, to where it leaves it, or halfway to the next. Its tension is that of its
+/// weight, and beyond that grows evenly in its logarithm, as friction makes it.
 fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
     let mesh = &d.mesh;
     let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
@@ -176,13 +176,19 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     let last = unrubbed(normal(after));
     let over = OverRound::between([a, b - (last - a)], floor);
     let load = [perp(first) * sense, first].map(|v| d.input.body.dot(&v) * radius / mesh.thermal_stretch);
-    let capstan = WeightedCapstan::between([a, b], whole, load).filter(|_| floor == 0.0 && a > 0.0 && b > 0.0);
+    let pulls = a > 0.0 && b > 0.0;
     // On a round that is small beside its bars, friction of the weight that hangs over it from them
     // is beside it: on the round it is no more than its turn there allows.
-    let grown = capstan.map_or(0.0, |c| c.mobilised * whole);
+    let grown = if pulls && last > 0.0 { (b / last).ln() } else { f64::INFINITY };
     let small = same == [false; 2] && whole * radius < d.mesh.tuning.remesh.one_mark_bars * d.even();
     let most = node.friction * whole;
-    let rate = if small && grown.abs() > HANGING_TENSION_GROWTH * most { most.copysign(grown) } else { grown };
+    let is_beyond = grown.abs() > HANGING_TENSION_GROWTH * most;
+    let rate = if small && is_beyond { most.copysign(grown) } else { grown };
+    // The mesh balances friction as a factor on what weight leaves of the tension. Where weight
+    // leaves hardly any of it that factor is beyond the cone, and the friction of all of the round,
+    // weight included, is within it.
+    let capstan = WeightedCapstan::between([a, b], whole, load)
+        .filter(|c| floor == 0.0 && pulls && is_beyond && !small && c.mobilised.abs() <= node.friction);
     // The load beside it acts where the weight hangs: before the round and after it by the angle
     // there between the cable's force and the end of the arc.
     let tangents = [-before, after].map(|turned| perp(normal(turned)) * sense);
@@ -190,16 +196,20 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
         .map(|angle| larger(sense * angle, 0.0));
     let part_before = if hangs[0] + hangs[1] > 0.0 { hangs[0] / (hangs[0] + hangs[1]) } else { 0.5 };
     let begins = (part_before * (grown - rate)).exp();
-    let capstan = capstan.map(|c| WeightedCapstan { start: a * begins, mobilised: rate / whole, ..c });
     let at = |i: f64| {
         let f = i / count;
         let turned = f * whole - before;
         let stretch = stretch[usize::from(turned > 0.0)];
         let normal = normal(turned);
+        let smooth = unrubbed(normal);
         let tension = if floor != 0.0 {
-            over.map_or(a + (b - a) * f, |over| over.at(f) + unrubbed(normal) - a)
+            over.map_or(a + (b - a) * f, |over| over.at(f) + smooth - a)
+        } else if let Some(capstan) = capstan {
+            capstan.at(whole * f)
+        } else if pulls && smooth > 0.0 && last > 0.0 {
+            smooth * begins * (rate * f).exp()
         } else {
-            capstan.map_or(a + (b - a) * f, |capstan| capstan.at(whole * f))
+            a + (b - a) * f
         };
         // The floor's friction of half of what lies beside a point acts at it, as it does at a node
         // of the cable.

@@ -25,11 +25,11 @@ const HALVINGS: usize = 60;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WeightedCapstan {
     /// Tension at its start, N.
-    pub start: f64,
+    start: f64,
     /// Coefficient of the friction that is mobilised; positive where the tension grows by it.
     pub mobilised: f64,
     /// g b·t and g b·n at its start, N.
-    pub load: [f64; 2],
+    load: [f64; 2],
 }
 
 impl WeightedCapstan {
