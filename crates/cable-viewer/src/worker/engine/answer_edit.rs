@@ -1,0 +1,173 @@
+//! Answers to edits: a draft first where the answer takes long, then the scene laid at rest.
+
+use std::time::Instant;
+
+use cable_core::math::Point;
+use cable_core::model::auto::Question;
+use cable_core::{Error, Model, Scene, Settings, Simulation};
+
+use super::{Engine, MOTION, Phase, is_quasi_static};
+use crate::state::NoAnswer;
+use crate::worker::draft;
+use crate::worker::passing;
+use crate::worker::request::Edit;
+use crate::worker::timing::{DRAFT_AFTER_S, DRAFT_FIRST_S};
+
+impl Engine {
+    /// Shows an edit with few segments, if answering it in full would take long; whether it did. A
+    /// single edit is answered at once: a draft from an answer takes 0.1 s itself.
+    pub(super) fn show_draft(&mut self, edit: &Edit, hurried: bool) -> bool {
+        let Some(last) = &self.edit else { return false };
+        let same = !edit.fresh && last.model == edit.model && last.settings == edit.settings;
+        let slow = self.solve_s > if hurried || self.draft() { DRAFT_AFTER_S } else { DRAFT_FIRST_S };
+        let (true, Some(old)) = (self.drafts && same && slow, &self.simulation) else {
+            return false;
+        };
+        let falls = draft::settling_draft(edit, old);
+        let settling = falls.is_some();
+        // Models without a mesh have no fewer segments to be asked with.
+        let coarse = || Some(self.rebuild(&draft::coarse_edit(edit, old), Some(old)).ok()?.0);
+        let draft = if is_quasi_static(old.model()) { falls } else { falls.or_else(coarse) };
+        let Some(draft) = draft else { return false };
+        self.simulation = Some(draft);
+        self.monitor = None;
+        self.before_motion = None;
+        self.phase = Phase::Draft { settling };
+        self.edit = Some(edit.clone());
+        true
+    }
+
+    pub(super) fn solve_draft(&mut self) -> Result<(), Error> {
+        let (Phase::Draft { .. }, Some(edit)) = (&self.phase, self.edit.clone()) else { return Ok(()) };
+        // The answer is one at rest even where time is to run next: what runs on from the draft
+        // itself is still falling, and strikes what it falls on.
+        let paused = std::mem::replace(&mut self.playback.paused, true);
+        let result = self.take_edit(edit);
+        self.playback.paused = paused || result.is_err();
+        result
+    }
+
+    pub(super) fn take_edit(&mut self, edit: Edit) -> Result<(), Error> {
+        let began = Instant::now();
+        let old = if edit.fresh { None } else { self.simulation.take() };
+        if edit.fresh {
+            self.simulation = None;
+            self.snapshot.solution = None;
+            self.last_answer = None;
+            self.history_restarts = true;
+            self.answers.clear();
+        }
+        self.hand = None;
+        self.monitor = None;
+        // Models are compared by what they answer for the scene as laid, not for where another
+        // model left the cable.
+        let same_model = self.edit.as_ref().is_some_and(|e| e.model == edit.model && e.settings == edit.settings);
+        let from = old.as_ref().filter(|o| same_model || o.time_s() > 0.0);
+        // Before time has run there is nothing to go on from, whether or not it is to run next.
+        let at_rest = from.is_none_or(|o| o.time_s() <= 0.0);
+        self.routes.clear();
+        let mut edit = edit;
+        // Other histories take longer than the rest itself: each is another rest. Where nobody
+        // refines the answer they are asked for at once.
+        self.histories_due = self.drafts && at_rest && edit.settings.histories;
+        let rebuilt = if at_rest { self.lay(&mut edit, from).map(|s| (s, true)) } else { self.rebuild(&edit, from) };
+        self.edit = Some(edit);
+        self.solve_s = began.elapsed().as_secs_f64();
+        match rebuilt {
+            Ok((simulation, start_kept)) => {
+                self.simulation = Some(simulation);
+                self.before_motion = None;
+                self.phase = Phase::Answer { start_kept };
+                self.sample();
+                Ok(())
+            }
+            Err(e) => {
+                // The old one stays: undoing the edit goes on from it.
+                self.simulation = old;
+                self.playback.paused = true;
+                self.phase = Phase::Refused { reason: NoAnswer::Error(e.clone()) };
+                Err(e)
+            }
+        }
+    }
+
+    /// The simulation of a scene at rest: a function of the scene alone, so that typing, undo, load
+    /// and reset give the same answer for the same scene. Where that would move a cable through an
+    /// obstacle that stays where it is, the way the cable takes now becomes part of the scene.
+    pub(super) fn lay(&mut self, edit: &mut Edit, old: Option<&Simulation>) -> Result<Simulation, Error> {
+        let histories = edit.settings.histories && !self.histories_due;
+        let settings = Settings { histories, ..edit.settings };
+        let of = |scene: &Scene| laid(scene, edit.model, settings);
+        let laid = of(&edit.scene);
+        let Some(old) = old.filter(|o| !edit.as_laid && draft::same_cables(edit, o)) else { return laid };
+        let jumped = match &laid {
+            Ok(laid) => passing::jumped(old, laid),
+            // Only a scene that could be solved from where the cable is gets a second look.
+            Err(_) if draft::buried(edit, old) => return laid,
+            Err(_) => (0..edit.scene.cables.len()).collect(),
+        };
+        if jumped.is_empty() {
+            return laid;
+        }
+        let mut scene = edit.scene.clone();
+        let routes: Vec<(usize, Vec<Point>)> =
+            jumped.iter().filter_map(|&k| Some((k, passing::way(old, k)?))).collect();
+        for (k, way) in &routes {
+            if let Some(cable) = scene.cables.get_mut(*k) {
+                cable.route_m.clone_from(way);
+            }
+        }
+        match of(&scene) {
+            Ok(led) if laid.is_err() || passing::jumped(old, &led).len() < jumped.len() => {
+                self.routes = routes;
+                edit.scene = scene;
+                Ok(led)
+            }
+            _ => laid,
+        }
+    }
+
+    /// The simulation of an edited scene, carrying over where the cables are, and whether it is at
+    /// its start.
+    pub(super) fn rebuild(&self, edit: &Edit, old: Option<&Simulation>) -> Result<(Simulation, bool), Error> {
+        let time_s = old.map_or(0.0, Simulation::time_s);
+        let moves = old.is_some() && (time_s > 0.0 || !self.playback.paused);
+        let question = if moves { MOTION } else { Question::Rest };
+        let mut fresh = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, question)?;
+        if let Some(old) = old
+            && draft::same_cables(edit, old)
+            && !draft::buried(edit, old)
+        {
+            let mut carried = fresh.clone();
+            if carried.carry(old).is_ok() {
+                if !self.playback.paused {
+                    return Ok((carried, false));
+                }
+                if carried.settle().is_ok() {
+                    return Ok((carried, time_s <= 0.0));
+                }
+            }
+        }
+        fresh.settle()?;
+        Ok((fresh, true))
+    }
+
+    /// Lays the scene on screen once more and asks what other histories would have left. The rest
+    /// is a function of the scene alone, so no figure changes.
+    pub(super) fn seek_histories(&mut self) {
+        self.histories_due = false;
+        let sought = self.edit.as_ref().and_then(|e| laid(&e.scene, e.model, e.settings).ok());
+        if let Some(sought) = sought {
+            self.simulation = Some(sought);
+        }
+        self.sample();
+        self.show(Ok(()));
+    }
+}
+
+/// A scene laid at rest.
+pub(super) fn laid(scene: &Scene, model: Model, settings: Settings) -> Result<Simulation, Error> {
+    let mut laid = Simulation::for_question(scene.clone(), model, settings, Question::Rest)?;
+    laid.settle()?;
+    Ok(laid)
+}
