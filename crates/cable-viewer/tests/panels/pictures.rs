@@ -161,7 +161,7 @@ fn friction_range() {
 /// Every panel of the window has a picture here.
 #[test]
 fn every_panel_has_a_picture() {
-    let here = include_str!("pictures.rs");
+    let here = concat!(include_str!("pictures.rs"), include_str!("fixture.rs"));
     let layout = include_str!("../../src/app/layout.rs");
     let mut missing = Vec::new();
     for part in layout.split("panels::").skip(1) {
