@@ -17,24 +17,29 @@
 //! [`crate::files`].
 
 mod choice;
+mod columns;
 mod energy;
 mod fingerprint;
 mod history;
 mod page;
 mod run;
-mod tables;
+mod run_writer;
+mod table_error;
+mod table_reader;
+#[cfg(test)]
+mod tables_tests;
 mod whole;
 
 pub use choice::{NodeChoice, NodeColumns, NodeInterval, UnknownColumn};
+pub use columns::RobotColumns;
 pub use fingerprint::Fingerprint;
 pub use history::History;
 pub(crate) use page::Pages;
 pub(crate) use run::MANIFEST_HEAD;
 pub(crate) use run::read_run;
 pub use run::{FileRecord, LeftOut, Manifest, NodeSummary, RunRequest, RunStatus, RunStop, RunTables};
-pub(crate) use tables::has_rows;
-pub use tables::{
-    Event, Extra, HistoryTable, NodeRow, ReadError, RobotColumns, RowFault, RunWriter, SupportColumn, WriteError,
-    WrittenNumber, read_events, read_history, read_nodes,
-};
+pub use run_writer::RunWriter;
+pub use table_error::{ReadError, RowFault, WriteError, WrittenNumber};
+pub(crate) use table_reader::has_rows;
+pub use table_reader::{Event, Extra, HistoryTable, NodeRow, SupportColumn, read_events, read_history, read_nodes};
 pub use whole::WholeRecords;

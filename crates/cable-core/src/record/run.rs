@@ -5,10 +5,10 @@ use std::io::Read;
 use serde::{Deserialize, Serialize};
 
 use super::choice::{NodeChoice, NodeInterval};
+use super::columns::{EVENTS, HISTORY, NODES};
 use super::fingerprint::Fingerprint;
-use super::tables::{
-    EVENTS, Event, HISTORY, HistoryTable, NODES, NodeRow, ReadError, read_events, read_history, read_nodes,
-};
+use super::table_error::ReadError;
+use super::table_reader::{Event, HistoryTable, NodeRow, read_events, read_history, read_nodes};
 use super::whole::WholeRecords;
 
 /// Progress of a run.

@@ -1,6 +1,11 @@
+use std::io::Write;
+
+use super::choice::node_values;
 use super::*;
 use crate::model::Model;
-use crate::solution::{CableSolution, Cost, Energy, ModelReason, Node, SupportReaction};
+use crate::solution::{
+    CableSolution, Cost, Energy, ModelReason, Node, Solution, SupportReaction, Warning, WarningCause, WarningKind,
+};
 use proptest::prelude::*;
 
 fn solution(time_s: f64, values: [f64; NodeColumns::COUNT], name: &str) -> Solution {

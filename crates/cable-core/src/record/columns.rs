@@ -1,0 +1,67 @@
+//! Names and columns of the three tables of a run.
+
+use crate::solution::Solution;
+
+pub(super) const HISTORY: &str = "history.csv";
+pub(super) const NODES: &str = "nodes.csv";
+pub(super) const EVENTS: &str = "events.csv";
+/// Columns of `history.csv` before those of the supports.
+pub(super) const HISTORY_COLUMNS: [&str; 3] = ["time_s", "max_tension_n", "max_tension_arc_length_m"];
+/// Columns of `history.csv` that are of no support.
+pub(super) const ENERGY_COLUMNS: [&str; 4] =
+    ["kinetic_energy_j", "gravity_energy_j", "stretch_energy_j", "bending_energy_j"];
+/// The greatest tension of any inner step since the row before, and the greatest mean over the
+/// breaking time; at rest and without inertia that of the instant.
+pub(super) const PEAK_COLUMNS: [&str; 2] = ["peak_tension_n", "held_tension_n"];
+pub(super) const ROBOT_COLUMNS: [&str; 5] =
+    ["robot_x_m", "robot_y_m", "robot_pitch_deg", "robot_speed_m_per_s", "robot_thrust_n"];
+pub(super) const EVENT_COLUMNS: [&str; 8] =
+    ["time_s", "kind", "cable", "arc_length_m", "value", "limit", "message", "cause"];
+/// Columns of tables that were written before causes were.
+pub(super) const OLD_EVENT_COLUMNS: usize = 7;
+
+/// The columns of `history.csv` on the robot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RobotColumns {
+    /// The scene has a robot that can move.
+    Written,
+    /// It has none.
+    LeftOut,
+}
+
+impl RobotColumns {
+    /// Those of a run that has this answer.
+    #[must_use]
+    pub fn of(solution: &Solution) -> Self {
+        if solution.robot.is_some() { Self::Written } else { Self::LeftOut }
+    }
+}
+
+/// Columns of `history.csv`, from the names of the cables, and of their supports.
+pub(super) fn history_columns<'a>(
+    cables: impl Iterator<Item = (&'a str, impl Iterator<Item = &'a str>)>,
+    count: usize,
+    robot: RobotColumns,
+) -> Vec<String> {
+    let mut columns: Vec<String> = HISTORY_COLUMNS.map(String::from).to_vec();
+    for (cable, supports) in cables {
+        for support in supports {
+            let name = if count > 1 { format!("{cable}.{support}") } else { support.to_owned() };
+            columns.push(format!("{name}.reaction_x_n"));
+            columns.push(format!("{name}.reaction_y_n"));
+        }
+    }
+    columns.extend(ENERGY_COLUMNS.into_iter().chain(PEAK_COLUMNS).map(String::from));
+    columns.extend(ROBOT_COLUMNS.map(String::from).into_iter().filter(|_| robot == RobotColumns::Written));
+    columns
+}
+
+pub(super) fn extras(s: &Solution) -> impl Iterator<Item = (&'static str, f64)> {
+    let e = s.energy;
+    let energies = [e.kinetic_j, e.gravity_j, e.stretch_j, e.bending_j];
+    let robot = s.robot.map(|r| [r.x_m, r.y_m, r.pitch_deg, r.speed_m_per_s, r.thrust_n]);
+    let peaks = s.peaks();
+    let peaks = [peaks.greatest.tension_n, peaks.held.tension_n];
+    let always = ENERGY_COLUMNS.into_iter().zip(energies).chain(PEAK_COLUMNS.into_iter().zip(peaks));
+    always.chain(ROBOT_COLUMNS.into_iter().zip(robot.into_iter().flatten()))
+}
