@@ -373,13 +373,13 @@ impl Mechanics for SwitchingModel {
     fn fall_back(&mut self, why: &SolveError) -> bool {
         // Refused as it is, the answer is no place to go on from: the cable is laid anew where it
         // was, or where it was put.
-        self.fem.is_none() && {
-            let time_s = self.spans.time_s();
-            let fresh = if time_s > 0.0 { self.handed_over() } else { self.new_fem_with_hands() };
-            self.fem = fresh.ok();
-            self.reason = self.fem.is_some().then(|| ModelReason::Unsound(Box::new(why.clone())));
-            self.fem.is_some()
+        if let Some(fem) = &mut self.fem {
+            return fem.fall_back(why);
         }
+        let fresh = if self.spans.time_s() > 0.0 { self.handed_over() } else { self.new_fem_with_hands() };
+        self.fem = fresh.ok();
+        self.reason = self.fem.is_some().then(|| ModelReason::Unsound(Box::new(why.clone())));
+        self.fem.is_some()
     }
 
     fn robot_contact(&self) -> Option<RobotContact> {

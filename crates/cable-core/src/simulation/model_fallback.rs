@@ -1,5 +1,6 @@
-//! An answer that breaks a law of statics is refused; where the user left the choice of the model,
-//! the next more general model is asked for another.
+//! An answer that breaks a law of statics is refused. Where the user left the choice of the model,
+//! the next more general one is asked for another, and where the number of segments is open, a
+//! finer mesh.
 
 use super::{Instant, Simulation};
 use crate::breakage::BreakableCable;
@@ -49,17 +50,14 @@ impl Simulation {
         }
     }
 
-    /// Gives the scene to the next more general model, where the user left the choice; returns
-    /// whether there was one.
+    /// Gives the scene to the next more general model, where the user left the choice, or the next
+    /// finer mesh; returns whether there was one.
     pub(super) fn switch_model(&mut self, why: &SolveError) -> bool {
-        if self.requested != Model::Auto {
-            return false;
-        }
         let mut other = false;
         for cable in &mut self.cables {
             other |= cable.fall_back(why);
         }
-        if other || self.source.model() == Model::MOST_CAPABLE {
+        if other || self.requested != Model::Auto || self.source.model() == Model::MOST_CAPABLE {
             return other;
         }
         let source = ModelSource::Registered(Model::MOST_CAPABLE);

@@ -430,6 +430,27 @@ impl FemModel {
         self
     }
 
+    /// The same cable on bars half as long, laid anew, where their number is open and the mesh gave
+    /// the first answer.
+    fn on_finer_mesh(&self) -> Option<Self> {
+        let bars = 2 * self.dynamics.cable.meshing.even_bars;
+        let given = self.settings.segments.or(self.problem.cable.segments).is_some();
+        let by_mesh = self.present == Part::Dynamics && self.elastica_answer.is_none() && self.time_s() <= 0.0;
+        if given || !by_mesh || bars > self.tuning().start.max_refined_bars {
+            return None;
+        }
+        let settings = Settings { segments: Some(bars), ..self.settings };
+        let mut finer = Self::with_tuning(self.problem.clone(), settings, self.tuning().clone()).ok()?;
+        finer.starts_from_spans = self.starts_from_spans;
+        finer.dragged.clone_from(&self.dragged);
+        finer.dynamics.hand_drive.pulled.clone_from(&self.dynamics.hand_drive.pulled);
+        finer.dynamics.cable.meshing.slides = self.dynamics.cable.meshing.slides;
+        if let Some(pose) = self.robot_pose {
+            finer.set_robot_pose(pose);
+        }
+        Some(finer)
+    }
+
     /// A copy to go back to. Its obstacles are those of the scene: the ones among which the outline
     /// of the robot is moved stay with this model.
     pub(super) fn copy_for_rollback(&self) -> Self {
@@ -579,6 +600,15 @@ impl Mechanics for FemModel {
         if let Some(outline) = &mut self.dynamics.cable.outline {
             outline.lead_to(to);
         }
+    }
+
+    fn fall_back(&mut self, why: &SolveError) -> bool {
+        let finer = if matches!(why, SolveError::Unsound { .. }) { self.on_finer_mesh() } else { None };
+        let found = finer.is_some();
+        if let Some(finer) = finer {
+            *self = finer;
+        }
+        found
     }
 
     fn robot_contact(&self) -> Option<RobotContact> {
