@@ -102,6 +102,11 @@ fn scenes_that_were_wrong_are_right() {
         ("tank with beams", 930_024),
         // Rounding was taken for progress, until no iterations were left.
         ("smooth wheels", 930_298),
+        // A mesh on which friction is a quarter beyond what its law allows was not refined.
+        ("slack over things", 970_148),
+        // A kilometre away no rest was found from that of a cable with 9.5e4 times as much
+        // stiffness as weight.
+        ("slack over things", 970_145),
         // Balances that run away at the least push were shown as rest.
         ("even pulleys", 1),
         ("even pulleys", 41),

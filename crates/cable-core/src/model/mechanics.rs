@@ -168,9 +168,9 @@ pub trait Mechanics: Send {
         None
     }
 
-    /// Gives the cable to the next model or the next finer mesh, where there is one behind this one,
-    /// because of what the laws say of its answer; the next [`Self::settle`] is that one's. Returns
-    /// whether there was one.
+    /// Gives the cable to the next model or the next finer mesh, where there is one behind this
+    /// one, because of what the laws say of its answer; the next [`Self::settle`] is that one's.
+    /// Returns whether there was one.
     fn fall_back(&mut self, _why: &SolveError) -> bool {
         false
     }

@@ -544,8 +544,8 @@ pub struct StartTuning {
     pub mesh_ratio: usize,
     /// Least axial stiffness, in whole loads, of the cable at whose rest the search for the initial
     /// equilibrium of a stiffer one begins. Smaller: that cable stretches by more, and rests
-    /// elsewhere. Larger: slack cables in folds find no rest (with 2e5 to 1e7 loads 9 of 300 over
-    /// posts and beams).
+    /// elsewhere. Larger: slack cables in folds find no rest (over posts and beams 10 of 300 where
+    /// no cable is softened, one of nearly as many with this).
     pub search_stiffness_loads: f64,
     /// Ratio of the axial stiffnesses of two such cables. Smaller: more of them. Larger: the next
     /// does not come to rest from where the one before did.
@@ -581,7 +581,7 @@ impl Default for StartTuning {
             max_stiff_force_change: 0.5,
             two_mesh_bars: 500,
             mesh_ratio: 8,
-            search_stiffness_loads: 1e4,
+            search_stiffness_loads: 1e3,
             stiffness_ratio: 10.0,
             max_refined_bars: 800,
             max_mark_turn_rad: 2.8,
