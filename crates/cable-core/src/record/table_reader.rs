@@ -149,7 +149,7 @@ fn expect_columns<R: Read>(
 }
 
 /// Reads `nodes.csv` up to its last whole row. Values whose columns were not chosen
-/// ([`NodeChoice`]) are NaN.
+/// ([`super::NodeChoice`]) are NaN.
 ///
 /// # Errors
 /// Where it is not such a table.
