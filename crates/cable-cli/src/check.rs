@@ -6,8 +6,9 @@ use std::path::Path;
 use cable_core::files;
 
 use crate::Done;
+use crate::failure::Failure;
 use crate::input::read_scene;
-use crate::output::{Failure, Printer};
+use crate::output::Printer;
 
 /// Largest table of a run that is checked, bytes. More would not fit into the memory of a small
 /// machine.

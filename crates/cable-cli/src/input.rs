@@ -6,7 +6,7 @@ use cable_core::model::Settings;
 use cable_core::{Scene, files};
 
 use crate::args::Common;
-use crate::output::Failure;
+use crate::failure::Failure;
 
 /// Reads and validates a scene.
 pub fn read_scene(path: &Path) -> Result<Scene, Failure> {

@@ -6,6 +6,8 @@
 mod answer;
 mod args;
 mod check;
+mod failure;
+mod finite_check;
 mod input;
 mod output;
 mod run;
@@ -21,7 +23,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Arguments, Command};
-use output::Failure;
+use failure::Failure;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
@@ -34,7 +36,7 @@ fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
-            output::report(&failure);
+            failure::report(&failure);
             ExitCode::from(failure.exit_code())
         }
     }

@@ -21,8 +21,9 @@ use cable_core::{Scene, Settings, Simulation, SolveError};
 use crate::Done;
 use crate::answer::{Figures, NoAnswer, RunPeaksEntry, answer};
 use crate::args::RunArguments;
+use crate::failure::Failure;
 use crate::input::{asked_scene, settings};
-use crate::output::{Failure, Printer, Progress};
+use crate::output::{Printer, Progress};
 use crate::signals::Signals;
 use crate::table::table;
 

@@ -8,8 +8,9 @@ use cable_core::{Scene, Solution};
 use crate::Done;
 use crate::answer::{ComparedEntry, Figures, NoAnswer, answer};
 use crate::args::{Common, SolveArguments};
+use crate::failure::Failure;
 use crate::input::{asked_scene, settings};
-use crate::output::{Failure, Printer};
+use crate::output::Printer;
 use crate::table::table;
 use crate::waiting::Waiting;
 

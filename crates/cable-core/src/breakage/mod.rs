@@ -17,6 +17,7 @@ mod answer;
 mod partition;
 mod piece;
 mod rupture;
+mod support_speed_limit;
 #[cfg(test)]
 mod tests;
 
@@ -24,13 +25,14 @@ use std::sync::Arc;
 
 use partition::{CablePart, Cut};
 use piece::{BreakPoint, Piece, StepOutcome};
+use support_speed_limit::too_fast;
 
 use crate::error::{SolveError, Unsupported};
 use crate::math::{RigidPose, Vec2, smaller};
 use crate::model::gauge::TensionGauge;
-use crate::model::input_filter::default_hand_stiffness;
+use crate::model::hand::default_hand_stiffness;
 use crate::model::{Inertia, Model, ModelSource, OwnedResources, RobotContact, Settings, StepReport};
-use crate::problem::{Problem, SupportPoint};
+use crate::problem::Problem;
 use crate::solution::{ModelReason, TensionPeaks};
 use crate::state::State;
 
@@ -44,11 +46,6 @@ const UNWATCHED_STEPS: u32 = 2;
 
 /// Most pieces of one cable. More are no longer a cable that breaks but a step that fails.
 const MAX_PIECES: usize = 32;
-
-/// Fastest motion of a support that is followed while masses move, m/s. Slower: motions are refused
-/// that every model follows; faster: `mass-spring` cuts velocities, and air, which no model has,
-/// would rule.
-const MAX_SUPPORT_SPEED: f64 = 300.0;
 
 /// A break.
 #[derive(Clone, Debug, PartialEq)]
@@ -458,17 +455,6 @@ impl BreakableCable {
         self.breaks.clone_from(&old.breaks);
         Ok(())
     }
-}
-
-/// Returns what is to be said of a motion that is too fast.
-fn too_fast(support: &SupportPoint) -> Option<Unsupported> {
-    let (speed_m_per_s, time_s) = support.motion.as_ref()?.fastest();
-    (speed_m_per_s > MAX_SUPPORT_SPEED).then(|| Unsupported::MotionTooFast {
-        support: support.name.clone(),
-        speed_m_per_s,
-        time_s,
-        limit_m_per_s: MAX_SUPPORT_SPEED,
-    })
 }
 
 impl Clone for BreakableCable {

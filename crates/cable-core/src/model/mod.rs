@@ -6,7 +6,7 @@
 //! | `mechanics.rs` | the trait and its reports; `settings.rs`: [`Settings`]; `gauge/`: tensions of the inner steps |
 //! | `registry.rs` | one entry a model: name, capabilities, constructor; [`build`] |
 //! | `auto.rs`, `switching.rs` | the choice of a model, and two models that take turns |
-//! | `initial_equilibrium.rs`, `input_filter.rs`, `layered.rs`, `similar.rs`, `leavable_wheels.rs`, `arc_nodes.rs`, `mobilised_friction.rs` | what several models share |
+//! | `initial_equilibrium.rs`, `hand.rs`, `smoothed_target.rs`, `layered.rs`, `similar.rs`, `leavable_wheels.rs`, `arc_nodes.rs`, `mobilised_friction.rs` | what several models share |
 //! | `catenary/`, `spans/`, `fem/`, `mass_spring/` | the models |
 //!
 //! A model answers two kinds of question: where does the cable rest ([`Mechanics::settle`]), and
@@ -18,8 +18,8 @@ pub mod auto;
 pub mod catenary;
 pub mod fem;
 pub mod gauge;
+pub mod hand;
 pub(crate) mod initial_equilibrium;
-pub mod input_filter;
 mod layered;
 mod leavable_wheels;
 pub mod mass_spring;
@@ -28,6 +28,7 @@ mod mobilised_friction;
 pub mod registry;
 pub mod settings;
 mod similar;
+pub mod smoothed_target;
 pub mod spans;
 mod switching;
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::input_filter;
+use super::{hand, smoothed_target};
 use crate::error::SolveError;
 use crate::units::Quantity;
 
@@ -25,7 +25,7 @@ pub struct Settings {
     #[serde(default = "hand_speed")]
     pub hand_speed_m_per_s: f64,
     /// Stiffness of the spring by which a hand holds a support while masses move, N/m; None: that
-    /// of [`input_filter::default_hand_stiffness`].
+    /// of [`hand::default_hand_stiffness`].
     #[serde(default)]
     pub hand_stiffness_n_per_m: Option<f64>,
     /// True if an equilibrium that friction makes one of many is reported with the tensions that
@@ -44,7 +44,7 @@ fn yes() -> bool {
 }
 
 fn hand_speed() -> f64 {
-    input_filter::HAND_SPEED
+    hand::HAND_SPEED
 }
 
 impl Default for Settings {
@@ -86,12 +86,12 @@ impl Settings {
         if let Some(value) = self.inner_step_s.filter(|step| !INNER_STEP_RANGE_S.contains(step)) {
             return Err(refused("inner_step_s", value, ends(&INNER_STEP_RANGE_S), Quantity::Time));
         }
-        if !(MIN_HAND_SPEED..=input_filter::MAX_SPEED).contains(&self.hand_speed_m_per_s) {
-            let allowed = [MIN_HAND_SPEED, input_filter::MAX_SPEED];
+        if !(MIN_HAND_SPEED..=smoothed_target::MAX_SPEED).contains(&self.hand_speed_m_per_s) {
+            let allowed = [MIN_HAND_SPEED, smoothed_target::MAX_SPEED];
             return Err(refused("hand speed", self.hand_speed_m_per_s, allowed, Quantity::Speed));
         }
-        if let Some(value) = self.hand_stiffness_n_per_m.filter(|k| !input_filter::HAND_STIFFNESSES.contains(k)) {
-            let allowed = ends(&input_filter::HAND_STIFFNESSES);
+        if let Some(value) = self.hand_stiffness_n_per_m.filter(|k| !hand::HAND_STIFFNESSES.contains(k)) {
+            let allowed = ends(&hand::HAND_STIFFNESSES);
             return Err(refused("hand stiffness", value, allowed, Quantity::ForcePerLength));
         }
         match self.segments {

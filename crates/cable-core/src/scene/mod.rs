@@ -27,6 +27,7 @@ mod nearest;
 pub mod obstacle;
 pub(crate) mod read;
 pub mod robot;
+mod robot_contact_outline;
 pub mod scaled;
 pub mod support;
 

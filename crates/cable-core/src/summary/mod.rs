@@ -8,7 +8,7 @@
 //! | `shape.rs` | sag, heights, lengths, touchdowns |
 //! | `balance.rs` | the sum of all forces on a cable |
 //! | `stiffness.rs` | change of force per metre that an end is moved |
-//! | `bending.rs` | what neglected bending stiffness would change |
+//! | `neglected_bending.rs` | what neglected bending stiffness would change |
 //! | `settings_compared.rs` | what other models and meshes would answer |
 //!
 //! Everything is read from a scene and an answer, so that it is the same for every model; command
@@ -16,7 +16,7 @@
 //! they leave its line by 1e-5 of its length at most.
 
 mod balance;
-mod bending;
+mod neglected_bending;
 mod settings_compared;
 mod shape;
 pub mod stiffness;
@@ -30,7 +30,7 @@ use crate::scene::{Cable, Scene, View};
 use crate::solution::{Bend, CableSolution, JudgedBend, Node, Pressure, Solution};
 
 pub use balance::ForceBalance;
-pub use bending::{Bending, NeglectedBending, neglected_bending, settle_with_bending};
+pub use neglected_bending::{Bending, NeglectedBending, neglected_bending, settle_with_bending};
 pub use settings_compared::{COMPARED_ELEMENTS, Compared, Setting, answer_with};
 pub use shape::{sag, stretched_length_m};
 pub use stiffness::{EndStiffness, end_stiffness};

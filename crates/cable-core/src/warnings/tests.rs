@@ -1,5 +1,6 @@
 use super::Bends;
-use super::{HOLD_TIME_S, Observed, WarningMonitor};
+use super::monitor::HOLD_TIME_S;
+use super::{Observed, WarningMonitor};
 use crate::contact::self_crossings::{crossings, meet};
 use crate::math::{Point, Vec2};
 use crate::problem::{Problem, problems};
@@ -53,7 +54,7 @@ fn arc(center: Point, radius: f64, from: f64, to: f64, count: usize) -> Vec<Poin
 }
 
 fn found(problem: &Problem, answer: &CableSolution) -> Vec<Warning> {
-    super::instantaneous(&observed(problem, answer))
+    super::monitor::instantaneous(&observed(problem, answer))
 }
 
 fn observed<'a>(problem: &'a Problem, answer: &'a CableSolution) -> Observed<'a> {

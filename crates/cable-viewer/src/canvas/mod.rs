@@ -14,12 +14,12 @@ use cable_core::math::Point;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 
 use crate::canvas::layers::{
-    cable, compare_overlay, contact, forces, grid, legend, obstacles, robot, robot_path, safe_reach, supports,
-    tension_marker,
+    cable, compare_overlay, contact, forces, grid, legend, no_answer, obstacles, robot, robot_path, safe_reach,
+    supports, tension_marker,
 };
 use crate::canvas::view::{CanvasView, hints_height};
 use crate::command::{Command, PlaybackCommand, ViewCommand};
-use crate::geometry::bounds;
+use crate::geometry::{bounds, torn_cable};
 use crate::render::theme;
 use crate::state::AppState;
 use crate::state::camera::{BORDER, BORDER_WITHOUT_LEGEND};
@@ -41,7 +41,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     let resized = state.view.camera.fitted_to.is_some_and(|size| size != <[f32; 2]>::from(rect.size()));
     let mut border = if state.ui.legend_beside { BORDER_WITHOUT_LEGEND } else { BORDER };
     border[3] += hints_height(state);
-    let torn = bounds::torn(state);
+    let torn = torn_cable::torn(state);
     follow(state, rect, border, torn);
     if (state.view.camera.fit_wanted || (resized && !state.view.camera.follows)) && answered {
         let bounds = bounds::scene(state);
@@ -67,7 +67,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
 
 /// A view that was not moved by hand goes with a cable that is torn off and falls, and back to the
 /// scene once the cable is whole again.
-fn follow(state: &mut AppState, rect: Rect, border: [f32; 4], torn: Option<bounds::Torn>) {
+fn follow(state: &mut AppState, rect: Rect, border: [f32; 4], torn: Option<torn_cable::Torn>) {
     let camera = &mut state.view.camera;
     match torn {
         Some(torn) if camera.follows || (camera.fitted_to.is_some() && !camera.fit_wanted && torn.falls) => {
@@ -87,7 +87,7 @@ fn is_out_of_view(state: &AppState, [low, high]: [Point; 2]) -> bool {
 /// A way to a torn cable that has left the picture, where the user moved the view: it is not moved
 /// unasked.
 pub fn offer_to_follow(ui: &Ui, rect: Rect, state: &AppState, commands: &mut Vec<Command>) {
-    if !bounds::torn(state).is_some_and(|torn| is_out_of_view(state, torn.piece)) {
+    if !torn_cable::torn(state).is_some_and(|torn| is_out_of_view(state, torn.piece)) {
         return;
     }
     let foot = egui::pos2(rect.center().x, rect.max.y - 40.0);
@@ -161,7 +161,7 @@ fn draw(view: &mut CanvasView<'_>, state: &AppState) {
         legend::contacts(view, state);
         safe_reach::legend(view, state);
     }
-    legend::banner(view, state);
+    no_answer::banner(view, state);
     if state.view.layers.labels {
         supports::labels(view, state, figures);
     }

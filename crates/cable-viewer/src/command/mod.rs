@@ -10,12 +10,13 @@
 pub mod clipboard;
 pub mod effects;
 pub mod file;
-mod hitch;
 mod import;
 mod move_item;
 mod name;
 pub mod playback;
 mod remove_item;
+mod resume;
+mod robot_hitch;
 mod route;
 pub mod scene;
 pub mod support_kind;

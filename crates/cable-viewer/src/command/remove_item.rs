@@ -3,7 +3,7 @@
 use cable_core::Scene;
 use cable_core::scene::{Shape, Support};
 
-use crate::command::hitch::set_robot;
+use crate::command::robot_hitch::set_robot;
 use crate::state::{AppState, Item};
 
 /// Takes things out, none of them twice.

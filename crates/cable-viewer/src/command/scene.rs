@@ -5,11 +5,11 @@ use cable_core::scene::{Environment, RobotTask, Support};
 use cable_core::{Cable, Load, Obstacle, Robot, Scene};
 
 use crate::command::effects::{Effects, next_number, submit_edit, submit_undone};
-use crate::command::hitch::{hitched, set_robot};
 use crate::command::move_item::{move_item, set};
 use crate::command::name::unique;
 use crate::command::playback::{self, PlaybackCommand};
 use crate::command::remove_item::{drop_lost_selection, remove_all};
+use crate::command::robot_hitch::{hitched, set_robot};
 use crate::command::waypoint::add_waypoint;
 use crate::command::{clipboard, route};
 use crate::state::undo::EditKind;

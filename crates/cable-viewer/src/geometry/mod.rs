@@ -8,8 +8,10 @@
 
 pub mod arrows;
 pub mod bounds;
+pub mod ground_ends;
 pub mod handles;
 pub mod hit_test;
 pub mod robot;
 pub mod supports;
+pub mod torn_cable;
 pub mod triangulate;

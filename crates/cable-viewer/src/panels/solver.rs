@@ -1,6 +1,6 @@
 //! The solver panel edits model, mesh and accuracy, and shows what the solver did.
 
-use cable_core::model::input_filter;
+use cable_core::model::hand;
 use cable_core::problem::problems;
 use cable_core::{Model, Settings, Solution};
 use egui::{Grid, Ui};
@@ -155,16 +155,13 @@ fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comm
     let help = "Off: a hand that carries the whole of a cable is a hundredth of its length ahead of the support";
     if tick(ui, &mut stated, "Same stiffness of the hand for every cable").on_hover_text(help).changed() {
         // That of the present cable, which is as wide a choice as any.
-        let of_cable = problems(&state.document.scene)
-            .ok()
-            .and_then(|all| all.first().map(|p| input_filter::default_hand_stiffness(p)));
+        let of_cable =
+            problems(&state.document.scene).ok().and_then(|all| all.first().map(|p| hand::default_hand_stiffness(p)));
         commands.push(set(stated.then(|| of_cable.unwrap_or(FIRST_STIFFNESS))));
     }
     let Some(value) = stiffness else { return };
     if let Some(value) = row(ui, &HAND_STIFFNESS, &Provenance { value, ..Provenance::default() }).value {
-        commands.push(set(Some(
-            value.clamp(*input_filter::HAND_STIFFNESSES.start(), *input_filter::HAND_STIFFNESSES.end()),
-        )));
+        commands.push(set(Some(value.clamp(*hand::HAND_STIFFNESSES.start(), *hand::HAND_STIFFNESSES.end()))));
     }
 }
 

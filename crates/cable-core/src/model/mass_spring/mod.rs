@@ -75,7 +75,7 @@ use dynamics::momentum::Account;
 use dynamics::rollback::{Rollback, transaction};
 use dynamics::sub_step::integrate;
 use dynamics::supports::SupportDrives;
-use dynamics::{Clock, hands, impacts};
+use dynamics::{Clock, buried_nodes, hands};
 use equilibrium::contact_energy::Anchors;
 use equilibrium::error_estimate::{Estimate, Start};
 use equilibrium::quasi_static::{find_equilibrium, quasi_static_step};
@@ -380,7 +380,7 @@ impl Mechanics for MassSpringModel {
         }
         let supports = self.support_arc_lengths(state);
         let next = self.on_shape(state, &supports).ok_or_else(|| unsupported(Unsupported::EmptyState))?;
-        impacts::refuse_buried(&next.chain.mesh)?;
+        buried_nodes::refuse_buried(&next.chain.mesh)?;
         *self = next;
         Ok(())
     }

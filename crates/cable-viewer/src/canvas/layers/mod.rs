@@ -12,6 +12,7 @@ pub mod contact;
 pub mod forces;
 pub mod grid;
 pub mod legend;
+pub mod no_answer;
 pub mod obstacles;
 pub mod robot;
 pub mod robot_path;

@@ -23,7 +23,7 @@ use crate::model::fem::time::bdf2::{Weights, keep_balanced_tensions, report_held
 use crate::model::fem::time::momentum::{account_for_step, forces_in_step};
 use crate::model::fem::time::{hands, loss_memory, plastic_impact};
 use crate::model::gauge::TensionGauge;
-use crate::model::input_filter::held_warning;
+use crate::model::smoothed_target::held_warning;
 use crate::model::{Inertia, StepReport};
 use crate::solution::{CableSolution, Cost, Warning, WarningCause};
 

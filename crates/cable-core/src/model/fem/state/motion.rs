@@ -3,7 +3,8 @@
 
 use crate::math::{RigidPose, Vec2};
 use crate::model::fem::state::account::Account;
-use crate::model::input_filter::{Hand, SmoothedTarget};
+use crate::model::hand::Hand;
+use crate::model::smoothed_target::SmoothedTarget;
 
 /// Part by which steps may differ and count as even.
 const EVEN_STEP_TOLERANCE: f64 = 1e-9;

@@ -7,7 +7,7 @@ use crate::model::fem::state::support_stop::{no_farther_than, stopped_by_obstacl
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::contact::floor_friction;
 use crate::model::fem::system::mesh::Clamp;
-use crate::model::input_filter::MAX_SPEED;
+use crate::model::smoothed_target::MAX_SPEED;
 use crate::scene::SupportKind;
 
 /// Sets the input anew after a change of the mesh, for what is read off it between steps.

@@ -6,7 +6,8 @@ use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::control::HandDrive;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::step_input::Unknowns;
-use crate::model::input_filter::{Hand, SmoothedTarget, is_led};
+use crate::model::hand::Hand;
+use crate::model::smoothed_target::{SmoothedTarget, is_led};
 use crate::solution::Warning;
 
 /// Force that holds a support's node against its bars and what hangs there, N.

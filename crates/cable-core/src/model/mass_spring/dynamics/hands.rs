@@ -2,7 +2,7 @@
 //! between the cable and the spring: that is taken at the end of the sub-step, so no spring is too
 //! stiff for it.
 
-use crate::model::input_filter::Hand;
+use crate::model::hand::Hand;
 use crate::model::mass_spring::dynamics::SubStep;
 use crate::model::mass_spring::dynamics::momentum::Account;
 use crate::model::mass_spring::dynamics::supports::{HandSettings, SupportDrives};

@@ -1,34 +1,9 @@
 //! Impulses act where the cable meets an obstacle in a sub-step.
 
-use crate::error::SolveError;
 use crate::math::{Vec2, bounded};
-use crate::model::Model;
 use crate::model::mass_spring::contact_memory::{ContactImpulse, ContactMemory};
 use crate::model::mass_spring::dynamics::momentum::Account;
 use crate::model::mass_spring::mesh::cable_mesh::Mesh;
-
-/// Refuses to go on from where the middle of the cable is inside an obstacle: distances have no
-/// sign there, and what should push it out would hold it in. A shallow penetration is pushed
-/// out.
-pub(in crate::model::mass_spring) fn refuse_buried(mesh: &Mesh) -> Result<(), SolveError> {
-    let world = &mesh.problem.world;
-    if world.is_empty() {
-        return Ok(());
-    }
-    let free = (0..mesh.position.len()).filter(|&n| !mesh.supported[n] && mesh.wheels.at_node[n].is_none());
-    let gaps = free.filter_map(|n| Some((n, world.signed_gap(mesh.position[n], f64::INFINITY)?)));
-    let inside = gaps.filter(|(_, gap)| gap.gap_m < -mesh.problem.radius);
-    if let Some((n, deepest)) = inside.min_by(|a, b| a.1.gap_m.total_cmp(&b.1.gap_m)) {
-        return Err(SolveError::Buried {
-            model: Model::MassSpring,
-            obstacle: world.obstacle_name(deepest.obstacle).to_owned(),
-            depth_m: -deepest.gap_m,
-            arc_length_m: mesh.arc_length[n],
-            at_m: mesh.position[n],
-        });
-    }
-    Ok(())
-}
 
 /// Makes velocities such that nothing is entered in this sub-step: at each contact an inelastic
 /// normal impulse and a friction impulse within the Coulomb cone. Inside the cone the
@@ -102,20 +77,4 @@ fn apply_one(contact: &mut ContactImpulse, mesh: &mut Mesh, account: &mut Accoun
     account.contacts += j * (of(a, 1.0 - c) + of(b, c));
     mesh.velocity[a] += j * ((1.0 - c) * ia);
     mesh.velocity[b] += j * (c * ib);
-}
-
-/// Lets the floor of a plan view take up to μ·w·ds·dt of each node's momentum in a time `h` (s).
-pub(in crate::model::mass_spring) fn floor_friction(mesh: &mut Mesh, account: &mut Account, h: f64) {
-    let Some((mu, normal)) = mesh.problem.floor_friction else { return };
-    for i in 0..mesh.position.len() {
-        let before = if i > 0 { mesh.material_length[i - 1] } else { 0.0 };
-        let ds = 0.5 * (before + mesh.material_length.get(i).copied().unwrap_or(0.0));
-        let speed = mesh.velocity[i].norm();
-        let loss = mu * normal * ds * h / mesh.mass[i];
-        if !mesh.supported[i] {
-            let kept = if speed <= loss { 0.0 } else { 1.0 - loss / speed };
-            account.contacts -= mesh.velocity[i] * ((1.0 - kept) * mesh.mass[i]);
-            mesh.velocity[i] *= kept;
-        }
-    }
 }

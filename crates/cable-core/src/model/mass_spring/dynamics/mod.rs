@@ -2,7 +2,9 @@
 //! over pulleys, impacts, the account of momentum, limits and rollback. `chain_state` has the parts
 //! that a step changes.
 
+pub(in crate::model::mass_spring) mod buried_nodes;
 pub(in crate::model::mass_spring) mod chain_state;
+pub(in crate::model::mass_spring) mod floor_friction;
 pub(in crate::model::mass_spring) mod hands;
 pub(in crate::model::mass_spring) mod impacts;
 pub(in crate::model::mass_spring) mod momentum;

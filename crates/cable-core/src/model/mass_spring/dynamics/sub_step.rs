@@ -9,7 +9,7 @@ use crate::model::mass_spring::dynamics::chain_state::ChainState;
 use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;
 use crate::model::mass_spring::dynamics::sliding::slide;
 use crate::model::mass_spring::dynamics::supports::HandSettings;
-use crate::model::mass_spring::dynamics::{SubStep, hands, impacts};
+use crate::model::mass_spring::dynamics::{SubStep, floor_friction, hands, impacts};
 use crate::model::mass_spring::forces::{nodal, tension};
 use crate::model::mass_spring::mesh::cable_mesh::Mesh;
 use crate::model::mass_spring::mesh::edit::release_pulleys;
@@ -85,7 +85,7 @@ pub(in crate::model::mass_spring) fn integrate(
         }
         account.add_kick(mesh, chain.clock.time_s, kick);
         chain.drives.correct_released(mesh, account, kick - 0.5 * h);
-        impacts::floor_friction(mesh, account, kick);
+        floor_friction::floor_friction(mesh, account, kick);
         impacts::apply(&mut chain.contacts, mesh, account, h);
         for i in 0..mesh.position.len() {
             mesh.position[i] += mesh.velocity[i] * h;

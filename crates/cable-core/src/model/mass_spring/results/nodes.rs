@@ -3,7 +3,7 @@
 use crate::energy::bending::turn;
 use crate::math::{Vec2, angle, perp};
 use crate::model::arc_nodes;
-use crate::model::input_filter::Hand;
+use crate::model::hand::Hand;
 use crate::model::mass_spring::forces::{bending, nodal, reactions};
 use crate::model::mass_spring::mesh::cable_mesh::Mesh;
 use crate::model::mass_spring::mesh::pulley::Pulley;

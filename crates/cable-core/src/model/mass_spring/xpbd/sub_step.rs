@@ -19,6 +19,7 @@ use crate::math::Vec2;
 use crate::model::Settings;
 use crate::model::gauge::TensionGauge;
 use crate::model::mass_spring::dynamics::chain_state::ChainState;
+use crate::model::mass_spring::dynamics::floor_friction;
 use crate::model::mass_spring::dynamics::hands;
 use crate::model::mass_spring::dynamics::impacts;
 use crate::model::mass_spring::dynamics::runaway_guard::RunawayGuard;
@@ -56,7 +57,7 @@ pub(in crate::model::mass_spring) fn preview(
         gauge.keep();
         guard.limit(&mut chain.mesh, &mut chain.drives, chain.clock.time_s);
         let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
-        impacts::floor_friction(mesh, account, h);
+        floor_friction::floor_friction(mesh, account, h);
         impacts::apply(&mut chain.contacts, mesh, account, h);
         for (x, v) in mesh.position.iter_mut().zip(&mesh.velocity) {
             *x += v * h;
