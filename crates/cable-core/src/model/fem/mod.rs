@@ -243,7 +243,7 @@ impl FemModel {
         let (start, spans) =
             if begins && self.starts_from_spans { self.start_from_spans() } else { (SpansStart::Unknown, None) };
         if begins && !matches!(start, SpansStart::Accepted(_)) {
-            self.start_from_own_statics();
+            self.start_from_own_statics(self.tuning().start.eased_loads);
         }
         let has_equilibrium = matches!(start, SpansStart::Accepted(_) | SpansStart::Rejected);
         let first = self.dynamics.cable.state();
@@ -319,8 +319,9 @@ impl FemModel {
     /// mesh (nested iteration), as slack runs along the bars in waves, in as many steps of
     /// relaxation as there are bars; and of less axial stiffness (continuation), as the search
     /// among bars that hardly stretch is ill-conditioned, and where they rest is hardly another
-    /// place. That one may begin at one that is easier still.
-    fn start_from_easier_cable(&mut self) {
+    /// place. That one may begin at one that is easier still. Of cables of less than `eased_loads`
+    /// axial stiffness, in whole loads, the search is not made easier so.
+    fn start_from_easier_cable(&mut self, eased_loads: f64) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
         let tuning = self.tuning().clone();
         let segments = if fine > tuning.start.two_mesh_bars {
@@ -328,10 +329,9 @@ impl FemModel {
         } else {
             self.settings.segments
         };
-        let enough = tuning.start.search_stiffness_loads * self.problem.whole_load();
-        let own = self.problem.axial_stiffness;
-        let less = own / tuning.start.stiffness_ratio;
-        let axial_stiffness = if enough > 0.0 && less >= enough { less } else { own };
+        let (own, load, start) = (self.problem.axial_stiffness, self.problem.whole_load(), tuning.start);
+        let is_eased = load > 0.0 && own >= eased_loads * load;
+        let axial_stiffness = if is_eased { own / start.stiffness_ratio } else { own };
         if segments == self.settings.segments && axial_stiffness == own {
             return;
         }
@@ -344,7 +344,7 @@ impl FemModel {
         }
         easier.dynamics.cable.meshing.slides = self.dynamics.cable.meshing.slides;
         easier.dynamics.solver.work_left = WorkBudget::Left(tuning.equilibrium.max_work);
-        easier.start_from_own_statics();
+        easier.start_from_own_statics(start.stiffness_ratio * start.softest_loads);
         if easier.settle_dynamics(false).is_err() {
             return;
         }
@@ -357,11 +357,11 @@ impl FemModel {
 
     /// Starts where the cable would rest among no obstacles, and then where one rests that is
     /// solved more easily.
-    fn start_from_own_statics(&mut self) {
+    fn start_from_own_statics(&mut self, eased_loads: f64) {
         if self.statics.settle(&self.dragged).is_ok() {
             self.dynamics.start_from_shape(&self.statics.state(), &self.dragged);
         }
-        self.start_from_easier_cable();
+        self.start_from_easier_cable(eased_loads);
     }
 
     /// Finds the equilibrium of a stiff cable as an elastica, from that of a flexible one; None

@@ -542,11 +542,13 @@ pub struct StartTuning {
     /// Ratio of the bar lengths of the two meshes. Smaller: more meshes, each nearer to the next.
     /// Larger: the coarse solution differs from that of the fine mesh.
     pub mesh_ratio: usize,
-    /// Least axial stiffness, in whole loads, of the cable at whose rest the search for the initial
-    /// equilibrium of a stiffer one begins. Smaller: that cable stretches by more, and rests
-    /// elsewhere. Larger: slack cables in folds find no rest (over posts and beams 10 of 300 where
-    /// no cable is softened, one of nearly as many with this).
-    pub search_stiffness_loads: f64,
+    /// Least axial stiffness, in whole loads, of a cable whose search for the initial equilibrium
+    /// begins at that of a softer one. Smaller: cables that find theirs by themselves come to lie
+    /// otherwise. Larger: slack ones in folds find none (of 300 over posts and beams 10 did not).
+    pub eased_loads: f64,
+    /// Least axial stiffness, in whole loads, of these softer ones. Smaller: they stretch by more,
+    /// and rest elsewhere. Larger: some folds find no rest yet.
+    pub softest_loads: f64,
     /// Ratio of the axial stiffnesses of two such cables. Smaller: more of them. Larger: the next
     /// does not come to rest from where the one before did.
     pub stiffness_ratio: f64,
@@ -581,7 +583,8 @@ impl Default for StartTuning {
             max_stiff_force_change: 0.5,
             two_mesh_bars: 500,
             mesh_ratio: 8,
-            search_stiffness_loads: 1e3,
+            eased_loads: 1e5,
+            softest_loads: 1e3,
             stiffness_ratio: 10.0,
             max_refined_bars: 800,
             max_mark_turn_rad: 2.8,
