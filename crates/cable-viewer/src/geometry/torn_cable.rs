@@ -5,7 +5,7 @@ use cable_core::math::Point;
 use crate::geometry::bounds::Bounds;
 use crate::state::AppState;
 
-/// What has become of a cable that broke.
+/// A cable that broke: its longest piece, and if it falls.
 #[derive(Clone, Copy, Debug)]
 pub struct Torn {
     /// Least and greatest corner of its longest piece, m.

@@ -1,4 +1,4 @@
-//! Whether a folder, and each file in it, is as a run left it: nothing else is touched.
+//! Only a folder, and files in it, that are as a run left them are touched.
 
 use std::fs;
 use std::io::{self, Read};
