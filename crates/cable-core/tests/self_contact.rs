@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 use cable_core::contact::distance::cross_properly;
-use cable_core::contact::self_contact::SelfContact;
+use cable_core::contact::self_contact_pairs::SelfContact;
 use cable_core::math::Vec2;
 use cable_core::scene::{Obstacle, Scene, Shape, Support, catalog};
 use cable_core::{Model, Settings, Simulation};

@@ -23,7 +23,7 @@ pub(crate) mod nearest_corner;
 pub(crate) mod neighbour_lists;
 pub mod outline;
 pub(crate) mod pairs;
-pub mod self_contact;
+pub mod self_contact_pairs;
 pub(crate) mod self_crossings;
 pub(crate) mod sweep;
 pub(crate) mod swept_corners;

@@ -256,7 +256,7 @@ impl Mechanics for SwitchingModel {
                 self.adopted = None;
                 report.warnings.extend(self.try_switch_back());
                 if self.fem.is_none() {
-                    report.warnings.extend(self.spans.other_balances());
+                    report.warnings.extend(self.spans.other_equilibria());
                 }
             }
             Err(_) if first => {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::{Simulation, loading_histories};
 use crate::model::Settings;
-use crate::model::catenary::other_balances;
+use crate::model::catenary::other_equilibria;
 use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::problem::Problem;
 use crate::solution::{Histories, ShownEquilibrium, Warning, WarningCause, WarningKind};
@@ -23,7 +23,7 @@ impl Simulation {
                 if told || !cable.breaks().is_empty() {
                     continue;
                 }
-                let others = other_balances(problem, answer, cable.time_s());
+                let others = other_equilibria(problem, answer, cable.time_s());
                 self.warnings.extend(others.map(|histories| {
                     let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
                     Warning::new(cause, name, 0.0, [0.0; 2])

@@ -25,11 +25,11 @@
 mod answer;
 mod balance;
 mod cable;
-mod flexible;
+mod flexible_cable;
 mod penetration;
 mod pulleys;
 mod stability;
-mod stiff;
+mod stiff_cable;
 mod support_hold;
 mod supports;
 mod surroundings;
@@ -120,10 +120,10 @@ fn check(found: &mut Verification, checked: &CheckedCable<'_>, depth: Depth) {
         supports::check_supports(checked, found);
         balance::check_balance(checked, found, &near);
         if answer.assumptions.bending_stiffness_n_m2 > 0.0 {
-            stiff::check_stiff(checked, found);
+            stiff_cable::check_stiff(checked, found);
             stability::check_stability(checked, found, &near);
         } else {
-            flexible::check_flexible(checked, found, &near);
+            flexible_cable::check_flexible(checked, found, &near);
             pulleys::check_pulleys(checked, found);
         }
     }

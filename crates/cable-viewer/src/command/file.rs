@@ -13,7 +13,7 @@ use crate::command::import;
 use crate::command::scene::{self, SceneCommand};
 use crate::io::feedback::{self, Answers};
 use crate::io::graph_file;
-use crate::io::graph_sheet::Sheet;
+use crate::io::graph_in_view::GraphInView;
 use crate::io::saved_run::{SavedRun, read_run};
 use crate::io::scene_file;
 use crate::record::run::Run;
@@ -47,7 +47,7 @@ pub enum FileCommand {
     /// Saves to a file.
     SaveAs(PathBuf),
     /// Writes what was in view of a graph.
-    Export(PathBuf, Box<Sheet>),
+    Export(PathBuf, Box<GraphInView>),
     /// Asks where to draw the canvas to.
     AskExportPicture,
     /// Draws the canvas with its legend to a file.

@@ -168,10 +168,10 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             state.analysis.safe_reach.progress = Progress::Running(0.0, None);
             (state.analysis.safe_reach.began, state.analysis.safe_reach.stopped) = (Some(Instant::now()), None);
             let corners_m = match moved {
-                ReachSubject::Robot => crate::geometry::ground_ends::ground(state).map(|x| [x, 0.0]),
+                ReachSubject::Robot => crate::geometry::terrain_extent::ground(state).map(|x| [x, 0.0]),
                 ReachSubject::Support { cable, support } => {
                     let at = crate::geometry::supports::support_position(state, cable, support);
-                    crate::geometry::ground_ends::above_ground(state, at, state.view.visible_m)
+                    crate::geometry::terrain_extent::within_terrain(state, at, state.view.visible_m)
                 }
             };
             let (scene, settings, across) =

@@ -8,10 +8,10 @@
 
 pub mod arrows;
 pub mod bounds;
-pub mod ground_ends;
 pub mod handles;
 pub mod hit_test;
 pub mod robot;
 pub mod supports;
+pub mod terrain_extent;
 pub mod torn_cable;
 pub mod triangulate;

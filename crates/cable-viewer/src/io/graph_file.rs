@@ -5,19 +5,19 @@ use std::path::Path;
 
 use cable_core::files;
 
-use crate::io::graph_drawing;
-use crate::io::graph_sheet::{Sheet, visible};
+use crate::io::graph_in_view::{GraphInView, visible};
+use crate::io::graph_layout;
 
 /// Writes what is in view in the format that the path's ending names.
 ///
 /// # Errors
 /// In words: another ending, or the path refuses.
-pub fn save(path: &Path, sheet: &Sheet) -> Result<(), String> {
+pub fn save(path: &Path, sheet: &GraphInView) -> Result<(), String> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let bytes = match ending.as_str() {
         "csv" => csv(sheet).into_bytes(),
-        "svg" => graph_drawing::svg(sheet).into_bytes(),
-        "png" => graph_drawing::png(sheet)?,
+        "svg" => graph_layout::svg(sheet).into_bytes(),
+        "png" => graph_layout::png(sheet)?,
         _ => return Err("its name must end in .csv, .svg or .png".to_owned()),
     };
     files::write_atomic(path, &bytes).map_err(|e| e.to_string())
@@ -26,7 +26,7 @@ pub fn save(path: &Path, sheet: &Sheet) -> Result<(), String> {
 /// A row for each place, a column for each line; SI units, and the fewest digits that read back to
 /// the same bits.
 #[must_use]
-pub fn csv(sheet: &Sheet) -> String {
+pub fn csv(sheet: &GraphInView) -> String {
     let name = |text: &str| text.to_lowercase().replace([' ', ',', '"', '\n', '\r'], "_");
     let mut out = sheet.across[1].clone();
     for line in &sheet.lines {
@@ -58,7 +58,7 @@ pub fn csv(sheet: &Sheet) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::graph_sheet::sample as sheet;
+    use crate::io::graph_in_view::sample as sheet;
 
     #[test]
     fn a_line_named_as_its_quantity_is_named_once() {

@@ -13,7 +13,7 @@ use std::ops::RangeInclusive;
 use egui::{Align2, Color32, Id, RichText, Sense, Stroke, TextStyle, Ui, vec2};
 use egui_plot::{GridInput, GridMark, HLine, HoverPosition, LineStyle, Plot, PlotBounds, PlotUi};
 
-use crate::io::graph_sheet::Sheet;
+use crate::io::graph_in_view::GraphInView;
 use crate::plot::cursors::Cursors;
 use crate::record::measure::Measure;
 use crate::record::series::{Series, line_style, value_at};
@@ -134,7 +134,7 @@ pub struct GraphResponse {
     /// The time to show, s: the playhead was dragged.
     pub scrubbed_s: Option<f64>,
     /// It is to be exported: what is in view, with the lines as they were drawn.
-    pub export: Option<Box<Sheet>>,
+    pub export: Option<Box<GraphInView>>,
 }
 
 /// Lowest and highest value in view, SI.
@@ -248,7 +248,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     let figure = response.response.labelled_by(title);
     let ribbon = graph.ribbon.last().map(|r| r.map(|v| v / si));
     speak(&figure, (graph.title, ribbon), lines, ((symbol, si), cursor_text));
-    let sheet = || Sheet {
+    let sheet = || GraphInView {
         title: graph.title.to_owned(),
         across: [format!("{across}, {across_symbol}"), format!("{}_{column}", across.to_lowercase().replace(' ', "_"))],
         up: [format!("{}, {symbol}", graph.measure.name()), graph.measure.suffix().to_owned()],

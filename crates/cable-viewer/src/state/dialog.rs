@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use cable_core::Scene;
 
 use crate::io::feedback::Answers;
-use crate::io::graph_sheet::Sheet;
+use crate::io::graph_in_view::GraphInView;
 
 /// An action that takes the place of the present scene, and so asks first if it is not saved.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,7 +54,7 @@ pub enum Dialog {
         /// The path as typed so far.
         path: String,
         /// The part that was in view.
-        sheet: Box<Sheet>,
+        sheet: Box<GraphInView>,
     },
     /// Where to draw the canvas to.
     ExportPicture {

@@ -9,7 +9,7 @@
 mod equilibrium;
 mod first_guess;
 pub(super) mod layout;
-mod other_balances;
+mod multiple_equilibria;
 pub(super) mod report;
 pub mod settings;
 mod slide;
@@ -21,7 +21,7 @@ use std::sync::Arc;
 use self::equilibrium::{Equilibrium, Start, solve};
 use self::first_guess::{first_arcs, nearest_along, spread};
 use self::layout::{Layout, unsupported};
-pub(crate) use self::other_balances::other_balances;
+pub(crate) use self::multiple_equilibria::other_equilibria;
 use self::report::{report, straight};
 use self::settings::CatenarySettings;
 use self::slide::Mode;

@@ -3,7 +3,7 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | `state` | the state of the cable (`state/cable.rs`) and its parts, the setup of a step, and what controls it (`state/control.rs`) |
+//! | `state` | the state of the cable (`state/cable.rs`) and its parts, and the setup of a step |
 //! | `dynamics` | advances that state: one step with inertia, halvings, reports |
 //! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
 //! | `bows` | the other equilibria of a stiff cable that is compressed |
@@ -45,8 +45,8 @@ use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::model::fem::equilibrium::quasi_static::slides_as_a_whole;
 use crate::model::fem::mesh_error::{Refinement, TwoMeshes};
-use crate::model::fem::obstacle::moving_outline::outline_report;
-use crate::model::fem::obstacle::moving_outline::place_outline;
+use crate::model::fem::obstacle::outline_depenetration::outline_report;
+use crate::model::fem::obstacle::outline_depenetration::place_outline;
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::system::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;
@@ -639,7 +639,7 @@ impl Mechanics for FemModel {
     }
 
     fn inner_step_s(&self) -> f64 {
-        self.dynamics.pacing.pace.longest_step()
+        self.dynamics.time_control.step_size.longest_step()
     }
 
     fn copy_to_keep(&self) -> Box<dyn Mechanics> {
@@ -656,7 +656,7 @@ impl Mechanics for FemModel {
     fn borrow(&mut self, own: Option<OwnedResources>) {
         let own = own.unwrap_or_else(|| OwnedResources {
             memory: None,
-            problem: state::moving_outline::with_outline(self.problem.clone()),
+            problem: state::outline_path::with_outline(self.problem.clone()),
         });
         self.dynamics.solver.memory.0 = own.memory.and_then(|memory| memory.downcast().ok());
         self.dynamics.cable.problem = own.problem;

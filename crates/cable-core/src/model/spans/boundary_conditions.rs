@@ -1,4 +1,4 @@
-//! Boundary conditions say what is given at an instant, and how a scene's cable falls into runs.
+//! Boundary conditions say what is given at an instant, and how they cut a cable into sections.
 
 use std::sync::Arc;
 
@@ -10,8 +10,8 @@ use crate::model::Model;
 use crate::model::catenary::layout::hint_of_weight;
 use crate::model::spans::boundary::capstan::Law;
 use crate::model::spans::boundary::curve::{Curve, SUPPORT_CONTACT_DISTANCE_M};
+use crate::model::spans::cable_section::{CableSection, Course, Tie};
 use crate::model::spans::failure::Failure;
-use crate::model::spans::run::{CableRun, Course, Tie};
 use crate::model::spans::settings::SpansSettings;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
@@ -43,7 +43,7 @@ struct Load {
     load: usize,
 }
 
-/// A pulley between the ends of a strand.
+/// A pulley between the ends of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) struct Pulley {
     pub support: usize,
@@ -63,11 +63,11 @@ pub(in crate::model::spans) struct Layout {
     loads: Vec<Load>,
     /// Corners that it must not pass, in order of x.
     pub corners: Arc<[Corner]>,
-    /// Strands: material from, to (m) and the support at each end; None = free or dead load.
-    pub strands: Vec<Part>,
+    /// Sections: material from, to (m) and the support at each end; None = free or dead load.
+    pub sections: Vec<Part>,
 }
 
-/// A strand between grips.
+/// A section between grips.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::model::spans) struct Part {
     pub material: [f64; 2],
@@ -87,10 +87,10 @@ pub(in crate::model::spans) enum CableEnd {
     End,
 }
 
-/// All strands of a cable at an instant.
+/// All sections of a cable at an instant.
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct CableEquilibrium {
-    pub strands: Vec<CableRun>,
+    pub sections: Vec<CableSection>,
     pub course: Course,
     pub instant: BoundaryConditions,
 }
@@ -136,7 +136,7 @@ impl Layout {
         for (load, l) in p.loads.iter().enumerate() {
             loads.push(Load { arc_length: l.arc_length, support: None, load });
         }
-        let mut strands: Vec<Part> = Vec::new();
+        let mut sections: Vec<Part> = Vec::new();
         let start = Part { material: [0.0, p.length], supports: [None, None], pulleys: Vec::new() };
         let mut part = start.clone();
         let bodies = p.world.geometry().bodies().len();
@@ -158,21 +158,21 @@ impl Layout {
                     if arc_length > part.material[0] {
                         part.material[1] = arc_length;
                         part.supports[1] = Some(k);
-                        strands.push(part.clone());
+                        sections.push(part.clone());
                     }
                     part = Part { material: [arc_length, p.length], supports: [Some(k), None], pulleys: Vec::new() };
                 }
             }
         }
         if part.material[1] > part.material[0] {
-            strands.push(part);
+            sections.push(part);
         }
         if p.supports.iter().all(|s| s.at.is_none()) && p.world.is_empty() {
             return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
         loads.sort_by(|a, b| a.arc_length.total_cmp(&b.arc_length));
         let corners = swept_corners::corners(&problem.world).into();
-        let mut layout = Self { problem: problem.clone(), settings, counted_from, loads, corners, strands };
+        let mut layout = Self { problem: problem.clone(), settings, counted_from, loads, corners, sections };
         layout.face_wheels();
         Ok(layout)
     }
@@ -183,7 +183,7 @@ impl Layout {
         let (p, reversed) = (&self.problem, self.counted_from == CableEnd::End);
         let held: Vec<usize> = (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).collect();
         let at = |k: usize| p.supports[k].at.unwrap_or_default();
-        for pulley in self.strands.iter_mut().flat_map(|s| &mut s.pulleys) {
+        for pulley in self.sections.iter_mut().flat_map(|s| &mut s.pulleys) {
             let s = &p.supports[pulley.support];
             if s.wheel_radius == 0.0 {
                 continue;
@@ -257,7 +257,7 @@ impl Layout {
         for (l, force) in course.loads.iter_mut().zip(&instant.forces) {
             l.force = *force;
         }
-        for pulley in self.strands.iter().flat_map(|s| &s.pulleys) {
+        for pulley in self.sections.iter().flat_map(|s| &s.pulleys) {
             for curve in course.curves.iter_mut().skip(pulley.curve).take(2) {
                 curve.shift = instant.places[pulley.support];
             }
@@ -268,7 +268,7 @@ impl Layout {
                 curve.friction = body.friction * instant.friction;
             }
         }
-        for pulley in self.strands.iter().flat_map(|s| &s.pulleys) {
+        for pulley in self.sections.iter().flat_map(|s| &s.pulleys) {
             for curve in course.curves.iter_mut().skip(pulley.curve).take(2) {
                 curve.friction = self.problem.supports[pulley.support].friction * instant.friction;
             }
@@ -315,21 +315,21 @@ impl BoundaryConditions {
     }
 }
 
-/// Moves the ends of a strand to where an instant has them.
+/// Moves the ends of a section to where an instant has them.
 ///
 /// # Errors
 /// A support inside an obstacle.
 pub(in crate::model::spans) fn place_ends(
     layout: &Layout,
     index: usize,
-    strand: &mut CableRun,
+    section: &mut CableSection,
     course: &Course,
     instant: &BoundaryConditions,
 ) -> Result<(), Failure> {
-    let part = &layout.strands[index];
+    let part = &layout.sections[index];
     for side in 0..2 {
         let Some(support) = part.supports[side] else {
-            if let Tie::Hangs(force) | Tie::Loose(force) = &mut strand.ties[side] {
+            if let Tie::Hangs(force) | Tie::Loose(force) = &mut section.ties[side] {
                 *force = layout.end_force(instant, part.material[side]);
             }
             continue;
@@ -340,7 +340,7 @@ pub(in crate::model::spans) fn place_ends(
         if gap.is_some_and(|g| g < -SUPPORT_CONTACT_DISTANCE_M) {
             return Err(Failure::SupportInside { at });
         }
-        crate::model::spans::contact::support_contact::place(strand, course, side, at);
+        crate::model::spans::contact::support_contact::place(section, course, side, at);
     }
     Ok(())
 }

@@ -1,26 +1,26 @@
 //! The continuation follows an equilibrium through time, and halves load steps that fail.
 //!
-//! A step solves each strand for the new supports and loads, and checks the answer. A way to an
+//! A step solves each section for the new supports and loads, and checks the answer. A way to an
 //! instant is made of such steps ([`CableEquilibrium::travel`]). Where no equilibrium near by leads
 //! on, the cable slides under a drag to the next one that holds it.
 
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};
+use crate::model::spans::acceptance::clearance;
+use crate::model::spans::acceptance::equilibrium;
+use crate::model::spans::acceptance::tension_loss;
+use crate::model::spans::acceptance::tunnelling;
 use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::boundary::loose::Loose;
 use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout, place_ends};
+use crate::model::spans::cable_section::CableSection;
 use crate::model::spans::changes;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::slip_predictor::predict_slip;
 use crate::model::spans::newton::{Solved, Work};
-use crate::model::spans::run::CableRun;
 use crate::model::spans::slack::{self, LooseShapes};
-use crate::model::spans::verify::clearance;
-use crate::model::spans::verify::equilibrium;
-use crate::model::spans::verify::tension_loss;
-use crate::model::spans::verify::tunnelling;
 
 /// A force that differs by less than this part is the same.
 const FORCE_TOLERANCE: f64 = 1e-9;
@@ -64,7 +64,7 @@ impl CableEquilibrium {
         self.step_from(layout, to, &[], work)
     }
 
-    /// One step to an instant. `routes` are the shapes of the strands from which a first
+    /// One step to an instant. `routes` are the shapes of the sections from which a first
     /// equilibrium is sought, else empty.
     pub(super) fn step_from(
         &mut self,
@@ -74,12 +74,12 @@ impl CableEquilibrium {
         work: &mut Work,
     ) -> Result<StepStats, Failure> {
         let mut taken = StepStats::default();
-        work.before.clone_from(&self.strands);
+        work.before.clone_from(&self.sections);
         work.instants[0].clone_from(&self.instant);
         self.instant.clone_from(to);
         layout.set_course(&mut self.course, to);
-        for k in 0..self.strands.len() {
-            match self.solve_strand(layout, k, routes.get(k).map(Vec::as_slice), work) {
+        for k in 0..self.sections.len() {
+            match self.solve_section(layout, k, routes.get(k).map(Vec::as_slice), work) {
                 Ok(one) => taken = taken.and(one),
                 Err(failure) => {
                     self.undo(layout, work);
@@ -96,48 +96,48 @@ impl CableEquilibrium {
 
     /// Goes back to where the last step began.
     fn undo(&mut self, layout: &Layout, work: &Work) {
-        self.strands.clone_from(&work.before);
+        self.sections.clone_from(&work.before);
         self.instant.clone_from(&work.instants[0]);
         layout.set_course(&mut self.course, &self.instant);
     }
 
-    /// Solves one strand for the present instant; on an error it is where it was. `route` is the
+    /// Solves one section for the present instant; on an error it is where it was. `route` is the
     /// shape that a first equilibrium is sought from.
-    fn solve_strand(
+    fn solve_section(
         &mut self,
         layout: &Layout,
         k: usize,
         route: Option<&[Vec2]>,
         work: &mut Work,
     ) -> Result<StepStats, Failure> {
-        let [mut start, mut moved] = std::mem::take(&mut work.strands);
-        start.clone_from(&self.strands[k]);
-        let found = self.solve_strand_from(layout, k, route, [&mut start, &mut moved], work);
+        let [mut start, mut moved] = std::mem::take(&mut work.sections);
+        start.clone_from(&self.sections[k]);
+        let found = self.solve_section_from(layout, k, route, [&mut start, &mut moved], work);
         if found.is_err() {
-            self.strands[k].clone_from(&start);
+            self.sections[k].clone_from(&start);
         }
-        work.strands = [start, moved];
+        work.sections = [start, moved];
         found
     }
 
-    /// As [`Self::solve_strand`]; on an error the strand is anywhere.
-    fn solve_strand_from(
+    /// As [`Self::solve_section`]; on an error the section is anywhere.
+    fn solve_section_from(
         &mut self,
         layout: &Layout,
         k: usize,
         route: Option<&[Vec2]>,
-        [start, moved]: [&mut CableRun; 2],
+        [start, moved]: [&mut CableSection; 2],
         work: &mut Work,
     ) -> Result<StepStats, Failure> {
-        if self.strands[k].loose.is_some() {
+        if self.sections[k].loose.is_some() {
             return self.lay_loose_again(layout, k);
         }
-        let solved = self.find_strand_equilibrium(layout, k, route, [&mut *start, moved], work)?;
+        let solved = self.find_section_equilibrium(layout, k, route, [&mut *start, moved], work)?;
         let mut taken = StepStats { solved, ..StepStats::default() };
         if route.is_none() {
-            taken.missing_friction = point_load::fresh(&self.strands[k], &self.course);
+            taken.missing_friction = point_load::fresh(&self.sections[k], &self.course);
         }
-        for c in &mut self.strands[k].contacts {
+        for c in &mut self.sections[k].contacts {
             let track = self.course.track(c).seen_from(c.ends.p[0]);
             if c.is_load() {
                 c.ends.p[1] = c.ends.p[0];
@@ -149,46 +149,46 @@ impl CableEquilibrium {
                 c.mode = if self.course.curves[c.curve].friction > 0.0 { Mode::Hold } else { c.mode };
             }
         }
-        equilibrium::verify(&self.strands[k], &self.course)?;
-        clearance::clear(&self.strands[k], &self.course, &layout.problem.world)?;
+        equilibrium::verify(&self.sections[k], &self.course)?;
+        clearance::clear(&self.sections[k], &self.course, &layout.problem.world)?;
         if !layout.problem.world.is_empty() && route.is_none() {
             self.refuse_passing(layout, k, start, work)?;
         }
         Ok(taken)
     }
 
-    /// Finds the equilibrium of one strand: from its shape with the predicted slip; else from where
+    /// Finds the equilibrium of one section: from its shape with the predicted slip; else from where
     /// each span by itself would be; else with the spans of least tension empty, as they may have
     /// lost it.
-    fn find_strand_equilibrium(
+    fn find_section_equilibrium(
         &mut self,
         layout: &Layout,
         k: usize,
         route: Option<&[Vec2]>,
-        [start, moved]: [&mut CableRun; 2],
+        [start, moved]: [&mut CableSection; 2],
         work: &mut Work,
     ) -> Result<Solved, Failure> {
         let world = &layout.problem.world;
-        let strand = &mut self.strands[k];
-        place_ends(layout, k, strand, &self.course, &self.instant)?;
-        moved.clone_from(strand);
+        let section = &mut self.sections[k];
+        place_ends(layout, k, section, &self.course, &self.instant)?;
+        moved.clone_from(section);
         if route.is_none() && self.course.mobilised == 0.0 {
-            predict_slip(strand, &self.course, &mut work.slip_predictor);
+            predict_slip(section, &self.course, &mut work.slip_predictor);
         }
-        let mut found = changes::solve(strand, &mut self.course, world, &layout.corners, route, work);
+        let mut found = changes::solve(section, &mut self.course, world, &layout.corners, route, work);
         if found.is_err() {
-            strand.clone_from(moved);
+            section.clone_from(moved);
             let mut other = route.is_none();
-            for j in 0..strand.spans() {
-                if strand.has_span(j)
-                    && let Some(g) = strand.solve_span(&self.course, j)
+            for j in 0..section.spans() {
+                if section.has_span(j)
+                    && let Some(g) = section.solve_span(&self.course, j)
                 {
-                    other |= (strand.forces[j] - g).norm() > FORCE_TOLERANCE * g.norm();
-                    strand.forces[j] = g;
+                    other |= (section.forces[j] - g).norm() > FORCE_TOLERANCE * g.norm();
+                    section.forces[j] = g;
                 }
             }
             if other {
-                found = changes::solve(strand, &mut self.course, world, &layout.corners, route, work);
+                found = changes::solve(section, &mut self.course, world, &layout.corners, route, work);
             }
         }
         if found.is_err() {
@@ -196,11 +196,11 @@ impl CableEquilibrium {
             let mut loose = Vec::new();
             slack_pocket::candidates(start, &self.course, &mut loose);
             for n in 1..=loose.len().min(layout.settings.continuation.max_pockets) {
-                strand.clone_from(moved);
+                section.clone_from(moved);
                 for (_, k) in &loose[..n] {
-                    slack_pocket::fill(strand, &self.course, *k);
+                    slack_pocket::fill(section, &self.course, *k);
                 }
-                let again = changes::solve(strand, &mut self.course, world, &layout.corners, route, work);
+                let again = changes::solve(section, &mut self.course, world, &layout.corners, route, work);
                 if again.is_ok() {
                     found = again;
                     break;
@@ -210,15 +210,21 @@ impl CableEquilibrium {
         found
     }
 
-    /// Returns an error if a strand has passed through a corner since it was `start`.
-    fn refuse_passing(&mut self, layout: &Layout, k: usize, start: &CableRun, work: &mut Work) -> Result<(), Failure> {
+    /// Returns an error if a section has passed through a corner since it was `start`.
+    fn refuse_passing(
+        &mut self,
+        layout: &Layout,
+        k: usize,
+        start: &CableSection,
+        work: &mut Work,
+    ) -> Result<(), Failure> {
         // The shape before the step is drawn with the load and the lengths of before: with those of
         // after it spans of a cable that is let out or loaded in this step would end beside their
         // contacts.
         let was = &work.instants[0];
         let other =
             was.load != self.instant.load || was.thermal != self.instant.thermal || was.forces != self.instant.forces;
-        if !other && tunnelling::clear(start, &self.strands[k], &self.course, &layout.corners) {
+        if !other && tunnelling::clear(start, &self.sections[k], &self.course, &layout.corners) {
             return Ok(());
         }
         let [old, new] = &mut work.shapes;
@@ -229,35 +235,35 @@ impl CableEquilibrium {
         if other {
             layout.set_course(&mut self.course, &self.instant);
         }
-        tunnelling::shape(&self.strands[k], &self.course, new);
+        tunnelling::shape(&self.sections[k], &self.course, new);
         match swept_corners::through(&layout.corners, old, new, &mut work.turns) {
             Some(corner) => Err(Failure::Passed { at: corner.at }),
             None => Ok(()),
         }
     }
 
-    /// Lays a strand that lies loose anew while its supports stay where they are. Supports that
+    /// Lays a section that lies loose anew while its supports stay where they are. Supports that
     /// move draw its folds over the ground, and the force for that is not modelled.
     fn lay_loose_again(&mut self, layout: &Layout, k: usize) -> Result<StepStats, Failure> {
-        let found = slack::loose_strand(layout, k, &self.course, &self.instant, LooseShapes::AnyTension);
-        let strand = &mut self.strands[k];
-        let Some(found) = found.filter(|f| f.ties == strand.ties) else {
-            return Err(Failure::Drawn { s: strand.from });
+        let found = slack::loose_section(layout, k, &self.course, &self.instant, LooseShapes::AnyTension);
+        let section = &mut self.sections[k];
+        let Some(found) = found.filter(|f| f.ties == section.ties) else {
+            return Err(Failure::Drawn { s: section.from });
         };
-        *strand = found;
+        *section = found;
         Ok(StepStats::default())
     }
 
     /// Length of the material that lies loose and of the ground it lies on, m; None where none
     /// does.
     pub fn loose_lengths(&self) -> Option<[f64; 2]> {
-        let lengths = self.strands.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.lying_lengths(&self.course));
+        let lengths = self.sections.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.lying_lengths(&self.course));
         lengths.reduce(|[a, b], [c, d]| [a + c, b + d])
     }
 
     /// The most that friction can hold of loose cable, N.
     pub fn friction_of_loose(&self) -> f64 {
-        self.strands.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.friction(&self.course)).sum()
+        self.sections.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.friction(&self.course)).sum()
     }
 
     /// Goes to an instant that no balance near by leads to: the cable slides under a drag that is
@@ -273,7 +279,7 @@ impl CableEquilibrium {
         work: &mut Work,
     ) -> Result<StepStats, Failure> {
         let tuned = &layout.settings.continuation;
-        let (before, old) = (self.strands.clone(), self.instant.clone());
+        let (before, old) = (self.sections.clone(), self.instant.clone());
         let size = to.load.norm();
         let (mut drag, mut taken, mut raised) = (tuned.drag_factor * size, StepStats::default(), 0);
         let mut pushed = None;
@@ -303,7 +309,7 @@ impl CableEquilibrium {
                 break;
             }
         }
-        self.strands = before;
+        self.sections = before;
         layout.set_course(&mut self.course, &old);
         self.instant = old;
         Err(pushed.unwrap_or(Failure::Restless { s: 0.0 }))
@@ -314,7 +320,7 @@ impl CableEquilibrium {
     fn failure_to_report(&self, step: Failure, held_back: Failure) -> Failure {
         let found_nothing = matches!(step, Failure::Stalled { .. } | Failure::Restless { .. });
         let pushes = matches!(held_back, Failure::Compressed { .. });
-        if found_nothing && pushes && tension_loss::lost(&self.strands, &self.course, &step).is_none() {
+        if found_nothing && pushes && tension_loss::lost(&self.sections, &self.course, &step).is_none() {
             held_back
         } else {
             step
@@ -324,9 +330,9 @@ impl CableEquilibrium {
     /// Gives hardly any tension to a cable with a free end that lies loose along its route, when it
     /// begins to be drawn: only a cable in tension can be followed.
     fn take_up_slack(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) {
-        let held = |k: usize| layout.strands[k].supports.iter().all(Option::is_some);
-        let spreads = |k: usize| self.strands[k].loose.as_ref().is_some_and(Loose::spreads);
-        let follows = (0..self.strands.len()).all(|k| self.strands[k].loose.is_none() || (spreads(k) && !held(k)));
+        let held = |k: usize| layout.sections[k].supports.iter().all(Option::is_some);
+        let spreads = |k: usize| self.sections[k].loose.as_ref().is_some_and(Loose::spreads);
+        let follows = (0..self.sections.len()).all(|k| self.sections[k].loose.is_none() || (spreads(k) && !held(k)));
         if self.loose_lengths().is_none() || !follows || self.instant.places == to.places {
             return;
         }

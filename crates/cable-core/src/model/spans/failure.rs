@@ -1,4 +1,4 @@
-//! A failure says why a run has no answer here, before it becomes a
+//! A failure says why a cable section has no answer here, before it becomes a
 //! [`SolveError`](crate::SolveError).
 
 use crate::error::EquilibriumFault;

@@ -2,10 +2,10 @@
 //! how much it would need, and what a cable keeps that was drawn.
 
 use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout};
+use crate::model::spans::cable_section::CableSection;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::first_equilibrium::{FirstShape, shapes_with_friction};
 use crate::model::spans::newton::Work;
-use crate::model::spans::run::CableRun;
 
 /// Part of the friction that is missing to which it is found: three digits are shown.
 const MISSING_FRICTION_TOLERANCE: f64 = 2e-4;
@@ -19,14 +19,14 @@ impl CableEquilibrium {
     /// along its route. None where it rests with its own friction, or where it is not known to
     /// slide.
     ///
-    /// With less friction every contact of the strand slides the same way. Contacts that all but
+    /// With less friction every contact of the section slides the same way. Contacts that all but
     /// slide just above the multiple prove that friction is missing, and not the search's success.
     pub fn friction_needed(layout: &Layout, instant: &BoundaryConditions, work: &mut Work) -> Option<f64> {
         let tuned = &layout.settings.continuation;
         let course = layout.course(layout.curves(), instant);
         let mut rests = |part: f64, shape: FirstShape| {
             let begin = BoundaryConditions { friction: part, ..instant.clone() };
-            let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
+            let mut network = Self { sections: Vec::new(), course: course.clone(), instant: begin.clone() };
             let taken = network.lay_along_route(layout, &begin, shape, work).ok()?;
             (taken.runaways == 0).then_some(network)
         };
@@ -54,8 +54,10 @@ impl CableEquilibrium {
         }
         let found = rests(high, shape)?;
         let near = tuned.mobilised_fraction * (1.0 + MISSING_FRICTION_TOLERANCE * (high - 1.0));
-        let slides = |s: &CableRun| [1.0, -1.0].iter().any(|way| point_load::mobilised(s, &found.course, *way, near));
-        let unheld = layout.strands.iter().zip(&found.strands).filter(|(p, _)| p.supports.iter().all(Option::is_none));
+        let slides =
+            |s: &CableSection| [1.0, -1.0].iter().any(|way| point_load::mobilised(s, &found.course, *way, near));
+        let unheld =
+            layout.sections.iter().zip(&found.sections).filter(|(p, _)| p.supports.iter().all(Option::is_none));
         unheld.map(|(_, s)| s).any(slides).then_some(high)
     }
 

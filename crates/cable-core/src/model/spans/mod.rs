@@ -9,26 +9,28 @@
 //! |---|---|
 //! | `boundary` | the boundary as the centre line runs along it, the capstan law and friction memory |
 //! | `contact` | a contact: equations, loads on it, supports on it, wheels |
-//! | `run` | free spans and contacts in a row between two grips: the unknowns |
-//! | `boundary_conditions` | supports and loads at an instant, and how a cable falls into runs |
-//! | `newton`, `numerics` | all unknowns of a run at once; band LU, root finding |
+//! | `cable_section` | free spans and contacts in a row between two end conditions: the unknowns |
+//! | `boundary_conditions` | supports and loads at an instant, and how they cut a cable into sections |
+//! | `newton`, `numerics` | all unknowns of a section at once; band LU, root finding |
 //! | `changes` | contacts that are released, merged and made, until none is needed |
 //! | `initial` | the first shape: route, shortest path, contacts, tension; or another answer |
 //! | `first_equilibrium` | the search for the first equilibrium, from several first shapes |
 //! | `continuation` | from one instant to the next, in steps that are halved |
 //! | `missing_friction` | how much friction a sliding cable would need; what drawing leaves |
-//! | `other_balances` | slack elsewhere: balances that run away, and other resting places |
+//! | `multiple_equilibria` | slack elsewhere: equilibria that run away, and other resting places |
 //! | `reversed` | the cable counted from its other end |
 //! | `slack` | cable that lies without tension |
-//! | `verify` | checks of an answer that do not use the solver |
+//! | `acceptance` | checks of an equilibrium that do not use the solver |
 //! | `results`, `failure` | the answer; why there is none |
 //! | `settings` | the tuned constants |
 //!
 //! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that
 //! let go. A cable that loses its tension is said to have lost it, with the place.
 
+mod acceptance;
 mod boundary;
 mod boundary_conditions;
+mod cable_section;
 mod changes;
 pub(in crate::model) mod contact;
 mod continuation;
@@ -36,15 +38,13 @@ mod failure;
 mod first_equilibrium;
 mod initial;
 mod missing_friction;
+mod multiple_equilibria;
 mod newton;
 mod numerics;
-mod other_balances;
 mod results;
 mod reversed;
-mod run;
 pub mod settings;
 mod slack;
-mod verify;
 
 use std::sync::Arc;
 
@@ -175,7 +175,7 @@ impl SpansModel {
     fn solve_error(&self, stopped: Option<&CableEquilibrium>, failure: Failure) -> SolveError {
         if let Some(network) = stopped.or(self.network.as_ref())
             && let Some((loss, arc_length_m, at_m)) =
-                verify::tension_loss::lost(&network.strands, &network.course, &failure)
+                acceptance::tension_loss::lost(&network.sections, &network.course, &failure)
         {
             let arc_length_m = if self.layout.is_reversed() { self.turned().s(arc_length_m) } else { arc_length_m };
             return SolveError::TensionLost { model: Model::Spans, loss, arc_length_m, at_m };
@@ -282,12 +282,12 @@ impl SpansModel {
     }
 
     /// A warning of other balances of a cable that nothing rubs, where there are any.
-    pub(super) fn other_balances(&mut self) -> Option<Warning> {
+    pub(super) fn other_equilibria(&mut self) -> Option<Warning> {
         if self.rubs() || self.lies_loose() {
             return None;
         }
         let network = self.network.as_ref()?;
-        let others = network.other_balances(&self.layout, &mut self.work);
+        let others = network.other_equilibria(&self.layout, &mut self.work);
         let others: Vec<[f64; 3]> = others.iter().map(|n| self.tensions(n)).collect();
         let histories = Histories::slack_elsewhere(self.tensions(network), &others)?;
         Some(self.warning(WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories }))
@@ -313,7 +313,7 @@ impl SpansModel {
 
     /// True if some of the cable is held by nothing but friction.
     fn hangs_by_friction(&self) -> bool {
-        self.layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none))
+        self.layout.sections.iter().any(|s| s.supports.iter().all(Option::is_none))
     }
 
     /// True if the cable touches nothing that rubs, and drawn towards either end comes back to the
@@ -382,7 +382,7 @@ impl Mechanics for SpansModel {
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
-        if self.layout.strands.is_empty() {
+        if self.layout.sections.is_empty() {
             return Err(unsupported(Unsupported::NothingHolds));
         }
         let mut instant = BoundaryConditions::default();
@@ -413,7 +413,7 @@ impl Mechanics for SpansModel {
         };
         let histories = if seeks { self.histories(start, &mut work) } else { Histories::NotSought };
         self.work = work;
-        let others = if found.is_ok() && stable { self.other_balances() } else { None };
+        let others = if found.is_ok() && stable { self.other_equilibria() } else { None };
         if let Some(part) = needed {
             let why = NoEquilibrium::TooLittleFriction { friction_ratio: part };
             return Err(SolveError::NoRestingPlace { why });

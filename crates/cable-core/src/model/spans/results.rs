@@ -10,9 +10,9 @@ use crate::model::spans::boundary::friction_memory::{Mode, TensionProfile};
 use crate::model::spans::boundary::segment_cursor::{Pivot, SegmentCursor};
 use crate::model::spans::boundary_conditions::CableEquilibrium;
 use crate::model::spans::boundary_conditions::Layout;
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, Tie};
 use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Nodes on each stretch of an edge.
@@ -36,26 +36,26 @@ pub(in crate::model::spans) struct Report {
 pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibrium) -> Report {
     let course = &network.course;
     let mut greatest = 0.0;
-    for strand in &network.strands {
-        for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
-            let (from, to) = strand.material(k);
+    for section in &network.sections {
+        for k in (0..section.spans()).filter(|&k| section.has_span(k)) {
+            let (from, to) = section.material(k);
             for s in [from, to] {
-                let t = strand.force(course, k, s).norm();
+                let t = section.force(course, k, s).norm();
                 greatest = if t > greatest { t } else { greatest };
             }
         }
-        for t in strand.contacts.iter().flat_map(|c| c.ends.t) {
+        for t in section.contacts.iter().flat_map(|c| c.ends.t) {
             greatest = if t > greatest { t } else { greatest };
         }
-        if let Some(loose) = &strand.loose {
+        if let Some(loose) = &section.loose {
             greatest = [0, 1].iter().map(|side| loose.end_force(course, *side).norm()).fold(greatest, larger);
         }
     }
     let mut nodes = Nodes::new(&layout.problem, greatest);
     nodes.turned = layout.is_reversed();
     let mut contacts = Vec::new();
-    for strand in &network.strands {
-        if let Some(loose) = &strand.loose {
+    for section in &network.sections {
+        if let Some(loose) = &section.loose {
             let found = loose.report(course, &mut nodes, layout.problem.radius).into_iter();
             contacts.extend(found.map(|(obstacle, report)| {
                 let obstacle = layout.problem.world.obstacle_name(obstacle).to_owned();
@@ -63,26 +63,26 @@ pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibriu
             }));
             continue;
         }
-        for k in 0..strand.spans() {
-            if strand.has_span(k) {
-                strand.shapes(course, k, |s0, at, shape| nodes.catenary(s0, at, shape));
+        for k in 0..section.spans() {
+            if section.has_span(k) {
+                section.shapes(course, k, |s0, at, shape| nodes.catenary(s0, at, shape));
             }
-            if let Some(c) = strand.contacts.get(k) {
+            if let Some(c) = section.contacts.get(k) {
                 let track = course.track(c).seen_from(c.ends.p[0]);
                 let stretches = stretches(&track, layout.problem.radius, &c.history, c.ends.p);
                 if c.is_load() {
-                    load_nodes(&mut nodes, strand, course, k, &track);
+                    load_nodes(&mut nodes, section, course, k, &track);
                 } else {
                     contact_nodes(&mut nodes, &track, c, &stretches);
                 }
                 if let Some(obstacle) = track.curve.obstacle {
                     let name = layout.problem.world.obstacle_name(obstacle);
                     contacts.push(match c.is_load() {
-                        true => load(strand, course, k, &track, name),
+                        true => load(section, course, k, &track, name),
                         false => contact(&track, name, c, &stretches),
                     });
                     if c.next == Next::Pocket {
-                        contacts.extend(heap(strand, course, k, name));
+                        contacts.extend(heap(section, course, k, name));
                     }
                 }
             }
@@ -177,13 +177,13 @@ fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretche
 
 /// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes,
 /// what lies beside it along the ground.
-fn load_nodes(nodes: &mut Nodes<'_>, strand: &CableRun, course: &Course, j: usize, track: &Track<'_>) {
-    let c = &strand.contacts[j];
+fn load_nodes(nodes: &mut Nodes<'_>, section: &CableSection, course: &Course, j: usize, track: &Track<'_>) {
+    let c = &section.contacts[j];
     let place = track.place(c.ends.p[0]);
-    let pulls = |side: usize| strand.force_at_contact(course, j, side);
+    let pulls = |side: usize| section.force_at_contact(course, j, side);
     for side in 0..2 {
         // Beyond an end there is nothing: it has what comes to it.
-        let ends = (j + side == 0 || j + side == strand.contacts.len()) && !strand.has_span(j + side);
+        let ends = (j + side == 0 || j + side == section.contacts.len()) && !section.has_span(j + side);
         let along = || place.tangent * c.ends.t[side];
         let force = pulls(side).or_else(|| pulls(1 - side).filter(|_| ends)).unwrap_or_else(along);
         nodes.push(Point { arc_length: c.ends.s[side], at: place.at, force, curvature: 0.0 });
@@ -273,32 +273,32 @@ fn held_by(track: &Track<'_>, c: &Contact) -> Vec2 {
 }
 
 /// The material that lies loose in the kink behind contact j, m.
-pub(in crate::model::spans) fn loose(strand: &CableRun, j: usize) -> Option<[f64; 2]> {
-    let (c, next) = (strand.contacts.get(j)?, strand.contacts.get(j + 1)?);
+pub(in crate::model::spans) fn loose(section: &CableSection, j: usize) -> Option<[f64; 2]> {
+    let (c, next) = (section.contacts.get(j)?, section.contacts.get(j + 1)?);
     (c.next == Next::Pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
 }
 
 /// Tension at the start, at the end, and the greatest, N.
 pub(in crate::model::spans) fn tensions(network: &CableEquilibrium) -> [f64; 3] {
     let course = &network.course;
-    let end = |strand: Option<&CableRun>, side: usize| {
-        let strand = strand?;
-        let outer = if side == 0 { strand.contacts.first() } else { strand.contacts.last() };
-        Some(match (strand.ties[side], outer) {
+    let end = |section: Option<&CableSection>, side: usize| {
+        let section = section?;
+        let outer = if side == 0 { section.contacts.first() } else { section.contacts.last() };
+        Some(match (section.ties[side], outer) {
             (Tie::Loose(_), Some(c)) => c.ends.t[side],
-            _ => end_force(network, strand, side).norm(),
+            _ => end_force(network, section, side).norm(),
         })
     };
-    let [start, last] = [end(network.strands.first(), 0), end(network.strands.last(), 1)].map(|t| t.unwrap_or(0.0));
+    let [start, last] = [end(network.sections.first(), 0), end(network.sections.last(), 1)].map(|t| t.unwrap_or(0.0));
     let mut greatest = larger(start, last);
-    for strand in &network.strands {
-        for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
-            let (from, to) = strand.material(k);
-            let ends = [from, to].map(|s| strand.force(course, k, s).norm());
+    for section in &network.sections {
+        for k in (0..section.spans()).filter(|&k| section.has_span(k)) {
+            let (from, to) = section.material(k);
+            let ends = [from, to].map(|s| section.force(course, k, s).norm());
             greatest = larger(greatest, larger(ends[0], ends[1]));
         }
-        let of_loose = strand.loose.iter().flat_map(|l| &l.parts).flat_map(|part| part.tension);
-        greatest = strand.contacts.iter().flat_map(|c| c.ends.t).chain(of_loose).fold(greatest, larger);
+        let of_loose = section.loose.iter().flat_map(|l| &l.parts).flat_map(|part| part.tension);
+        greatest = section.contacts.iter().flat_map(|c| c.ends.t).chain(of_loose).fold(greatest, larger);
     }
     [start, last, greatest]
 }
@@ -317,22 +317,22 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
         sum += force;
         size += force.norm();
     };
-    for (strand, part) in network.strands.iter().zip(&layout.strands) {
+    for (section, part) in network.sections.iter().zip(&layout.sections) {
         for side in 0..2 {
             if part.supports[side].is_some() {
-                add(end_force(network, strand, side) * if side == 0 { -1.0 } else { 1.0 });
+                add(end_force(network, section, side) * if side == 0 { -1.0 } else { 1.0 });
             }
         }
-        if let Some(loose) = &strand.loose {
+        if let Some(loose) = &section.loose {
             add(loose.held(course));
         }
-        for (j, c) in strand.contacts.iter().enumerate() {
+        for (j, c) in section.contacts.iter().enumerate() {
             add(match (c.wheel, c.is_load()) {
-                (Some(_), _) => -wheel_force(course, strand, j).0,
-                (None, true) => -load_balance(strand, course, j).sum,
+                (Some(_), _) => -wheel_force(course, section, j).0,
+                (None, true) => -load_balance(section, course, j).sum,
                 (None, false) => held_by(&course.track(c), c),
             });
-            if let (Some([from, to]), None) = (loose(strand, j), c.wheel) {
+            if let (Some([from, to]), None) = (loose(section, j), c.wheel) {
                 add(-course.load_between(from, to));
             }
         }
@@ -341,9 +341,9 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
 }
 
 /// The contact of the load that is contact j.
-fn load(strand: &CableRun, course: &Course, j: usize, track: &Track<'_>, name: &str) -> ContactReport {
-    let c = &strand.contacts[j];
-    let load_balance = load_balance(strand, course, j);
+fn load(section: &CableSection, course: &Course, j: usize, track: &Track<'_>, name: &str) -> ContactReport {
+    let c = &section.contacts[j];
+    let load_balance = load_balance(section, course, j);
     let at = track.place(c.ends.p[0]).at;
     // The obstacle holds what all else does to the point.
     let held =
@@ -371,8 +371,8 @@ fn load(strand: &CableRun, course: &Course, j: usize, track: &Track<'_>, name: &
 
 /// The contacts of the heap in the pocket after contact j: one with each edge that carries a part
 /// of it.
-fn heap(strand: &CableRun, course: &Course, j: usize, name: &str) -> Vec<ContactReport> {
-    let ([before, after], at) = match (&strand.contacts[j], strand.contacts.get(j + 1)) {
+fn heap(section: &CableSection, course: &Course, j: usize, name: &str) -> Vec<ContactReport> {
+    let ([before, after], at) = match (&section.contacts[j], section.contacts.get(j + 1)) {
         (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], course.track(c).place(c.ends.p[1]).at),
         (_, None) => return Vec::new(),
     };
@@ -393,7 +393,7 @@ fn heap(strand: &CableRun, course: &Course, j: usize, name: &str) -> Vec<Contact
         report.set_samples(vec![ContactSample::new(middle, b.normal * b.press + b.tangent * b.friction)]);
         report
     };
-    let borne = slack_pocket::heap(strand, course, j + 1).into_iter().flatten();
+    let borne = slack_pocket::heap(section, course, j + 1).into_iter().flatten();
     borne.filter(|b| b.press > 0.0).map(edge).collect()
 }
 
@@ -417,17 +417,17 @@ fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> 
     out
 }
 
-/// Force of the cable at an end of a strand (pulling along growing arc length), N.
-fn end_force(network: &CableEquilibrium, strand: &CableRun, side: usize) -> Vec2 {
+/// Force of the cable at an end of a section (pulling along growing arc length), N.
+fn end_force(network: &CableEquilibrium, section: &CableSection, side: usize) -> Vec2 {
     let course = &network.course;
-    if let Some(loose) = &strand.loose {
+    if let Some(loose) = &section.loose {
         return loose.end_force(course, side);
     }
-    let (k, s) = if side == 0 { (0, strand.from) } else { (strand.contacts.len(), strand.to) };
-    match strand.ties[side] {
-        Tie::Held(_) | Tie::Hangs(_) => strand.force(course, k, s),
+    let (k, s) = if side == 0 { (0, section.from) } else { (section.contacts.len(), section.to) };
+    match section.ties[side] {
+        Tie::Held(_) | Tie::Hangs(_) => section.force(course, k, s),
         Tie::Lies(p) => {
-            let c = if side == 0 { strand.contacts.first() } else { strand.contacts.last() };
+            let c = if side == 0 { section.contacts.first() } else { section.contacts.last() };
             c.map_or(Vec2::zeros(), |c| course.track(c).place(p).tangent * c.ends.t[side])
         }
         Tie::Loose(_) => Vec2::zeros(),
@@ -445,19 +445,19 @@ fn supports(layout: &Layout, network: &CableEquilibrium, nodes: &[Node]) -> Vec<
     for (k, s) in p.supports.iter().enumerate() {
         let mut r = SupportReaction { name: s.name.clone(), ..SupportReaction::default() };
         let at = network.instant.places[k];
-        if let Some((c, strand)) =
-            network.strands.iter().find_map(|st| st.contacts.iter().find(|c| c.wheel == Some(k)).map(|c| (c, st)))
+        if let Some((c, section)) =
+            network.sections.iter().find_map(|st| st.contacts.iter().find(|c| c.wheel == Some(k)).map(|c| (c, st)))
         {
-            wheel(&mut r, network, strand, c);
+            wheel(&mut r, network, section, c);
             (r.x_m, r.y_m) = (at.x, at.y);
         } else if let Some(arc_length) = s.arc_length {
             r.arc_length_m = arc_length;
             let mut force = loads_at(arc_length);
             if s.at.is_some() {
-                for (strand, part) in network.strands.iter().zip(&layout.strands) {
+                for (section, part) in network.sections.iter().zip(&layout.sections) {
                     for side in 0..2 {
                         if part.supports[side] == Some(k) {
-                            force += end_force(network, strand, side) * if side == 0 { 1.0 } else { -1.0 };
+                            force += end_force(network, section, side) * if side == 0 { 1.0 } else { -1.0 };
                         }
                     }
                 }
@@ -474,9 +474,9 @@ fn supports(layout: &Layout, network: &CableEquilibrium, nodes: &[Node]) -> Vec<
     out
 }
 
-fn wheel(r: &mut SupportReaction, network: &CableEquilibrium, strand: &CableRun, c: &Contact) {
-    let j = strand.contacts.iter().position(|d| std::ptr::eq(d, c)).unwrap_or(0);
-    let (sum, [before, after]) = wheel_force(&network.course, strand, j);
+fn wheel(r: &mut SupportReaction, network: &CableEquilibrium, section: &CableSection, c: &Contact) {
+    let j = section.contacts.iter().position(|d| std::ptr::eq(d, c)).unwrap_or(0);
+    let (sum, [before, after]) = wheel_force(&network.course, section, j);
     (r.reaction_x_n, r.reaction_y_n) = (sum.x, sum.y);
     r.arc_length_m = 0.5 * (c.ends.s[0] + c.ends.s[1]);
     (r.tension_before_n, r.tension_after_n) = (Some(before.norm()), Some(after.norm()));
@@ -484,8 +484,8 @@ fn wheel(r: &mut SupportReaction, network: &CableEquilibrium, strand: &CableRun,
 
 /// The force of the cable on the wheel that is contact j, and the forces in the cable before and
 /// after it, N.
-fn wheel_force(course: &Course, strand: &CableRun, j: usize) -> (Vec2, [Vec2; 2]) {
-    let [before, after] = [0, 1].map(|side| strand.force_at_contact(course, j, side).unwrap_or_default());
-    let [from, to] = strand.contacts[j].ends.s;
+fn wheel_force(course: &Course, section: &CableSection, j: usize) -> (Vec2, [Vec2; 2]) {
+    let [before, after] = [0, 1].map(|side| section.force_at_contact(course, j, side).unwrap_or_default());
+    let [from, to] = section.contacts[j].ends.s;
     (after - before + course.load_between(from, to), [before, after])
 }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// All settings of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SpansSettings {
-    /// Newton's method for a strand.
+    /// Newton's method for a section.
     pub newton: NewtonSettings,
     /// Steps from an equilibrium to another.
     pub continuation: ContinuationSettings,
@@ -24,7 +24,7 @@ pub struct SpansSettings {
     pub verify: VerifySettings,
 }
 
-/// Newton's method for a strand, and the prediction of slip before it.
+/// Newton's method for a section, and the prediction of slip before it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NewtonSettings {
     /// Most iterations. Smaller: steps are halved that would have converged. Larger: a failure
@@ -36,7 +36,7 @@ pub struct NewtonSettings {
     /// Most halvings of one step. Smaller: the edge of a contact stops a step for good. Larger: a
     /// failure costs more.
     pub max_halvings: usize,
-    /// Residual wanted: of lengths in hundredths of the strand, of angles, of tensions relative.
+    /// Residual wanted: of lengths in hundredths of the section, of angles, of tensions relative.
     /// Smaller: iterations spent on rounding. Larger: forces are off by as much.
     pub residual: f64,
     /// Part of T/EA above which a residual that suffices is lowered by one more step: forces are
@@ -132,7 +132,7 @@ pub struct ContinuationSettings {
     pub least_slack_fraction: f64,
     /// Most searches for other balances. Smaller: some are missed; larger: cables over many things
     /// take long.
-    pub max_other_balances: usize,
+    pub max_other_equilibria: usize,
     /// Part of the length by which the material at a contact differs in another balance. Smaller:
     /// two answers of one search are two balances; larger: balances near each other are one.
     pub other_balance_fraction: f64,
@@ -211,7 +211,7 @@ pub struct InitialSettings {
     /// as drawn round the wheel. Smaller: the chords of a coarse polygon are left. Larger: of a
     /// route that only comes near more is taken for its round.
     pub wheel_route_radii: f64,
-    /// Part of the strand's material that two contacts keep between them at least. Smaller: a span
+    /// Part of the section's material that two contacts keep between them at least. Smaller: a span
     /// of no length. Larger: contacts near each other are moved apart.
     pub contact_spacing_fraction: f64,
     /// Distance within which a node of another model's answer touches a boundary, m. Smaller: a
@@ -228,12 +228,12 @@ pub struct ChangeSettings {
     /// Most times in one solve that something is done about loads where Newton stalls. Smaller: a
     /// load between contacts fails a step. Larger: a failure costs more.
     pub max_load_releases: usize,
-    /// Part of the strand below which a stretch beside a load is released when Newton stalls.
+    /// Part of the section below which a stretch beside a load is released when Newton stalls.
     /// Smaller: Newton comes so near to its end only after many halvings. Larger: it is laid down
     /// again for nothing.
     pub shed_length_fraction: f64,
     /// Distance from a contact within which a load is caught by it when Newton stalls, of the
-    /// strand. Smaller: the step fails. Larger: a load that hangs is laid down.
+    /// section. Smaller: the step fails. Larger: a load that hangs is laid down.
     pub catch_distance_fraction: f64,
     /// Points of a span among which the nearest to a corner that was passed is sought. Smaller: the
     /// contact begins beside the corner. Larger: dearer.
@@ -241,7 +241,7 @@ pub struct ChangeSettings {
     /// Part of a contact that the first guess of a lifted end leaves lying at least. Smaller: the
     /// contact has no length. Larger: the span is guessed too short.
     pub lying_fraction: f64,
-    /// Greatest tension of a span that may be slack in a kink, of the strand's weight. Smaller:
+    /// Greatest tension of a span that may be slack in a kink, of the section's weight. Smaller:
     /// slack is found late. Larger: spans are tried as pockets that have tension.
     pub pocket_tension_fraction: f64,
     /// Part of the contacts beside it that a span drawn across a kink takes at most. Smaller: it is
@@ -309,7 +309,7 @@ impl Default for ContinuationSettings {
             leaving_drag_factor: 2.0,
             leaving_fraction: 1e-2,
             least_slack_fraction: 0.02,
-            max_other_balances: 16,
+            max_other_equilibria: 16,
             other_balance_fraction: 1e-5,
             max_drag_steps: 200,
             max_drag_raises: 5,

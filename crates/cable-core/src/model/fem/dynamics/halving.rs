@@ -83,7 +83,7 @@ impl Dynamics {
                 Ok(done) if self.is_finite() => {
                     total = Converged { iterations: total.iterations + done.iterations, ..done };
                     if is_dynamic {
-                        self.pacing.pace.note_solved(done.iterations);
+                        self.time_control.step_size.note_solved(done.iterations);
                         gauge.note(to, &self.cable.answers.gauged.arc_length, |k| self.cable.answers.gauged.tension[k]);
                         gauge.keep();
                     }
@@ -165,7 +165,7 @@ impl Dynamics {
         progress.depth += 1;
         progress.size *= 0.5;
         if inertia == Inertia::Dynamic {
-            self.pacing.pace.note_refused(&self.cable.mesh.tuning.step, progress.size);
+            self.time_control.step_size.note_refused(&self.cable.mesh.tuning.step, progress.size);
         } else if progress.depth == self.cable.mesh.tuning.equilibrium.halvings_before_relaxation {
             // The cable is relaxed: over all that is left, at once.
             progress.size = progress.left;

@@ -10,17 +10,20 @@ mod halving;
 use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::SlideOver;
+use crate::model::fem::newton::solver_memory::SolverMemory;
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::obstacle::moving_outline::prepare_way;
+use crate::model::fem::obstacle::outline_depenetration::prepare_way;
 use crate::model::fem::remesh::adapt::remesh;
 use crate::model::fem::results;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::control::{HandDrive, Pacing, Rollback, SolverMemory};
 use crate::model::fem::state::fold_imperfection::open_collinear_folds;
-use crate::model::fem::state::momentum::MovingMass;
+use crate::model::fem::state::moving_mass::MovingMass;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 use crate::model::fem::time::bdf2::{Weights, keep_balanced_tensions, report_held_back, set_inertia};
-use crate::model::fem::time::momentum::{account_for_step, forces_in_step};
+use crate::model::fem::time::hands::HandDrive;
+use crate::model::fem::time::rollback::Rollback;
+use crate::model::fem::time::step_impulses::{account_for_step, forces_in_step};
+use crate::model::fem::time::time_control::TimeControl;
 use crate::model::fem::time::{hands, loss_memory, plastic_impact};
 use crate::model::gauge::TensionGauge;
 use crate::model::smoothed_target::held_warning;
@@ -43,7 +46,7 @@ struct StepRequest<'a> {
 pub struct Dynamics {
     pub(super) cable: CableState,
     pub(super) hand_drive: HandDrive,
-    pub(super) pacing: Pacing,
+    pub(super) time_control: TimeControl,
     pub(super) solver: SolverMemory,
     pub(super) rollback: Rollback,
     /// True if it has come to rest, or moves from a state that did.
@@ -54,7 +57,7 @@ impl Dynamics {
     /// Forgets the steps before the present instant, and the frequency that was seen in them.
     pub(super) fn forget_history(&mut self) {
         self.cable.forget_history();
-        self.pacing.pace.forget();
+        self.time_control.step_size.forget();
     }
 
     /// Advances time.
@@ -85,7 +88,7 @@ impl Dynamics {
         }
         self.cable.answers.held_back.clear();
         let end = self.cable.motion.time + dt_s;
-        self.pacing.due = end;
+        self.time_control.due = end;
         if let (Some(outline), Some(at)) = (&mut self.cable.outline, self.cable.motion.placement) {
             outline.begin_way((self.cable.motion.time, at), end);
         }
@@ -106,7 +109,7 @@ impl Dynamics {
             });
         }
         if inertia == Inertia::Dynamic
-            && self.pacing.sleep.lasts_until(&mut self.cable, &self.hand_drive.pulled, end, dragged)
+            && self.time_control.sleep.lasts_until(&mut self.cable, &self.hand_drive.pulled, end, dragged)
         {
             self.cable.motion.time = end;
             gauge.stay(end);
@@ -116,7 +119,7 @@ impl Dynamics {
             open_collinear_folds(&self.cable.mesh, &mut self.cable.motion.positions);
         }
         let pieces = match inertia {
-            Inertia::Dynamic => (dt_s / self.pacing.pace.longest_step() - 1e-9).ceil().max(1.0),
+            Inertia::Dynamic => (dt_s / self.time_control.step_size.longest_step() - 1e-9).ceil().max(1.0),
             Inertia::QuasiStatic => self.cable.static_steps(end, dragged),
         };
         let h = dt_s / pieces;
@@ -129,20 +132,20 @@ impl Dynamics {
         self.cable.motion.time = end;
         if inertia == Inertia::Dynamic {
             self.cable.motion.account.ends_at(end);
-            self.pacing.pace.choose(
+            self.time_control.step_size.choose(
                 &self.cable.mesh.tuning.step,
-                self.pacing.tolerance,
+                self.time_control.tolerance,
                 self.cable.problem.length,
                 dt_s,
             );
-            if self.pacing.sleep.falls_asleep(&self.cable) {
+            if self.time_control.sleep.falls_asleep(&self.cable) {
                 self.cable.motion.velocities.fill(Vec2::zeros());
                 self.cable.motion.slide_rates.fill(0.0);
                 self.forget_history();
             }
         } else {
             total = self.polish(total, dragged);
-            self.pacing.sleep.wake();
+            self.time_control.sleep.wake();
         }
         Ok(self.report(total, halved, h))
     }
@@ -176,7 +179,7 @@ impl Dynamics {
 
     /// Sets the input of a step of `h` (s); returns the weights of its history.
     pub(in crate::model::fem) fn begin_step(&mut self, h: f64, dragged: &[Option<Vec2>]) -> Weights {
-        self.hand_drive.follow(&mut self.cable, self.pacing.due, h, dragged);
+        self.hand_drive.follow(&mut self.cable, self.time_control.due, h, dragged);
         let now = self.cable.motion.time;
         prepare_way(&mut self.cable, [now, now + h], Some(dragged));
         self.cable.contacts.set_slip(self.cable.contacts.tuning.slip_m);
@@ -251,14 +254,14 @@ impl Dynamics {
         let cable = &self.cable;
         let smooth = !cable.mesh.spread.is_lumped() && cable.answers.gauged.bars.iter().all(|tension| *tension > 0.0);
         self.cable.motion.note_step(h, smooth);
-        self.pacing.pace.observe(&self.cable, h);
+        self.time_control.step_size.observe(&self.cable, h);
         plastic_impact::land_on_obstacles(&mut self.cable, h, a);
         plastic_impact::land_on_itself(&mut self.cable, h, a);
         let momentum = MovingMass::of(&self.cable).momentum();
         self.cable.motion.account.close(self.cable.motion.time, momentum);
         self.cable.contacts.outline_motion = None;
         if !self.cable.meshing.never_slides {
-            self.cable.answers.keeps = self.cable.motion.time >= self.pacing.due * (1.0 - f64::EPSILON);
+            self.cable.answers.keeps = self.cable.motion.time >= self.time_control.due * (1.0 - f64::EPSILON);
             remesh(&mut self.cable, Inertia::Dynamic);
             self.cable.answers.keeps = false;
             self.cable.answers.stepped = self.cable.answers.kept.take();

@@ -2,8 +2,8 @@
 //! then renewed, until nothing changes.
 
 use crate::math::{bounded, larger};
+use crate::model::fem::newton::solver_memory::SolverMemory;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::control::SolverMemory;
 use crate::model::fem::state::stick_slip::{ChangedNodes, StickSlipChanges, update_stick_slip};
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 

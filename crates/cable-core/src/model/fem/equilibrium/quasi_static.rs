@@ -6,7 +6,7 @@ use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::equilibrium::relaxation::moved_away;
 use crate::model::fem::newton::initial_guess::{bow, depenetrate};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::obstacle::moving_outline::{prepare_way, put_outline};
+use crate::model::fem::obstacle::outline_depenetration::{prepare_way, put_outline};
 use crate::model::fem::remesh::adapt::remesh;
 use crate::model::fem::results;
 use crate::model::fem::state::cable::CableState;
@@ -23,7 +23,7 @@ const LENGTH_ROUNDINGS: f64 = 2.0;
 /// Returns why a cable that nothing but friction holds does not rest where it was brought: the
 /// forces that each node alone may leave unbalanced add up.
 pub(in crate::model::fem) fn slides_as_a_whole(cable: &CableState) -> Option<NoEquilibrium> {
-    if cable.problem.supports.iter().any(|s| s.at.is_some()) || cable.contacts.own.shape.is_on() {
+    if cable.problem.supports.iter().any(|s| s.at.is_some()) || cable.contacts.self_contacts.shape.is_on() {
         return None;
     }
     let left = results::forces::unbalanced(cable, &cable.motion.positions, cable.motion.time).norm();
@@ -199,7 +199,7 @@ impl Dynamics {
     /// A typed reason when there is none, or none was found.
     pub fn settle(&mut self, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
         self.cable.refuse()?;
-        self.pacing.sleep.wake();
+        self.time_control.sleep.wake();
         self.cable.answers.held_back.clear();
         self.rollback.save(&self.cable);
         self.cable.motion.followers.fill(None);
@@ -248,7 +248,7 @@ impl Dynamics {
     /// coming near to anything. The way down with contact takes as many rounds as a cable that
     /// hangs has bars.
     pub(in crate::model::fem) fn start_from_shape(&mut self, shape: &State, dragged: &[Option<Vec2>]) {
-        let touched = self.cable.problem.floor_friction.is_some() || self.cable.contacts.own.shape.is_on();
+        let touched = self.cable.problem.floor_friction.is_some() || self.cable.contacts.self_contacts.shape.is_on();
         let alone = self.cable.outline.is_none() && !touched && !self.cable.problem.world.is_empty();
         if self.rested || !alone || self.cable.mesh.sliding.iter().any(Option::is_some) {
             return;
@@ -290,14 +290,14 @@ impl Dynamics {
     /// could pass itself: its first shape may cross itself.
     fn find_equilibrium(&mut self, dragged: &[Option<Vec2>]) -> Result<Result<Converged, Failure>, SolveError> {
         let time = self.cable.motion.time;
-        let shape = self.cable.contacts.own.shape;
+        let shape = self.cable.contacts.self_contacts.shape;
         if !shape.is_on() {
             return Ok(self.relax(time, dragged));
         }
         if !self.rested {
-            self.cable.contacts.own.shape.diameter = 0.0;
+            self.cable.contacts.self_contacts.shape.diameter = 0.0;
             let found = self.relax(time, dragged);
-            self.cable.contacts.own.shape = shape;
+            self.cable.contacts.self_contacts.shape = shape;
             if found.is_ok() && !self.cable.touches_itself() && !crosses_itself(&self.cable.motion.positions) {
                 return Ok(found);
             }
@@ -305,7 +305,8 @@ impl Dynamics {
             self.rollback.save(&self.cable);
             self.start_on_an_arc();
         }
-        let overlap = self.cable.contacts.own.smallest_gap(&self.cable.mesh, &self.cable.motion.positions, 0.0);
+        let overlap =
+            self.cable.contacts.self_contacts.smallest_gap(&self.cable.mesh, &self.cable.motion.positions, 0.0);
         if overlap.is_some() || crosses_itself(&self.cable.motion.positions) {
             let arc_length_m = self.cable.mesh.arc_length[overlap.map_or(0, |o| o.1)];
             let feature = Unsupported::SelfContactAtStart { arc_length_m };

@@ -11,7 +11,7 @@
 //! ρ is the slope of the energy in `s` but for a positive factor, so a resting place is stable
 //! where ∂ρ/∂s is positive: the pivots of the (tridiagonal) Newton matrix must be. When Newton
 //! stalls or ends at an unstable place, each pulley in turn is bisected for a change of ρ from −
-//! to +, which only stable places have. Wheels with a radius are in `wheel`.
+//! to +, which only stable places have. Wheels with a radius are in `wheel_arcs`.
 
 use crate::math::{Vec2, bounded, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};

@@ -1,7 +1,7 @@
 //! `Statics` finds the equilibrium of a cable that touches nothing but its supports, and follows it
 //! quasi-statically.
 //!
-//! A flexible cable is solved span by span (`span`, `network`): no start can fail, and what is
+//! A flexible cable is solved span by span (`span`, `pulley_balance`): no start can fail, and what is
 //! found is in tension and stable by construction. The mesh follows the error estimate where the
 //! scene does not give one.
 

@@ -19,7 +19,7 @@
 //! downhill; with r it may not, and the step without constraints is then taken as far as it is
 //! free.
 
-use crate::contact::self_contact::{SelfPair, SortedNodes};
+use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::Vec2;
 use crate::model::fem::newton::gap_constraint::Stop;
@@ -119,9 +119,9 @@ impl PredictedContacts {
                 landing_gap(&mesh.tuning.newton, touch.pair.gap.gap_m, reach),
             ));
         }
-        if contacts.own.shape.is_on() {
+        if contacts.self_contacts.shape.is_on() {
             let within = reach + 2.0 * longest(direction);
-            contacts.own.shape.pairs(x, &mesh.arc_length, within, &mut self.order, &mut self.pairs);
+            contacts.self_contacts.shape.pairs(x, &mesh.arc_length, within, &mut self.order, &mut self.pairs);
             for pair in self.pairs.iter().filter(|p| p.weight > 0.0) {
                 self.stops.push(Stop::of_own(pair, mesh, system, landing_gap(&mesh.tuning.newton, pair.gap_m, reach)));
             }

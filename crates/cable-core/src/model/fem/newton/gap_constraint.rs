@@ -1,6 +1,6 @@
 //! A gap constraint is a contact that a Newton step may not come nearer to.
 
-use crate::contact::self_contact::SelfPair;
+use crate::contact::self_contact_pairs::SelfPair;
 use crate::math::{Vec2, cross, larger};
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
@@ -150,7 +150,7 @@ fn stiffness(mesh: &Mesh, system: &System, shares: &[(usize, f64)]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::self_contact::{SelfContact, SortedNodes};
+    use crate::contact::self_contact_pairs::{SelfContact, SortedNodes};
     use crate::model::Settings;
     use crate::model::fem::dynamics::Dynamics;
     use crate::problem::problems;

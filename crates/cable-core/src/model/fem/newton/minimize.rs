@@ -11,7 +11,7 @@
 
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
-use crate::contact::self_contact::{SelfPair, SortedNodes};
+use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
@@ -228,10 +228,20 @@ impl Workspace {
         value += add_friction(s, mesh, input, contacts, &self.branches, x);
         value += add_floor(s, mesh, input, contacts, unknowns);
         self.touches = touches;
-        if contacts.own.shape.is_on() {
-            contacts.own.shape.pairs(x, &mesh.arc_length, contacts.barrier.reach, &mut self.order, &mut self.own_pairs);
+        if contacts.self_contacts.shape.is_on() {
+            contacts.self_contacts.shape.pairs(
+                x,
+                &mesh.arc_length,
+                contacts.barrier.reach,
+                &mut self.order,
+                &mut self.own_pairs,
+            );
             self.coupling.clear();
-            let laws = SelfContactLaws { own: &contacts.own, barrier: &contacts.barrier, slip: contacts.tuning.slip_m };
+            let laws = SelfContactLaws {
+                self_contacts: &contacts.self_contacts,
+                barrier: &contacts.barrier,
+                slip: contacts.tuning.slip_m,
+            };
             let (energy, size) =
                 self_contact::add(&mut self.system, &mut self.coupling, laws, &self.own_pairs, x, curvature);
             value += energy;

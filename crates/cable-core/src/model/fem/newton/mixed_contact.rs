@@ -60,7 +60,7 @@ impl Workspace {
             self.go_back(unknowns);
             done = self.descend(step, unknowns);
         }
-        if done.is_err() && step.contacts.own.shape.is_on() {
+        if done.is_err() && step.contacts.self_contacts.shape.is_on() {
             self.go_back(unknowns);
             if let Some(found) = self.undamped_newton(step, SelfTouch::Allow, unknowns) {
                 done = Ok(found);

@@ -70,7 +70,13 @@ impl Workspace {
             };
         }
         let limits = [mesh.tuning.newton.kept_gap_fraction, most, free];
-        contacts.own.shape.free_fraction(&unknowns.positions, &mesh.arc_length, &move_of, limits, &mut self.order)
+        contacts.self_contacts.shape.free_fraction(
+            &unknowns.positions,
+            &mesh.arc_length,
+            &move_of,
+            limits,
+            &mut self.order,
+        )
     }
 
     /// The same from where the system was assembled last. A step shorter than every gap leaves,
@@ -85,7 +91,7 @@ impl Workspace {
         let StepContext { mesh, contacts, .. } = *step;
         let still = |k: usize| self.direction[2 * k] == 0.0 && self.direction[2 * k + 1] == 0.0;
         let plain = || {
-            !contacts.own.shape.is_on()
+            !contacts.self_contacts.shape.is_on()
                 && (0..mesh.nodes()).all(|k| mesh.sliding[k].is_none() && (!mesh.held[k] || still(k)))
         };
         let gaps = self.touches.iter().map(|t| t.pair.gap.gap_m);

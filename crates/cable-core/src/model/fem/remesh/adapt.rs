@@ -19,7 +19,7 @@ use crate::model::fem::remesh::criteria::{Criteria, Share};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::momentum::attribute_to;
+use crate::model::fem::state::moving_mass::attribute_to;
 use crate::model::fem::state::step_setup::renew_input;
 use crate::model::fem::system::contact::floor_friction;
 
@@ -37,7 +37,7 @@ pub(in crate::model::fem) struct Remeshed {
 /// Adapts the mesh to what the cable runs over, without inertia or with it.
 pub(in crate::model::fem) fn remesh(cable: &mut CableState, inertia: Inertia) -> Remeshed {
     let rests = inertia == Inertia::QuasiStatic;
-    if cable.contacts.own.shape.is_on() {
+    if cable.contacts.self_contacts.shape.is_on() {
         return Remeshed::default();
     }
     let mut changed = remove_sliding_nodes(cable, &[], rests);

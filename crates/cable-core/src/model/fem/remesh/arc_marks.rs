@@ -6,7 +6,7 @@ use crate::model::fem::mesh::tangent_path::{End, rotate};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::momentum::attribute_to;
+use crate::model::fem::state::moving_mass::attribute_to;
 
 /// A change of mark below this (m) is left alone, so that what rests stays as it is to the bit.
 const MARK_TOLERANCE: f64 = 1e-9;

@@ -8,7 +8,7 @@ use crate::solution::{ContactReport, ContactSample, ContactState};
 /// Contacts of the cable with itself at positions `x` (m): one report for each stretch of
 /// nodes.
 pub(in crate::model::fem) fn reports(cable: &CableState, x: &[Vec2], tension: &[f64], out: &mut Vec<ContactReport>) {
-    let own = &cable.contacts.own;
+    let own = &cable.contacts.self_contacts;
     let mut last = None;
     for rub in &own.friction_contacts {
         let (k, pair) = (rub.pair.node, &rub.pair);

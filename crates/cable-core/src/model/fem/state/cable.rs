@@ -9,7 +9,7 @@ use crate::model::Model;
 use crate::model::fem::mesh::sliding_node::{Load, SlideOver};
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::motion::Motion;
-use crate::model::fem::state::moving_outline::MovingOutline;
+use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::system::contact::contact_set::ContactSet;
 use crate::model::fem::system::contact::friction_contact::slip_at_rest;
 use crate::model::fem::system::loss_branches::Loss;
@@ -182,7 +182,10 @@ impl CableState {
 
     /// True if the cable is in touch with itself.
     pub(in crate::model::fem) fn touches_itself(&self) -> bool {
-        self.contacts.own.smallest_gap(&self.mesh, &self.motion.positions, self.mesh.tuning.contact.reach_m).is_some()
+        self.contacts
+            .self_contacts
+            .smallest_gap(&self.mesh, &self.motion.positions, self.mesh.tuning.contact.reach_m)
+            .is_some()
     }
 
     /// Steps without inertia that keep every support's move below half an element.

@@ -2,7 +2,7 @@
 //! that the time integrator looks back to.
 
 use crate::math::{RigidPose, Vec2};
-use crate::model::fem::state::account::Account;
+use crate::model::fem::state::momentum_account::Account;
 use crate::model::hand::Hand;
 use crate::model::smoothed_target::SmoothedTarget;
 

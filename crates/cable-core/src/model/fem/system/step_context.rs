@@ -37,7 +37,8 @@ impl StepContext<'_> {
     /// True if nothing but supports can touch the cable on its way to places `to` (m).
     pub(in crate::model::fem) fn is_out_of_reach(&self, to: &[Vec2]) -> bool {
         self.contacts.meets_nothing(self.problem)
-            || (!self.contacts.own.shape.is_on() && self.contacts.out_of_reach(self.mesh, [&self.input.start, to]))
+            || (!self.contacts.self_contacts.shape.is_on()
+                && self.contacts.out_of_reach(self.mesh, [&self.input.start, to]))
     }
 
     /// The load of a sliding node at positions `x` (m) and slides (m), if there are such.

@@ -379,7 +379,7 @@ fn legs_that_touch() -> Dynamics {
     }
     for _ in 0..60 {
         d.advance(1.0 / 240.0, Inertia::Dynamic, &[]).unwrap();
-        if d.cable.contacts.own.friction_contacts.len() > 2 {
+        if d.cable.contacts.self_contacts.friction_contacts.len() > 2 {
             break;
         }
     }
@@ -389,7 +389,7 @@ fn legs_that_touch() -> Dynamics {
 #[test]
 fn legs_that_land_on_each_other_go_on_together() {
     let mut d = legs_that_touch();
-    let rubs = d.cable.contacts.own.friction_contacts.clone();
+    let rubs = d.cable.contacts.self_contacts.friction_contacts.clone();
     assert!(rubs.len() > 2, "{}", rubs.len());
     for k in 0..d.cable.mesh.nodes() {
         let way = if d.cable.mesh.held[k] { 0.0 } else { 1.0 };
@@ -418,7 +418,7 @@ fn legs_rub_on_each_other_and_remember_it() {
     for k in (0..d.cable.mesh.nodes()).filter(|&k| d.cable.mesh.arc_length[k] > 2.0) {
         slid[k].y += by;
     }
-    let (barrier, own) = (d.cable.contacts.barrier, &mut d.cable.contacts.own);
+    let (barrier, own) = (d.cable.contacts.barrier, &mut d.cable.contacts.self_contacts);
     own.forget();
     own.prepare(&barrier, &d.cable.mesh, &start, &start);
     assert!(own.friction_contacts.len() > 2);

@@ -3,7 +3,6 @@
 
 use crate::math::Vec2;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::control::HandDrive;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::step_input::Unknowns;
 use crate::model::hand::Hand;
@@ -32,6 +31,19 @@ pub(in crate::model::fem) fn keep_forces(cable: &mut CableState, unknowns: &Unkn
     for &(k, stiffness, at) in &cable.input.hands {
         cable.answers.reaction[k] = (unknowns.positions[k] - at) * stiffness;
     }
+}
+
+/// The hands that lead supports.
+#[derive(Clone, Debug)]
+pub(in crate::model::fem) struct HandDrive {
+    /// Fastest hand, m/s.
+    pub(in crate::model::fem) hand_speed: f64,
+    /// Stiffness of its spring, N/m, where that was asked for.
+    pub(in crate::model::fem) hand_stiffness: Option<f64>,
+    /// True for dragged supports that a hand holds by a spring.
+    pub(in crate::model::fem) pulled: Vec<bool>,
+    /// Room for the points to which hands draw supports in a part of a step.
+    pub(in crate::model::fem) aims: Vec<Option<Vec2>>,
 }
 
 impl HandDrive {

@@ -65,7 +65,7 @@ pub(in crate::model::fem) fn land_on_itself(cable: &mut CableState, h: f64, a: f
     let (mut given, mut forgotten) = (Vec2::zeros(), Vec2::zeros());
     let mass = |k: usize| cable.mesh.mass_with(&cable.problem, &cable.meshing.support_node, k);
     let m = &mut cable.motion;
-    for rub in &cable.contacts.own.friction_contacts {
+    for rub in &cable.contacts.self_contacts.friction_contacts {
         let n = rub.pair.normal;
         let speed = n.dot(&rub.pair.difference(&m.velocities));
         let shares = rub.pair.shares();
@@ -79,7 +79,7 @@ pub(in crate::model::fem) fn land_on_itself(cable: &mut CableState, h: f64, a: f
         let change = rub.pair.difference(&m.velocities) - rub.pair.difference(&m.previous_velocities);
         let (_, rubbing, _) = friction::at(rub.sliding(&m.positions), rub.limit, cable.contacts.tuning.slip_m);
         let acted = n * made - rub.pair.tangent() * (rubbing / a);
-        let over = acted - lasting_impulse(acted - change / sum, n, cable.contacts.own.friction);
+        let over = acted - lasting_impulse(acted - change / sum, n, cable.contacts.self_contacts.friction);
         for (k, part) in shares.into_iter().filter(|&(k, _)| cable.mesh.is_free(k)) {
             m.velocities[k] -= n * (taken * part * give(k));
             m.previous_velocities[k] += (over - n * taken) * (part * give(k));

@@ -7,13 +7,24 @@
 
 use crate::math::Vec2;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::moving_outline::MovingOutline;
+use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::state::step_setup::prepare_input;
-use crate::model::fem::state::stepping::Sleep;
 
 /// Distance (m) by which a node of a sleeping cable may have moved.
 fn sleep_distance(cable: &CableState) -> f64 {
     cable.mesh.tuning.step.sleep_distance_reaches * cable.mesh.tuning.contact.reach_m
+}
+
+/// The measures by which the cable is found to be still, and the loads when it fell asleep.
+#[derive(Clone, Debug, Default)]
+pub(in crate::model::fem) struct Sleep {
+    since: f64,
+    place: Vec<Vec2>,
+    arc_length: Vec<f64>,
+    force: Vec<Vec2>,
+    target: Vec<Vec2>,
+    held: Vec<bool>,
+    asleep: bool,
 }
 
 impl Sleep {
@@ -31,7 +42,8 @@ impl Sleep {
             && self.place.iter().zip(&motion.positions).all(near)
             && self.arc_length.iter().zip(&mesh.arc_length).all(|(a, b)| (a - b).abs() <= distance);
         // A cable that touches nothing may be at the turn of a slow swing.
-        let touches = !cable.contacts.friction_contacts.is_empty() || !cable.contacts.own.friction_contacts.is_empty();
+        let touches =
+            !cable.contacts.friction_contacts.is_empty() || !cable.contacts.self_contacts.friction_contacts.is_empty();
         let falls_asleep = still && touches && self.same_input(cable);
         self.asleep |= falls_asleep;
         self.since = motion.time;

@@ -16,9 +16,35 @@
 use crate::math::{Vec2, bounded, larger, smaller};
 use crate::model::fem::settings::StepTuning;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::stepping::StepSizeController;
+
+/// The observed frequency of the motion, and the step that follows from it.
+#[derive(Clone, Debug)]
+pub(in crate::model::fem) struct StepSizeController {
+    /// ∫ Σ l |a|² dt, m³/s³, ∫ Σ l |v|² dt, m³/s, and ∫ dt, s.
+    seen: [f64; 3],
+    /// Longest step of the next frame, s.
+    step: f64,
+    /// Longest step of all, s.
+    longest: f64,
+    /// Longest step that is tried after others were refused, s.
+    solvable: f64,
+    /// Most Newton iterations of a step of the present frame.
+    most_iterations: usize,
+    /// True if a step of the present frame was refused.
+    refused: bool,
+}
 
 impl StepSizeController {
+    /// Nothing was seen yet.
+    pub(in crate::model::fem) fn new(longest: f64) -> Self {
+        Self { seen: [0.0; 3], step: longest, longest, solvable: longest, most_iterations: 0, refused: false }
+    }
+
+    /// Forgets the motion that was seen.
+    pub(in crate::model::fem) fn forget(&mut self) {
+        *self = Self::new(self.longest);
+    }
+
     /// Longest step of the next frame, s.
     pub(in crate::model::fem) fn longest_step(&self) -> f64 {
         smaller(self.step, self.solvable)
@@ -88,7 +114,8 @@ fn is_string(cable: &CableState) -> bool {
     let (problem, mesh, motion) = (&cable.problem, &cable.mesh, &cable.motion);
     let weight = problem.body_force(motion.time).norm() * problem.length;
     let taut = |e: usize| mesh.bar(e).tension(mesh.path(e, &motion.positions).length) > weight;
-    let alone = cable.contacts.friction_contacts.is_empty() && cable.contacts.own.friction_contacts.is_empty();
+    let alone =
+        cable.contacts.friction_contacts.is_empty() && cable.contacts.self_contacts.friction_contacts.is_empty();
     alone && (0..mesh.rest_length.len()).all(taut)
 }
 

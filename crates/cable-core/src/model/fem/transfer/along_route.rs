@@ -11,7 +11,7 @@ use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::cable::{CableState, Gauged, StepAnswers};
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::motion::Motion;
-use crate::model::fem::state::moving_outline::MovingOutline;
+use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::state::step_setup::prepare_input;
 use crate::model::fem::system::contact::contact_set::ContactSet;
 use crate::model::fem::system::loss_branches::Loss;
@@ -98,8 +98,8 @@ pub(in crate::model::fem) fn cable_along_route(
         problem,
     };
     if cable.problem.cable.self_contact {
-        cable.contacts.own.shape.diameter = cable.problem.cable.diameter_m;
-        cable.contacts.own.friction = cable.problem.cable.friction;
+        cable.contacts.self_contacts.shape.diameter = cable.problem.cable.diameter_m;
+        cable.contacts.self_contacts.friction = cable.problem.cable.friction;
     }
     cable.forget_history();
     prepare_input(&mut cable, 0.0, None);

@@ -13,13 +13,17 @@ use crate::model::Settings;
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::newton::initial_guess::depenetrate;
 use crate::model::fem::newton::mixed_free::FreeStep;
+use crate::model::fem::newton::solver_memory::{Memory, SolverMemory};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::obstacle::moving_outline::put_outline;
+use crate::model::fem::obstacle::outline_depenetration::put_outline;
 use crate::model::fem::settings::Tuning;
-use crate::model::fem::state::control::{HandDrive, Memory, Pacing, Rollback, SolverMemory};
 use crate::model::fem::state::step_setup::renew_input;
-use crate::model::fem::state::stepping::{Sleep, StepSizeController};
 use crate::model::fem::system::step_input::{Unknowns, WorkBudget};
+use crate::model::fem::time::hands::HandDrive;
+use crate::model::fem::time::rollback::Rollback;
+use crate::model::fem::time::sleeping::Sleep;
+use crate::model::fem::time::step_size::StepSizeController;
+use crate::model::fem::time::time_control::TimeControl;
 use crate::model::fem::transfer::along_route::cable_along_route;
 use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
@@ -47,8 +51,8 @@ impl Dynamics {
                 decay: Vec::new(),
                 work_left: WorkBudget::Unlimited,
             },
-            pacing: Pacing {
-                pace: StepSizeController::new(settings.inner_step_s.unwrap_or(longest)),
+            time_control: TimeControl {
+                step_size: StepSizeController::new(settings.inner_step_s.unwrap_or(longest)),
                 sleep: Sleep::default(),
                 tolerance: settings.tolerance,
                 due: f64::INFINITY,
@@ -99,7 +103,7 @@ impl Dynamics {
         self.set_state(&state)?;
         let moves = answer.nodes.iter().any(|n| n.vx_m_per_s != 0.0 || n.vy_m_per_s != 0.0);
         let touches = !self.cable.problem.world.is_empty() || self.cable.problem.floor_friction.is_some();
-        if moves || !touches || self.cable.contacts.own.shape.is_on() {
+        if moves || !touches || self.cable.contacts.self_contacts.shape.is_on() {
             return Ok(());
         }
         self.rollback.save(&self.cable);
@@ -130,7 +134,7 @@ impl Dynamics {
 
     /// Takes over a state: node by node where the nodes are the same, else by arc length.
     fn take_over(&mut self, state: &State) -> Result<(), SolveError> {
-        self.pacing.sleep.wake();
+        self.time_control.sleep.wake();
         let led = put_outline(&mut self.cable);
         let same = state.arc_length_m == self.cable.mesh.arc_length && !led;
         if !same {

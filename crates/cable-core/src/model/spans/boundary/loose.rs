@@ -2,7 +2,7 @@
 
 use crate::math::Vec2;
 
-/// A strand that lies without tension.
+/// A section that lies without tension.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::model::spans) struct Loose {
     pub parts: Vec<Part>,

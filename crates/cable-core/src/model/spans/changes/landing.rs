@@ -3,19 +3,19 @@
 use crate::contact::swept_corners::{self, Corner};
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp};
+use crate::model::spans::acceptance::penetration;
+use crate::model::spans::acceptance::penetration::Penetration;
+use crate::model::spans::acceptance::tunnelling;
 use crate::model::spans::boundary::curve::{ChainRange, SUPPORT_CONTACT_DISTANCE_M};
 use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, Tie};
 use crate::model::spans::changes::edges::{beyond_edges, move_neighbours_over_edges};
 use crate::model::spans::contact::load_landing;
 use crate::model::spans::contact::release_below;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::Work;
-use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
-use crate::model::spans::verify::penetration;
-use crate::model::spans::verify::penetration::Penetration;
-use crate::model::spans::verify::tunnelling;
 
-/// Depth inside an obstacle from which a span touches it, of the strand: points nearer than that
+/// Depth inside an obstacle from which a span touches it, of the section: points nearer than that
 /// are one.
 const DEPTH_FRACTION: f64 = 1e-9;
 
@@ -30,7 +30,7 @@ pub(super) enum Purpose {
 
 /// Lays each span down on the obstacle it is deepest in. Returns whether there was any.
 pub(super) fn touch_obstacles(
-    strand: &mut CableRun,
+    section: &mut CableSection,
     course: &Course,
     world: &World,
     purpose: Purpose,
@@ -38,24 +38,24 @@ pub(super) fn touch_obstacles(
     if world.is_empty() {
         return Ok(false);
     }
-    let deep = DEPTH_FRACTION * (strand.to - strand.from);
+    let deep = DEPTH_FRACTION * (section.to - section.from);
     let mut any = false;
     // From the last span, so that those before keep their number.
-    for k in (0..strand.spans()).rev() {
-        if let Some(landing) = load_landing::find(strand, course, world, k, deep) {
-            load_landing::touch(strand, course, k, &landing)?;
+    for k in (0..section.spans()).rev() {
+        if let Some(landing) = load_landing::find(section, course, world, k, deep) {
+            load_landing::touch(section, course, k, &landing)?;
             any = true;
             continue;
         }
-        if let Some(hit) = penetration::deepest(strand, course, world, k, deep) {
-            lay_down_span(strand, course, k, &hit, purpose)?;
+        if let Some(hit) = penetration::deepest(section, course, world, k, deep) {
+            lay_down_span(section, course, k, &hit, purpose)?;
             any = true;
         }
     }
     Ok(any)
 }
 
-/// The point of a strand that is nearest to a corner.
+/// The point of a section that is nearest to a corner.
 #[derive(Clone, Copy, Debug)]
 struct NearestPoint {
     /// Distance from the corner, m.
@@ -71,19 +71,19 @@ struct NearestPoint {
 /// Lays the cable on a corner through which it has passed on its way from its route. Returns
 /// whether there was one.
 pub(super) fn touch_passed_corner(
-    strand: &mut CableRun,
+    section: &mut CableSection,
     course: &Course,
     corners: &[Corner],
     route: &[Vec2],
     work: &mut Work,
 ) -> Result<bool, Failure> {
     let mut shape = Vec::new();
-    tunnelling::shape(strand, course, &mut shape);
+    tunnelling::shape(section, course, &mut shape);
     let Some(corner) = swept_corners::through(corners, route, &shape, &mut work.turns) else { return Ok(false) };
     let mut nearest: Option<NearestPoint> = None;
     let points = course.settings.changes.corner_search_points;
-    for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
-        strand.shapes(course, k, |s0, at, c| {
+    for k in (0..section.spans()).filter(|&k| section.has_span(k)) {
+        section.shapes(course, k, |s0, at, c| {
             for i in 1..points {
                 let s = c.span().length * i as f64 / points as f64;
                 let p = at + c.position_at(s);
@@ -109,7 +109,7 @@ pub(super) fn touch_passed_corner(
         feature: corner.feature,
     };
     lay_down_span(
-        strand,
+        section,
         course,
         k,
         &Penetration { arc_length: s, at: corner.at, tangent, gap, body: corner.body },
@@ -121,7 +121,7 @@ pub(super) fn touch_passed_corner(
 /// Lays span k down where it is deepest in an obstacle: the contact beside it is drawn out to
 /// there, or a new one begins.
 fn lay_down_span(
-    strand: &mut CableRun,
+    section: &mut CableSection,
     course: &Course,
     k: usize,
     hit: &Penetration,
@@ -140,12 +140,12 @@ fn lay_down_span(
     let Some((i, chain_range)) = found else { return Err(impossible) };
     let edge = curve.place_on(i, 0.0).turn == 0.0;
     let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
-    let ends = strand.ends_of(course, k);
-    let force = strand.force(course, k, hit.arc_length).norm();
+    let ends = section.ends_of(course, k);
+    let force = section.force(course, k, hit.arc_length).norm();
     let same =
         |c: &Contact| c.curve == curve_index && c.chain_range == chain_range && c.wheel.is_none() && !c.is_load();
     let end = |j: Option<usize>, side: usize| {
-        j.and_then(|j| strand.contacts.get(j)).filter(|c| same(c)).map(|c| c.ends.p[side])
+        j.and_then(|j| section.contacts.get(j)).filter(|c| same(c)).map(|c| c.ends.p[side])
     };
     let p = match end(k.checked_sub(1), 1).or_else(|| end(Some(k), 0)).filter(|_| curve.is_round()) {
         Some(end) => release_below::nearest_turn(p, end),
@@ -161,20 +161,20 @@ fn lay_down_span(
     };
     if let Some(c) = k
         .checked_sub(1)
-        .and_then(|j| strand.contacts.get_mut(j))
+        .and_then(|j| section.contacts.get_mut(j))
         .filter(|c| same(c) && p > c.ends.p[1] && bears(c, (c.ends.p[1], p)))
     {
         let p = beyond_edges(curve, chain_range, p, 1, ends[1], None);
         (c.ends.p[1], c.ends.s[1], c.ends.t[1]) = (p, hit.arc_length, force);
         return Ok(());
     }
-    if let Some(c) = strand.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0] && bears(c, (p, c.ends.p[0]))) {
+    if let Some(c) = section.contacts.get_mut(k).filter(|c| same(c) && p < c.ends.p[0] && bears(c, (p, c.ends.p[0]))) {
         let p = beyond_edges(curve, chain_range, p, 0, ends[0], None);
         (c.ends.p[0], c.ends.s[0], c.ends.t[0]) = (p, hit.arc_length, force);
         return Ok(());
     }
     let new = NewContact { curve_index, chain_range, p, force };
-    insert_contact(strand, course, k, hit, new, purpose);
+    insert_contact(section, course, k, hit, new, purpose);
     Ok(())
 }
 
@@ -192,7 +192,7 @@ struct NewContact {
 /// Inserts a contact at a point of span k. One that reaches the held end of the cable on the same
 /// chain goes on to there.
 fn insert_contact(
-    strand: &mut CableRun,
+    section: &mut CableSection,
     course: &Course,
     k: usize,
     hit: &Penetration,
@@ -217,12 +217,12 @@ fn insert_contact(
     let track = course.track(&contact);
     let mut held_ends = [None, None];
     for side in 0..2 {
-        let outer = if side == 0 { k == 0 } else { k == strand.contacts.len() };
-        if let (true, Tie::Held(at)) = (outer, strand.ties[side])
+        let outer = if side == 0 { k == 0 } else { k == section.contacts.len() };
+        if let (true, Tie::Held(at)) = (outer, section.ties[side])
             && let Some(end) = curve.on_chain(chain_range, at, SUPPORT_CONTACT_DISTANCE_M)
             && (if side == 0 { end <= p } else { end >= p })
         {
-            let s = if side == 0 { strand.from } else { strand.to };
+            let s = if side == 0 { section.from } else { section.to };
             held_ends[side] = Some(end);
             (contact.ends.p[side], contact.ends.s[side]) = (end, s);
             // The length that is laid from the held end to the other.
@@ -239,15 +239,15 @@ fn insert_contact(
         mobilised: 0.0,
     };
     contact.history = TensionProfile::new(knot(0), knot(1));
-    let g = strand.forces[k];
-    strand.contacts.insert(k, contact);
-    strand.forces.insert(k, g);
+    let g = section.forces[k];
+    section.contacts.insert(k, contact);
+    section.forces.insert(k, g);
     for side in 0..2 {
         if let Some(p) = held_ends[side] {
-            strand.ties[side] = Tie::Lies(p);
+            section.ties[side] = Tie::Lies(p);
         }
     }
     if purpose == Purpose::FirstEquilibrium {
-        move_neighbours_over_edges(strand, course, k);
+        move_neighbours_over_edges(section, course, k);
     }
 }

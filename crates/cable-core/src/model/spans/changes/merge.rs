@@ -2,13 +2,13 @@
 
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::friction_memory::Mode;
+use crate::model::spans::cable_section::{CableSection, Course};
 use crate::model::spans::contact::release_below;
-use crate::model::spans::run::{CableRun, Course};
 
 /// Merges two neighbouring contacts of one chain. Returns whether there were any.
-pub(super) fn merge_contacts(strand: &mut CableRun, course: &Course) -> bool {
-    for j in 1..strand.contacts.len() {
-        let (a, b) = (&strand.contacts[j - 1], &strand.contacts[j]);
+pub(super) fn merge_contacts(section: &mut CableSection, course: &Course) -> bool {
+    for j in 1..section.contacts.len() {
+        let (a, b) = (&section.contacts[j - 1], &section.contacts[j]);
         let loads = a.is_load() || b.is_load();
         let apart =
             |track: &Track<'_>| track.curve.is_round() && release_below::hangs_between(track, a.ends.p[1], b.ends.p[0]);
@@ -19,9 +19,9 @@ pub(super) fn merge_contacts(strand: &mut CableRun, course: &Course) -> bool {
             && b.ends.p[1] >= a.ends.p[0]
             && !apart(&course.track(a))
         {
-            let b = strand.contacts.remove(j);
-            strand.forces.remove(j);
-            let a = &mut strand.contacts[j - 1];
+            let b = section.contacts.remove(j);
+            section.forces.remove(j);
+            let a = &mut section.contacts[j - 1];
             a.history.append(&course.track(&b), &b.history);
             a.smooth &= b.smooth;
             a.next = b.next;

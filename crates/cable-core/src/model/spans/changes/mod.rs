@@ -1,4 +1,4 @@
-//! A strand is solved with the contacts that belong to its answer: after each solve one kind of
+//! A section is solved with the contacts that belong to its answer: after each solve one kind of
 //! change is made, until none is needed.
 //!
 //! | room | what changes |
@@ -18,6 +18,7 @@ mod release;
 use crate::contact::World;
 use crate::contact::swept_corners::Corner;
 use crate::math::Vec2;
+use crate::model::spans::cable_section::{CableSection, Course};
 use crate::model::spans::changes::edges::follow_edges;
 use crate::model::spans::changes::landing::{Purpose, touch_obstacles, touch_passed_corner};
 use crate::model::spans::changes::merge::merge_contacts;
@@ -29,14 +30,13 @@ use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton;
 use crate::model::spans::newton::{Solved, Work};
-use crate::model::spans::run::{CableRun, Course};
 
-/// Solves a strand with the contacts that belong to its answer.
+/// Solves a section with the contacts that belong to its answer.
 ///
 /// `route` is the shape that a first equilibrium is sought from, which may be far away: the cable
 /// touches the corners between.
 pub(in crate::model::spans) fn solve(
-    strand: &mut CableRun,
+    section: &mut CableSection,
     course: &mut Course,
     world: &World,
     corners: &[Corner],
@@ -47,24 +47,24 @@ pub(in crate::model::spans) fn solve(
     let purpose = if route.is_some() { Purpose::FirstEquilibrium } else { Purpose::Step };
     let (mut sum, mut caught) = (Solved::default(), 0);
     for _ in 0..tuned.max_changes {
-        point_load::join(strand, course)?;
-        let found = match newton::solve(strand, course, work) {
+        point_load::join(section, course)?;
+        let found = match newton::solve(section, course, work) {
             Ok(found) => found,
             Err(stall) => {
                 sum.iterations += stall.iterations;
-                if follow_edges(strand, course) || kink_load::enter(strand, course) {
+                if follow_edges(section, course) || kink_load::enter(section, course) {
                     continue;
                 }
                 caught += 1;
                 if caught <= tuned.max_load_releases
-                    && (release_vanishing_contact(strand, course)? || point_load::catch(strand, course))
+                    && (release_vanishing_contact(section, course)? || point_load::catch(section, course))
                 {
                     continue;
                 }
-                if let Some(support) = lifted_wheel(strand, course) {
+                if let Some(support) = lifted_wheel(section, course) {
                     return Err(Failure::OffWheel { support });
                 }
-                let s = strand.material(stall.at).0;
+                let s = section.material(stall.at).0;
                 return Err(Failure::Stalled { iterations: sum.iterations, residual: stall.residual, s });
             }
         };
@@ -72,22 +72,22 @@ pub(in crate::model::spans) fn solve(
         sum.residual = found.residual;
         // Tunnelled corners are checked before penetrations: they tell on which side of an obstacle
         // the cable belongs.
-        let changed = release_turned_contact(strand, course)?
-            || merge_contacts(strand, course)
-            || release_below::part(strand, course)
-            || kink_load::enter(strand, course)
-            || point_load::settle(strand, course)?
-            || slack_pocket::open(strand, course)
+        let changed = release_turned_contact(section, course)?
+            || merge_contacts(section, course)
+            || release_below::part(section, course)
+            || kink_load::enter(section, course)
+            || point_load::settle(section, course)?
+            || slack_pocket::open(section, course)
             || match route {
-                Some(route) => touch_passed_corner(strand, course, corners, route, work)?,
+                Some(route) => touch_passed_corner(section, course, corners, route, work)?,
                 None => false,
             }
-            || touch_obstacles(strand, course, world, purpose)?;
+            || touch_obstacles(section, course, world, purpose)?;
         if !changed {
             // Other contacts may press the cable on to its wheel again: it is off its wheel when
             // nothing else changes.
-            return lifted_wheel(strand, course).map_or(Ok(sum), |support| Err(Failure::OffWheel { support }));
+            return lifted_wheel(section, course).map_or(Ok(sum), |support| Err(Failure::OffWheel { support }));
         }
     }
-    Err(Failure::Restless { s: strand.from })
+    Err(Failure::Restless { s: section.from })
 }

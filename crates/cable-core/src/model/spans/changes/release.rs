@@ -1,8 +1,8 @@
 //! Contacts are released that would have to pull, or that have vanished.
 
 use crate::model::spans::boundary::friction_memory::{Knot, Mode, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, Tie};
 use crate::model::spans::failure::Failure;
-use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 
 /// Extent (m or rad) by which the interval of a contact has turned round when it is released:
 /// rounding of a contact in a point.
@@ -10,15 +10,15 @@ const RELEASE_OVERLAP: f64 = 1e-10;
 
 /// Releases the contact whose interval has turned round most: it would have to pull. Returns
 /// whether there was one.
-pub(super) fn release_turned_contact(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> {
+pub(super) fn release_turned_contact(section: &mut CableSection, course: &mut Course) -> Result<bool, Failure> {
     let turned = |c: &Contact| c.ends.p[1] - c.ends.p[0];
-    let worst = (0..strand.contacts.len())
-        .filter(|&j| !is_round_wheel(&strand.contacts[j], course))
-        .min_by(|&a, &b| turned(&strand.contacts[a]).total_cmp(&turned(&strand.contacts[b])));
-    let Some(j) = worst.filter(|&j| turned(&strand.contacts[j]) < -RELEASE_OVERLAP) else {
+    let worst = (0..section.contacts.len())
+        .filter(|&j| !is_round_wheel(&section.contacts[j], course))
+        .min_by(|&a, &b| turned(&section.contacts[a]).total_cmp(&turned(&section.contacts[b])));
+    let Some(j) = worst.filter(|&j| turned(&section.contacts[j]) < -RELEASE_OVERLAP) else {
         return Ok(false);
     };
-    remove_contact(strand, course, j)
+    remove_contact(section, course, j)
 }
 
 /// True if a contact is a wheel with a radius: the cable passes it on one side. An eye it may pass
@@ -28,70 +28,70 @@ fn is_round_wheel(c: &Contact, course: &Course) -> bool {
 }
 
 /// The wheel on which the interval has turned round most, if on any: it would have to pull there.
-pub(super) fn lifted_wheel(strand: &CableRun, course: &Course) -> Option<usize> {
-    let wheels = strand.contacts.iter().filter(|c| is_round_wheel(c, course));
+pub(super) fn lifted_wheel(section: &CableSection, course: &Course) -> Option<usize> {
+    let wheels = section.contacts.iter().filter(|c| is_round_wheel(c, course));
     let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
     wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -RELEASE_OVERLAP)?.wheel
 }
 
 /// Releases a contact that has shrunk to next to nothing beside a load, whose weight a span that
 /// turned round past it would count. Returns whether there was any.
-pub(super) fn release_vanishing_contact(strand: &mut CableRun, course: &mut Course) -> Result<bool, Failure> {
-    let least = course.settings.changes.shed_length_fraction * (strand.to - strand.from);
+pub(super) fn release_vanishing_contact(section: &mut CableSection, course: &mut Course) -> Result<bool, Failure> {
+    let least = course.settings.changes.shed_length_fraction * (section.to - section.from);
     let small = |c: &Contact| !c.is_load() && c.ends.s[1] - c.ends.s[0] < least;
-    let beside = |j: usize| strand.is_joined(j, 0) || strand.is_joined(j, 1);
-    let Some(j) = (0..strand.contacts.len()).find(|&j| small(&strand.contacts[j]) && beside(j)) else {
+    let beside = |j: usize| section.is_joined(j, 0) || section.is_joined(j, 1);
+    let Some(j) = (0..section.contacts.len()).find(|&j| small(&section.contacts[j]) && beside(j)) else {
         return Ok(false);
     };
-    remove_contact(strand, course, j)
+    remove_contact(section, course, j)
 }
 
 /// Removes contact j: the spans beside it become one. A wheel cannot be removed, and an eye is
 /// passed on its other side.
-fn remove_contact(strand: &mut CableRun, course: &mut Course, j: usize) -> Result<bool, Failure> {
-    if let Some(support) = strand.contacts[j].wheel {
-        if is_round_wheel(&strand.contacts[j], course) {
+fn remove_contact(section: &mut CableSection, course: &mut Course, j: usize) -> Result<bool, Failure> {
+    if let Some(support) = section.contacts[j].wheel {
+        if is_round_wheel(&section.contacts[j], course) {
             return Err(Failure::OffWheel { support });
         }
-        pass_eye_on_other_side(&mut strand.contacts[j]);
+        pass_eye_on_other_side(&mut section.contacts[j]);
         return Ok(true);
     }
-    let contact = strand.contacts.remove(j);
-    let m = strand.contacts.len();
-    if let Some(before) = j.checked_sub(1).and_then(|i| strand.contacts.get_mut(i)) {
+    let contact = section.contacts.remove(j);
+    let m = section.contacts.len();
+    if let Some(before) = j.checked_sub(1).and_then(|i| section.contacts.get_mut(i)) {
         before.next.end_pocket();
     }
     // Beside a load there was no span; now there is the one that was on the other side.
-    let before = j.checked_sub(1).is_some_and(|i| strand.contacts[i].next.part());
+    let before = j.checked_sub(1).is_some_and(|i| section.contacts[i].next.part());
     if before || contact.next == Next::Joined {
         let (k, other) = if contact.next == Next::Joined { (j + 1, j) } else { (j, j + 1) };
-        let ends = (other == 0 && !strand.ties[0].has_span()) || (other > m && !strand.ties[1].has_span());
+        let ends = (other == 0 && !section.ties[0].has_span()) || (other > m && !section.ties[1].has_span());
         if ends {
             return Err(Failure::LoadLies { s: contact.ends.s[0] });
         }
-        strand.forces.remove(k);
-        strand.resolve_span(course, j);
+        section.forces.remove(k);
+        section.resolve_span(course, j);
         return Ok(true);
     }
     // An end that rested on this contact becomes a fixed or a free end.
     for side in 0..2 {
         let outer = if side == 0 { j == 0 } else { j == m };
-        if outer && !strand.ties[side].has_span() {
-            strand.ties[side] = match strand.ties[side] {
+        if outer && !section.ties[side].has_span() {
+            section.ties[side] = match section.ties[side] {
                 Tie::Lies(p) => Tie::Held(course.track(&contact).place(p).at),
                 Tie::Loose(force) => Tie::Hangs(force),
                 other => other,
             };
-            strand.forces.remove(if side == 0 { 0 } else { m + 1 });
-            if strand.contacts.is_empty() && strand.forces.len() > 1 {
-                strand.forces.truncate(1);
+            section.forces.remove(if side == 0 { 0 } else { m + 1 });
+            if section.contacts.is_empty() && section.forces.len() > 1 {
+                section.forces.truncate(1);
             }
-            strand.resolve_span(course, if side == 0 { 0 } else { m });
+            section.resolve_span(course, if side == 0 { 0 } else { m });
             return Ok(true);
         }
     }
-    strand.forces.remove(j);
-    strand.resolve_span(course, j);
+    section.forces.remove(j);
+    section.resolve_span(course, j);
     Ok(true)
 }
 

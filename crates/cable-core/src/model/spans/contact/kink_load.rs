@@ -7,15 +7,15 @@
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::friction_memory::{Knot, Mode, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Kink, RestingLoad};
 use crate::model::spans::contact::load_balance::{LoadBalance, load_balance};
 use crate::model::spans::failure::Failure;
-use crate::model::spans::run::{CableRun, Contact, Course, Kink, RestingLoad};
 
 /// A load so far beyond the end of its chain (m or rad) is in the kink there. Smaller: rounding.
 const CHAIN_END_ROUNDING: f64 = 1e-12;
 /// Part of the forces that is rounding.
 const CONE_ROUNDING: f64 = 1e-12;
-/// Part of the strand that a contact gives way by where a load leaves it, to begin with.
+/// Part of the section that a contact gives way by where a load leaves it, to begin with.
 const GIVE_WAY_FRACTION: f64 = 1e-6;
 
 /// The piece beyond the kink at an end of a contact's chain, and p of the kink.
@@ -58,8 +58,8 @@ pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, kink: Kink, f
 }
 
 /// K: loads that have come into a kink stay there; whether there was one.
-pub(in crate::model::spans) fn enter(strand: &mut CableRun, course: &Course) -> bool {
-    for c in strand.contacts.iter_mut().filter(|c| c.load.is_some_and(|l| l.kink.is_none())) {
+pub(in crate::model::spans) fn enter(section: &mut CableSection, course: &Course) -> bool {
+    for c in section.contacts.iter_mut().filter(|c| c.load.is_some_and(|l| l.kink.is_none())) {
         for kink in [Kink::Back, Kink::Ahead] {
             let Some((_, p)) = beyond(course, c, kink) else { continue };
             if (c.ends.p[0] - p) * kink.sign() > CHAIN_END_ROUNDING {
@@ -76,9 +76,13 @@ pub(in crate::model::spans) fn enter(strand: &mut CableRun, course: &Course) -> 
 }
 
 /// Lets the load that is contact j out of its kink; whether it left.
-pub(in crate::model::spans) fn leave_kink(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Failure> {
-    let f = load_balance(strand, course, j);
-    let c = &strand.contacts[j];
+pub(in crate::model::spans) fn leave_kink(
+    section: &mut CableSection,
+    course: &Course,
+    j: usize,
+) -> Result<bool, Failure> {
+    let f = load_balance(section, course, j);
+    let c = &section.contacts[j];
     let Some(kink) = c.kink() else { return Ok(false) };
     let Some(on) = leaves(course, c, kink, &f, CONE_ROUNDING) else { return Ok(false) };
     let (curve, friction) = (&course.curves[c.curve], course.friction(c));
@@ -92,36 +96,36 @@ pub(in crate::model::spans) fn leave_kink(strand: &mut CableRun, course: &Course
         (Kink::Back, true) => curve.end(chain_range.last),
         _ => c.ends.p[0],
     };
-    let c = &mut strand.contacts[j];
+    let c = &mut section.contacts[j];
     let knot = Knot { coordinate: p, arc_length: c.ends.s[0], tension: c.ends.t[0], mobilised: 0.0 };
     (c.chain_range, c.ends.p, c.history) = (chain_range, [p; 2], TensionProfile::new(knot, knot));
     c.load = Some(RestingLoad::default());
     c.mode = Mode::Slide(friction * if on { kink.sign() } else { -kink.sign() });
     for side in 0..2 {
-        part(strand, course, j, side);
+        part(section, course, j, side);
     }
     Ok(true)
 }
 
 /// Separates by a span a contact that is joined to the load that is contact j but lies on another
 /// chain.
-fn part(strand: &mut CableRun, course: &Course, j: usize, side: usize) {
-    if !strand.is_joined(j, side) {
+fn part(section: &mut CableSection, course: &Course, j: usize, side: usize) {
+    if !section.is_joined(j, side) {
         return;
     }
     let i = j + 2 * side - 1;
-    if strand.contacts[i].chain_range == strand.contacts[j].chain_range {
+    if section.contacts[i].chain_range == section.contacts[j].chain_range {
         return;
     }
-    strand.contacts[if side == 0 { i } else { j }].next.part();
-    give_way(strand, i, 1 - side);
-    strand.resolve_span(course, j + side);
+    section.contacts[if side == 0 { i } else { j }].next.part();
+    give_way(section, i, 1 - side);
+    section.resolve_span(course, j + side);
 }
 
 /// An end of contact i gives way by a little, for a span to begin there.
-pub(in crate::model::spans) fn give_way(strand: &mut CableRun, i: usize, end: usize) {
-    let gives = GIVE_WAY_FRACTION * (strand.to - strand.from);
-    let e = &mut strand.contacts[i].ends;
+pub(in crate::model::spans) fn give_way(section: &mut CableSection, i: usize, end: usize) {
+    let gives = GIVE_WAY_FRACTION * (section.to - section.from);
+    let e = &mut section.contacts[i].ends;
     let (most, sign) = (0.5 * (e.s[1] - e.s[0]), if end == 0 { 1.0 } else { -1.0 });
     let by = if gives < most { gives } else { most };
     e.s[end] += sign * by;

@@ -1,7 +1,7 @@
 //! The forces on a dead load that lies on a boundary, see `point_load`.
 
 use crate::math::{Vec2, larger};
-use crate::model::spans::run::{CableRun, Course, Tie};
+use crate::model::spans::cable_section::{CableSection, Course, Tie};
 
 /// Forces on a load.
 #[derive(Clone, Copy, Debug)]
@@ -23,17 +23,17 @@ impl LoadBalance {
 }
 
 /// Forces on the load that is contact j.
-pub(in crate::model::spans) fn load_balance(strand: &CableRun, course: &Course, j: usize) -> LoadBalance {
-    let c = &strand.contacts[j];
+pub(in crate::model::spans) fn load_balance(section: &CableSection, course: &Course, j: usize) -> LoadBalance {
+    let c = &section.contacts[j];
     let place = course.track(c).place(c.ends.p[0]);
-    let own = load(strand, course, j);
+    let own = load(section, course, j);
     let (mut fixed, mut along, mut size) = (own, 0.0, own.norm());
     for (side, sign) in [(0, -1.0), (1, 1.0)] {
-        if let Some(force) = strand.force_at_contact(course, j, side) {
+        if let Some(force) = section.force_at_contact(course, j, side) {
             fixed += force * sign;
             size = larger(size, force.norm());
-        } else if strand.is_joined(j, side) {
-            let (tension, beside) = (strand.forces[j + side].x, &strand.contacts[j + 2 * side - 1]);
+        } else if section.is_joined(j, side) {
+            let (tension, beside) = (section.forces[j + side].x, &section.contacts[j + 2 * side - 1]);
             size = larger(size, tension.abs());
             if beside.chain_range == c.chain_range {
                 along += tension * sign;
@@ -46,10 +46,10 @@ pub(in crate::model::spans) fn load_balance(strand: &CableRun, course: &Course, 
 }
 
 /// P of the load that is contact j, N.
-fn load(strand: &CableRun, course: &Course, j: usize) -> Vec2 {
-    let s = strand.contacts[j].ends.s[0];
-    for (side, end) in [(0, 0), (1, strand.contacts.len() - 1)] {
-        if let (true, Tie::Loose(force)) = (j == end, strand.ties[side]) {
+fn load(section: &CableSection, course: &Course, j: usize) -> Vec2 {
+    let s = section.contacts[j].ends.s[0];
+    for (side, end) in [(0, 0), (1, section.contacts.len() - 1)] {
+        if let (true, Tie::Loose(force)) = (j == end, section.ties[side]) {
             return force;
         }
     }

@@ -4,9 +4,9 @@
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp};
 use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, RestingLoad, Tie};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::failure::Failure;
-use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie};
 
 /// A load of span k, or the tip of it, that is deeper inside something than `deep` (m).
 #[derive(Clone, Copy, Debug)]
@@ -17,35 +17,35 @@ pub(in crate::model::spans) struct Landing {
     along: Vec2,
     gap: Gap,
     body: usize,
-    /// The end of the strand that it is.
+    /// The end of the section that it is.
     tip: Option<usize>,
 }
 
 /// The deepest point of span k inside an obstacle.
 pub(in crate::model::spans) fn find(
-    strand: &CableRun,
+    section: &CableSection,
     course: &Course,
     world: &World,
     k: usize,
     deep: f64,
 ) -> Option<Landing> {
-    let hangs = [k == 0, k == strand.contacts.len()];
-    let (from, to) = strand.material(k);
+    let hangs = [k == 0, k == section.contacts.len()];
+    let (from, to) = section.material(k);
     let inner = course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to);
-    let tip = |side: usize| hangs[side] && matches!(strand.ties[side], Tie::Hangs(_));
-    if !strand.has_span(k) || !(inner || tip(0) || tip(1)) {
+    let tip = |side: usize| hangs[side] && matches!(section.ties[side], Tie::Hangs(_));
+    if !section.has_span(k) || !(inner || tip(0) || tip(1)) {
         return None;
     }
     let mut worst: Option<Landing> = None;
     let look = |s: f64, at: Vec2, along: Vec2, tip: Option<usize>, worst: &mut Option<Landing>| {
-        let Some(gap) = world.signed_gap(at, strand.to - strand.from).filter(|g| g.gap_m < -deep) else { return };
+        let Some(gap) = world.signed_gap(at, section.to - section.from).filter(|g| g.gap_m < -deep) else { return };
         let Some(body) = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle) else { return };
         if worst.is_none_or(|w| gap.gap_m < w.gap.gap_m) {
             *worst = Some(Landing { arc_length: s, at, along, gap, body, tip });
         }
     };
     let mut before: Option<Vec2> = None;
-    strand.shapes(course, k, |s0, at, shape| {
+    section.shapes(course, k, |s0, at, shape| {
         let (start, end) = (shape.start_force(), shape.end_force());
         match before.take() {
             Some(force) => look(s0, at, force / force.norm() + start / start.norm(), None, &mut worst),
@@ -62,13 +62,13 @@ pub(in crate::model::spans) fn find(
 
 /// Lays down what has landed of span k.
 pub(in crate::model::spans) fn touch(
-    strand: &mut CableRun,
+    section: &mut CableSection,
     course: &Course,
     k: usize,
     l: &Landing,
 ) -> Result<(), Failure> {
     let impossible = Failure::ContactImpossible { s: l.arc_length, at: l.at };
-    let drawn = match l.tip.map(|side| strand.ties[side]) {
+    let drawn = match l.tip.map(|side| section.ties[side]) {
         Some(Tie::Hangs(force)) => force,
         _ => Vec2::zeros(),
     };
@@ -85,7 +85,7 @@ pub(in crate::model::spans) fn touch(
     let found = curve.piece_of(l.gap.feature, l.at).or_else(kink).and_then(|i| curve.chain(i, load));
     let Some((i, chain_range)) = found else { return Err(impossible) };
     let p = curve.project(i, l.at);
-    let tension = strand.force(course, k, l.arc_length).norm();
+    let tension = section.force(course, k, l.arc_length).norm();
     let knot = |p: f64, s: f64, tension: f64| Knot { coordinate: p, arc_length: s, tension, mobilised: 0.0 };
     let mut c = Contact {
         curve: index,
@@ -101,9 +101,9 @@ pub(in crate::model::spans) fn touch(
         smooth: true,
     };
     let Some(side) = l.tip else {
-        let g = strand.forces[k];
-        strand.contacts.insert(k, c);
-        strand.forces.insert(k + 1, g);
+        let g = section.forces[k];
+        section.contacts.insert(k, c);
+        section.forces.insert(k + 1, g);
         return Ok(());
     };
     c.ends.s = [l.arc_length; 2];
@@ -127,10 +127,10 @@ pub(in crate::model::spans) fn touch(
         c.mode = Mode::Slide(sign * curve.friction);
         let e = c.ends;
         c.history = TensionProfile::new(knot(e.p[0], e.s[0], e.t[0]), knot(e.p[1], e.s[1], e.t[1]));
-        strand.forces[k] = place.tangent * tension + course.load_between(strand.from, e.s[inner]);
+        section.forces[k] = place.tangent * tension + course.load_between(section.from, e.s[inner]);
     }
-    strand.ties[side] = Tie::Loose(drawn);
-    strand.contacts.insert(k, c);
-    strand.forces.insert(k + side, Vec2::zeros());
+    section.ties[side] = Tie::Loose(drawn);
+    section.contacts.insert(k, c);
+    section.forces.insert(k + side, Vec2::zeros());
     Ok(())
 }

@@ -19,11 +19,11 @@ use crate::error::EquilibriumFault;
 use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, RestingLoad, Tie};
 use crate::model::spans::contact::kink_load;
 use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
-use crate::model::spans::run::{CableRun, Contact, Course, Next, RestingLoad, Tie};
 
 /// Part of the forces at a load that is rounding. Smaller: chatter at the edge of the cone. Larger:
 /// creep.
@@ -36,8 +36,8 @@ pub(in crate::model::spans) const LIFT_FRACTION: f64 = 1e-9;
 const BALANCE_TOLERANCE: f64 = 1e-7;
 
 /// The mode that the load that is contact j asks for.
-pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: usize, patience: f64) -> Mode {
-    let c = &strand.contacts[j];
+pub(in crate::model::spans) fn next_mode(section: &CableSection, course: &Course, j: usize, patience: f64) -> Mode {
+    let c = &section.contacts[j];
     let friction = course.friction(c);
     if c.kink().is_some() {
         return Mode::Hold;
@@ -45,7 +45,7 @@ pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: 
     if friction <= 0.0 {
         return Mode::Slide(0.0);
     }
-    let load_balance = load_balance(strand, course, j);
+    let load_balance = load_balance(section, course, j);
     match c.mode {
         Mode::Hold => {
             let (along, press) = (load_balance.sum.dot(&load_balance.tangent), larger(load_balance.press(), 0.0));
@@ -62,27 +62,27 @@ pub(in crate::model::spans) fn next_mode(strand: &CableRun, course: &Course, j: 
 
 /// The friction of what came down in a step that is not remembered yet, of the force there: loads
 /// have had none, and cable rubs as if it had come down where it was found.
-pub(in crate::model::spans) fn fresh(strand: &CableRun, course: &Course) -> f64 {
+pub(in crate::model::spans) fn fresh(section: &CableSection, course: &Course) -> f64 {
     let missing = |j: usize| {
-        let c = &strand.contacts[j];
+        let c = &section.contacts[j];
         if c.is_load() && c.smooth {
-            let f = load_balance(strand, course, j);
+            let f = load_balance(section, course, j);
             return course.curves[c.curve].friction * larger(f.press(), 0.0) / larger(f.size, f64::MIN_POSITIVE);
         }
         let [t1, t2] = c.ends.t;
         let new = !c.is_load() && c.wheel.is_none() && c.history.knots().len() == 1 && c.ends.p[1] > c.ends.p[0];
         if new { (t2 - t1).abs() / larger(larger(t1, t2), f64::MIN_POSITIVE) } else { 0.0 }
     };
-    (0..strand.contacts.len()).map(missing).fold(0.0, larger)
+    (0..section.contacts.len()).map(missing).fold(0.0, larger)
 }
 
-/// True if all of a strand is about to slide `way` (1: towards its end, −1: towards its start): at
+/// True if all of a section is about to slide `way` (1: towards its end, −1: towards its start): at
 /// each contact the tensions are those of sliding, but for this part of them.
-pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way: f64, near: f64) -> bool {
+pub(in crate::model::spans) fn mobilised(section: &CableSection, course: &Course, way: f64, near: f64) -> bool {
     let slides = |(j, c): (usize, &Contact)| {
         let m = way * course.friction(c);
         if c.is_load() {
-            let load_balance = load_balance(strand, course, j);
+            let load_balance = load_balance(section, course, j);
             return load_balance.sum.dot(&(load_balance.tangent + load_balance.normal * m)).abs()
                 <= near * load_balance.size;
         }
@@ -91,7 +91,7 @@ pub(in crate::model::spans) fn mobilised(strand: &CableRun, course: &Course, way
         let laid = course.law.load.norm() * (c.ends.s[1] - c.ends.s[0]);
         (t2 - reached).abs() <= near * larger(larger(t1.abs(), t2.abs()), laid)
     };
-    !strand.contacts.is_empty() && strand.contacts.iter().enumerate().all(slides)
+    !section.contacts.is_empty() && section.contacts.iter().enumerate().all(slides)
 }
 
 /// The place of a load in the state before, p.
@@ -100,9 +100,9 @@ pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
 }
 
 /// Checks the load that is contact j against its laws.
-pub(in crate::model::spans) fn verify(strand: &CableRun, course: &Course, j: usize) -> Result<(), Failure> {
-    let c = &strand.contacts[j];
-    let f = load_balance(strand, course, j);
+pub(in crate::model::spans) fn verify(section: &CableSection, course: &Course, j: usize) -> Result<(), Failure> {
+    let c = &section.contacts[j];
+    let f = load_balance(section, course, j);
     let unsound =
         |what: EquilibriumFault| Failure::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
     let room = BALANCE_TOLERANCE * f.size;
@@ -116,9 +116,9 @@ pub(in crate::model::spans) fn verify(strand: &CableRun, course: &Course, j: usi
     } else if !(f.sum.dot(&f.tangent).abs() <= course.friction(c) * f.press() + room) {
         return Err(unsound(EquilibriumFault::LoadSlides));
     }
-    for side in (0..2).filter(|&side| strand.is_joined(j, side)) {
-        let beside = strand.contacts[j + 2 * side - 1].ends;
-        if !((beside.p[1 - side] - c.ends.p[side]).abs() <= BALANCE_TOLERANCE * (strand.to - strand.from)) {
+    for side in (0..2).filter(|&side| section.is_joined(j, side)) {
+        let beside = section.contacts[j + 2 * side - 1].ends;
+        if !((beside.p[1 - side] - c.ends.p[side]).abs() <= BALANCE_TOLERANCE * (section.to - section.from)) {
             return Err(unsound(EquilibriumFault::LoadElsewhere));
         }
     }
@@ -127,18 +127,18 @@ pub(in crate::model::spans) fn verify(strand: &CableRun, course: &Course, j: usi
 
 /// L: loads that lift are let go, those within a contact are set down there, ends that are pressed
 /// down rub, and what lies on one chain beside a load is joined to it; whether there was any.
-pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) -> Result<bool, Failure> {
-    for j in 0..strand.contacts.len() {
-        if strand.contacts[j].is_load() {
-            let f = load_balance(strand, course, j);
-            if kink_load::press(course, &strand.contacts[j], &f) < -CONE_ROUNDING * f.size {
-                lift(strand, course, j);
+pub(in crate::model::spans) fn settle(section: &mut CableSection, course: &Course) -> Result<bool, Failure> {
+    for j in 0..section.contacts.len() {
+        if section.contacts[j].is_load() {
+            let f = load_balance(section, course, j);
+            if kink_load::press(course, &section.contacts[j], &f) < -CONE_ROUNDING * f.size {
+                lift(section, course, j);
                 return Ok(true);
             }
-            if kink_load::leave_kink(strand, course, j)? {
+            if kink_load::leave_kink(section, course, j)? {
                 return Ok(true);
             }
-        } else if set_down(strand, course, j) || press_end(strand, course, j) {
+        } else if set_down(section, course, j) || press_end(section, course, j) {
             return Ok(true);
         }
     }
@@ -146,78 +146,78 @@ pub(in crate::model::spans) fn settle(strand: &mut CableRun, course: &Course) ->
 }
 
 /// Lets the load that is contact j go.
-fn lift(strand: &mut CableRun, course: &Course, j: usize) {
+fn lift(section: &mut CableSection, course: &Course, j: usize) {
     for side in 0..2 {
-        if strand.is_joined(j, side) {
-            kink_load::give_way(strand, j + 2 * side - 1, 1 - side);
+        if section.is_joined(j, side) {
+            kink_load::give_way(section, j + 2 * side - 1, 1 - side);
         }
     }
-    let last = strand.contacts.len() - 1;
-    let before = j.checked_sub(1).is_some_and(|i| strand.contacts[i].next.part());
-    let after = strand.contacts[j].next == Next::Joined;
+    let last = section.contacts.len() - 1;
+    let before = j.checked_sub(1).is_some_and(|i| section.contacts[i].next.part());
+    let after = section.contacts[j].next == Next::Joined;
     for (side, end) in [(0, 0), (1, last)] {
-        if let (true, Tie::Loose(force)) = (j == end, strand.ties[side]) {
+        if let (true, Tie::Loose(force)) = (j == end, section.ties[side]) {
             let stays = if side == 0 { after } else { before };
-            strand.contacts.remove(j);
-            strand.forces.remove(j + usize::from((side == 1) != stays));
+            section.contacts.remove(j);
+            section.forces.remove(j + usize::from((side == 1) != stays));
             if !stays {
-                strand.ties[side] = Tie::Hangs(force);
+                section.ties[side] = Tie::Hangs(force);
             }
-            strand.resolve_span(course, if side == 0 { 0 } else { strand.contacts.len() });
+            section.resolve_span(course, if side == 0 { 0 } else { section.contacts.len() });
             return;
         }
     }
-    strand.contacts.remove(j);
-    strand.forces.remove(j + usize::from(!before));
-    strand.resolve_span(course, j);
+    section.contacts.remove(j);
+    section.forces.remove(j + usize::from(!before));
+    section.resolve_span(course, j);
 }
 
 /// Joins loads to what lies on their chains beside them.
-pub(in crate::model::spans) fn join(strand: &mut CableRun, course: &Course) -> Result<(), Failure> {
+pub(in crate::model::spans) fn join(section: &mut CableSection, course: &Course) -> Result<(), Failure> {
     let mut j = 0;
-    while j < strand.contacts.len() {
-        while strand.contacts[j].is_load() && join_one(strand, course, j)? {}
+    while j < section.contacts.len() {
+        while section.contacts[j].is_load() && join_one(section, course, j)? {}
         j += 1;
     }
     Ok(())
 }
 
 /// Joins one more contact beside the load that is contact j, and says whether there was one.
-fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Failure> {
-    let load = strand.contacts[j].clone();
+fn join_one(section: &mut CableSection, course: &Course, j: usize) -> Result<bool, Failure> {
+    let load = section.contacts[j].clone();
     for side in 0..2 {
-        let Some(i) = (j + 2 * side).checked_sub(1).filter(|&i| i < strand.contacts.len()) else { continue };
-        let c = &strand.contacts[i];
+        let Some(i) = (j + 2 * side).checked_sub(1).filter(|&i| i < section.contacts.len()) else { continue };
+        let c = &section.contacts[i];
         let same = c.curve == load.curve && c.chain_range == load.chain_range && c.wheel.is_none();
         let here = same || kink_load::follows(course, &load, c, side);
-        if !here || strand.is_joined(j, side) || strand.in_pocket(j, side) {
+        if !here || section.is_joined(j, side) || section.in_pocket(j, side) {
             continue;
         }
         let (k, first) = (j + side, if side == 0 { i } else { j });
         if c.is_load() {
             // Cable between two loads of one chain lies, too.
-            let [a, b] = [first, first + 1].map(|k| strand.contacts[k].ends);
+            let [a, b] = [first, first + 1].map(|k| section.contacts[k].ends);
             if !same || !(b.p[0] > a.p[0]) {
                 return Err(Failure::LoadLies { s: load.ends.s[side] });
             }
-            let tension = strand.force(course, k, a.s[1]).norm();
+            let tension = section.force(course, k, a.s[1]).norm();
             let ends = Ends { p: [a.p[0], b.p[0]], s: [a.s[1], b.s[0]], t: [tension; 2] };
             let knot =
                 |side: usize| Knot { coordinate: ends.p[side], arc_length: ends.s[side], tension, mobilised: 0.0 };
             let history = TensionProfile::new(knot(0), knot(1));
             let mode = Mode::Slide(0.0);
             let between = Contact { ends, history, mode, load: None, smooth: true, next: Next::Joined, ..load };
-            strand.contacts[first].next = Next::Joined;
-            strand.contacts.insert(first + 1, between);
-            strand.forces[k] = Vec2::new(tension, 0.0);
-            strand.forces.insert(k, Vec2::new(tension, 0.0));
+            section.contacts[first].next = Next::Joined;
+            section.contacts.insert(first + 1, between);
+            section.forces[k] = Vec2::new(tension, 0.0);
+            section.forces.insert(k, Vec2::new(tension, 0.0));
             return Ok(true);
         }
         let tension = c.ends.t[1 - side];
-        let e = &mut strand.contacts[i].ends;
+        let e = &mut section.contacts[i].ends;
         (e.p[1 - side], e.s[1 - side]) = (load.ends.p[0], load.ends.s[side]);
-        strand.forces[k] = Vec2::new(tension, 0.0);
-        strand.contacts[first].next = Next::Joined;
+        section.forces[k] = Vec2::new(tension, 0.0);
+        section.contacts[first].next = Next::Joined;
         return Ok(true);
     }
     Ok(false)
@@ -225,13 +225,13 @@ fn join_one(strand: &mut CableRun, course: &Course, j: usize) -> Result<bool, Fa
 
 /// C: where Newton stalls an end of a contact may have come to a load: it ends there, whatever the
 /// load rests with. The load that is nearest to an end is set down; whether there was one.
-pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> bool {
+pub(in crate::model::spans) fn catch(section: &mut CableSection, course: &Course) -> bool {
     let mut best: Option<(f64, usize, usize, f64)> = None;
-    let is_contact = |s: f64| strand.contacts.iter().any(|c| c.is_load() && c.ends.s[0] == s);
-    for (j, c) in strand.contacts.iter().enumerate() {
-        for side in (0..2).filter(|&side| strand.has_span(j + side) && !c.is_load() && c.wheel.is_none()) {
-            let [from, to] = [strand.material(j + side).0, strand.material(j + side).1];
-            let inside = |l: &&PointForce| l.arc_length > strand.from && l.arc_length < strand.to;
+    let is_contact = |s: f64| section.contacts.iter().any(|c| c.is_load() && c.ends.s[0] == s);
+    for (j, c) in section.contacts.iter().enumerate() {
+        for side in (0..2).filter(|&side| section.has_span(j + side) && !c.is_load() && c.wheel.is_none()) {
+            let [from, to] = [section.material(j + side).0, section.material(j + side).1];
+            let inside = |l: &&PointForce| l.arc_length > section.from && l.arc_length < section.to;
             let near = |l: &&PointForce| l.force.norm() > 0.0 && inside(l) && !is_contact(l.arc_length);
             for l in course.loads.iter().filter(near) {
                 let off = (l.arc_length - c.ends.s[side]).abs();
@@ -239,7 +239,7 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
                 let turned =
                     l.arc_length >= c.ends.s[1].min(c.ends.s[0]) && l.arc_length <= c.ends.s[0].max(c.ends.s[1]);
                 if (beside || turned)
-                    && off <= course.settings.changes.catch_distance_fraction * (strand.to - strand.from)
+                    && off <= course.settings.changes.catch_distance_fraction * (section.to - section.from)
                     && best.is_none_or(|b| off < b.0)
                 {
                     best = Some((off, j, side, l.arc_length));
@@ -248,26 +248,26 @@ pub(in crate::model::spans) fn catch(strand: &mut CableRun, course: &Course) -> 
         }
     }
     let Some((_, j, side, s)) = best else { return false };
-    let c = &strand.contacts[j];
+    let c = &section.contacts[j];
     let e = c.ends;
     let p = walk(&course.track(c), e.p[side], (s - e.s[side]) * course.law.stretch(e.t[side]));
     let load = lying(c, p, [s, s.next_up()], e.t[side], FrictionPast::None);
     let left = if side == 0 { e.p[1] - p } else { p - e.p[0] };
     if left <= 0.0 {
         // Nothing else of it is left.
-        strand.contacts[j] = Contact { next: c.next, ..load };
+        section.contacts[j] = Contact { next: c.next, ..load };
         return true;
     }
-    let c = &mut strand.contacts[j];
+    let c = &mut section.contacts[j];
     (c.ends.p[side], c.ends.s[side]) = (p, if side == 0 { s.next_up() } else { s });
     let joint = Vec2::new(e.t[side], 0.0);
     if side == 0 {
-        strand.contacts.insert(j, Contact { next: Next::Joined, ..load });
-        strand.forces.insert(j + 1, joint);
+        section.contacts.insert(j, Contact { next: Next::Joined, ..load });
+        section.forces.insert(j + 1, joint);
     } else {
         c.next = Next::Joined;
-        strand.contacts.insert(j + 1, load);
-        strand.forces.insert(j + 1, joint);
+        section.contacts.insert(j + 1, load);
+        section.forces.insert(j + 1, joint);
     }
     true
 }
@@ -290,17 +290,17 @@ fn walk(track: &Track<'_>, mut p: f64, way: f64) -> f64 {
 }
 
 /// Sets a load within contact j down where it lies.
-fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
-    let c = &strand.contacts[j];
-    // A load at an end of the strand draws that end.
-    let [from, to] = [larger(c.ends.s[0], strand.from), smaller(c.ends.s[1], strand.to)];
+fn set_down(section: &mut CableSection, course: &Course, j: usize) -> bool {
+    let c = &section.contacts[j];
+    // A load at an end of the section draws that end.
+    let [from, to] = [larger(c.ends.s[0], section.from), smaller(c.ends.s[1], section.to)];
     let Some(s) = course.loads.iter().find(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0) else {
         return false;
     };
     let s = s.arc_length;
     let track = course.track(c);
     let [p0, p1] = c.ends.p;
-    let floor = TENSION_ROUNDING * (strand.to - strand.from);
+    let floor = TENSION_ROUNDING * (section.to - section.from);
     let q = crossing(p0, p1, floor, None, |p| {
         let place = track.place(p);
         let (tension, laid) = c.history.at(&track, p);
@@ -318,22 +318,22 @@ fn set_down(strand: &mut CableRun, course: &Course, j: usize) -> bool {
     (load.next, load.smooth) = (Next::Joined, fresh);
     let mut rest = c.clone();
     (rest.ends.p[0], rest.ends.s[0], rest.ends.t[0], rest.history) = (q, after, tension, second);
-    let c = &mut strand.contacts[j];
+    let c = &mut section.contacts[j];
     (c.ends.p[1], c.ends.s[1], c.ends.t[1], c.history) = (q, s, tension, first);
     c.next = Next::Joined;
-    strand.contacts.insert(j + 1, load);
-    strand.contacts.insert(j + 2, rest);
+    section.contacts.insert(j + 1, load);
+    section.contacts.insert(j + 2, rest);
     for _ in 0..2 {
-        strand.forces.insert(j + 1, Vec2::new(tension, 0.0));
+        section.forces.insert(j + 1, Vec2::new(tension, 0.0));
     }
     true
 }
 
 /// An end that lies on contact j and is pressed down by what draws it rubs by itself.
-fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
-    for (side, end) in [(0, 0), (1, strand.contacts.len() - 1)] {
-        let Tie::Loose(force) = strand.ties[side] else { continue };
-        let c = &strand.contacts[j];
+fn press_end(section: &mut CableSection, course: &Course, j: usize) -> bool {
+    for (side, end) in [(0, 0), (1, section.contacts.len() - 1)] {
+        let Tie::Loose(force) = section.ties[side] else { continue };
+        let c = &section.contacts[j];
         let normal = course.track(c).place(c.ends.p[side]).normal;
         if j != end || course.friction(c) <= 0.0 || force.dot(&normal) >= -LIFT_FRACTION * force.norm() {
             continue;
@@ -341,9 +341,9 @@ fn press_end(strand: &mut CableRun, course: &Course, j: usize) -> bool {
         let (p, s, tension) = (c.ends.p[side], c.ends.s[side], c.ends.t[side]);
         let load = lying(c, p, [s; 2], tension, FrictionPast::of(c.smooth));
         let k = j + side;
-        strand.contacts.insert(k, load);
-        strand.contacts[j].next = Next::Joined;
-        strand.forces.insert(j + 1, Vec2::new(tension, 0.0));
+        section.contacts.insert(k, load);
+        section.contacts[j].next = Next::Joined;
+        section.forces.insert(j + 1, Vec2::new(tension, 0.0));
         return true;
     }
     false

@@ -8,8 +8,8 @@
 
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::friction_memory::{Ends, Mode, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Next};
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
-use crate::model::spans::run::{CableRun, Contact, Course, Next};
 
 /// Pull on a post that is none, of the tensions at the ends of the contact: rounding. Larger than
 /// what the check lets pass: contacts that it refuses are not parted.
@@ -28,9 +28,9 @@ pub(in crate::model::spans) fn nearest_turn(p: f64, to: f64) -> f64 {
 }
 
 /// L: parts the contact that pulls most about the place where it does; whether there was one.
-pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> bool {
+pub(in crate::model::spans) fn part(section: &mut CableSection, course: &Course) -> bool {
     let mut worst: Option<(f64, usize, f64, TensionProfile)> = None;
-    for (j, c) in strand.contacts.iter().enumerate() {
+    for (j, c) in section.contacts.iter().enumerate() {
         let track = course.track(c);
         let [first, last] = c.ends.p;
         if c.is_load() || c.wheel.is_some() || !track.curve.is_round() || !hangs_between(&track, first, last) {
@@ -46,7 +46,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
         });
     }
     let Some((_, j, bottom, past)) = worst else { return false };
-    let c = &strand.contacts[j];
+    let c = &section.contacts[j];
     let track = course.track(c);
     let floor = TENSION_ROUNDING * (c.ends.t[0].abs() + c.ends.t[1].abs());
     // Within half a turn P has one zero on either side.
@@ -64,7 +64,7 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
     let [before, behind] = [edges[0] > c.ends.p[0], edges[1] < c.ends.p[1]];
     let mode = if course.friction(c) > 0.0 { Mode::Hold } else { c.mode };
     let (e, history) = (c.ends, c.history.clone());
-    let c = &mut strand.contacts[j];
+    let c = &mut section.contacts[j];
     (c.mode, c.held) = (mode, None);
     match (before, behind) {
         (true, true) => {
@@ -74,18 +74,18 @@ pub(in crate::model::spans) fn part(strand: &mut CableRun, course: &Course) -> b
             c.history = history.split(&course.track(c), edges[0]).0;
             other.history = history.split(&course.track(&other), edges[1]).1;
             c.next = Next::Span;
-            strand.contacts.insert(j + 1, other);
-            let g = strand.forces[j + 1];
-            strand.forces.insert(j + 1, g);
-            strand.resolve_span(course, j + 1);
+            section.contacts.insert(j + 1, other);
+            let g = section.forces[j + 1];
+            section.forces.insert(j + 1, g);
+            section.resolve_span(course, j + 1);
         }
         (true, false) => {
             c.ends = Ends { p: [e.p[0], edges[0]], s: [e.s[0], s0], t: [e.t[0], t0] };
-            strand.resolve_span(course, j + 1);
+            section.resolve_span(course, j + 1);
         }
         (false, true) => {
             c.ends = Ends { p: [edges[1], e.p[1]], s: [s1, e.s[1]], t: [t1, e.t[1]] };
-            strand.resolve_span(course, j);
+            section.resolve_span(course, j);
         }
         (false, false) => return false,
     }

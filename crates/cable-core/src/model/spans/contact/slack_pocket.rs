@@ -16,9 +16,9 @@
 //! x/tan(δ/2) long, and so e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::run::{CableRun, Contact, Course, Next};
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Next};
 
-/// A pocket opens when material is short by this part of the strand. Smaller: rounding opens it.
+/// A pocket opens when material is short by this part of the section. Smaller: rounding opens it.
 /// Larger: the cable there is too short by as much.
 pub(in crate::model::spans) const POCKET_SHORTAGE_FRACTION: f64 = 1e-11;
 /// Ends of two chains this near to each other (m) are one kink.
@@ -28,8 +28,8 @@ const HEAP_CONE_ROUNDING: f64 = 1e-9;
 
 /// The places at which the ends of the contacts before and after span k would lie in a kink: p on
 /// both, the turn, rad.
-fn kink(strand: &CableRun, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
-    let (a, b) = (strand.contacts.get(k.checked_sub(1)?)?, strand.contacts.get(k)?);
+fn kink(section: &CableSection, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
+    let (a, b) = (section.contacts.get(k.checked_sub(1)?)?, section.contacts.get(k)?);
     if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.is_load() || b.is_load() {
         return None;
     }
@@ -42,12 +42,12 @@ fn kink(strand: &CableRun, course: &Course, k: usize) -> Option<([f64; 2], f64)>
 }
 
 /// Spans that may become pockets, those of the least tension first.
-pub(in crate::model::spans) fn candidates(strand: &CableRun, course: &Course, out: &mut Vec<(f64, usize)>) {
+pub(in crate::model::spans) fn candidates(section: &CableSection, course: &Course, out: &mut Vec<(f64, usize)>) {
     out.clear();
-    let most = course.settings.changes.pocket_tension_fraction * course.law.load.norm() * (strand.to - strand.from);
-    for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
-        let tension = strand.force(course, k, strand.material(k).0).norm();
-        if tension < most && kink(strand, course, k).is_some() {
+    let most = course.settings.changes.pocket_tension_fraction * course.law.load.norm() * (section.to - section.from);
+    for k in (0..section.spans()).filter(|&k| section.has_span(k)) {
+        let tension = section.force(course, k, section.material(k).0).norm();
+        if tension < most && kink(section, course, k).is_some() {
             out.push((tension, k));
         }
     }
@@ -55,17 +55,17 @@ pub(in crate::model::spans) fn candidates(strand: &CableRun, course: &Course, ou
 }
 
 /// Lays span k into its kink.
-pub(in crate::model::spans) fn fill(strand: &mut CableRun, course: &Course, k: usize) {
-    let Some((p, _)) = kink(strand, course, k) else { return };
+pub(in crate::model::spans) fn fill(section: &mut CableSection, course: &Course, k: usize) {
+    let Some((p, _)) = kink(section, course, k) else { return };
     let stretch = course.law.stretch(0.0);
     for (side, p) in p.into_iter().enumerate() {
-        let c = &mut strand.contacts[k - 1 + side];
+        let c = &mut section.contacts[k - 1 + side];
         let end = 1 - side;
         c.ends.s[end] += (p - c.ends.p[end]) / stretch;
         (c.ends.p[end], c.ends.t[end]) = (p, 0.0);
     }
-    strand.contacts[k - 1].next = Next::Pocket;
-    strand.forces[k] = Vec2::zeros();
+    section.contacts[k - 1].next = Next::Pocket;
+    section.forces[k] = Vec2::zeros();
 }
 
 /// The force of an edge on the heap in a pocket.
@@ -83,8 +83,8 @@ pub(in crate::model::spans) struct Borne {
 
 /// The edges that carry the heap between contacts k − 1 and k; None where nothing does, and it
 /// slides.
-pub(in crate::model::spans) fn heap(strand: &CableRun, course: &Course, k: usize) -> Option<[Borne; 2]> {
-    let (a, b) = (&strand.contacts[k - 1], &strand.contacts[k]);
+pub(in crate::model::spans) fn heap(section: &CableSection, course: &Course, k: usize) -> Option<[Borne; 2]> {
+    let (a, b) = (&section.contacts[k - 1], &section.contacts[k]);
     let edge = |c: &Contact, contact: usize, end: usize| {
         let place = course.track(c).place(c.ends.p[end]);
         Borne { contact, normal: place.normal, tangent: place.tangent, press: 0.0, friction: 0.0 }
@@ -109,34 +109,34 @@ pub(in crate::model::spans) fn heap(strand: &CableRun, course: &Course, k: usize
 }
 
 /// U: draws a span across the kink whose material is shortest.
-pub(in crate::model::spans) fn open(strand: &mut CableRun, course: &Course) -> bool {
-    let surplus = |k: usize| strand.contacts[k].ends.s[0] - strand.contacts[k - 1].ends.s[1];
-    let pockets = (1..strand.contacts.len()).filter(|&k| strand.contacts[k - 1].next == Next::Pocket);
+pub(in crate::model::spans) fn open(section: &mut CableSection, course: &Course) -> bool {
+    let surplus = |k: usize| section.contacts[k].ends.s[0] - section.contacts[k - 1].ends.s[1];
+    let pockets = (1..section.contacts.len()).filter(|&k| section.contacts[k - 1].next == Next::Pocket);
     let Some(k) = pockets.min_by(|&a, &b| surplus(a).total_cmp(&surplus(b))) else { return false };
     let short = -surplus(k);
-    if !(short > POCKET_SHORTAGE_FRACTION * (strand.to - strand.from)) {
+    if !(short > POCKET_SHORTAGE_FRACTION * (section.to - section.from)) {
         return false;
     }
-    let Some((_, turn)) = kink(strand, course, k) else { return false };
-    let extent = |j: usize| strand.contacts[j].ends.p[1] - strand.contacts[j].ends.p[0];
+    let Some((_, turn)) = kink(section, course, k) else { return false };
+    let extent = |j: usize| section.contacts[j].ends.p[1] - section.contacts[j].ends.p[0];
     let half = (0.5 * turn).tan();
     let (mut x, stretch) = (short / (2.0 - turn / half), course.law.stretch(0.0));
     for j in [k - 1, k] {
         let most = course.settings.changes.kink_span_fraction * extent(j);
         x = if x < most { x } else { most };
     }
-    let normal = course.track(&strand.contacts[k]).place(strand.contacts[k].ends.p[0]).normal;
+    let normal = course.track(&section.contacts[k]).place(section.contacts[k].ends.p[0]).normal;
     let tension = (course.law.load.dot(&normal)).abs() * x / half;
     for side in 0..2 {
-        let c = &mut strand.contacts[k - 1 + side];
+        let c = &mut section.contacts[k - 1 + side];
         let (end, sign) = (1 - side, if side == 0 { -1.0 } else { 1.0 });
         c.ends.p[end] += sign * x;
         c.ends.s[end] += sign * x / stretch;
         c.ends.t[end] = tension;
     }
-    strand.contacts[k - 1].next = Next::Span;
-    if let Some(g) = strand.solve_span(course, k) {
-        strand.forces[k] = g;
+    section.contacts[k - 1].next = Next::Span;
+    if let Some(g) = section.solve_span(course, k) {
+        section.forces[k] = g;
     }
     true
 }

@@ -2,19 +2,19 @@
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
-use crate::model::spans::run::{CableRun, Course, Tie};
+use crate::model::spans::cable_section::{CableSection, Course, Tie};
 
 /// Moves an end that is held to `at`, m.
-pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, side: usize, at: Vec2) {
-    let outer = if side == 0 { 0 } else { strand.contacts.len().wrapping_sub(1) };
-    let on = strand.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.is_load()).and_then(|c| {
+pub(in crate::model::spans) fn place(section: &mut CableSection, course: &Course, side: usize, at: Vec2) {
+    let outer = if side == 0 { 0 } else { section.contacts.len().wrapping_sub(1) };
+    let on = section.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.is_load()).and_then(|c| {
         let curve = course.track(c).curve;
         curve.on_chain(c.chain_range, at, SUPPORT_CONTACT_DISTANCE_M)
     });
-    match (strand.ties[side], on) {
+    match (section.ties[side], on) {
         (Tie::Lies(_), Some(p)) => {
-            strand.ties[side] = Tie::Lies(p);
-            let c = &mut strand.contacts[outer];
+            section.ties[side] = Tie::Lies(p);
+            let c = &mut section.contacts[outer];
             let gap = p - c.ends.p[side];
             c.ends.p[side] = p;
             if gap != 0.0 {
@@ -22,31 +22,31 @@ pub(in crate::model::spans) fn place(strand: &mut CableRun, course: &Course, sid
                 c.ends.t[side] = c.history.at(&course.track(c), p).0;
             }
         }
-        (Tie::Lies(_), None) => lift(strand, course, side, outer, at),
-        (Tie::Held(_), Some(p)) if beyond(strand, outer, side, p) => lay_end_on(strand, side, outer, p),
-        (Tie::Held(_), _) => strand.ties[side] = Tie::Held(at),
+        (Tie::Lies(_), None) => lift(section, course, side, outer, at),
+        (Tie::Held(_), Some(p)) if beyond(section, outer, side, p) => lay_end_on(section, side, outer, p),
+        (Tie::Held(_), _) => section.ties[side] = Tie::Held(at),
         _ => {}
     }
 }
 
 /// True if p lies outside contact `j` on that side.
-fn beyond(strand: &CableRun, j: usize, side: usize, p: f64) -> bool {
-    let e = &strand.contacts[j].ends;
+fn beyond(section: &CableSection, j: usize, side: usize, p: f64) -> bool {
+    let e = &section.contacts[j].ends;
     if side == 0 { p <= e.p[0] } else { p >= e.p[1] }
 }
 
-/// Lays an end of the strand on the boundary, which takes its span away.
-fn lay_end_on(strand: &mut CableRun, side: usize, j: usize, p: f64) {
-    strand.ties[side] = Tie::Lies(p);
-    let s = if side == 0 { strand.from } else { strand.to };
-    let e = &mut strand.contacts[j].ends;
+/// Lays an end of the section on the boundary, which takes its span away.
+fn lay_end_on(section: &mut CableSection, side: usize, j: usize, p: f64) {
+    section.ties[side] = Tie::Lies(p);
+    let s = if side == 0 { section.from } else { section.to };
+    let e = &mut section.contacts[j].ends;
     (e.p[side], e.s[side]) = (p, s);
 }
 
 /// An end that leaves the boundary: a span begins where a parabola of the height h and tension T
 /// there would, x = √(2Th/w_n).
-fn lift(strand: &mut CableRun, course: &Course, side: usize, j: usize, at: Vec2) {
-    let c = &mut strand.contacts[j];
+fn lift(section: &mut CableSection, course: &Course, side: usize, j: usize, at: Vec2) {
+    let c = &mut section.contacts[j];
     let track = course.track(c);
     let curve = track.curve;
     let i = curve.locate(c.ends.p[side], c.chain_range);
@@ -59,7 +59,7 @@ fn lift(strand: &mut CableRun, course: &Course, side: usize, j: usize, at: Vec2)
     let sign = if side == 0 { 1.0 } else { -1.0 };
     let least = (foot - other).abs() * (1.0 - course.settings.changes.lying_fraction);
     let p = foot + sign * if reach < least { reach } else { least };
-    let end = if side == 0 { strand.from } else { strand.to };
+    let end = if side == 0 { section.from } else { section.to };
     // Of the material there is some must remain for the span.
     let span = ((at - track.place(p).at).norm()) / course.law.stretch(c.ends.t[side]);
     let s = end + sign * span;
@@ -68,7 +68,7 @@ fn lift(strand: &mut CableRun, course: &Course, side: usize, j: usize, at: Vec2)
     let t = c.ends.t[side];
     (c.ends.p[side], c.ends.s[side]) = (p, s);
     let force = track.place(p).tangent * t;
-    let k = if side == 0 { 0 } else { strand.forces.len() - 1 };
-    strand.ties[side] = Tie::Held(at);
-    strand.forces[k] = force + course.load_between(strand.from, s);
+    let k = if side == 0 { 0 } else { section.forces.len() - 1 };
+    section.ties[side] = Tie::Held(at);
+    section.forces[k] = force + course.load_between(section.from, s);
 }

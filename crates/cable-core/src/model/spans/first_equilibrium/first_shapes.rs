@@ -55,7 +55,7 @@ pub(in crate::model::spans) enum FirstLength {
 pub(in crate::model::spans) enum SlackCable {
     /// Nowhere.
     Nowhere,
-    /// A strand that spreads on the ground along its route.
+    /// A section that spreads on the ground along its route.
     AlongRoute,
     /// That, and cable that comes down on a smooth contact and has no tension left.
     WhereTensionEnds,
@@ -87,14 +87,14 @@ pub(super) const FIRST_SHAPES: [FirstShape; 6] = [
     FirstShape { friction: FirstFriction::OnceAtRest, length: FirstLength::VeryTaut, ..ALONG_ROUTE },
 ];
 
-/// The first shapes that are tried after [`FIRST_SHAPES`] if nothing but friction holds a strand.
+/// The first shapes that are tried after [`FIRST_SHAPES`] if nothing but friction holds a section.
 pub(super) fn posts_seen_nearer(layout: &Layout) -> impl Iterator<Item = FirstShape> {
     shapes_with_friction(layout).into_iter().skip(1)
 }
 
 /// The first shapes with friction that can tell how much of it a cable needs.
 pub(in crate::model::spans) fn shapes_with_friction(layout: &Layout) -> Vec<FirstShape> {
-    let held_by_friction = layout.strands.iter().any(|s| s.supports.iter().all(Option::is_none));
+    let held_by_friction = layout.sections.iter().any(|s| s.supports.iter().all(Option::is_none));
     let rings = if held_by_friction { &RINGS[..] } else { &RINGS[..1] };
     let shapes = rings.iter().map(|posts| FirstShape { posts: *posts, ..ALONG_ROUTE });
     shapes.chain(held_by_friction.then_some(TAUT)).collect()

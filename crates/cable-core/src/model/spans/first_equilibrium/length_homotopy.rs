@@ -37,15 +37,15 @@ impl CableEquilibrium {
         let taut = shape.length.tension_weights(tuned);
         let mut begin = goal.clone();
         layout.set_course(&mut self.course, &begin);
-        let routes = self.lay_strands(layout, &begin, shape)?;
+        let routes = self.lay_sections(layout, &begin, shape)?;
         if let Some(taut) = taut {
             begin.thermal = self.shrunk_thermal(layout, goal, taut);
             begin.load *= tuned.first_load_fraction;
             begin.forces.iter_mut().for_each(|f| *f *= tuned.first_load_fraction);
             layout.set_course(&mut self.course, &begin);
-            for (strand, part) in self.strands.iter_mut().zip(&layout.strands) {
+            for (section, part) in self.sections.iter_mut().zip(&layout.sections) {
                 if part.supports.iter().all(Option::is_some) {
-                    tension::tighten(strand, &self.course);
+                    tension::tighten(section, &self.course);
                 }
             }
         }
@@ -62,31 +62,31 @@ impl CableEquilibrium {
         Ok(taken.and(self.travel(layout, goal, tuned.first_step, work)?))
     }
 
-    /// Lays each strand along its route; returns the routes, none for a strand that lies loose.
-    fn lay_strands(
+    /// Lays each section along its route; returns the routes, none for a section that lies loose.
+    fn lay_sections(
         &mut self,
         layout: &Layout,
         begin: &BoundaryConditions,
         shape: FirstShape,
     ) -> Result<Vec<Vec<Vec2>>, Failure> {
         let may_lie_loose = shape.length == FirstLength::Whole && shape.slack != SlackCable::Nowhere;
-        self.strands.clear();
+        self.sections.clear();
         let mut routes = Vec::new();
-        for k in 0..layout.strands.len() {
+        for k in 0..layout.sections.len() {
             let loose = if may_lie_loose {
-                slack::loose_strand(layout, k, &self.course, begin, LooseShapes::NoTension)
+                slack::loose_section(layout, k, &self.course, begin, LooseShapes::NoTension)
             } else {
                 None
             };
-            if let Some(strand) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
-                self.strands.push(strand);
+            if let Some(section) = loose.filter(|s| s.loose.as_ref().is_some_and(Loose::spreads)) {
+                self.sections.push(section);
                 routes.push(Vec::new());
                 continue;
             }
-            let laid = contacts::strand_along_route(layout, k, &self.course, begin, shape.posts);
-            let no_way = Failure::ContactImpossible { s: layout.strands[k].material[0], at: begin.places[0] };
-            let (strand, route) = laid.ok_or(no_way)?;
-            self.strands.push(strand);
+            let laid = contacts::section_along_route(layout, k, &self.course, begin, shape.posts);
+            let no_way = Failure::ContactImpossible { s: layout.sections[k].material[0], at: begin.places[0] };
+            let (section, route) = laid.ok_or(no_way)?;
+            self.sections.push(section);
             routes.push(route);
         }
         Ok(routes)
@@ -96,7 +96,7 @@ impl CableEquilibrium {
     /// any.
     fn end_smoothness(&mut self) -> bool {
         let mut met = false;
-        for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts).filter(|c| c.smooth) {
+        for c in self.sections.iter_mut().flat_map(|s| &mut s.contacts).filter(|c| c.smooth) {
             c.smooth = false;
             met = true;
             if self.course.friction(c) > 0.0 {
@@ -113,7 +113,7 @@ impl CableEquilibrium {
         let drawn: f64 = goal.forces.iter().map(|f| f.norm()).sum();
         let tension = taut * goal.load.norm() * p.length + drawn;
         let mut least = goal.thermal;
-        for s in &self.strands {
+        for s in &self.sections {
             let way = tension::taut_length(s, &self.course);
             let taut = way / ((s.to - s.from) * (1.0 + tension / p.axial_stiffness));
             if taut < least && taut > 0.0 {

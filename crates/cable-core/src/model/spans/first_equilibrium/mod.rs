@@ -14,6 +14,7 @@ pub(super) use first_shapes::{FirstShape, shapes_with_friction};
 use crate::math::Vec2;
 use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout};
+use crate::model::spans::cable_section::CableSection;
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::first_equilibrium::first_shapes::{
@@ -21,7 +22,6 @@ use crate::model::spans::first_equilibrium::first_shapes::{
 };
 use crate::model::spans::initial::from_solution;
 use crate::model::spans::newton::Work;
-use crate::model::spans::run::CableRun;
 use crate::model::spans::slack::{self, LooseShapes};
 use crate::solution::Node;
 
@@ -70,7 +70,7 @@ impl CableEquilibrium {
         work: &mut Work,
     ) -> Result<(Self, StepStats), NotFound> {
         // A cable that is not held at both ends would run to where it needs no friction.
-        let is_held = layout.strands.iter().all(|s| s.supports.iter().all(Option::is_some));
+        let is_held = layout.sections.iter().all(|s| s.supports.iter().all(Option::is_some));
         let without_friction = start == SearchStart::AlsoWithoutFriction && is_held;
         let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
         let course = layout.course(layout.curves(), instant);
@@ -86,7 +86,7 @@ impl CableEquilibrium {
             if shape.slack == SlackCable::WhereTensionEnds && !pushes {
                 continue;
             }
-            let mut network = Self { strands: Vec::new(), course: course.clone(), instant: begin.clone() };
+            let mut network = Self { sections: Vec::new(), course: course.clone(), instant: begin.clone() };
             network.course.loose_where_tension_ends = shape.slack == SlackCable::WhereTensionEnds;
             match network.find_from(layout, shape, [begin, instant], work) {
                 Ok(taken) => {
@@ -125,9 +125,9 @@ impl CableEquilibrium {
     /// The cable in heaps where it comes down, hanging over crests, without tension where it lies.
     pub fn in_heaps(layout: &Layout, instant: &BoundaryConditions) -> Option<Self> {
         let course = layout.course(layout.curves(), instant);
-        let strand = |k: usize| slack::loose_strand(layout, k, &course, instant, LooseShapes::AnyTension);
-        let strands = (0..layout.strands.len()).map(strand).collect::<Option<Vec<CableRun>>>()?;
-        Some(Self { strands, course, instant: instant.clone() })
+        let section = |k: usize| slack::loose_section(layout, k, &course, instant, LooseShapes::AnyTension);
+        let sections = (0..layout.sections.len()).map(section).collect::<Option<Vec<CableSection>>>()?;
+        Some(Self { sections, course, instant: instant.clone() })
     }
 
     /// The equilibrium next to an answer of another model.
@@ -143,10 +143,10 @@ impl CableEquilibrium {
         let mut first = None;
         for unused in layout.settings.continuation.unused_cone_fractions {
             let course = layout.course(layout.curves(), instant);
-            let Some(strands) = from_solution::strands_of(layout, &course, instant, nodes, 1.0 - unused) else {
+            let Some(sections) = from_solution::sections_of(layout, &course, instant, nodes, 1.0 - unused) else {
                 continue;
             };
-            let mut network = Self { strands, course, instant: instant.clone() };
+            let mut network = Self { sections, course, instant: instant.clone() };
             match network.step(layout, instant, work) {
                 Ok(_) => return Ok(network),
                 Err(failure) => first = first.or(Some(failure)),
@@ -164,7 +164,7 @@ impl CableEquilibrium {
         work: &mut Work,
     ) -> Result<StepStats, Failure> {
         layout.set_course(&mut self.course, goal);
-        for c in self.strands.iter_mut().flat_map(|s| &mut s.contacts) {
+        for c in self.sections.iter_mut().flat_map(|s| &mut s.contacts) {
             if self.course.friction(c) > 0.0 {
                 c.mode = Mode::Hold;
             }

@@ -6,13 +6,13 @@ use crate::math::{Vec2, cross, smaller};
 use crate::model::spans::boundary::curve::ChainRange;
 use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part, Pulley};
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, Tie};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::initial::material::{measure, spread};
 use crate::model::spans::initial::route::{Way, way};
 use crate::model::spans::initial::shortest_path;
 use crate::model::spans::initial::shortest_path::{Bend, Ring};
 use crate::model::spans::initial::tension;
-use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 
 /// A wrap: something that the cable bends round, in order.
 #[derive(Clone, Debug)]
@@ -28,16 +28,16 @@ struct Wrap {
     turn: f64,
 }
 
-/// The strand laid along its route, and the points of the route. None where the string of the route
+/// The section laid along its route, and the points of the route. None where the string of the route
 /// finds no end.
-pub(in crate::model::spans) fn strand_along_route(
+pub(in crate::model::spans) fn section_along_route(
     layout: &Layout,
     index: usize,
     course: &Course,
     instant: &BoundaryConditions,
     ring: Ring,
-) -> Option<(CableRun, Vec<Vec2>)> {
-    let way = way(layout, layout.strands.get(index)?, instant);
+) -> Option<(CableSection, Vec<Vec2>)> {
+    let way = way(layout, layout.sections.get(index)?, instant);
     Some((along(layout, index, course, instant, &way, ring)?, way.points))
 }
 
@@ -48,9 +48,9 @@ fn along(
     instant: &BoundaryConditions,
     way: &Way,
     ring: Ring,
-) -> Option<CableRun> {
+) -> Option<CableSection> {
     let tuned = &layout.settings.initial;
-    let part = layout.strands.get(index)?;
+    let part = layout.sections.get(index)?;
     let [from, to] = part.material;
     let total = way.total();
     if !(total > 0.0) {
@@ -90,7 +90,7 @@ fn along(
         (false, true) => from + w / stretch,
         _ => from + (to - from) * w / total,
     };
-    let mut strand = CableRun { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
+    let mut section = CableSection { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
     let slack = total / ((to - from) * course.law.thermal) - 1.0;
     let tension = if loose(0) || loose(1) {
         drawn
@@ -103,7 +103,7 @@ fn along(
     if let [Some(a), Some(b)] = &heads
         && (a.count + b.count > way.points.len() && a.curve == b.curve && a.chain_range == b.chain_range)
     {
-        return Some(lies_whole(strand, course, [a, b], tension));
+        return Some(lies_whole(section, course, [a, b], tension));
     }
     // A span from one lying stretch to the next needs some tension.
     let tension = if tension > least || heads.iter().any(Option::is_none) { tension } else { least };
@@ -133,15 +133,15 @@ fn along(
         };
         let c = contact(course, h.curve, h.chain_range, p, s, tension);
         contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
-        strand.ties[side] = end_tie(ties[side], h.coordinates[side]);
+        section.ties[side] = end_tie(ties[side], h.coordinates[side]);
     }
-    strand.forces = vec![Vec2::zeros(); contacts.len() + 1];
-    strand.contacts = contacts;
+    section.forces = vec![Vec2::zeros(); contacts.len() + 1];
+    section.contacts = contacts;
     if join == 0.0 && (loose(0) || loose(1)) {
-        measure(&mut strand, course, [loose(0), loose(1)], stretch);
+        measure(&mut section, course, [loose(0), loose(1)], stretch);
     }
-    spread(&mut strand, course);
-    solve_spans(&mut strand, course)?;
+    spread(&mut section, course);
+    solve_spans(&mut section, course)?;
     // Without a route the way is straight from support to support: round a wheel from tangent to
     // tangent.
     let wheel = |q: &Pulley| layout.problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
@@ -151,46 +151,46 @@ fn along(
         && !loose(0)
         && !loose(1)
     {
-        tension::relay(&mut strand, course);
+        tension::relay(&mut section, course);
     }
-    Some(strand)
+    Some(section)
 }
 
 /// Forces of spans whose ends and material are known.
-pub(in crate::model::spans) fn solve_spans(strand: &mut CableRun, course: &Course) -> Option<()> {
-    for k in 0..strand.spans() {
-        if strand.has_span(k) {
-            strand.forces[k] = strand.solve_span(course, k)?;
+pub(in crate::model::spans) fn solve_spans(section: &mut CableSection, course: &Course) -> Option<()> {
+    for k in 0..section.spans() {
+        if section.has_span(k) {
+            section.forces[k] = section.solve_span(course, k)?;
         }
     }
-    strand.take_tensions(course);
+    section.take_tensions(course);
     Some(())
 }
 
-/// A strand that lies on one boundary from end to end.
-fn lies_whole(mut strand: CableRun, course: &Course, [a, b]: [&Head; 2], tension: f64) -> CableRun {
+/// A section that lies on one boundary from end to end.
+fn lies_whole(mut section: CableSection, course: &Course, [a, b]: [&Head; 2], tension: f64) -> CableSection {
     let mut c = contact(
         course,
         a.curve,
         a.chain_range,
         [a.coordinates[0], b.coordinates[1]],
-        [strand.from, strand.to],
+        [section.from, section.to],
         tension,
     );
     c.wheel = None;
-    strand.ties =
-        [0, 1].map(|side| end_tie(strand.ties[side], if side == 0 { a.coordinates[0] } else { b.coordinates[1] }));
-    strand.contacts.push(c);
-    strand.forces = vec![Vec2::zeros(); 2];
-    spread(&mut strand, course);
+    section.ties =
+        [0, 1].map(|side| end_tie(section.ties[side], if side == 0 { a.coordinates[0] } else { b.coordinates[1] }));
+    section.contacts.push(c);
+    section.forces = vec![Vec2::zeros(); 2];
+    spread(&mut section, course);
     for side in 0..2 {
-        if matches!(strand.ties[side], Tie::Lies(_)) {
-            let c = &mut strand.contacts[0];
+        if matches!(section.ties[side], Tie::Lies(_)) {
+            let c = &mut section.contacts[0];
             let track = course.track(c);
             c.ends.t[side] = c.history.at(&track, c.ends.p[side]).0;
         }
     }
-    strand
+    section
 }
 
 /// Two stretches that meet at a kink of δ are joined by a span of length Tδ/w: half of it, m; 0
@@ -278,12 +278,12 @@ fn bends(
     Some(contacts)
 }
 
-/// A strand whose ends are in one place: nothing but a span.
-fn bare(part: &Part, instant: &BoundaryConditions) -> Option<CableRun> {
+/// A section whose ends are in one place: nothing but a span.
+fn bare(part: &Part, instant: &BoundaryConditions) -> Option<CableSection> {
     let [a, b] = part.supports;
     let [from, to] = part.material;
     let ties = [Tie::Held(instant.places[a?]), Tie::Held(instant.places[b?])];
-    part.pulleys.is_empty().then(|| CableRun {
+    part.pulleys.is_empty().then(|| CableSection {
         from,
         to,
         ties,

@@ -12,11 +12,11 @@ use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
 use crate::model::spans::boundary::friction_memory::{Ends, Going, Knot, Mode, TensionProfile};
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, Tie};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
-use crate::model::spans::run::{CableRun, Contact, Course, Next, Tie};
 use crate::solution::Node;
 
-/// Of the material of a strand, what is kept between two contacts at least.
+/// Of the material of a section, what is kept between two contacts at least.
 const CONTACT_SPACING_FRACTION: f64 = 1e-6;
 
 /// A point of the cable, with the tensions before and after it.
@@ -36,16 +36,16 @@ impl Station {
     }
 }
 
-/// The strands of a cable in the shape of an answer, with at most a part of the cone of friction
+/// The sections of a cable in the shape of an answer, with at most a part of the cone of friction
 /// called upon; None where the answer does not show them.
-pub(in crate::model::spans) fn strands_of(
+pub(in crate::model::spans) fn sections_of(
     layout: &Layout,
     course: &Course,
     instant: &BoundaryConditions,
     nodes: &[Node],
     within: f64,
-) -> Option<Vec<CableRun>> {
-    let strand = |part: &Part| {
+) -> Option<Vec<CableSection>> {
+    let section = |part: &Part| {
         let mut stations = stations(nodes, part.material);
         if stations.len() < 2 {
             return None;
@@ -54,7 +54,7 @@ pub(in crate::model::spans) fn strands_of(
         place_on_boundaries(layout, course, &mut stations);
         laid(layout, part, course, instant, &stations, within)
     };
-    layout.strands.iter().map(strand).collect()
+    layout.sections.iter().map(section).collect()
 }
 
 /// The nodes of a stretch of material; of two at one place the tensions before and after.
@@ -124,7 +124,7 @@ fn place_on_boundaries(layout: &Layout, course: &Course, stations: &mut [Station
     }
 }
 
-/// A strand with contacts where its stations lie.
+/// A section with contacts where its stations lie.
 fn laid(
     layout: &Layout,
     part: &Part,
@@ -132,13 +132,13 @@ fn laid(
     instant: &BoundaryConditions,
     stations: &[Station],
     within: f64,
-) -> Option<CableRun> {
+) -> Option<CableSection> {
     let [from, to] = part.material;
     let ties = [0, 1].map(|side| match part.supports[side] {
         Some(k) => Tie::Held(instant.places[k]),
         None => Tie::Hangs(layout.end_force(instant, part.material[side])),
     });
-    let mut strand = CableRun { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
+    let mut section = CableSection { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
     let last = stations.len() - 1;
     let mut k = 0;
     while k <= last {
@@ -155,28 +155,28 @@ fn laid(
             (k, reached) = (k + 1, p);
         }
         let run = Run { curve: &course.curves[index], index, chain_range, first, last: k, within };
-        if let Some(c) = run.contact(&mut strand, course, stations) {
-            strand.contacts.push(c);
+        if let Some(c) = run.contact(&mut section, course, stations) {
+            section.contacts.push(c);
         }
         k += 1;
     }
-    keep_apart(&mut strand)?;
-    strand.forces = vec![Vec2::zeros(); strand.contacts.len() + 1];
-    for k in 0..strand.spans() {
-        if strand.has_span(k) {
-            strand.forces[k] = strand.solve_span(course, k)?;
+    keep_apart(&mut section)?;
+    section.forces = vec![Vec2::zeros(); section.contacts.len() + 1];
+    for k in 0..section.spans() {
+        if section.has_span(k) {
+            section.forces[k] = section.solve_span(course, k)?;
         }
     }
-    strand.take_tensions(course);
-    Some(strand)
+    section.take_tensions(course);
+    Some(section)
 }
 
 /// Material in order, some of it in every span.
-fn keep_apart(strand: &mut CableRun) -> Option<()> {
-    let least = CONTACT_SPACING_FRACTION * (strand.to - strand.from);
-    let mut before = strand.from;
-    let mut spanned = strand.ties[0].has_span();
-    for c in &mut strand.contacts {
+fn keep_apart(section: &mut CableSection) -> Option<()> {
+    let least = CONTACT_SPACING_FRACTION * (section.to - section.from);
+    let mut before = section.from;
+    let mut spanned = section.ties[0].has_span();
+    for c in &mut section.contacts {
         if spanned && c.ends.s[0] < before + least {
             c.ends.s[0] = before + least;
         }
@@ -186,7 +186,7 @@ fn keep_apart(strand: &mut CableRun) -> Option<()> {
         before = c.ends.s[1];
         spanned = true;
     }
-    (before < strand.to - least || !strand.ties[1].has_span()).then_some(())
+    (before < section.to - least || !section.ties[1].has_span()).then_some(())
 }
 
 /// Stations, one after the other, that lie on one chain.
@@ -201,8 +201,8 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// The contact; the ties of the strand that lie on it do so from now on.
-    fn contact(&self, strand: &mut CableRun, course: &Course, stations: &[Station]) -> Option<Contact> {
+    /// The contact; the ties of the section that lie on it do so from now on.
+    fn contact(&self, section: &mut CableSection, course: &Course, stations: &[Station]) -> Option<Contact> {
         let mut contact = Contact {
             curve: self.index,
             chain_range: self.chain_range,
@@ -217,7 +217,7 @@ impl Run<'_> {
             load: None,
         };
         for side in 0..2 {
-            let (p, s, t) = self.end(strand, course, stations, side)?;
+            let (p, s, t) = self.end(section, course, stations, side)?;
             (contact.ends.p[side], contact.ends.s[side], contact.ends.t[side]) = (p, s, t);
         }
         if contact.ends.p[1] < contact.ends.p[0] {
@@ -251,9 +251,9 @@ impl Run<'_> {
         let track = course.track(&contact);
         // A difference beyond the cone goes to where the tension is known without friction: away
         // from an end that lies, to one that is not held.
-        let tied = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
+        let tied = [0, 1].map(|side| matches!(section.ties[side], Tie::Lies(_)));
         let at_end = [self.first == 0, self.last + 1 == stations.len()];
-        let free = strand.ties.map(|t| matches!(t, Tie::Hangs(_) | Tie::Loose(_)));
+        let free = section.ties.map(|t| matches!(t, Tie::Hangs(_) | Tie::Loose(_)));
         let back = tied[1] && at_end[1] && !(tied[0] && at_end[0]) || free[0] && !free[1];
         contact.history = if back {
             TensionProfile::through_back(&track, &knots, self.within)
@@ -269,7 +269,7 @@ impl Run<'_> {
             }
         }
         // The cone changes only the tension at an end that lies.
-        if let (Some(k), Tie::Lies(_)) = (contact.history.knots().last(), strand.ties[1]) {
+        if let (Some(k), Tie::Lies(_)) = (contact.history.knots().last(), section.ties[1]) {
             contact.ends.t[1] = k.tension;
         }
         Some(contact)
@@ -278,7 +278,7 @@ impl Run<'_> {
     /// Place, material and tension where the contact begins (side 0) or ends.
     fn end(
         &self,
-        strand: &mut CableRun,
+        section: &mut CableSection,
         course: &Course,
         stations: &[Station],
         side: usize,
@@ -289,11 +289,11 @@ impl Run<'_> {
         let tension = station.tension[side];
         let tip = if side == 0 { k == 0 } else { k + 1 == stations.len() };
         if tip {
-            let s = if side == 0 { strand.from } else { strand.to };
-            match strand.ties[side] {
+            let s = if side == 0 { section.from } else { section.to };
+            match section.ties[side] {
                 Tie::Held(at) => match self.curve.on_chain(self.chain_range, at, SUPPORT_CONTACT_DISTANCE_M) {
                     Some(p) => {
-                        strand.ties[side] = Tie::Lies(p);
+                        section.ties[side] = Tie::Lies(p);
                         return Some((p, s, tension));
                     }
                     // Held just above: the next node is the first that lies.
@@ -304,7 +304,7 @@ impl Run<'_> {
                     None => return None,
                 },
                 Tie::Hangs(force) => {
-                    strand.ties[side] = Tie::Loose(force);
+                    section.ties[side] = Tie::Loose(force);
                     let place = self.curve.place(p, self.chain_range);
                     let along = force.dot(&place.tangent);
                     // An end that is pressed down rubs by itself.

@@ -3,7 +3,7 @@
 use crate::math::smaller;
 use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::friction_memory::{Ends, Knot, TensionProfile};
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Tie};
 
 /// Rounds of moving a free end to where the material ends. What is off is in each the strain times
 /// what it was: six leave 1e-12 of it at a strain of 1 %, which is rounding.
@@ -11,63 +11,63 @@ const END_FIT_ROUNDS: usize = 6;
 
 /// Material as it lies along the taut string, strained by `stretch`, from the end that is held;
 /// from the first contact as the route has it where none is.
-pub(in crate::model::spans) fn measure(strand: &mut CableRun, course: &Course, loose: [bool; 2], stretch: f64) {
-    let n = strand.contacts.len();
-    let point = |strand: &CableRun, k: usize, side: usize| strand.ends_of(course, k)[side];
-    let chord = |strand: &CableRun, k: usize| match (point(strand, k, 0), point(strand, k, 1)) {
+pub(in crate::model::spans) fn measure(section: &mut CableSection, course: &Course, loose: [bool; 2], stretch: f64) {
+    let n = section.contacts.len();
+    let point = |section: &CableSection, k: usize, side: usize| section.ends_of(course, k)[side];
+    let chord = |section: &CableSection, k: usize| match (point(section, k, 0), point(section, k, 1)) {
         (Some(a), Some(b)) => (b - a).norm() / stretch,
         _ => 0.0,
     };
     let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.chain_range) / stretch;
     if loose[1] {
-        let mut s = if loose[0] { strand.contacts.first().map_or(0.0, |c| c.ends.s[0]) } else { strand.from };
+        let mut s = if loose[0] { section.contacts.first().map_or(0.0, |c| c.ends.s[0]) } else { section.from };
         for j in 0..n {
-            s += if loose[0] && j == 0 { 0.0 } else { chord(strand, j) };
-            let length = own(&strand.contacts[j]);
-            let last = j + 1 == n && !strand.ties[1].has_span();
-            strand.contacts[j].ends.s = [s, if last { strand.to } else { s + length }];
+            s += if loose[0] && j == 0 { 0.0 } else { chord(section, j) };
+            let length = own(&section.contacts[j]);
+            let last = j + 1 == n && !section.ties[1].has_span();
+            section.contacts[j].ends.s = [s, if last { section.to } else { s + length }];
             s += length;
         }
     } else {
-        let mut s = strand.to;
+        let mut s = section.to;
         for j in (0..n).rev() {
-            s -= chord(strand, j + 1);
-            let length = own(&strand.contacts[j]);
-            let first = j == 0 && !strand.ties[0].has_span();
-            strand.contacts[j].ends.s = [if first { strand.from } else { s - length }, s];
+            s -= chord(section, j + 1);
+            let length = own(&section.contacts[j]);
+            let first = j == 0 && !section.ties[0].has_span();
+            section.contacts[j].ends.s = [if first { section.from } else { s - length }, s];
             s -= length;
         }
     }
 }
 
 /// Keeps material in order, and some of it in each span.
-pub(in crate::model::spans) fn spread(strand: &mut CableRun, course: &Course) {
-    let least = course.settings.initial.contact_spacing_fraction * (strand.to - strand.from);
-    let n = strand.contacts.len();
-    let mut before = strand.from;
+pub(in crate::model::spans) fn spread(section: &mut CableSection, course: &Course) {
+    let least = course.settings.initial.contact_spacing_fraction * (section.to - section.from);
+    let n = section.contacts.len();
+    let mut before = section.from;
     for j in 0..n {
-        let is_end = j == 0 && !strand.ties[0].has_span();
-        let room = strand.to - least * (n - j) as f64;
-        let e = &mut strand.contacts[j].ends;
+        let is_end = j == 0 && !section.ties[0].has_span();
+        let room = section.to - least * (n - j) as f64;
+        let e = &mut section.contacts[j].ends;
         if !is_end && e.s[0] < before + least {
             let shift = before + least - e.s[0];
             e.s = [e.s[0] + shift, e.s[1] + shift];
         }
-        let last = j + 1 == n && !strand.ties[1].has_span();
+        let last = j + 1 == n && !section.ties[1].has_span();
         if !last && e.s[1] > room {
             let shift = room - e.s[1];
             e.s = [e.s[0] + shift, e.s[1] + shift];
         }
         before = e.s[1];
     }
-    let loose = [0, 1].map(|side| matches!(strand.ties[side], Tie::Loose(_)));
-    let tied = [0, 1].map(|side| matches!(strand.ties[side], Tie::Lies(_)));
-    for (j, c) in strand.contacts.iter_mut().enumerate() {
+    let loose = [0, 1].map(|side| matches!(section.ties[side], Tie::Loose(_)));
+    let tied = [0, 1].map(|side| matches!(section.ties[side], Tie::Lies(_)));
+    for (j, c) in section.contacts.iter_mut().enumerate() {
         let track = course.track(c);
         let free = [loose[0] && j == 0, loose[1] && j + 1 == n];
         let held = [tied[0] && j == 0, tied[1] && j + 1 == n];
         for side in 0..2 {
-            if let Tie::Loose(force) = strand.ties[side] {
+            if let Tie::Loose(force) = section.ties[side] {
                 c.ends.t[side] = if free[side] { course.pull(c, side, force) } else { c.ends.t[side] };
             }
         }

@@ -117,7 +117,7 @@ fn leaves(a: Vec2, d: Vec2, radius: f64) -> f64 {
     bounded((root.sqrt() - along) / square, 0.0, 1.0)
 }
 
-/// The route of a strand, and where its pulleys are on it.
+/// The route of a section, and where its pulleys are on it.
 pub(in crate::model::spans) fn way(layout: &Layout, part: &Part, instant: &BoundaryConditions) -> Way {
     let p = &layout.problem;
     let place = |k: usize| instant.places[k];

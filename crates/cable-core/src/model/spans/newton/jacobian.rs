@@ -5,59 +5,59 @@ use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::Place;
 use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::boundary::segment_cursor::Pivot;
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Tie};
 use crate::model::spans::contact::equations;
 use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::numerics::band_lu::Band;
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 
-fn count(strand: &CableRun) -> usize {
-    6 * strand.contacts.len() + 2
+fn count(section: &CableSection) -> usize {
+    6 * section.contacts.len() + 2
 }
 
-pub(super) fn gather(strand: &CableRun, out: &mut Vec<f64>) {
-    out.resize(count(strand), 0.0);
+pub(super) fn gather(section: &CableSection, out: &mut Vec<f64>) {
+    out.resize(count(section), 0.0);
     let mut blocks = out.chunks_exact_mut(6);
-    for ((k, c), block) in strand.contacts.iter().enumerate().zip(&mut blocks) {
-        let (g, s) = (strand.forces[k], c.ends.s);
-        block.copy_from_slice(&[g.x, g.y, slot(strand, k, 0), s[0], slot(strand, k, 1), s[1]]);
+    for ((k, c), block) in section.contacts.iter().enumerate().zip(&mut blocks) {
+        let (g, s) = (section.forces[k], c.ends.s);
+        block.copy_from_slice(&[g.x, g.y, slot(section, k, 0), s[0], slot(section, k, 1), s[1]]);
     }
-    if let ([x, y], Some(g)) = (blocks.into_remainder(), strand.forces.last()) {
+    if let ([x, y], Some(g)) = (blocks.into_remainder(), section.forces.last()) {
         (*x, *y) = (g.x, g.y);
     }
 }
 
 /// True if the tension of that side of contact j is an unknown of its own.
-pub(super) fn has_tension_unknown(strand: &CableRun, j: usize, side: usize) -> bool {
-    let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
-    outer && matches!(strand.ties[side], Tie::Lies(_))
+pub(super) fn has_tension_unknown(section: &CableSection, j: usize, side: usize) -> bool {
+    let outer = if side == 0 { j == 0 } else { j + 1 == section.contacts.len() };
+    outer && matches!(section.ties[side], Tie::Lies(_))
 }
 
 /// True for the ends of contact j that are held on the boundary.
-pub(super) fn pinned(strand: &CableRun, j: usize) -> [bool; 2] {
-    [0, 1].map(|side| has_tension_unknown(strand, j, side) || strand.is_pinned(j, side))
+pub(super) fn pinned(section: &CableSection, j: usize) -> [bool; 2] {
+    [0, 1].map(|side| has_tension_unknown(section, j, side) || section.is_pinned(j, side))
 }
 
-/// True if that side of contact j is an end of the strand that lies.
-fn is_end(strand: &CableRun, j: usize, side: usize) -> bool {
-    let outer = if side == 0 { j == 0 } else { j + 1 == strand.contacts.len() };
-    outer && !strand.ties[side].has_span()
+/// True if that side of contact j is an end of the section that lies.
+fn is_end(section: &CableSection, j: usize, side: usize) -> bool {
+    let outer = if side == 0 { j == 0 } else { j + 1 == section.contacts.len() };
+    outer && !section.ties[side].has_span()
 }
 
-fn slot(strand: &CableRun, j: usize, side: usize) -> f64 {
-    let e = &strand.contacts[j].ends;
-    if has_tension_unknown(strand, j, side) { e.t[side] } else { e.p[side] }
+fn slot(section: &CableSection, j: usize, side: usize) -> f64 {
+    let e = &section.contacts[j].ends;
+    if has_tension_unknown(section, j, side) { e.t[side] } else { e.p[side] }
 }
 
-pub(super) fn scatter(strand: &mut CableRun, course: &Course, x: &[f64]) {
-    for k in 0..strand.spans() {
+pub(super) fn scatter(section: &mut CableSection, course: &Course, x: &[f64]) {
+    for k in 0..section.spans() {
         let x = &x[6 * k..];
-        strand.forces[k] = Vec2::new(x[0], x[1]);
-        if k < strand.contacts.len() {
+        section.forces[k] = Vec2::new(x[0], x[1]);
+        if k < section.contacts.len() {
             for side in 0..2 {
                 let (slot, s) = (x[2 + 2 * side], x[3 + 2 * side]);
-                let (own, marked) = (has_tension_unknown(strand, k, side), strand.is_marked(k, side));
-                let c = &mut strand.contacts[k];
+                let (own, marked) = (has_tension_unknown(section, k, side), section.is_marked(k, side));
+                let c = &mut section.contacts[k];
                 let e = &mut c.ends;
                 // The material of a load is what it is, to the last digit.
                 if !marked {
@@ -71,10 +71,10 @@ pub(super) fn scatter(strand: &mut CableRun, course: &Course, x: &[f64]) {
             }
         }
     }
-    strand.take_tensions(course);
+    section.take_tensions(course);
 }
 
-/// The equations of a strand at a state.
+/// The equations of a section at a state.
 #[derive(Clone, Debug, Default)]
 pub(super) struct System {
     pub residual: Vec<f64>,
@@ -84,67 +84,67 @@ pub(super) struct System {
     pub spots: Vec<([Place; 2], Pivot)>,
 }
 
-/// Works out the equations of a strand where it is, and where each of its contacts sticks.
-pub(super) fn assemble(strand: &mut CableRun, course: &Course, system: &mut System) {
-    let n = count(strand);
+/// Works out the equations of a section where it is, and where each of its contacts sticks.
+pub(super) fn assemble(section: &mut CableSection, course: &Course, system: &mut System) {
+    let n = count(section);
     system.residual.clear();
     system.residual.resize(n, 0.0);
     system.band.reset(n);
     system.spots.clear();
     let seen = |c: &Contact| Pivot::of_ends(&course.curves[c.curve], c.chain_range, &course.law, c.ends.p);
-    system.spots.extend(strand.contacts.iter().map(seen));
-    for k in 0..strand.spans() {
-        span_rows(strand, course, k, system);
-        if k < strand.contacts.len() {
-            contact_rows(strand, course, k, system);
+    system.spots.extend(section.contacts.iter().map(seen));
+    for k in 0..section.spans() {
+        span_rows(section, course, k, system);
+        if k < section.contacts.len() {
+            contact_rows(section, course, k, system);
         }
     }
 }
 
 /// As [`assemble`], where nothing but the mode of contact j has changed since.
-pub(super) fn renew(strand: &mut CableRun, course: &Course, j: usize, system: &mut System) {
-    if strand.contacts[j].is_load() {
+pub(super) fn renew(section: &mut CableSection, course: &Course, j: usize, system: &mut System) {
+    if section.contacts[j].is_load() {
         // A contact that is joined to it is held or let go with it.
-        return assemble(strand, course, system);
+        return assemble(section, course, system);
     }
     for row in 6 * j + 2..6 * j + 6 {
         system.residual[row] = 0.0;
         system.band.clear(row);
     }
-    contact_rows(strand, course, j, system);
+    contact_rows(section, course, j, system);
 }
 
-/// Lengths in hundredths of the strand.
-fn scale(strand: &CableRun) -> f64 {
-    100.0 / (strand.to - strand.from)
+/// Lengths in hundredths of the section.
+fn scale(section: &CableSection) -> f64 {
+    100.0 / (section.to - section.from)
 }
 
-fn span_rows(strand: &CableRun, course: &Course, k: usize, system: &mut System) {
-    let (row, scale) = (6 * k, scale(strand));
+fn span_rows(section: &CableSection, course: &Course, k: usize, system: &mut System) {
+    let (row, scale) = (6 * k, scale(section));
     let (r, band) = (&mut system.residual, &mut system.band);
-    let m = strand.contacts.len();
-    if k > 0 && strand.is_joined(k, 0) {
+    let m = section.contacts.len();
+    if k > 0 && section.is_joined(k, 0) {
         // One place; the tension stands where the force would.
-        r[row] = (strand.contacts[k - 1].ends.p[1] - strand.contacts[k].ends.p[0]) * scale;
+        r[row] = (section.contacts[k - 1].ends.p[1] - section.contacts[k].ends.p[0]) * scale;
         band.add(row, row - 2, scale);
         band.add(row, row + 2, -scale);
-        let size = 1.0 / larger(strand.forces[k].x.abs(), 1e-9 * course.law.load.norm());
-        r[row + 1] = strand.forces[k].y * size;
+        let size = 1.0 / larger(section.forces[k].x.abs(), 1e-9 * course.law.load.norm());
+        r[row + 1] = section.forces[k].y * size;
         band.add(row + 1, row + 1, size);
         return;
     }
-    let known = if !strand.has_span(k) {
-        Some(strand.forces[k])
-    } else if k == 0 && matches!(strand.ties[0], Tie::Hangs(_)) {
-        strand.hanging(course, 0)
-    } else if k == m && matches!(strand.ties[1], Tie::Hangs(_)) {
-        strand.hanging(course, 1)
+    let known = if !section.has_span(k) {
+        Some(section.forces[k])
+    } else if k == 0 && matches!(section.ties[0], Tie::Hangs(_)) {
+        section.hanging(course, 0)
+    } else if k == m && matches!(section.ties[1], Tie::Hangs(_)) {
+        section.hanging(course, 1)
     } else {
         None
     };
     if let Some(g) = known {
-        let d = strand.forces[k] - g;
-        let size = 1.0 / (g.norm() + course.law.load.norm() * (strand.to - strand.from)).max(f64::MIN_POSITIVE);
+        let d = section.forces[k] - g;
+        let size = 1.0 / (g.norm() + course.law.load.norm() * (section.to - section.from)).max(f64::MIN_POSITIVE);
         (r[row], r[row + 1]) = (d.x * size, d.y * size);
         band.add(row, row, size);
         band.add(row + 1, row + 1, size);
@@ -154,12 +154,12 @@ fn span_rows(strand: &CableRun, course: &Course, k: usize, system: &mut System) 
     let after = system.spots.get(k).map(|s| &s.0[0]);
     let held = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
     let ends = (
-        before.map_or_else(|| held(&strand.ties[0]), |s| Some(s.at)),
-        after.map_or_else(|| held(&strand.ties[1]), |s| Some(s.at)),
+        before.map_or_else(|| held(&section.ties[0]), |s| Some(s.at)),
+        after.map_or_else(|| held(&section.ties[1]), |s| Some(s.at)),
     );
     let (Some(a), Some(b)) = ends else { return };
-    let (from, to) = strand.material(k);
-    let (start, end) = (strand.force(course, k, from), strand.force(course, k, to));
+    let (from, to) = section.material(k);
+    let (start, end) = (section.force(course, k, from), section.force(course, k, to));
     let (way, compliance) = course.chain(from, to).reach(start);
     let d = (way - (b - a)) * scale;
     (r[row], r[row + 1]) = (d.x, d.y);
@@ -173,7 +173,7 @@ fn span_rows(strand: &CableRun, course: &Course, k: usize, system: &mut System) 
         band.add(row + 1, column, v.y * scale);
     };
     if let Some(place) = before {
-        if !has_tension_unknown(strand, k - 1, 1) {
+        if !has_tension_unknown(section, k - 1, 1) {
             add(row - 2, place.tangent * place.stretch);
         }
         add(row - 1, -course.rate(start));
@@ -185,9 +185,9 @@ fn span_rows(strand: &CableRun, course: &Course, k: usize, system: &mut System) 
 }
 
 /// The rows of a load that lies, see `point_load`.
-fn load_rows(strand: &CableRun, course: &Course, j: usize, system: &mut System) {
-    let (r, b, scale) = (&mut system.residual, &mut system.band, scale(strand));
-    let (c, place) = (&strand.contacts[j], &system.spots[j].0[0]);
+fn load_rows(section: &CableSection, course: &Course, j: usize, system: &mut System) {
+    let (r, b, scale) = (&mut system.residual, &mut system.band, scale(section));
+    let (c, place) = (&section.contacts[j], &system.spots[j].0[0]);
     let (row, p) = (6 * j + 2, c.ends.p[0]);
     // Its material stays as it is, and both of its ends are one.
     b.add(row, row + 1, scale);
@@ -200,7 +200,7 @@ fn load_rows(strand: &CableRun, course: &Course, j: usize, system: &mut System) 
         b.add(row + 1, row, scale);
         return;
     };
-    let load_balance = load_balance(strand, course, j);
+    let load_balance = load_balance(section, course, j);
     let size = 1.0 / larger(load_balance.size, 1e-9 * course.law.load.norm());
     let across = load_balance.tangent + load_balance.normal * m;
     r[row + 1] = load_balance.sum.dot(&across) * size;
@@ -209,26 +209,26 @@ fn load_rows(strand: &CableRun, course: &Course, j: usize, system: &mut System) 
     }
     for (side, sign) in [(0, -size), (1, size)] {
         let g = 6 * (j + side);
-        if strand.has_span(j + side) {
+        if section.has_span(j + side) {
             b.add(row + 1, g, sign * across.x);
             b.add(row + 1, g + 1, sign * across.y);
-        } else if strand.is_joined(j, side) {
+        } else if section.is_joined(j, side) {
             b.add(row + 1, g, sign);
         }
     }
 }
 
-fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, system: &mut System) {
-    if strand.contacts[j].is_load() {
-        return load_rows(strand, course, j, system);
+fn contact_rows(section: &mut CableSection, course: &Course, j: usize, system: &mut System) {
+    if section.contacts[j].is_load() {
+        return load_rows(section, course, j, system);
     }
-    let (r, b, (spots, pivot), scale) = (&mut system.residual, &mut system.band, &system.spots[j], scale(strand));
-    let c = &strand.contacts[j];
+    let (r, b, (spots, pivot), scale) = (&mut system.residual, &mut system.band, &system.spots[j], scale(section));
+    let c = &section.contacts[j];
     let track = Track { pivot: Some(*pivot), ..course.track(c) };
     let row = 6 * j + 2;
-    let (rows, held) = equations::rows(&track, &c.history, &c.ends, spots, c.mode, pinned(strand, j));
-    strand.contacts[j].held = held;
-    let c = &strand.contacts[j];
+    let (rows, held) = equations::rows(&track, &c.history, &c.ends, spots, c.mode, pinned(section, j));
+    section.contacts[j].held = held;
+    let c = &section.contacts[j];
     let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * course.law.load.norm());
     let size = rows.of_tension.map(|of| if of { 1.0 / tension } else { scale });
     for i in 0..2 {
@@ -238,7 +238,7 @@ fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, system: &mut S
         let tangency = row + 3 * side;
         let (p_column, s_column) = (row + 2 * side, row + 2 * side + 1);
         let by = |i: usize, of: usize| rows.by[i][3 * side + of] * size[i];
-        if strand.in_pocket(j, side) {
+        if section.in_pocket(j, side) {
             // Held in the kink without tension: its material is what follows.
             b.add(tangency, p_column, 1.0);
             for i in 0..2 {
@@ -246,7 +246,7 @@ fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, system: &mut S
             }
             continue;
         }
-        if strand.is_joined(j, side) {
+        if section.is_joined(j, side) {
             b.add(tangency, s_column, scale);
             let g = 6 * (j + side);
             for i in 0..2 {
@@ -256,20 +256,20 @@ fn contact_rows(strand: &mut CableRun, course: &Course, j: usize, system: &mut S
             }
             continue;
         }
-        if is_end(strand, j, side) {
-            let s = if side == 0 { strand.from } else { strand.to };
+        if is_end(section, j, side) {
+            let s = if side == 0 { section.from } else { section.to };
             r[tangency] = (c.ends.s[side] - s) * scale;
             b.add(tangency, s_column, scale);
             // A free end has no tension and finds its place; a held one has a place and finds its
             // tension.
-            let of = if has_tension_unknown(strand, j, side) { 2 } else { 0 };
+            let of = if has_tension_unknown(section, j, side) { 2 } else { 0 };
             for i in 0..2 {
                 b.add(row + 1 + i, p_column, by(i, of));
                 b.add(row + 1 + i, s_column, by(i, 1));
             }
             continue;
         }
-        let Some(force) = strand.force_at_contact(course, j, side) else { continue };
+        let Some(force) = section.force_at_contact(course, j, side) else { continue };
         let place = &spots[side];
         let t = force.norm();
         r[tangency] = cross(force, place.tangent) / t;

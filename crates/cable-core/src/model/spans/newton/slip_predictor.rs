@@ -24,7 +24,7 @@ use crate::model::spans::boundary::capstan::Track;
 use crate::model::spans::boundary::curve::Place;
 use crate::model::spans::boundary::friction_memory::{Ends, Mode};
 use crate::model::spans::boundary::segment_cursor::Pivot;
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Tie};
 use crate::model::spans::settings::SlipSettings;
 
 /// A span whose force changes by no more than this part in a round is where it was. Larger: the
@@ -81,22 +81,22 @@ pub(in crate::model::spans) struct SlipPredictor {
 
 /// Gives each contact the mode that the step will ask for, and contacts and spans their place, as
 /// far as that can be predicted.
-pub(in crate::model::spans) fn predict_slip(strand: &mut CableRun, course: &Course, memory: &mut SlipPredictor) {
-    if course.drag > 0.0 || strand.contacts.is_empty() {
+pub(in crate::model::spans) fn predict_slip(section: &mut CableSection, course: &Course, memory: &mut SlipPredictor) {
+    if course.drag > 0.0 || section.contacts.is_empty() {
         return;
     }
-    strand.take_tensions(course);
+    section.take_tensions(course);
     let SlipPredictor { bars, links, spots, tuned, .. } = memory;
     *tuned = course.settings.newton.slip;
     let seen = |c: &Contact| Pivot::of_ends(&course.curves[c.curve], c.chain_range, &course.law, c.ends.p);
     spots.clear();
-    spots.extend(strand.contacts.iter().map(seen));
+    spots.extend(section.contacts.iter().map(seen));
     bars.clear();
-    bars.extend((0..strand.spans()).map(|k| span(strand, course, spots, k)));
+    bars.extend((0..section.spans()).map(|k| span(section, course, spots, k)));
     links.clear();
-    links.extend((0..strand.contacts.len()).map(|j| link(strand, course, spots, j)));
-    let Some(settled) = memory.rounds(strand, course) else { return };
-    for (c, l) in strand.contacts.iter_mut().zip(&memory.links).filter(|(_, l)| l.reach.is_some()) {
+    links.extend((0..section.contacts.len()).map(|j| link(section, course, spots, j)));
+    let Some(settled) = memory.rounds(section, course) else { return };
+    for (c, l) in section.contacts.iter_mut().zip(&memory.links).filter(|(_, l)| l.reach.is_some()) {
         let friction = course.friction(c);
         if friction > 0.0 {
             c.mode = if l.side == 0 { Mode::Hold } else { Mode::Slide(friction * f64::from(l.side)) };
@@ -106,26 +106,27 @@ pub(in crate::model::spans) fn predict_slip(strand: &mut CableRun, course: &Cour
         }
     }
     if settled {
-        for (force, bar) in strand.forces.iter_mut().zip(&memory.bars).filter(|(_, b)| b.ends.is_some()) {
+        for (force, bar) in section.forces.iter_mut().zip(&memory.bars).filter(|(_, b)| b.ends.is_some()) {
             *force = bar.force;
         }
     }
 }
 
 /// A span as it is, to begin with.
-fn span(strand: &CableRun, course: &Course, spots: &[ContactPlaces], k: usize) -> LinearSpan {
-    if !strand.has_span(k) {
+fn span(section: &CableSection, course: &Course, spots: &[ContactPlaces], k: usize) -> LinearSpan {
+    if !section.has_span(k) {
         return LinearSpan::default();
     }
-    let (from, to) = strand.material(k);
-    let forces = [strand.force(course, k, from), strand.force(course, k, to)];
+    let (from, to) = section.material(k);
+    let forces = [section.force(course, k, from), section.force(course, k, to)];
     let held = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
-    let before = k.checked_sub(1).and_then(|j| spots.get(j)).map_or_else(|| held(&strand.ties[0]), |s| Some(s.0[1].at));
-    let after = spots.get(k).map_or_else(|| held(&strand.ties[1]), |s| Some(s.0[0].at));
+    let before =
+        k.checked_sub(1).and_then(|j| spots.get(j)).map_or_else(|| held(&section.ties[0]), |s| Some(s.0[1].at));
+    let after = spots.get(k).map_or_else(|| held(&section.ties[1]), |s| Some(s.0[0].at));
     // A span that hangs keeps its force.
     let ends = before.zip(after).map(|(a, b)| [a, b]);
     let tension = forces.map(|f| f.norm());
-    LinearSpan { ends, force: strand.forces[k], material: [from, to], tension, ..LinearSpan::default() }
+    LinearSpan { ends, force: section.forces[k], material: [from, to], tension, ..LinearSpan::default() }
 }
 
 impl LinearSpan {
@@ -161,14 +162,14 @@ impl LinearSpan {
     }
 }
 
-fn link(strand: &CableRun, course: &Course, spots: &[ContactPlaces], j: usize) -> LinearContact {
-    let c = &strand.contacts[j];
+fn link(section: &CableSection, course: &Course, spots: &[ContactPlaces], j: usize) -> LinearContact {
+    let c = &section.contacts[j];
     let e = &c.ends;
-    let ties = [(j == 0).then(|| strand.ties[0]), (j + 1 == strand.contacts.len()).then(|| strand.ties[1])];
+    let ties = [(j == 0).then(|| section.ties[0]), (j + 1 == section.contacts.len()).then(|| section.ties[1])];
     let is_tied = ties.iter().flatten().any(|t| matches!(t, Tie::Lies(_) | Tie::Loose(_)));
     let mut out = LinearContact { ends: c.ends, reach: None, side: 0, sigma: 0.0, slid: 0.0 };
-    let beside_slack = strand.in_pocket(j, 0) || strand.in_pocket(j, 1);
-    let beside_load = strand.is_marked(j, 0) || strand.is_marked(j, 1);
+    let beside_slack = section.in_pocket(j, 0) || section.in_pocket(j, 1);
+    let beside_load = section.is_marked(j, 0) || section.is_marked(j, 1);
     if is_tied || beside_slack || beside_load || !(e.p[1] > e.p[0] && e.t[0] > 0.0) {
         return out;
     }
@@ -186,14 +187,14 @@ fn link(strand: &CableRun, course: &Course, spots: &[ContactPlaces], j: usize) -
 impl SlipPredictor {
     /// Newton's method for what slides: whether it came to an end, None where not even the modes
     /// can be told.
-    fn rounds(&mut self, strand: &CableRun, course: &Course) -> Option<bool> {
+    fn rounds(&mut self, section: &CableSection, course: &Course) -> Option<bool> {
         let mut last = f64::INFINITY;
         for round in 0..self.tuned.newton_rounds {
-            if !self.bars.iter_mut().all(|b| b.renew(course, strand.from)) || !self.settle() {
+            if !self.bars.iter_mut().all(|b| b.renew(course, section.from)) || !self.settle() {
                 return (round > 0).then_some(false);
             }
             let Some(change) = self.step() else { return Some(false) };
-            self.turn(strand, course);
+            self.turn(section, course);
             if change <= self.tuned.round_tolerance {
                 return Some(true);
             }
@@ -203,10 +204,10 @@ impl SlipPredictor {
     }
 
     /// Lets the ends of contacts on arcs follow the directions of their spans.
-    fn turn(&mut self, strand: &CableRun, course: &Course) {
+    fn turn(&mut self, section: &CableSection, course: &Course) {
         let (law, most) = (&course.law, self.tuned.max_followed_angle);
-        let pulls = |bar: &LinearSpan, end: usize| bar.ends.map(|_| bar.pulls(course, strand.from)[end]);
-        for (j, c) in strand.contacts.iter().enumerate() {
+        let pulls = |bar: &LinearSpan, end: usize| bar.ends.map(|_| bar.pulls(course, section.from)[end]);
+        for (j, c) in section.contacts.iter().enumerate() {
             let (l, (places, pivot)) = (&mut self.links[j], &mut self.spots[j]);
             if l.reach.is_none() || self.bars[j].still && self.bars[j + 1].still {
                 continue;

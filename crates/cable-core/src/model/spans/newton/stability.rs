@@ -1,8 +1,8 @@
 //! This check finds whether an equilibrium is stable.
 
 use crate::model::spans::boundary::friction_memory::Mode;
+use crate::model::spans::cable_section::{CableSection, Course, Next, Tie};
 use crate::model::spans::newton::{Work, assemble, has_tension_unknown};
-use crate::model::spans::run::{CableRun, Course, Next, Tie};
 
 /// True if a balance without friction is stable: it returns after a disturbance.
 ///
@@ -14,29 +14,29 @@ use crate::model::spans::run::{CableRun, Course, Next, Tie};
 /// Sylvester): each contact that is let go turns the sign once (one that lies to its start does
 /// not: there T₁ takes the place of s₁). Nothing is said of what friction holds: that came there by
 /// its own motion.
-pub(in crate::model::spans) fn stable(strand: &CableRun, course: &Course, work: &mut Work) -> bool {
-    let rubs = strand.contacts.iter().any(|c| course.friction(c) > 0.0);
-    let pockets = strand.contacts.iter().any(|c| c.next == Next::Pocket || c.is_load());
-    if rubs || pockets || strand.contacts.is_empty() || strand.ties.iter().any(|t| matches!(t, Tie::Loose(_))) {
+pub(in crate::model::spans) fn stable(section: &CableSection, course: &Course, work: &mut Work) -> bool {
+    let rubs = section.contacts.iter().any(|c| course.friction(c) > 0.0);
+    let pockets = section.contacts.iter().any(|c| c.next == Next::Pocket || c.is_load());
+    if rubs || pockets || section.contacts.is_empty() || section.ties.iter().any(|t| matches!(t, Tie::Loose(_))) {
         return true;
     }
-    let mut stuck = strand.clone();
+    let mut stuck = section.clone();
     for c in &mut stuck.contacts {
         let track = course.track(c);
         c.history.commit(&track, &c.ends, c.mode, c.held, &mut work.past);
         c.mode = Mode::Hold;
     }
-    let mut is_negative = |strand: &mut CableRun| {
-        assemble(strand, course, &mut work.system);
+    let mut is_negative = |section: &mut CableSection| {
+        assemble(section, course, &mut work.system);
         work.rhs.clear();
         work.rhs.resize(work.system.residual.len(), 1.0);
         work.system.band.scale(&mut work.rhs);
         work.system.band.solve(&mut work.rhs).then(|| work.system.band.is_negative())
     };
     let Some(mut before) = is_negative(&mut stuck) else { return false };
-    (0..strand.contacts.len()).all(|j| {
-        stuck.contacts[j].clone_from(&strand.contacts[j]);
-        let turns = !has_tension_unknown(strand, j, 0);
+    (0..section.contacts.len()).all(|j| {
+        stuck.contacts[j].clone_from(&section.contacts[j]);
+        let turns = !has_tension_unknown(section, j, 0);
         let Some(after) = is_negative(&mut stuck) else { return false };
         let right = (after != before) == turns;
         before = after;

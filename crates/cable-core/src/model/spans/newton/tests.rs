@@ -1,7 +1,7 @@
 use crate::model::spans::boundary_conditions::CableEquilibrium;
 use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, Layout};
+use crate::model::spans::cable_section::Next;
 use crate::model::spans::newton::*;
-use crate::model::spans::run::Next;
 use crate::problem::problems;
 use crate::scene::obstacle::{Obstacle, Shape};
 use crate::scene::{Load, Support, catalog};
@@ -10,7 +10,13 @@ use crate::scene::{Load, Support, catalog};
 const CLOSE: f64 = 1e-4;
 
 /// A flexible cable over shapes, at rest, then moved.
-fn strand(shapes: Vec<Shape>, route_m: Vec<[f64; 2]>, length: f64, friction: f64, moved: Vec2) -> (CableRun, Course) {
+fn section(
+    shapes: Vec<Shape>,
+    route_m: Vec<[f64; 2]>,
+    length: f64,
+    friction: f64,
+    moved: Vec2,
+) -> (CableSection, Course) {
     loaded(shapes, route_m, Vec::new(), length, friction, moved)
 }
 
@@ -22,7 +28,7 @@ fn loaded(
     length: f64,
     friction: f64,
     moved: Vec2,
-) -> (CableRun, Course) {
+) -> (CableSection, Course) {
     let mut scene = catalog::hanging_span();
     scene.loads = loads;
     let name = scene.cables[0].name.clone();
@@ -42,7 +48,7 @@ fn loaded(
     let (mut network, _) = CableEquilibrium::along_route(&layout, &instant, &mut work).map_err(|e| e.failure).unwrap();
     instant.places[1] += moved;
     network.travel(&layout, &instant, 0.1, &mut work).unwrap();
-    (network.strands.remove(0), network.course)
+    (network.sections.remove(0), network.course)
 }
 
 /// Numbers in −1 … 1 that are the same each time.
@@ -52,17 +58,17 @@ fn noise(k: usize) -> f64 {
 
 /// Every entry of the Jacobian beside a difference of residuals, at a state a little off the
 /// answer.
-fn compare(strand: &CableRun, course: &Course, seed: usize) {
+fn compare(section: &CableSection, course: &Course, seed: usize) {
     let mut x = Vec::new();
-    gather(strand, &mut x);
-    let force = strand.forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
+    gather(section, &mut x);
+    let force = section.forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
     // Two forces, then place and material at both ends of a contact.
     let size = |i: usize| if i % 6 < 2 { force } else { 1.0 };
     for (i, v) in x.iter_mut().enumerate() {
         *v += 1e-7 * size(i) * noise(97 * seed + i);
     }
     let at = |x: &[f64]| {
-        let mut moved = strand.clone();
+        let mut moved = section.clone();
         scatter(&mut moved, course, x);
         moved
     };
@@ -80,15 +86,15 @@ fn compare(strand: &CableRun, course: &Course, seed: usize) {
     // A load in a kink stays there: its place, and the force of a span that is not there, are no
     // unknowns.
     let fixed = |j: usize| match j % 6 {
-        0 | 1 => !strand.has_span(j / 6),
-        of => of % 2 == 0 && strand.in_pocket(j / 6, (of - 2) / 2),
+        0 | 1 => !section.has_span(j / 6),
+        of => of % 2 == 0 && section.in_pocket(j / 6, (of - 2) / 2),
     };
     // Nor is the material of a load, nor the place of what one that sticks holds.
     let fixed = |j: usize| {
         let (c, of) = (j / 6, j % 6);
-        let joint = of == 0 && c > 0 && strand.is_joined(c, 0);
+        let joint = of == 0 && c > 0 && section.is_joined(c, 0);
         let side = of.saturating_sub(2) / 2;
-        let load = of > 1 && if of % 2 == 1 { strand.is_marked(c, side) } else { strand.is_pinned(c, side) };
+        let load = of > 1 && if of % 2 == 1 { section.is_marked(c, side) } else { section.is_pinned(c, side) };
         !joint && (fixed(j) || load)
     };
     for j in (0..n).filter(|&j| !fixed(j)) {
@@ -98,7 +104,7 @@ fn compare(strand: &CableRun, course: &Course, seed: usize) {
         down[j] -= h;
         let (up, down) = (residual(&up), residual(&down));
         // An end that is held on the boundary has a row that is linear only near its answer.
-        let linear = |i: &usize| !(i % 6 > 2 && i % 6 < 5 && strand.is_pinned(i / 6, i % 6 - 3));
+        let linear = |i: &usize| !(i % 6 > 2 && i % 6 < 5 && section.is_pinned(i / 6, i % 6 - 3));
         for i in (0..n).filter(linear) {
             let exact = band.entry(i, j) * size(j);
             // At a kink (a front at a corner) either side will do.
@@ -121,13 +127,13 @@ fn the_jacobian_is_that_of_differences() {
     let valley = || Shape::Terrain { points_m: vec![[-5.0, 0.5], [0.5, 0.5], [4.0, 0.0], [7.5, 0.5], [15.0, 0.5]] };
     for (seed, friction) in [0.0, 0.1, 0.3, 0.8].into_iter().enumerate() {
         for moved in [Vec2::new(0.05, 0.1), Vec2::new(0.02, -0.2), Vec2::new(0.1, 0.3)] {
-            let (s, c) = strand(vec![hills()], vec![[0.0, 1.0], [10.0, 1.0]], 10.7, friction, moved);
+            let (s, c) = section(vec![hills()], vec![[0.0, 1.0], [10.0, 1.0]], 10.7, friction, moved);
             compare(&s, &c, seed);
-            let (s, c) = strand(posts(), vec![[0.0, 2.0], [3.0, 3.0], [6.0, 3.0], [9.0, 2.0]], 9.8, friction, moved);
+            let (s, c) = section(posts(), vec![[0.0, 2.0], [3.0, 3.0], [6.0, 3.0], [9.0, 2.0]], 9.8, friction, moved);
             compare(&s, &c, seed + 7);
         }
         // With slack in the kink.
-        let (s, c) = strand(vec![valley()], vec![[0.0, 1.0], [8.0, 1.0]], 8.5, friction, Vec2::new(-0.05, 0.0));
+        let (s, c) = section(vec![valley()], vec![[0.0, 1.0], [8.0, 1.0]], 8.5, friction, Vec2::new(-0.05, 0.0));
         assert!(s.contacts.iter().any(|c| c.next == Next::Pocket));
         compare(&s, &c, seed + 13);
     }

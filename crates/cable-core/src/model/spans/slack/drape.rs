@@ -5,8 +5,8 @@ use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::capstan::Step;
 use crate::model::spans::boundary::curve::Place;
 use crate::model::spans::boundary::loose::{Line, Part, Stretch};
+use crate::model::spans::cable_section::Course;
 use crate::model::spans::initial::drained_route::{Frame, Leg, Roofs};
-use crate::model::spans::run::Course;
 
 /// Turn (rad) up to which two stretches are one, and by which what hangs beside a roof may be off
 /// its end.

@@ -7,8 +7,8 @@
 use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::curve::Place;
 use crate::model::spans::boundary::loose::{Borne, Heap, Line, Part, Stretch};
+use crate::model::spans::cable_section::Course;
 use crate::model::spans::initial::drained_route::Frame;
-use crate::model::spans::run::Course;
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
 pub(super) const CREST_CONE_ROUNDING: f64 = 1e-9;

@@ -2,8 +2,8 @@
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::loose::{Line, Loose, Part};
+use crate::model::spans::cable_section::Course;
 use crate::model::spans::initial::drained_route::NONE_M;
-use crate::model::spans::run::Course;
 
 impl Loose {
     /// Force in the cable at a support, N.
@@ -26,7 +26,7 @@ impl Loose {
     }
 
     /// True if nothing that lies has tension. Where it is drawn over crests, and where all that is
-    /// over is a heap in a kink, a strand under hardly any tension is much the same, and can be
+    /// over is a heap in a kink, a section under hardly any tension is much the same, and can be
     /// followed as it moves.
     pub fn spreads(&self) -> bool {
         let is_slack = |p: &Part| matches!(p.form, Line::Hangs(_)) || p.is_loose();

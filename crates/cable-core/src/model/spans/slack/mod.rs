@@ -25,7 +25,7 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `mod.rs` | the strand that lies loose along its route, or in a heap |
+//! | `mod.rs` | the section that lies loose along its route, or in a heap |
 //! | `drape.rs` | the points at which the tension vanishes, and the chains between them |
 //! | `chain.rs` | the tensions of one chain over one crest |
 //! | `joint.rs`, `bridge.rs` | spans over kinks, and to a support |
@@ -44,24 +44,24 @@ mod report;
 use crate::math::Vec2;
 use crate::model::spans::boundary::loose::Loose;
 use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout};
+use crate::model::spans::cable_section::{CableSection, Course, Tie};
 use crate::model::spans::initial::drained_route::{Drained, Frame, Roofs};
 use crate::model::spans::initial::route::way;
-use crate::model::spans::run::{CableRun, Course, Tie};
 use crate::model::spans::slack::drape::Drape;
 use crate::model::spans::slack::heap::CREST_CONE_ROUNDING;
 use crate::model::spans::slack::pay_out::pay_out;
 
 pub(in crate::model::spans) use crate::model::spans::slack::drape::LooseShapes;
 
-/// The strand where it lies loose at an instant; None where it cannot.
-pub(in crate::model::spans) fn loose_strand(
+/// The section where it lies loose at an instant; None where it cannot.
+pub(in crate::model::spans) fn loose_section(
     layout: &Layout,
     index: usize,
     course: &Course,
     instant: &BoundaryConditions,
     sought: LooseShapes,
-) -> Option<CableRun> {
-    let part = layout.strands.get(index)?;
+) -> Option<CableSection> {
+    let part = layout.sections.get(index)?;
     let (load, [from, to]) = (course.law.load, part.material);
     let loaded = course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0);
     let frame = Frame::of(load).filter(|_| !loaded && part.pulleys.is_empty())?;
@@ -75,26 +75,26 @@ pub(in crate::model::spans) fn loose_strand(
     });
     let drawn = drawn[0] + drawn[1];
     let drape = Drape { course, frame, most: CREST_CONE_ROUNDING * load.norm() * (to - from), sought };
-    let strand = |drained: Drained| {
+    let section = |drained: Drained| {
         let lines = drape.lines(&roofs, &drained.legs);
         let parts = drape.parts(&lines, ends)?;
         let parts = pay_out(parts, &drape, part.material, drawn, ends)?;
         let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn), Tie::Held));
         let loose = Some(Loose { parts, drawn });
-        Some(CableRun { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
+        Some(CableSection { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
     };
     let along_route = || Drained::new(&roofs, bodies, frame, &way(layout, part, instant).points);
     match held {
-        [Some(_), Some(_)] => strand(along_route()?),
+        [Some(_), Some(_)] => section(along_route()?),
         [Some(at), None] | [None, Some(at)] => {
             // As the route lays it out on the ground; else it comes down in a heap below the
             // support.
             let laid_out = layout.problem.route.len() > 1 && drawn.norm() == 0.0;
-            let laid = if laid_out { along_route().and_then(&strand) } else { None };
+            let laid = if laid_out { along_route().and_then(&section) } else { None };
             laid.filter(|s| {
                 s.loose.as_ref().is_some_and(|l| l.spreads() && l.hangs() <= layout.problem.cable.diameter_m)
             })
-            .or_else(|| strand(Drained::plumb(&roofs, bodies, frame, at, held[0].is_none())?))
+            .or_else(|| section(Drained::plumb(&roofs, bodies, frame, at, held[0].is_none())?))
         }
         [None, None] => None,
     }
@@ -122,9 +122,9 @@ mod tests {
                     let mut instant = BoundaryConditions::default();
                     layout.instant(&vec![None; problem.supports.len()], 0.0, &mut instant);
                     let course = layout.course(layout.curves(), &instant);
-                    for k in 0..layout.strands.len() {
+                    for k in 0..layout.sections.len() {
                         let laid = |sought| {
-                            loose_strand(&layout, k, &course, &instant, sought)
+                            loose_section(&layout, k, &course, &instant, sought)
                                 .filter(|s| s.loose.as_ref().is_some_and(Loose::spreads))
                         };
                         let [any, none] = [LooseShapes::AnyTension, LooseShapes::NoTension].map(laid);

@@ -13,7 +13,7 @@
 //! definite: the equilibrium is stable.
 
 mod contacts;
-mod layout;
+mod initial_mesh;
 mod newton_step;
 mod relaxation;
 mod solution;

@@ -8,7 +8,7 @@
 //! way. A chain that rests where it could give way is moved sideways and goes on.
 
 use crate::math::{Vec2, larger, perp};
-use crate::model::fem::elastica::chain::layout::PAY_OUT_RATE;
+use crate::model::fem::elastica::chain::initial_mesh::PAY_OUT_RATE;
 use crate::model::fem::elastica::chain::newton_step::{Hessian, LinearSystem, Step};
 use crate::model::fem::elastica::chain::{Chain, REDUCED_RESISTANCE_FACTOR};
 

@@ -11,7 +11,7 @@ use crate::model::fem::system::contact::contact_search::ContactSearch;
 use crate::model::fem::system::contact::friction_contact::{FrictionContact, of_node};
 use crate::model::fem::system::contact::friction_memory::FrictionMemory;
 use crate::model::fem::system::contact::outline_motion::OutlineMotion;
-use crate::model::fem::system::contact::self_contact::Own;
+use crate::model::fem::system::contact::self_contact::SelfContacts;
 use crate::model::fem::system::mesh::Mesh;
 use crate::problem::Problem;
 
@@ -36,7 +36,7 @@ pub struct ContactSet {
     /// Plan view: sliding of each node remembered, m.
     pub floor_slid: Vec<Vec2>,
     /// Contacts of the cable with itself.
-    pub own: Own,
+    pub self_contacts: SelfContacts,
     /// Motion of the robot's outline in this step.
     pub outline_motion: Option<OutlineMotion>,
 }
@@ -55,14 +55,14 @@ impl ContactSet {
             scratch: Vec::with_capacity(nodes),
             search: ContactSearch::default(),
             floor_slid: vec![Vec2::zeros(); nodes],
-            own: Own::default(),
+            self_contacts: SelfContacts::default(),
             outline_motion: None,
         }
     }
 
     /// Copies another set; asks for no memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, slip, friction_contacts, memory, floor_slid, own, outline_motion, .. } = other;
+        let Self { barrier, slip, friction_contacts, memory, floor_slid, self_contacts, outline_motion, .. } = other;
         (self.barrier, self.slip) = (*barrier, *slip);
         // With room for as many, so that a front of contact that runs on asks for none; and no
         // more, or each copy would double it.
@@ -71,7 +71,7 @@ impl ContactSet {
         self.friction_contacts.extend_from_slice(friction_contacts);
         self.memory.copy_from(memory);
         self.floor_slid.clone_from(floor_slid);
-        self.own.copy_from(own);
+        self.self_contacts.copy_from(self_contacts);
         self.outline_motion = *outline_motion;
     }
 
@@ -92,7 +92,7 @@ impl ContactSet {
         self.memory.clear();
         self.friction_contacts.clear();
         self.floor_slid.fill(Vec2::zeros());
-        self.own.forget();
+        self.self_contacts.forget();
     }
 
     /// Remembers that a contact has slid by so much, m.
@@ -132,7 +132,7 @@ impl ContactSet {
     /// Sets up friction for a step that began at `start`, with the contacts and normal forces at
     /// `now` (m).
     pub fn prepare(&mut self, problem: &Problem, mesh: &Mesh, now: &[Vec2], start: &[Vec2]) {
-        self.own.prepare(&self.barrier, mesh, now, start);
+        self.self_contacts.prepare(&self.barrier, mesh, now, start);
         self.find_friction_contacts(problem, mesh, now, start);
     }
 
@@ -192,7 +192,7 @@ impl ContactSet {
         }
         let renewed = !same(change, most);
         if renewed {
-            self.own.prepare(&self.barrier, mesh, now, start);
+            self.self_contacts.prepare(&self.barrier, mesh, now, start);
         } else {
             // The step is in balance with the limits before.
             std::mem::swap(&mut self.friction_contacts, &mut self.before);
@@ -243,7 +243,7 @@ impl ContactSet {
     /// sliding nodes (m).
     pub fn commit(&mut self, problem: &Problem, mesh: &Mesh, end: &[Vec2], start: &[Vec2], slide: &[f64]) {
         self.prepare(problem, mesh, end, start);
-        self.own.commit(end, self.tuning.slip_m);
+        self.self_contacts.commit(end, self.tuning.slip_m);
         self.memory.commit(&mut self.friction_contacts, end, self.slip, self.tuning.remembered_steps);
         if problem.floor_friction.is_some() {
             for (k, (slid, (e, s))) in self.floor_slid.iter_mut().zip(end.iter().zip(start)).enumerate() {
@@ -255,7 +255,7 @@ impl ContactSet {
 
     /// True if there is nothing to touch: no obstacle, and the cable can pass itself.
     pub(in crate::model::fem) fn meets_nothing(&self, problem: &Problem) -> bool {
-        problem.world.is_empty() && !self.own.shape.is_on()
+        problem.world.is_empty() && !self.self_contacts.shape.is_on()
     }
 
     /// Lets the barrier's stiffness follow the greatest tension (N): see

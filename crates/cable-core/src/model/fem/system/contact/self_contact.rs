@@ -5,7 +5,7 @@
 
 use crate::contact::barrier::Barrier;
 use crate::contact::friction;
-use crate::contact::self_contact::{SelfContact, SelfPair, SortedNodes};
+use crate::contact::self_contact_pairs::{SelfContact, SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::system::assembly::System;
@@ -34,7 +34,7 @@ impl SelfFriction {
 
 /// The contacts of a cable with itself, with their history.
 #[derive(Clone, Debug, Default)]
-pub struct Own {
+pub struct SelfContacts {
     /// The cable as an obstacle.
     pub shape: SelfContact,
     /// Coulomb friction of the cable on itself.
@@ -46,7 +46,7 @@ pub struct Own {
     order: SortedNodes,
 }
 
-impl Own {
+impl SelfContacts {
     /// Becomes a copy, in the memory it has.
     pub fn copy_from(&mut self, other: &Self) {
         (self.shape, self.friction) = (other.shape, other.friction);
@@ -103,7 +103,7 @@ pub type Coupling = Vec<(usize, usize, f64)>;
 #[derive(Clone, Copy, Debug)]
 pub struct SelfContactLaws<'a> {
     /// The contacts and their friction.
-    pub own: &'a Own,
+    pub self_contacts: &'a SelfContacts,
     /// The barrier.
     pub barrier: &'a Barrier,
     /// Sliding at which friction acts whole, m.
@@ -127,14 +127,14 @@ pub fn add(
     x: &[Vec2],
     curvature: Curvature,
 ) -> (f64, f64) {
-    let SelfContactLaws { own, barrier, slip } = laws;
+    let SelfContactLaws { self_contacts, barrier, slip } = laws;
     let exact = curvature == Curvature::Exact;
     let (mut value, mut size) = (0.0, 0.0);
     for pair in pairs {
         let b = barrier.at(pair.gap_m);
         let (slope, bend) = (b.slope * pair.weight, b.curvature * pair.weight);
         let bend = if !exact && bend < 0.0 { 0.0 } else { bend };
-        let (n, d) = (pair.normal, pair.gap_m + own.shape.diameter);
+        let (n, d) = (pair.normal, pair.gap_m + self_contacts.shape.diameter);
         let shares = pair.shares();
         let chord = x[pair.segment + 1] - x[pair.segment];
         let (length, inside) = (chord.norm(), pair.fraction > 0.0 && pair.fraction < 1.0);
@@ -156,7 +156,7 @@ pub fn add(
         value += b.value * pair.weight;
         size += b.value;
     }
-    for rub in &own.friction_contacts {
+    for rub in &self_contacts.friction_contacts {
         let (d, slope, bend) = friction::at(rub.sliding(x), rub.limit, slip);
         let (t, shares) = (rub.pair.tangent(), rub.pair.shares());
         for (j, &(node, part)) in shares.iter().enumerate() {

@@ -175,7 +175,7 @@ pub(in crate::model::spans) struct Track<'a> {
     pub law: Law,
     /// μ.
     pub friction: f64,
-    /// See [`Course`](crate::model::spans::run::Course).
+    /// See [`Course`](crate::model::spans::cable_section::Course).
     pub drag: f64,
     /// True if all of it slides away from the end that is drawn, as far as there is tension, and
     /// lies loose beyond that.

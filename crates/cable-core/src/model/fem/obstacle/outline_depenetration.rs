@@ -20,13 +20,13 @@ use std::sync::Arc;
 
 use crate::contact::distance::segment_segment;
 use crate::contact::geometry::{Geometry, Part};
-use crate::contact::self_contact::SortedNodes;
+use crate::contact::self_contact_pairs::SortedNodes;
 use crate::contact::sweep::Sweep;
 use crate::math::{Vec2, larger};
 use crate::model::RobotContact;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::meshing::Meshing;
-use crate::model::fem::state::moving_outline::MovingOutline;
+use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::state::step_setup::prepare_step;
 use crate::model::fem::state::support_stop::stopped_by_obstacles;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
@@ -274,7 +274,7 @@ impl<'a> OutlineStep<'a> {
         let step = |k: usize| x[k] - self.step.input.start[k];
         let arc = mesh.arc_length.as_slice();
         let own_way = |order: &mut SortedNodes| {
-            self.step.contacts.own.shape.free_fraction(
+            self.step.contacts.self_contacts.shape.free_fraction(
                 &self.step.input.start,
                 arc,
                 &step,

@@ -1,4 +1,4 @@
-//! This file finds the other balances of a slack cable that slides over pulleys without friction.
+//! This file finds the other equilibria of a slack cable that slides over pulleys without friction.
 //!
 //! A loop between two pulleys pulls the harder the longer it is, so that the slack may
 //! rest in one span as well as in another: the energy has more than one minimum in the material at
@@ -71,7 +71,7 @@ fn starts(problem: &Problem, layout: &Layout, sigma: &[f64]) -> Vec<Vec<f64>> {
 /// The tensions of the other balances of a cable that slides over pulleys without friction beside
 /// those of an answer at a time (s); None where none was found, or where obstacles, bending
 /// stiffness or friction leave it to other models.
-pub(crate) fn other_balances(problem: &Problem, answer: &CableSolution, time_s: f64) -> Option<Histories> {
+pub(crate) fn other_equilibria(problem: &Problem, answer: &CableSolution, time_s: f64) -> Option<Histories> {
     let slides = problem.supports.iter().any(|s| s.kind == SupportKind::Pulley);
     if !slides || problem.supports.iter().any(|s| s.friction > 0.0) {
         return None;

@@ -9,7 +9,7 @@ use crate::catenary::Catenary;
 use crate::contact::geometry::Body;
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, larger, perp};
-use crate::model::spans::run::{CableRun, Course};
+use crate::model::spans::cable_section::{CableSection, Course};
 
 /// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both
 /// branches of a deep catenary is seen from one only.
@@ -145,17 +145,17 @@ impl<'a> Arc<'a> {
 
 /// The deepest point of span k inside anything, if deeper than `tolerance` (m).
 pub(in crate::model::spans) fn deepest(
-    strand: &CableRun,
+    section: &CableSection,
     course: &Course,
     world: &World,
     k: usize,
     tolerance: f64,
 ) -> Option<Penetration> {
-    if world.is_empty() || !strand.has_span(k) {
+    if world.is_empty() || !section.has_span(k) {
         return None;
     }
     let mut best: Option<Penetration> = None;
-    strand.shapes(course, k, |s0, at, shape| {
+    section.shapes(course, k, |s0, at, shape| {
         let arc = Arc::new(s0, at, shape, course.law.load);
         let (low, high) = arc.bounds();
         for (index, body) in world.geometry().bodies().iter().enumerate() {

@@ -3,8 +3,8 @@
 
 use crate::contact::swept_corners::Corner;
 use crate::math::{Vec2, cross, larger, smaller};
-use crate::model::spans::run::{CableRun, Contact, Course, Next};
-use crate::model::spans::verify::penetration;
+use crate::model::spans::acceptance::penetration;
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Next};
 
 /// A corner this near to a tangent is on it, m: rounding.
 const TANGENCY_DISTANCE_M: f64 = 1e-12;
@@ -12,7 +12,12 @@ const TANGENCY_DISTANCE_M: f64 = 1e-12;
 /// True if the ends of the spans alone tell that nothing was passed: contacts are the same, and
 /// every corner lies on the same side of each span before and after. A span is convex: above its
 /// tangents and below its chord, seen against the load.
-pub(in crate::model::spans) fn clear(old: &CableRun, new: &CableRun, course: &Course, corners: &[Corner]) -> bool {
+pub(in crate::model::spans) fn clear(
+    old: &CableSection,
+    new: &CableSection,
+    course: &Course,
+    corners: &[Corner],
+) -> bool {
     let (load, unchecked) = (course.law.load, course.settings.verify.unchecked_move);
     let same = |(a, b): (&Contact, &Contact)| {
         let moved = |side: usize| (a.ends.p[side] - b.ends.p[side]).abs();
@@ -27,7 +32,7 @@ pub(in crate::model::spans) fn clear(old: &CableRun, new: &CableRun, course: &Co
         && old.contacts.iter().zip(&new.contacts).all(same)
         && [0, 1].into_iter().all(|k| old.ties[k].has_span() == new.ties[k].has_span())
         && (0..new.spans()).filter(|&k| new.has_span(k)).all(|k| {
-            let spans = [old, new].map(|strand| SpanBound::of(strand, course, k));
+            let spans = [old, new].map(|section| SpanBound::of(section, course, k));
             let [Some(a), Some(b)] = spans else { return false };
             let (low, high) = (smaller(a.low, b.low), larger(a.high, b.high));
             let first = corners.partition_point(|c| c.at.x < low);
@@ -50,13 +55,13 @@ struct SpanBound {
 
 impl SpanBound {
     /// None where an end hangs or loads act on the way.
-    fn of(strand: &CableRun, course: &Course, k: usize) -> Option<Self> {
-        let (from, to) = strand.material(k);
-        let [Some(a), Some(b)] = strand.ends_of(course, k) else { return None };
+    fn of(section: &CableSection, course: &Course, k: usize) -> Option<Self> {
+        let (from, to) = section.material(k);
+        let [Some(a), Some(b)] = section.ends_of(course, k) else { return None };
         if course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to) {
             return None;
         }
-        let side = |at: Vec2, s: f64| penetration::tangent(at, strand.force(course, k, s), course.law.load);
+        let side = |at: Vec2, s: f64| penetration::tangent(at, section.force(course, k, s), course.law.load);
         let (low, high) = (smaller(a.x, b.x), larger(a.x, b.x));
         Some(Self { low, high, ends: [a, b], tangents: [side(a, from), side(b, to)] })
     }
@@ -74,18 +79,18 @@ impl SpanBound {
     }
 }
 
-/// A shape of a strand as points.
-pub(in crate::model::spans) fn shape(strand: &CableRun, course: &Course, out: &mut Vec<Vec2>) {
+/// A shape of a section as points.
+pub(in crate::model::spans) fn shape(section: &CableSection, course: &Course, out: &mut Vec<Vec2>) {
     let points = course.settings.verify.tunnelling_points;
     out.clear();
-    for k in 0..strand.spans() {
-        if strand.has_span(k) {
-            strand.shapes(course, k, |_, at, c| {
+    for k in 0..section.spans() {
+        if section.has_span(k) {
+            section.shapes(course, k, |_, at, c| {
                 let h = c.span().length / points as f64;
                 out.extend((0..=points).map(|i| at + c.position_at(i as f64 * h)));
             });
         }
-        if let Some(c) = strand.contacts.get(k) {
+        if let Some(c) = section.contacts.get(k) {
             let track = course.track(c);
             let [a, b] = c.ends.p;
             out.extend((0..=points).map(|i| track.place(a + (b - a) * i as f64 / points as f64).at));

@@ -11,8 +11,8 @@ use crate::contact::World;
 use crate::contact::geometry::{Body, Edge};
 use crate::error::EquilibriumFault;
 use crate::math::{Vec2, cross, perp, smaller};
+use crate::model::spans::cable_section::{CableSection, Contact, Course};
 use crate::model::spans::failure::Failure;
-use crate::model::spans::run::{CableRun, Contact, Course};
 
 /// Depth that is none, m: what is asked of every answer.
 const DEPTH: f64 = 1e-6;
@@ -106,12 +106,12 @@ impl Hull {
     }
 }
 
-/// Checks that a strand is clear of everything.
-pub(in crate::model::spans) fn clear(strand: &CableRun, course: &Course, world: &World) -> Result<(), Failure> {
+/// Checks that a section is clear of everything.
+pub(in crate::model::spans) fn clear(section: &CableSection, course: &Course, world: &World) -> Result<(), Failure> {
     let mut inside = None;
-    for k in 0..strand.spans() {
-        if strand.has_span(k) {
-            strand.shapes(course, k, |s0, at, shape| {
+    for k in 0..section.spans() {
+        if section.has_span(k) {
+            section.shapes(course, k, |s0, at, shape| {
                 let length = shape.span().length;
                 let point = |s: f64| (at + shape.position_at(s), shape.force_at(s));
                 let fold = shape.lowest_s();
@@ -121,7 +121,7 @@ pub(in crate::model::spans) fn clear(strand: &CableRun, course: &Course, world: 
                 inside = inside.or(found.map(|(s, at)| (s0 + s, at)));
             });
         }
-        if let Some(c) = strand.contacts.get(k) {
+        if let Some(c) = section.contacts.get(k) {
             inside = inside.or_else(|| contact(c, course, world));
         }
         if let Some((s, at)) = inside {

@@ -2,9 +2,9 @@
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::SlideOver;
-use crate::model::fem::state::account::{CONTACTS, SUPPORTS, kind_of};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::meshing::Meshing;
+use crate::model::fem::state::momentum_account::{CONTACTS, SUPPORTS, kind_of};
 use crate::model::fem::state::motion::Motion;
 use crate::model::fem::system::mesh::Mesh;
 use crate::problem::Problem;

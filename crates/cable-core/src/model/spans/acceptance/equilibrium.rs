@@ -7,11 +7,11 @@ use crate::math::{GAUSS_5, Vec2, bounded, cross};
 use crate::model::spans::boundary::capstan::{Step, Track};
 use crate::model::spans::boundary_conditions::CableEquilibrium;
 use crate::model::spans::boundary_conditions::Layout;
+use crate::model::spans::cable_section::{CableSection, Contact, Course, Tie};
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::results;
-use crate::model::spans::run::{CableRun, Contact, Course, Tie};
 
 /// Equations must hold to this part of the length, the tension, the angle. The solver stops at
 /// 1e-11.
@@ -33,31 +33,31 @@ const PANEL: f64 = 0.5;
 
 /// Returns an error unless the solution satisfies equilibrium. The caller keeps the stick zones
 /// that the contacts were solved with.
-pub(in crate::model::spans) fn verify(strand: &CableRun, course: &Course) -> Result<(), Failure> {
-    let mut before = strand.from;
-    let greatest = strand
+pub(in crate::model::spans) fn verify(section: &CableSection, course: &Course) -> Result<(), Failure> {
+    let mut before = section.from;
+    let greatest = section
         .contacts
         .iter()
         .flat_map(|c| c.ends.t)
         .chain(
-            (0..strand.spans())
-                .filter(|&k| strand.has_span(k))
-                .map(|k| strand.force(course, k, strand.material(k).0).norm()),
+            (0..section.spans())
+                .filter(|&k| section.has_span(k))
+                .map(|k| section.force(course, k, section.material(k).0).norm()),
         )
         .fold(0.0f64, |m, t| if t > m { t } else { m });
-    for k in 0..strand.spans() {
-        let (from, to) = strand.material(k);
-        let long = strand.to - strand.from;
+    for k in 0..section.spans() {
+        let (from, to) = section.material(k);
+        let long = section.to - section.from;
         // A pocket that is short by less is not opened.
         if !(from >= before - BALANCE_TOLERANCE * long && to >= from - slack_pocket::POCKET_SHORTAGE_FRACTION * long) {
             return Err(Failure::Unsound { what: EquilibriumFault::MaterialOrder, s: from, at: Vec2::zeros() });
         }
         before = to;
-        if strand.has_span(k) {
-            span(strand, course, k)?;
+        if section.has_span(k) {
+            span(section, course, k)?;
         }
-        if k < strand.contacts.len() {
-            contact(strand, course, k, greatest)?;
+        if k < section.contacts.len() {
+            contact(section, course, k, greatest)?;
         }
     }
     Ok(())
@@ -70,22 +70,22 @@ pub(in crate::model::spans) fn balanced(layout: &Layout, network: &CableEquilibr
     if left.norm() <= BALANCE_TOLERANCE * size {
         return Ok(());
     }
-    let strand = network.strands.first();
-    let at = strand.and_then(|s| s.ends_of(&network.course, 0)[0]).unwrap_or_default();
+    let section = network.sections.first();
+    let at = section.and_then(|s| s.ends_of(&network.course, 0)[0]).unwrap_or_default();
     Err(Failure::Unsound { what: EquilibriumFault::Unbalanced, s: 0.0, at })
 }
 
 /// The span closes.
-fn span(strand: &CableRun, course: &Course, k: usize) -> Result<(), Failure> {
-    let (from, to) = strand.material(k);
-    if let [Some(a), Some(b)] = strand.ends_of(course, k) {
+fn span(section: &CableSection, course: &Course, k: usize) -> Result<(), Failure> {
+    let (from, to) = section.material(k);
+    if let [Some(a), Some(b)] = section.ends_of(course, k) {
         let (mut at, mut before) = (a, from);
         let loads = course.loads.iter().map(|l| l.arc_length).filter(|s| *s > from && *s < to);
         for next in loads.chain(std::iter::once(to)) {
-            at += way(strand, course, k, [before, next]);
+            at += way(section, course, k, [before, next]);
             before = next;
         }
-        if !((at - b).norm() <= BALANCE_TOLERANCE * (strand.to - strand.from)) {
+        if !((at - b).norm() <= BALANCE_TOLERANCE * (section.to - section.from)) {
             return Err(Failure::Unsound { what: EquilibriumFault::SpanOpen, s: from, at });
         }
     }
@@ -97,9 +97,9 @@ fn span(strand: &CableRun, course: &Course, k: usize) -> Result<(), Failure> {
 /// With b along the load, H the part of F across it and s* where F is across it, s = s* + (H/b)
 /// sinh v makes T = H cosh v: smooth however sharp the cable folds. Straight up and down (H = 0)
 /// the integral is split at the fold.
-fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2 {
+fn way(section: &CableSection, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2 {
     // Inside the piece: a load at its start acts before it.
-    let start = strand.force(course, k, 0.5 * (from + to)) + course.law.load * (0.5 * (to - from));
+    let start = section.force(course, k, 0.5 * (from + to)) + course.law.load * (0.5 * (to - from));
     let force = |s: f64| start - course.law.load * (s - from);
     let b = course.law.load.norm();
     let across = if b > 0.0 { cross(start, course.law.load).abs() / b } else { 0.0 };
@@ -132,8 +132,8 @@ fn way(strand: &CableRun, course: &Course, k: usize, [from, to]: [f64; 2]) -> Ve
 
 /// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its
 /// tangent.
-fn contact(strand: &CableRun, course: &Course, j: usize, greatest: f64) -> Result<(), Failure> {
-    let c = &strand.contacts[j];
+fn contact(section: &CableSection, course: &Course, j: usize, greatest: f64) -> Result<(), Failure> {
+    let c = &section.contacts[j];
     let (track, e) = (course.track(c).seen_from(c.ends.p[0]), &c.ends);
     let unsound = |what: EquilibriumFault, p: f64, s: f64| Failure::Unsound { what, s, at: track.place(p).at };
     let (first, last) = (track.curve.origin(c.chain_range.first), track.curve.end(c.chain_range.last));
@@ -141,24 +141,24 @@ fn contact(strand: &CableRun, course: &Course, j: usize, greatest: f64) -> Resul
         return Err(unsound(EquilibriumFault::ContactBeyondBoundary, e.p[0], e.s[0]));
     }
     if c.is_load() {
-        return point_load::verify(strand, course, j);
+        return point_load::verify(section, course, j);
     }
     for side in 0..2 {
-        if let Some(force) = strand.force_at_contact(course, j, side) {
+        if let Some(force) = section.force_at_contact(course, j, side) {
             let tangent = track.place(e.p[side]).tangent;
             if !(cross(force, tangent).abs() <= BALANCE_TOLERANCE * force.norm() && force.dot(&tangent) > 0.0) {
                 return Err(unsound(EquilibriumFault::SpanNotTangent, e.p[side], e.s[side]));
             }
-        } else if strand.in_pocket(j, side) {
+        } else if section.in_pocket(j, side) {
             if e.t[side] != 0.0 {
                 return Err(unsound(EquilibriumFault::SlackUnderTension, e.p[side], e.s[side]));
             }
-            if side == 1 && slack_pocket::heap(strand, course, j + 1).is_none() {
+            if side == 1 && slack_pocket::heap(section, course, j + 1).is_none() {
                 return Err(unsound(EquilibriumFault::LooseCableSlides, e.p[side], e.s[side]));
             }
-        } else if strand.is_joined(j, side) {
+        } else if section.is_joined(j, side) {
             // The load beside it is looked at by itself.
-        } else if let Tie::Loose(force) = strand.ties[side] {
+        } else if let Tie::Loose(force) = section.ties[side] {
             let lifts = force.dot(&track.place(e.p[side]).normal);
             if !((e.t[side] - course.pull(c, side, force)).abs() <= BALANCE_TOLERANCE * greatest
                 && lifts <= BALANCE_TOLERANCE * force.norm())
@@ -175,17 +175,17 @@ fn contact(strand: &CableRun, course: &Course, j: usize, greatest: f64) -> Resul
     {
         return Err(Failure::LoadLies { s: l.arc_length });
     }
-    along(&track, c, greatest, strand.to - strand.from)
+    along(&track, c, greatest, section.to - section.from)
 }
 
-/// Material that may be missing along a contact, of the strand's length. Smaller: contacts laid
+/// Material that may be missing along a contact, of the section's length. Smaller: contacts laid
 /// along the nodes of another model, which know their material to the distance of those nodes, are
 /// refused; larger: folds are lost (8 cm of 20 m were).
 const LOST_MATERIAL_FRACTION: f64 = 1e-4;
 
 /// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On
 /// each stretch between two knots one part of friction is called upon: what holds for that and at
-/// the next knot holds all along. No material of the strand's `length` (m) is lost between two
+/// the next knot holds all along. No material of the section's `length` (m) is lost between two
 /// knots, nor between the ends and the first and last of them.
 fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(), Failure> {
     let friction = track.friction_of_loose;

@@ -2,13 +2,13 @@
 
 use crate::error::TensionLoss;
 use crate::math::{Vec2, cross};
+use crate::model::spans::cable_section::{CableSection, Course};
 use crate::model::spans::failure::Failure;
-use crate::model::spans::run::{CableRun, Course};
 
 /// The kind of loss, its place on the cable (m) and in the plane (m), in the last state that was
 /// found.
 pub(in crate::model::spans) fn lost(
-    strands: &[CableRun],
+    sections: &[CableSection],
     course: &Course,
     failure: &Failure,
 ) -> Option<(TensionLoss, f64, Vec2)> {
@@ -23,21 +23,21 @@ pub(in crate::model::spans) fn lost(
     if b.norm() == 0.0 {
         return None;
     }
-    for strand in strands {
-        for k in (0..strand.spans()).filter(|&k| strand.has_span(k)) {
-            let (from, to) = strand.material(k);
-            let force = strand.force(course, k, from);
+    for section in sections {
+        for k in (0..section.spans()).filter(|&k| section.has_span(k)) {
+            let (from, to) = section.material(k);
+            let force = section.force(course, k, from);
             let across = cross(force, b).abs() / b.norm();
             if across > course.settings.verify.fold_force_fraction * b.norm() * (to - from) {
                 continue;
             }
             let mut place = None;
-            strand.shapes(course, k, |s0, at, shape| {
+            section.shapes(course, k, |s0, at, shape| {
                 let s = shape.lowest_s();
                 place = place.or(Some((s0 + s, at + shape.position_at(s))));
             });
             let (s, at) = place?;
-            let end = k == 0 || k == strand.contacts.len();
+            let end = k == 0 || k == section.contacts.len();
             return Some((if end { TensionLoss::Fold } else { TensionLoss::Span }, s, at));
         }
     }

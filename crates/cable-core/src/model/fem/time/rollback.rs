@@ -1,12 +1,46 @@
 //! A step that fails returns to the checkpoint before it.
 
-use crate::model::fem::obstacle::moving_outline::place_outline;
+use crate::math::Vec2;
+use crate::model::fem::obstacle::outline_depenetration::place_outline;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::checkpoint::Checkpoint;
-use crate::model::fem::state::control::Rollback;
+use crate::model::fem::state::motion::Motion;
 use crate::model::fem::state::step_setup::renew_input;
+use crate::model::fem::system::contact::contact_set::ContactSet;
+use crate::model::fem::system::mesh::Mesh;
+
+/// A state to go back to.
+#[derive(Clone, Debug)]
+struct Checkpoint {
+    motion: Motion,
+    mesh: Mesh,
+    contacts: ContactSet,
+    support_node: Vec<Option<usize>>,
+    /// Nodes of the loads; their number never changes.
+    load_node: Vec<usize>,
+    reaction: Vec<Vec2>,
+}
+
+/// The state to go back to where a step fails; a copy of the model saves its own.
+#[derive(Debug, Default)]
+pub(in crate::model::fem) struct Rollback {
+    /// The last one that was saved, and its memory.
+    saved: Option<Box<Checkpoint>>,
+    /// True if it is of the present step.
+    can_restore: bool,
+}
+
+impl Clone for Rollback {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
 
 impl Rollback {
+    /// A copy with the state that is saved.
+    pub(in crate::model::fem) fn with_saved(&self) -> Self {
+        Self { saved: self.saved.clone(), can_restore: self.can_restore }
+    }
+
     /// Keeps the present state to go back to, in the memory of the one kept before.
     pub(in crate::model::fem) fn save(&mut self, cable: &CableState) {
         match &mut self.saved {

@@ -1,10 +1,10 @@
-//! A sheet is what is in view of a graph, as it goes to a file.
+//! The part of a graph that is in view is what goes to a file.
 
 use crate::record::series::Series;
 
 /// Part of a graph that is in view.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sheet {
+pub struct GraphInView {
     /// Its title.
     pub title: String,
     /// Quantity along the axis to the right: name with unit for people, and for a column.
@@ -22,7 +22,7 @@ pub struct Sheet {
 }
 
 /// Points of a line in view.
-pub(crate) fn visible<'a>(line: &'a Series, sheet: &Sheet) -> &'a [[f64; 2]] {
+pub(crate) fn visible<'a>(line: &'a Series, sheet: &GraphInView) -> &'a [[f64; 2]] {
     let [left, right] = [sheet.bounds[0], sheet.bounds[2]].map(|x| x * sheet.si[0]);
     let from = line.points.partition_point(|p| p[0] < left);
     let to = line.points.partition_point(|p| p[0] <= right).max(from);
@@ -31,13 +31,13 @@ pub(crate) fn visible<'a>(line: &'a Series, sheet: &Sheet) -> &'a [[f64; 2]] {
 
 /// A sheet for tests: two lines, one of them with a pole.
 #[cfg(test)]
-pub(crate) fn sample() -> Sheet {
+pub(crate) fn sample() -> GraphInView {
     let line = |name: &str, f: fn(f64) -> f64| Series {
         name: name.to_owned(),
         points: (0..100).map(|k| f64::from(k) / 10.0).map(|x| [x, f(x)]).collect(),
         ..Series::default()
     };
-    Sheet {
+    GraphInView {
         title: "Over <time>".to_owned(),
         across: ["Time, s".to_owned(), "time_s".to_owned()],
         up: ["Tension, kN".to_owned(), "tension_n".to_owned()],

@@ -10,9 +10,9 @@
 
 use crate::contact::friction;
 use crate::math::Vec2;
-use crate::model::fem::state::account::{CONTACTS, Kinds, LOADS, SUPPORTS, WEIGHT, kind_of};
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::momentum::MovingMass;
+use crate::model::fem::state::momentum_account::{CONTACTS, Kinds, LOADS, SUPPORTS, WEIGHT, kind_of};
+use crate::model::fem::state::moving_mass::MovingMass;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::model::fem::system::step_input::Unknowns;
 use crate::model::fem::system::{bar_energy, bar_weight};

@@ -1,4 +1,4 @@
-//! The ends of the ground, which are the faces of a tank's walls.
+//! The extent of the terrain ends at the inner faces of a tank's walls.
 
 use cable_core::math::Point;
 use cable_core::scene::Shape;
@@ -9,8 +9,8 @@ use crate::state::AppState;
 /// holds a point: beyond the wall of a tank, and above it, there is nothing to stand on. Corners
 /// and point in m.
 #[must_use]
-pub fn above_ground(state: &AppState, point: Option<Point>, [mut low, mut high]: [Point; 2]) -> [Point; 2] {
-    if let Some([left, right]) = ground_ends(state) {
+pub fn within_terrain(state: &AppState, point: Option<Point>, [mut low, mut high]: [Point; 2]) -> [Point; 2] {
+    if let Some([left, right]) = terrain_ends(state) {
         let at = point.map(|p| p[0]);
         low[0] = low[0].max(at.map_or(left, |x| left.min(x)));
         high[0] = high[0].min(at.map_or(right, |x| right.max(x)));
@@ -25,7 +25,7 @@ const WALL_WIDTH: f64 = 0.1;
 
 /// Left and right end of all ground without what is above and behind the walls at its ends, m; None
 /// where there is no ground.
-fn ground_ends(state: &AppState) -> Option<[f64; 2]> {
+fn terrain_ends(state: &AppState) -> Option<[f64; 2]> {
     let terrains = state.document.scene.obstacles.iter().filter_map(|o| match &o.shape {
         Shape::Terrain { points_m } => Some(points_m),
         _ => None,
@@ -56,7 +56,7 @@ fn inner_face<'a>(points_m: impl Iterator<Item = &'a Point>, width: f64) -> Opti
 /// its cable, m.
 #[must_use]
 pub fn ground(state: &AppState) -> [f64; 2] {
-    let [left, right] = ground_ends(state).unwrap_or([-1.0, 1.0]);
+    let [left, right] = terrain_ends(state).unwrap_or([-1.0, 1.0]);
     let from = state.document.scene.robot.as_ref().map_or(0.0, |r| r.at_m[0]);
     let longest = state.document.scene.cables.iter().map(|c| c.length_m).fold(0.0, f64::max);
     let starts = state.document.scene.cables.iter().filter_map(|c| c.supports.first()?.at_m).map(|p| p[0]);

@@ -1,4 +1,4 @@
-//! Of the balances of a slack cable that slides without friction some run away; the others are
+//! Of the equilibria of a slack cable that slides without friction some run away; the others are
 //! resting places of their own.
 //!
 //! A loop that hangs down pulls the harder the longer it is, so that slack may rest on either side
@@ -20,7 +20,7 @@ const LEAST_DRAG_FALL: f64 = 0.25;
 /// A length of material to be passed on at one contact.
 #[derive(Clone, Copy, Debug)]
 struct SlackMove {
-    /// Index of the contact among those of all strands.
+    /// Index of the contact among those of all sections.
     contact: usize,
     /// Material that it passes on along the cable, m.
     passed_on_m: f64,
@@ -48,13 +48,13 @@ impl CableEquilibrium {
 
     /// Finds other balances of a slack cable that slides without friction. Slack is moved from each
     /// side of each contact to the other, and on from each balance that is found so.
-    pub fn other_balances(&self, layout: &Layout, work: &mut Work) -> Vec<Self> {
+    pub fn other_equilibria(&self, layout: &Layout, work: &mut Work) -> Vec<Self> {
         let tuned = &layout.settings.continuation;
         let mut found = vec![self.clone()];
         let (mut from, mut tries) = (0, 0);
         while let Some(base) = found.get(from).cloned() {
             for SlackMove { contact, passed_on_m } in base.moves_of_slack(layout) {
-                if tries == tuned.max_other_balances {
+                if tries == tuned.max_other_equilibria {
                     break;
                 }
                 tries += 1;
@@ -77,9 +77,9 @@ impl CableEquilibrium {
         let least = layout.settings.continuation.least_slack_fraction;
         let mut moves = Vec::new();
         let mut index = 0;
-        for strand in &self.strands {
-            for j in 0..strand.contacts.len() {
-                let slack = [j, j + 1].map(|k| strand.has_span(k).then(|| strand.slack(&self.course, k)).flatten());
+        for section in &self.sections {
+            for j in 0..section.contacts.len() {
+                let slack = [j, j + 1].map(|k| section.has_span(k).then(|| section.slack(&self.course, k)).flatten());
                 if let [Some([before, near]), Some([after, far])] = slack
                     && before + after > least * smaller(near, far)
                 {
@@ -115,13 +115,13 @@ impl CableEquilibrium {
         let size = to.load.norm();
         let (mut drag, mut taken, mut left) = (tuned.leaving_drag_factor * size, StepStats::default(), None);
         let mut raised = 0;
-        for (k, c) in self.strands.iter_mut().flat_map(|s| &mut s.contacts).enumerate() {
+        for (k, c) in self.sections.iter_mut().flat_map(|s| &mut s.contacts).enumerate() {
             let by = passed_on_m(k);
             c.history.pass_on(by);
             c.ends.s = c.ends.s.map(|s| s + by);
         }
-        for strand in &mut self.strands {
-            contacts::solve_spans(strand, &self.course).ok_or(Failure::Restless { s: strand.from })?;
+        for section in &mut self.sections {
+            contacts::solve_spans(section, &self.course).ok_or(Failure::Restless { s: section.from })?;
         }
         for _ in 0..tuned.max_drag_steps {
             let materials = self.material_at_contacts();
@@ -152,11 +152,11 @@ impl CableEquilibrium {
 
     /// Material at the start of each contact, m.
     fn material_at_contacts(&self) -> Vec<f64> {
-        self.strands.iter().flat_map(|s| &s.contacts).map(|c| c.ends.s[0]).collect()
+        self.sections.iter().flat_map(|s| &s.contacts).map(|c| c.ends.s[0]).collect()
     }
 
-    /// True if every strand is a stable rest and not a balance that runs away.
+    /// True if every section is a stable rest and not a balance that runs away.
     pub fn is_stable(&self, work: &mut Work) -> bool {
-        self.strands.iter().all(|s| newton::stable(s, &self.course, work))
+        self.sections.iter().all(|s| newton::stable(s, &self.course, work))
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use egui::epaint::TextShape;
 use egui::{Color32, FontId, Pos2, Shape, Stroke, Ui};
 
-use crate::io::graph_sheet::{Sheet, visible};
+use crate::io::graph_in_view::{GraphInView, visible};
 use crate::io::picture_file;
 use crate::render::colour::LINES;
 use crate::render::offscreen::Offscreen;
@@ -15,7 +15,7 @@ use crate::units::format::{round_step, significant};
 const LIMITS: [(&str, [u8; 3]); 2] = [("service limit", [196, 122, 0]), ("breaking limit", [213, 60, 40])];
 
 /// The limits that are in view, in the unit shown.
-fn limits(sheet: &Sheet) -> impl Iterator<Item = (f64, &'static str, [u8; 3])> {
+fn limits(sheet: &GraphInView) -> impl Iterator<Item = (f64, &'static str, [u8; 3])> {
     let [_, bottom, _, top] = sheet.bounds;
     let shown = sheet.limits.map(|limit| limit / sheet.si[1]);
     let named = shown.into_iter().zip(LIMITS).map(|(limit, (name, colour))| (limit, name, colour));
@@ -35,7 +35,7 @@ const LETTER: f64 = 7.0;
 
 /// Places of the entries of the legend, points from the left and lines from above, so that none
 /// leaves the picture or lies on another; longer names are cut. Last: how many lines there are.
-fn legend(sheet: &Sheet) -> (Vec<(String, f64, usize)>, usize) {
+fn legend(sheet: &GraphInView) -> (Vec<(String, f64, usize)>, usize) {
     let widest = SIZE[0] - ROOM[0] - ROOM[2];
     let most = ((widest - SWATCH - 6.0) / LETTER) as usize;
     let (mut at, mut row, mut entries) = (ROOM[0], 0, Vec::new());
@@ -115,7 +115,7 @@ struct Drawing {
 }
 
 impl Drawing {
-    fn of(sheet: &Sheet) -> Self {
+    fn of(sheet: &GraphInView) -> Self {
         let [left, bottom, right, top] = sheet.bounds;
         let (entries, rows) = legend(sheet);
         let under = ROOM[1] + LEGEND_LINE * rows as f64;
@@ -174,7 +174,7 @@ fn escaped(text: &str) -> String {
 
 /// The graph as SVG.
 #[must_use]
-pub fn svg(sheet: &Sheet) -> String {
+pub fn svg(sheet: &GraphInView) -> String {
     let Drawing { size: [w, h], frame, marks } = Drawing::of(sheet);
     let [left, top, width, height] = [frame[0], frame[1], frame[2] - frame[0], frame[3] - frame[1]];
     let inside = format!("<rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\"");
@@ -224,7 +224,7 @@ pub fn svg(sheet: &Sheet) -> String {
 ///
 /// # Errors
 /// In words: the picture cannot be encoded.
-pub fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
+pub fn png(sheet: &GraphInView) -> Result<Vec<u8>, String> {
     let drawing = Drawing::of(sheet);
     let mut offscreen = Offscreen::new(drawing.size.map(|s| s.ceil() as u32), PNG_PIXELS_PER_POINT);
     crate::render::theme::install(offscreen.ctx());
@@ -312,7 +312,7 @@ fn tick_text(value: f64, [low, high]: [f64; 2]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::graph_sheet::sample as sheet;
+    use crate::io::graph_in_view::sample as sheet;
     use crate::record::series::Series;
 
     #[test]
@@ -321,7 +321,9 @@ mod tests {
         assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
         assert!(text.contains("Over &lt;time&gt;") && text.matches("<polyline").count() == 2 && !text.contains("NaN"));
         assert!(text.contains("service limit") && !text.contains("breaking limit"), "10 kN is not in view");
-        assert!(!svg(&Sheet { bounds: [0.0, 0.0, 1.0, 1.0], si: [1.0; 2], ..Sheet::default() }).contains("NaN"));
+        assert!(
+            !svg(&GraphInView { bounds: [0.0, 0.0, 1.0, 1.0], si: [1.0; 2], ..GraphInView::default() }).contains("NaN")
+        );
     }
 
     /// From the sixth line on names stood outside the picture, and long ones lay on the next.
@@ -329,7 +331,7 @@ mod tests {
     fn names_in_a_drawing_neither_leave_it_nor_lie_on_each_other() {
         let name = |k: usize| format!("Maximum of pinned run number {k}, tank out and back");
         let lines = (0..9).map(|k| Series { name: name(k), ..sheet().lines[0].clone() });
-        let mut many = Sheet { lines: lines.collect(), ..sheet() };
+        let mut many = GraphInView { lines: lines.collect(), ..sheet() };
         many.lines[3].name = "a name without end ".repeat(20);
         let (entries, rows) = legend(&many);
         let end = |(name, at, _): &(String, f64, usize)| at + SWATCH + 6.0 + LETTER * name.chars().count() as f64;
@@ -353,8 +355,8 @@ mod tests {
     }
 
     /// A sheet with both limits in view and long names, as a run of hours has it.
-    fn crowded() -> Sheet {
-        Sheet {
+    fn crowded() -> GraphInView {
+        GraphInView {
             up: ["Tension, kN".to_owned(), "tension_n".to_owned()],
             bounds: [0.0, -0.000_012_345, 9.9, 10.2],
             ..sheet()

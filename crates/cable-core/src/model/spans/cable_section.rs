@@ -1,6 +1,6 @@
-//! A run is one stretch of cable between two grips: free spans and contacts in a row.
+//! A cable section is the free spans and contacts in a row between two end conditions.
 //!
-//! Unknown are for each span the force G that the cable would carry at the strand's start if its
+//! Unknown are for each span the force G that the cable would carry at the section's start if its
 //! law went on there, F(s) = G − b(s − s_a) − Σ P_k [s_k < s], and for each contact its interval
 //! (p₁, p₂) of the boundary and the material (s₁, s₂) at both ends. Material sliding through points
 //! fixed in space: after S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic
@@ -37,7 +37,7 @@ pub(in crate::model::spans) struct Course {
     pub settings: Arc<SpansSettings>,
 }
 
-/// Condition at an end of a strand.
+/// Condition at an end of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::model::spans) enum Tie {
     /// Held in the air at a point, m.
@@ -154,9 +154,9 @@ impl Contact {
     }
 }
 
-/// A strand.
+/// A section.
 #[derive(Debug, Default, PartialEq)]
-pub(in crate::model::spans) struct CableRun {
+pub(in crate::model::spans) struct CableSection {
     /// Material at both ends, m.
     pub from: f64,
     pub to: f64,
@@ -188,7 +188,7 @@ impl Clone for Contact {
     }
 }
 
-impl Clone for CableRun {
+impl Clone for CableSection {
     fn clone(&self) -> Self {
         let (contacts, forces) = (self.contacts.clone(), self.forces.clone());
         Self { contacts, forces, loose: self.loose.clone(), ..*self }
@@ -262,7 +262,7 @@ impl Course {
     }
 }
 
-impl CableRun {
+impl CableSection {
     /// Solves span `k` anew after a change; what has no answer stays.
     pub fn resolve_span(&mut self, course: &Course, k: usize) {
         if let Some(g) = self.solve_span(course, k) {

@@ -2,7 +2,7 @@
 //! force.
 
 use super::cable::{CheckedBar, CheckedCable};
-use super::flexible::{Lengths, report_length};
+use super::flexible_cable::{Lengths, report_length};
 use super::tolerance::{BALANCE_FRACTION, MOMENT, TURN};
 use crate::math::{cross, larger, smaller};
 use crate::verification::{Law, Verification};
