@@ -1,16 +1,16 @@
 //! Every scene of the catalogue in which something moves runs to its end, and says the same of its
 //! greatest tension whatever the mesh and the tolerance.
 //!
-//! All of it: `cargo test --locked -p cable-core --test motions -- --ignored --nocapture` (an
-//! hour); `SCENE=tank` takes one scene, `SEED=7` rolls other dice, `WAYS=random` leaves out one
-//! factor at a time.
+//! All of it: `cargo test --locked -p cable-core --test motions -- --ignored --nocapture` (hours);
+//! `SCENE=tank` takes one scene, `SEED=7` rolls other dice, `WAYS=random` leaves out one factor at a
+//! time, `ONLY="Fem Dynamic"` takes the ways of a model, an inertia or both.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod dice;
 
 use std::collections::BTreeMap;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, OnceLock};
 
 use cable_core::model::Inertia;
 use cable_core::model::auto::Question;
@@ -165,34 +165,54 @@ struct Found {
     apart: Vec<String>,
 }
 
-/// Runs a scene in all these ways, each compared with the same scene on its own mesh, of the same
-/// model, inertia and friction.
-fn compare(found: &mut Found, (name, scene, end): (&str, &Scene, f64), ways: &[Way]) {
-    let mut known: BTreeMap<String, Result<Reference, String>> = BTreeMap::new();
-    for &way in ways {
-        let plain = Way { model: way.model, inertia: way.inertia, friction: way.friction, ..PLAIN };
-        let with = known.entry(format!("{plain:?}")).or_insert_with(|| {
-            let with = reference(scene, end, plain);
-            println!("{name} {plain:?}: {with:?}");
-            with
-        });
-        found.runs += 1;
-        let most = greatest(scene, end, way);
-        match (most, with.clone()) {
-            (Err(why), _) | (Ok(_), Err(why)) => {
-                println!("{name} {way:?}: stopped: {why}");
-                found.stops.push(format!("{name} {way:?}: {why}"));
-            }
-            (Ok(most), Ok(with)) => {
-                let same = compared(scene, end, way, most, &with);
-                println!("{name} {way:?}: {most:.3} N, {same:?}");
-                *found.same.entry(same).or_default() += 1;
-                if same != Same::Near {
-                    found.apart.push(format!("{same:?} {name} {way:?}: {most} N for {with:?}"));
-                }
+/// The way that a run is compared with: on the scene's own mesh, of the same model, inertia and
+/// friction.
+fn plain_of(way: Way) -> Way {
+    Way { model: way.model, inertia: way.inertia, friction: way.friction, ..PLAIN }
+}
+
+/// Runs a scene in one way and compares it with its reference.
+fn compare_one((name, scene, end): (&str, &Scene, f64), way: Way, with: &Result<Reference, String>) -> Found {
+    let mut found = Found { runs: 1, ..Found::default() };
+    match (&greatest(scene, end, way), with) {
+        (Err(why), _) | (Ok(_), Err(why)) => {
+            println!("{name} {way:?}: stopped: {why}");
+            found.stops.push(format!("{name} {way:?}: {why}"));
+        }
+        (Ok(most), Ok(with)) => {
+            let same = compared(scene, end, way, *most, with);
+            println!("{name} {way:?}: {most:.3} N, {same:?}");
+            *found.same.entry(same).or_default() += 1;
+            if same != Same::Near {
+                found.apart.push(format!("{same:?} {name} {way:?}: {most} N for {with:?}"));
             }
         }
     }
+    found
+}
+
+/// Runs each scene in its ways on all cores; a reference is run once, by the first that needs it.
+fn compare_all(tasks: &[(&str, &Scene, f64, Way)]) -> Found {
+    let key = |name: &str, way: Way| format!("{name} {:?}", plain_of(way));
+    let references: BTreeMap<String, OnceLock<Result<Reference, String>>> =
+        tasks.iter().map(|(name, _, _, way)| (key(name, *way), OnceLock::new())).collect();
+    let (next, found) = (AtomicUsize::new(0), Mutex::new(Found::default()));
+    std::thread::scope(|scope| {
+        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
+            scope.spawn(|| {
+                while let Some(&(name, scene, end, way)) = tasks.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    let with = references[&key(name, way)].get_or_init(|| {
+                        let with = reference(scene, end, plain_of(way));
+                        println!("{name} {:?}: {with:?}", plain_of(way));
+                        with
+                    });
+                    let one = compare_one((name, scene, end), way, with);
+                    found.lock().expect("no panic").add(one);
+                }
+            });
+        }
+    });
+    found.into_inner().expect("no panic")
 }
 
 /// Ways at random: all factors together.
@@ -293,47 +313,39 @@ fn output_intervals_change_no_greatest_tension() {
 /// Some of the ways that the long test tries.
 #[test]
 fn rounds_and_floors_agree_in_some_random_ways() {
-    let mut found = Found::default();
-    for (name, scene, end) in [("round-post", catalog::round_post(), 3.5), ("floor-drag", catalog::floor_drag(), 4.0)] {
-        compare(&mut found, (name, &scene, end), &at_random(&mut Dice(seed()), 4, 150.0));
-    }
-    found.check();
+    let scenes = [("round-post", catalog::round_post(), 3.5), ("floor-drag", catalog::floor_drag(), 4.0)];
+    let ways = |_| at_random(&mut Dice(seed()), 4, 150.0);
+    let tasks = scenes.iter().flat_map(|s| ways(s).into_iter().map(move |way| (s.0, &s.1, s.2, way)));
+    compare_all(&tasks.collect::<Vec<_>>()).check();
 }
 
 #[test]
-#[ignore = "an hour: every motion of the catalogue, one factor at a time and twenty ways at random"]
+#[ignore = "hours: every motion of the catalogue, one factor at a time and twenty ways at random"]
 fn every_motion_of_the_catalogue_runs_to_its_end() {
     let only_random = std::env::var("WAYS").is_ok_and(|w| w == "random");
-    // A part of the ways of a scene, each with the same reference: what one thread takes at once.
-    let mut parts = Vec::new();
-    for (name, scene, end) in moving() {
-        for model in [Model::Auto, Model::Fem] {
-            for inertia in [Inertia::Dynamic, Inertia::QuasiStatic] {
-                let plain = Way { model, inertia, ..PLAIN };
-                let mut ways = Vec::new();
-                if !only_random {
-                    ways.extend([42, 84, 168, 336, 1000].map(|n| Way { segments: Some(n), ..plain }));
-                    ways.extend([1e-2, 1e-4].map(|tolerance| Way { tolerance, ..plain }));
-                    ways.extend([0.8, 1.2].map(|friction| Way { friction, ..plain }));
-                    ways.extend([1.0 / 60.0, 1.0].map(|every_s| Way { every_s, ..plain }));
-                }
-                let random = at_random(&mut Dice(seed()), 20, 1000.0);
-                ways.extend(random.into_iter().filter(|w| w.model == model && w.inertia == inertia));
-                parts.push((name, scene.clone(), end, ways));
+    let only = std::env::var("ONLY").unwrap_or_default();
+    let scenes = moving();
+    let mut tasks = Vec::new();
+    for (name, scene, end) in &scenes {
+        let mut ways = Vec::new();
+        for (model, inertia) in [Model::Auto, Model::Fem]
+            .into_iter()
+            .flat_map(|model| [Inertia::Dynamic, Inertia::QuasiStatic].map(|inertia| (model, inertia)))
+        {
+            let plain = Way { model, inertia, ..PLAIN };
+            if !only_random {
+                ways.extend([42, 84, 168, 336, 1000].map(|n| Way { segments: Some(n), ..plain }));
+                ways.extend([1e-2, 1e-4].map(|tolerance| Way { tolerance, ..plain }));
+                ways.extend([0.8, 1.2].map(|friction| Way { friction, ..plain }));
+                ways.extend([1.0 / 60.0, 1.0].map(|every_s| Way { every_s, ..plain }));
             }
         }
+        ways.extend(at_random(&mut Dice(seed()), 20, 1000.0));
+        let chosen = |way: &Way| {
+            let label = format!("{:?} {:?}", way.model, way.inertia);
+            only.split_whitespace().all(|word| label.contains(word))
+        };
+        tasks.extend(ways.into_iter().filter(chosen).map(|way| (*name, scene, *end, way)));
     }
-    let (next, found) = (AtomicUsize::new(0), Mutex::new(Found::default()));
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {
-            scope.spawn(|| {
-                while let Some((name, scene, end, ways)) = parts.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let mut part = Found::default();
-                    compare(&mut part, (name, scene, *end), ways);
-                    found.lock().expect("no panic").add(part);
-                }
-            });
-        }
-    });
-    found.into_inner().expect("no panic").check();
+    compare_all(&tasks).check();
 }

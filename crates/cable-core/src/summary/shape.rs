@@ -1,6 +1,7 @@
 //! The shape of a cable is summarised by sag, heights, lengths and touchdowns.
 
 use super::{CablePlace, Sag, TouchKind, Touchdown};
+use crate::math::larger;
 use crate::scene::{Cable, SupportKind, View};
 use crate::solution::{CableSolution, ContactReport, Node};
 
@@ -9,7 +10,7 @@ const PLACE_TOLERANCE: f64 = 1e-9;
 
 /// Sag: the greatest distance of the cable from the straight line between neighbouring supports
 /// that hold it (a dead load hangs: it holds nothing), downwards in a side view, square to the line
-/// in a plan view. None where no two of them are apart.
+/// in a plan view. None where no two of them are apart, or the cable is broken between them.
 #[must_use]
 pub fn sag(cable: &Cable, answer: &CableSolution, view: View) -> Option<Sag> {
     let hangs = |k: usize| {
@@ -20,14 +21,15 @@ pub fn sag(cable: &Cable, answer: &CableSolution, view: View) -> Option<Sag> {
     let mut best: Option<Sag> = None;
     for pair in held.windows(2) {
         let (a, b) = (pair[0], pair[1]);
+        let Some(piece) = answer.pieces().find(|piece| reaches(piece, a.arc_length_m, b.arc_length_m)) else {
+            continue;
+        };
         let (dx, dy) = (b.x_m - a.x_m, b.y_m - a.y_m);
         let span = match view {
             View::Elevation => dx.abs(),
             View::Plan => dx.hypot(dy),
         };
-        let between =
-            answer.nodes.iter().filter(|n| n.arc_length_m >= a.arc_length_m && n.arc_length_m <= b.arc_length_m);
-        for n in between {
+        for n in piece.iter().filter(|n| n.arc_length_m >= a.arc_length_m && n.arc_length_m <= b.arc_length_m) {
             // Twice the triangle's area over the base: over its horizontal part that is the
             // vertical distance.
             let cross = dx * (n.y_m - a.y_m) - dy * (n.x_m - a.x_m);
@@ -41,6 +43,13 @@ pub fn sag(cable: &Cable, answer: &CableSolution, view: View) -> Option<Sag> {
         }
     }
     best
+}
+
+/// True if a piece of the cable holds all material between two of its points (m), but for rounding.
+fn reaches(piece: &[Node], from: f64, to: f64) -> bool {
+    let (Some(first), Some(last)) = (piece.first(), piece.last()) else { return false };
+    let rounding = PLACE_TOLERANCE * larger(to.abs(), last.arc_length_m.abs());
+    first.arc_length_m <= from + rounding && to - rounding <= last.arc_length_m
 }
 
 /// Stretched length, m: ∫ (1 + ε) θ ds with θ = 1 + αΔT. The sum of the chords between nodes would

@@ -234,6 +234,20 @@ fn sag_is_vertical_whatever_the_slope_and_square_to_the_line_in_plan() {
     assert!(sag(&cable, &answer, View::Elevation).is_none_or(|s| s.sag_m.is_finite()));
 }
 
+/// The window showed a sag of 104.9 m for a cable whose halves had fallen.
+#[test]
+fn a_broken_cable_has_no_sag_between_what_its_pieces_hang_on() {
+    let (cable, mut answer) = parabola(0.0);
+    assert!(sag(&cable, &answer, View::Elevation).is_some());
+    answer.breaks = vec![5];
+    assert_eq!(sag(&cable, &answer, View::Elevation), None);
+    // A piece that two supports hold has its own.
+    let mut third = answer.supports[1].clone();
+    (third.arc_length_m, third.x_m) = (0.4, 0.4);
+    answer.supports.insert(1, third);
+    assert!(sag(&cable, &answer, View::Elevation).is_some_and(|s| s.at.arc_length_m < 0.4));
+}
+
 #[test]
 fn a_slack_cable_is_as_long_as_it_is_however_it_sags() {
     let (_, mut answer) = parabola(0.0);

@@ -243,7 +243,9 @@ impl FemModel {
         let (start, spans) =
             if begins && self.starts_from_spans { self.start_from_spans() } else { (SpansStart::Unknown, None) };
         if begins && !matches!(start, SpansStart::Accepted(_)) {
-            self.start_from_own_statics(self.tuning().start.eased_loads);
+            // Easier cables are to save work: together they may do as much as the search itself.
+            let mut work = WorkBudget::Left(self.tuning().equilibrium.max_work);
+            self.start_from_own_statics(self.tuning().start.eased_loads, &mut work);
         }
         let has_equilibrium = matches!(start, SpansStart::Accepted(_) | SpansStart::Rejected);
         let first = self.dynamics.cable.state();
@@ -320,8 +322,9 @@ impl FemModel {
     /// relaxation as there are bars; and of less axial stiffness (continuation), as the search
     /// among bars that hardly stretch is ill-conditioned, and where they rest is hardly another
     /// place. That one may begin at one that is easier still. Of cables of less than `eased_loads`
-    /// axial stiffness, in whole loads, the search is not made easier so.
-    fn start_from_easier_cable(&mut self, eased_loads: f64) {
+    /// axial stiffness, in whole loads, the search is not made easier so. All of them share the
+    /// `work`.
+    fn start_from_easier_cable(&mut self, eased_loads: f64, work: &mut WorkBudget) {
         let fine = self.settings.segments.or(self.problem.cable.segments).unwrap_or(0);
         let tuning = self.tuning().clone();
         let segments = if fine > tuning.start.two_mesh_bars {
@@ -343,9 +346,11 @@ impl FemModel {
             easier.set_robot_pose(to);
         }
         easier.dynamics.cable.meshing.slides = self.dynamics.cable.meshing.slides;
-        easier.dynamics.solver.work_left = WorkBudget::Left(tuning.equilibrium.max_work);
-        easier.start_from_own_statics(start.stiffness_ratio * start.softest_loads);
-        if easier.settle_dynamics(false).is_err() {
+        easier.start_from_own_statics(start.stiffness_ratio * start.softest_loads, work);
+        easier.dynamics.solver.work_left = *work;
+        let found = easier.settle_dynamics(false);
+        *work = easier.dynamics.solver.work_left;
+        if found.is_err() {
             return;
         }
         let before = self.dynamics.clone();
@@ -357,11 +362,11 @@ impl FemModel {
 
     /// Starts where the cable would rest among no obstacles, and then where one rests that is
     /// solved more easily.
-    fn start_from_own_statics(&mut self, eased_loads: f64) {
+    fn start_from_own_statics(&mut self, eased_loads: f64, work: &mut WorkBudget) {
         if self.statics.settle(&self.dragged).is_ok() {
             self.dynamics.start_from_shape(&self.statics.state(), &self.dragged);
         }
-        self.start_from_easier_cable(eased_loads);
+        self.start_from_easier_cable(eased_loads, work);
     }
 
     /// Finds the equilibrium of a stiff cable as an elastica, from that of a flexible one; None
