@@ -95,7 +95,7 @@ struct Choice {
 
 /// The series of instants that an instant belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Instant {
+enum RunPhase {
     /// The cables rest, and a run begins here.
     AtRest,
     /// A run goes on.
@@ -202,9 +202,9 @@ impl Simulation {
     }
 
     /// Reads the present instant: the answers and their warnings.
-    fn refresh(&mut self, instant: Instant) {
+    fn refresh(&mut self, instant: RunPhase) {
         self.answers = self.cables.iter().map(BreakableCable::answer).collect();
-        if instant == Instant::AtRest {
+        if instant == RunPhase::AtRest {
             self.initial_places = self.answers.iter().map(|a| AlongCable::places(&a.nodes)).collect();
         }
         for (answer, first) in self.answers.iter_mut().zip(&self.initial_places) {
@@ -226,7 +226,7 @@ impl Simulation {
             })
             .collect();
         self.energy = observed.iter().map(|s| s.energy).sum();
-        if instant == Instant::InMotion {
+        if instant == RunPhase::InMotion {
             self.warning_monitor.moving(&observed, time_s)
         } else {
             self.warning_monitor.at_rest(&observed, time_s)
@@ -320,7 +320,7 @@ impl Simulation {
         let found = self.settle_until_sound();
         if found.is_err() {
             self.cables = before;
-            self.refresh(Instant::AtRest);
+            self.refresh(RunPhase::AtRest);
         }
         found?;
         self.warn_not_unique();
@@ -366,7 +366,7 @@ impl Simulation {
             false => self.for_each_cable(|c| c.advance(dt_s, inertia)),
         };
         // A cable alone that fails stays where it came: that is what there is to see then.
-        self.refresh(Instant::InMotion);
+        self.refresh(RunPhase::InMotion);
         done?;
         // In motion nothing else is there to go back to: the verdict stands with the answer.
         if inertia == Inertia::Dynamic {
@@ -547,7 +547,7 @@ impl Simulation {
             self.vehicle = Vehicle::of(&self.scene);
             self.cost = Cost::default();
             self.warnings.clear();
-            self.refresh(Instant::AtRest);
+            self.refresh(RunPhase::AtRest);
         }
     }
 
@@ -570,7 +570,7 @@ impl Simulation {
         for (new, old) in self.cables.iter_mut().zip(&old.cables) {
             new.carry(old)?;
         }
-        self.refresh(Instant::AtRest);
+        self.refresh(RunPhase::AtRest);
         Ok(())
     }
 
@@ -582,7 +582,7 @@ impl Simulation {
         for (c, s) in self.cables.iter_mut().zip(states) {
             c.set_state(s)?;
         }
-        self.refresh(Instant::AtRest);
+        self.refresh(RunPhase::AtRest);
         Ok(())
     }
 

@@ -78,14 +78,14 @@ pub(crate) struct BreakableCable {
     /// The greatest tensions since they were last forgotten, in motion.
     peaks: Option<TensionPeaks>,
     /// The time when that was, s.
-    since_s: f64,
+    peaks_since_s: f64,
     /// A motion that is too fast for masses that move.
     too_fast: Option<Unsupported>,
 }
 
 /// The hold that draws a support.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Grasp {
+enum SupportGrip {
     /// The support goes where it is sent.
     Rigid,
     /// A spring pulls it there.
@@ -114,7 +114,7 @@ impl BreakableCable {
             dragged,
             robot_pose: None,
             peaks: None,
-            since_s: 0.0,
+            peaks_since_s: 0.0,
         })
     }
 
@@ -192,7 +192,7 @@ impl BreakableCable {
     /// of it from now on.
     pub(crate) fn forget_peaks(&mut self) {
         self.peaks = None;
-        self.since_s = self.time_s();
+        self.peaks_since_s = self.time_s();
         self.pieces.iter_mut().for_each(|p| p.account = None);
     }
 
@@ -217,7 +217,7 @@ impl BreakableCable {
 
     fn advance_on(&mut self, dt_s: f64, inertia: Inertia) -> Result<StepReport, SolveError> {
         let mut sum = StepReport::default();
-        self.slip_off_pulleys(inertia)?;
+        self.detach_from_pulleys(inertia)?;
         let Some(end_s) = self.pieces.first().map(|p| p.mechanics.time_s() + dt_s) else { return Ok(sum) };
         let breaking_n = self.problem.cable.breaking_tension_n;
         let mut k = 0;
@@ -307,7 +307,7 @@ impl BreakableCable {
     }
 
     /// A piece whose new end has come to a pulley is off it.
-    fn slip_off_pulleys(&mut self, inertia: Inertia) -> Result<(), SolveError> {
+    fn detach_from_pulleys(&mut self, inertia: Inertia) -> Result<(), SolveError> {
         if self.breaks.is_empty() {
             return Ok(());
         }
@@ -328,25 +328,25 @@ impl BreakableCable {
 
     /// From now on a support follows what leads it.
     pub fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        self.draw_support(support, target_m, Grasp::Rigid);
+        self.draw_support(support, target_m, SupportGrip::Rigid);
     }
 
     /// From now on a hand holds a support by a spring.
     pub fn pull_support(&mut self, support: usize, hand_m: Vec2) {
-        self.draw_support(support, hand_m, Grasp::Spring);
+        self.draw_support(support, hand_m, SupportGrip::Spring);
     }
 
-    fn draw_support(&mut self, support: usize, to: Vec2, grasp: Grasp) {
+    fn draw_support(&mut self, support: usize, to: Vec2, grasp: SupportGrip) {
         if !to.iter().all(|c| c.is_finite()) {
             return;
         }
         if let (Some(d), Some(pulled)) = (self.dragged.get_mut(support), self.pulled.get_mut(support)) {
-            (*d, *pulled) = (Some(to), grasp == Grasp::Spring);
+            (*d, *pulled) = (Some(to), grasp == SupportGrip::Spring);
         }
         for piece in &mut self.pieces {
             let own = piece.part.supports.iter().position(|k| *k == Some(support));
             match own {
-                Some(own) if grasp == Grasp::Spring => piece.mechanics.pull_support(own, to),
+                Some(own) if grasp == SupportGrip::Spring => piece.mechanics.pull_support(own, to),
                 Some(own) => piece.mechanics.drag_support(own, to),
                 None => {}
             }
@@ -476,7 +476,7 @@ impl BreakableCable {
             pulled: self.pulled.clone(),
             robot_pose: self.robot_pose,
             peaks: self.peaks,
-            since_s: self.since_s,
+            peaks_since_s: self.peaks_since_s,
             too_fast: self.too_fast.clone(),
         }
     }

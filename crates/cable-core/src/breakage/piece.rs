@@ -156,7 +156,7 @@ impl Piece {
     /// break.
     fn gauged_step(&mut self, dt_s: f64, breaking_n: Option<f64>) -> Result<StepReport, SolveError> {
         let tension_n = breaking_n.unwrap_or(f64::INFINITY);
-        let limit = Limit { tension_n, from_s: self.unwatched_until_s, within_m: self.may_break_within() };
+        let limit = Limit { tension_n, from_s: self.unwatched_until_s, within_m: self.breakable_range() };
         self.gauge.watch(limit);
         self.mechanics.advance_gauged(dt_s, Inertia::Dynamic, &mut self.gauge)
     }
@@ -198,7 +198,7 @@ impl Piece {
             let now = self.mechanics.state();
             let awake = self.unwatched_steps == 0;
             self.unwatched_steps = self.unwatched_steps.saturating_sub(1);
-            let [low, high] = self.may_break_within();
+            let [low, high] = self.breakable_range();
             if awake && let Some(at) = rupture::first(&nodes, &self.answer.nodes, breaking_n, |s| low <= s && s <= high)
             {
                 let time_s = state.time_s + (now.time_s - state.time_s) * at.fraction;
@@ -212,7 +212,7 @@ impl Piece {
 
     /// The arc lengths (its own, m) between which it may break: not at an end that is free since a
     /// break.
-    fn may_break_within(&self) -> [f64; 2] {
+    fn breakable_range(&self) -> [f64; 2] {
         let least = 0.5 * self.element();
         let new = |end: Option<&Option<usize>>| end == Some(&None);
         let low = if new(self.part.supports.first()) { least } else { f64::NEG_INFINITY };

@@ -64,7 +64,7 @@ fn tension(h: f64, v: f64) -> f64 {
 }
 
 /// A piece and its derivatives under a force at its start.
-struct Pulled {
+struct EndForces {
     va: f64,
     vb: f64,
     ta: f64,
@@ -75,7 +75,7 @@ struct Pulled {
     q: (f64, f64),
 }
 
-impl Pulled {
+impl EndForces {
     #[inline]
     fn q(&self) -> f64 {
         self.q.0 + self.q.1
@@ -84,7 +84,7 @@ impl Pulled {
 
 impl ChainPiece {
     #[inline]
-    fn pulled(&self, h: f64, va: f64) -> Pulled {
+    fn end_forces(&self, h: f64, va: f64) -> EndForces {
         let vb = va + self.w * self.l;
         let (ta, tb) = (tension(h, va), tension(h, vb));
         let inverse = 1.0 / (ta + tb);
@@ -109,25 +109,25 @@ impl ChainPiece {
             };
             log / self.w - first
         };
-        Pulled { va, vb, ta, tb, sigma: (va + vb) * inverse, q: (first, more) }
+        EndForces { va, vb, ta, tb, sigma: (va + vb) * inverse, q: (first, more) }
     }
 
     /// Displacement from start to end in the frame of the load.
     #[inline]
     pub fn displacement(&self, h: f64, va: f64) -> (f64, f64) {
-        let p = self.pulled(h, va);
+        let p = self.end_forces(h, va);
         (h * (self.eps * self.l + p.q()), self.l * (0.5 * self.eps * (p.va + p.vb) + p.sigma))
     }
 
     /// ∫ T ds = ½ (l (T_b + v_a σ) + h² q).
     #[inline]
-    fn pull(&self, h: f64, p: &Pulled) -> f64 {
+    fn pull(&self, h: f64, p: &EndForces) -> f64 {
         0.5 * (self.l * (p.tb + p.va * p.sigma) + h * h * p.q())
     }
 
     /// Stretched length l + ε ∫ T ds.
     pub fn stretched(&self, h: f64, va: f64) -> f64 {
-        self.l + self.eps * self.pull(h, &self.pulled(h, va))
+        self.l + self.eps * self.pull(h, &self.end_forces(h, va))
     }
 
     /// ∫ T² ds = l (h² + (v_a² + v_a v_b + v_b²)/3).
@@ -140,9 +140,9 @@ impl ChainPiece {
     /// φ, gradient, Hessian.
     #[inline]
     pub fn energy(&self, h: f64, va: f64) -> DualEnergy {
-        let p = self.pulled(h, va);
+        let p = self.end_forces(h, va);
         let el = self.eps * self.l;
-        let Pulled { va, vb, ta, tb, sigma, .. } = p;
+        let EndForces { va, vb, ta, tb, sigma, .. } = p;
         let both = self.l / (ta * tb);
         // T_a − v_a σ, all of its terms positive: with T − |v| = h²/(T + |v|) where the signs are
         // equal.

@@ -84,7 +84,7 @@ pub struct Corner {
 /// A piece of an obstacle that something can be near to: an edge (with the corners it answers for)
 /// or a circle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Part {
+pub struct ObstaclePart {
     /// Index of the body.
     pub body: usize,
     /// Index of the edge; None: the body is a circle.
@@ -211,7 +211,7 @@ impl Body {
     /// recedes from it.
     #[inline]
     #[must_use]
-    pub(crate) fn juts_out(&self, corner: &Corner) -> bool {
+    pub(crate) fn is_exposed(&self, corner: &Corner) -> bool {
         !self.solid || corner.is_convex()
     }
 
@@ -392,12 +392,12 @@ impl Geometry {
 
     /// All parts that a cable inside the box from `low` to `high` can come nearer than `reach` to
     /// (m), and some more.
-    pub fn parts(&self, low: Vec2, high: Vec2, reach: f64) -> impl Iterator<Item = Part> {
+    pub fn parts(&self, low: Vec2, high: Vec2, reach: f64) -> impl Iterator<Item = ObstaclePart> {
         self.bodies.iter().enumerate().flat_map(move |(body, b)| {
             let r = Vec2::repeat(reach + b.offset);
             let circle = b.center.filter(|c| (0..2).all(|k| c[k] + r[k] >= low[k] && c[k] - r[k] <= high[k]));
-            let edges = b.candidates(low - r, high + r).map(move |k| Part { body, edge: Some(k) });
-            circle.map(|_| Part { body, edge: None }).into_iter().chain(edges)
+            let edges = b.candidates(low - r, high + r).map(move |k| ObstaclePart { body, edge: Some(k) });
+            circle.map(|_| ObstaclePart { body, edge: None }).into_iter().chain(edges)
         })
     }
 

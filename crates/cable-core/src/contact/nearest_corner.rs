@@ -29,7 +29,7 @@ pub(crate) fn nearest_wrap_body<'a>(geometry: &'a Geometry, chain: &[Vec2], reac
         let r = Vec2::repeat(reach + body.offset);
         let ([x0, y0], [x1, y1]): ([f64; 2], [f64; 2]) = ((low - r).into(), (high + r).into());
         for k in body.candidates(low - r, high + r) {
-            for corner in body.corners_of(k).filter(|c| body.juts_out(c)) {
+            for corner in body.corners_of(k).filter(|c| body.is_exposed(c)) {
                 let v = corner.at;
                 if v.x >= x0 && v.x <= x1 && v.y >= y0 && v.y <= y1 {
                     look(v);

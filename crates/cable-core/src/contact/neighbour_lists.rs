@@ -17,7 +17,7 @@
 //! ```
 
 use super::distance::{point_segment, segment_segment};
-use super::geometry::{Geometry, Part};
+use super::geometry::{Geometry, ObstaclePart};
 use crate::math::{Vec2, smaller};
 
 /// Rounding of a gap, m: a segment is clear only if it is by this much.
@@ -25,7 +25,7 @@ const GAP_ROUNDING: f64 = 1e-9;
 
 /// The list of one segment.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct NeighbourList {
     ends: [Vec2; 2],
     within: f64,
     first: usize,
@@ -35,7 +35,7 @@ struct Entry {
     gap: f64,
 }
 
-impl Entry {
+impl NeighbourList {
     /// True if a segment whose ends come to all these places (m) is never within `reach` (m) of
     /// anything.
     #[inline]
@@ -54,8 +54,8 @@ fn stays_within<const N: usize>(room: f64, from: [Vec2; 2], at: [[Vec2; 2]; N]) 
 /// The lists of all segments of a chain, by their number.
 #[derive(Clone, Debug, Default)]
 pub struct NeighbourLists {
-    entries: Vec<Entry>,
-    parts: Vec<Part>,
+    entries: Vec<NeighbourList>,
+    parts: Vec<ObstaclePart>,
 }
 
 impl NeighbourLists {
@@ -80,7 +80,7 @@ impl NeighbourLists {
     /// Appends the list of the next segment: all parts within `within` (m) of the box of its ends.
     pub fn push(&mut self, geometry: &Geometry, ends: [Vec2; 2], within: f64) {
         let [a, b] = ends;
-        self.entries.push(Entry { ends, within, first: self.parts.len(), measured: ends, gap: within });
+        self.entries.push(NeighbourList { ends, within, first: self.parts.len(), measured: ends, gap: within });
         self.parts.extend(geometry.parts(a.inf(&b), a.sup(&b), within));
         self.measure(geometry, self.entries.len() - 1, ends);
     }
@@ -100,7 +100,7 @@ impl NeighbourLists {
     }
 
     #[inline]
-    fn parts_of(&self, e: usize) -> &[Part] {
+    fn parts_of(&self, e: usize) -> &[ObstaclePart] {
         let Some(entry) = self.entries.get(e) else { return &[] };
         let end = self.entries.get(e + 1).map_or(self.parts.len(), |next| next.first);
         self.parts.get(entry.first..end).unwrap_or_default()
@@ -118,21 +118,21 @@ impl NeighbourLists {
     /// be within `reach` (m) of; an empty one if that is known to be nothing.
     #[inline]
     #[must_use]
-    pub fn of<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[Part]> {
+    pub fn of<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[ObstaclePart]> {
         if self.entries.get(e)?.is_clear(at, reach) { Some(&[]) } else { self.listed(e, at, reach) }
     }
 
     /// The same, whatever the gap of the segment is.
     #[inline]
     #[must_use]
-    pub fn listed<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[Part]> {
+    pub fn listed<const N: usize>(&self, e: usize, at: [[Vec2; 2]; N], reach: f64) -> Option<&[ObstaclePart]> {
         let entry = self.entries.get(e)?;
         stays_within(entry.within - reach, entry.ends, at).then(|| self.parts_of(e))
     }
 }
 
 /// Gap of a segment from a part, m.
-fn gap(geometry: &Geometry, part: Part, [a, b]: [Vec2; 2]) -> f64 {
+fn gap(geometry: &Geometry, part: ObstaclePart, [a, b]: [Vec2; 2]) -> f64 {
     let Some(body) = geometry.bodies().get(part.body) else { return f64::INFINITY };
     let distance = match (part.edge.and_then(|k| body.edges.get(k)), body.center) {
         (Some(e), _) => segment_segment(a, b, e.p, e.q),

@@ -14,7 +14,7 @@
 //! that cancel are not emitted; what remains has weight +1 or, at a shallow concave corner, −1.
 
 use super::Gap;
-use super::geometry::{Body, Geometry, Part};
+use super::geometry::{Body, Geometry, ObstaclePart};
 use crate::math::Vec2;
 
 /// A pair is passed over as too far only if it is this many times too far: no rounding decides what
@@ -49,7 +49,7 @@ impl Geometry {
     /// its neighbours.
     pub(crate) fn node_pairs_among(
         &self,
-        parts: impl Iterator<Item = Part>,
+        parts: impl Iterator<Item = ObstaclePart>,
         chain: &[Option<Vec2>; 3],
         reach: f64,
         out: &mut impl FnMut(Pair),
@@ -75,7 +75,7 @@ impl Geometry {
             }
             for corner in body.corners_of(k) {
                 push_corner(body, &corner, p, reach, out);
-                if body.juts_out(&corner) {
+                if body.is_exposed(&corner) {
                     push_wedge(body, corner.feature, corner.at, chain, reach, out);
                 }
             }
@@ -90,7 +90,7 @@ impl Geometry {
     /// The same among `parts`, which hold all that are within reach.
     pub(crate) fn segment_pairs_among(
         &self,
-        parts: impl Iterator<Item = Part>,
+        parts: impl Iterator<Item = ObstaclePart>,
         ends: [Vec2; 2],
         reach: f64,
         out: &mut impl FnMut(Pair),
@@ -115,7 +115,7 @@ impl Geometry {
                     if far(e.p) && far(e.q) {
                         continue;
                     }
-                    for corner in body.corners_of(k).filter(|c| body.juts_out(c)) {
+                    for corner in body.corners_of(k).filter(|c| body.is_exposed(c)) {
                         push_segment(body, corner.feature, corner.at, ends, reach, out);
                     }
                 }

@@ -13,7 +13,7 @@
 //! it is.
 
 use super::distance::{between_segments, from_segment, point_segment, segment_segment};
-use super::geometry::{Geometry, Part};
+use super::geometry::{Geometry, ObstaclePart};
 use crate::math::{Vec2, cross, larger, smaller};
 
 /// Steps of advancement per feature. Fewer return a shorter free way at glancing approach (still
@@ -52,7 +52,7 @@ impl Geometry {
     /// The same among `parts`, which hold all within the sweep's margin of its box.
     pub(crate) fn free_fraction_among(
         &self,
-        parts: impl Iterator<Item = Part>,
+        parts: impl Iterator<Item = ObstaclePart>,
         sweep: &Sweep,
         round: [Option<usize>; 2],
     ) -> f64 {

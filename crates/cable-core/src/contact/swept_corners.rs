@@ -8,7 +8,7 @@ use crate::math::{Vec2, cross};
 
 /// A point no cable passes through.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Corner {
+pub struct ImpassableCorner {
     /// Its place, m.
     pub at: Vec2,
     /// Index of the body.
@@ -19,12 +19,12 @@ pub struct Corner {
 
 /// Convex corners and the middles of posts, in order of x.
 #[must_use]
-pub fn corners(world: &World) -> Vec<Corner> {
+pub fn corners(world: &World) -> Vec<ImpassableCorner> {
     let mut out = Vec::new();
     for (body, b) in world.geometry().bodies().iter().enumerate() {
-        out.extend(b.center.map(|at| Corner { at, body, feature: b.first + 1 }));
-        let jutting = (0..=b.edges.len()).filter_map(|k| b.corner(k)).filter(|c| b.juts_out(c));
-        out.extend(jutting.map(|c| Corner { at: c.at, body, feature: c.feature }));
+        out.extend(b.center.map(|at| ImpassableCorner { at, body, feature: b.first + 1 }));
+        let jutting = (0..=b.edges.len()).filter_map(|k| b.corner(k)).filter(|c| b.is_exposed(c));
+        out.extend(jutting.map(|c| ImpassableCorner { at: c.at, body, feature: c.feature }));
     }
     out.sort_by(|a, b| a.at.x.total_cmp(&b.at.x));
     out
@@ -35,7 +35,12 @@ pub fn corners(world: &World) -> Vec<Corner> {
 ///
 /// The winding number of the closed way round a corner is the number of its passes above it to the
 /// right, less those to the left.
-pub fn through(corners: &[Corner], old: &[Vec2], new: &[Vec2], turns: &mut Vec<i32>) -> Option<Corner> {
+pub fn through(
+    corners: &[ImpassableCorner],
+    old: &[Vec2],
+    new: &[Vec2],
+    turns: &mut Vec<i32>,
+) -> Option<ImpassableCorner> {
     let (low, high) = old.iter().chain(new).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
         (if p.x < low { p.x } else { low }, if p.x > high { p.x } else { high })
     });
@@ -60,7 +65,7 @@ pub fn through(corners: &[Corner], old: &[Vec2], new: &[Vec2], turns: &mut Vec<i
         pass(end, b);
         pass(a, start);
     }
-    let mut best: Option<(f64, Corner)> = None;
+    let mut best: Option<(f64, ImpassableCorner)> = None;
     for (c, _) in corners.iter().zip(turns.iter()).filter(|(_, t)| **t != 0) {
         let far = new.iter().map(|p| (p - c.at).norm()).fold(f64::INFINITY, |a, b| if b < a { b } else { a });
         if best.is_none_or(|b| far > b.0) {

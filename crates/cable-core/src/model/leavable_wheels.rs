@@ -28,13 +28,13 @@ pub struct LeavableWheels {
     /// True once the cable has left a wheel: the inner model is one of the copy.
     on_posts: bool,
     /// Places to which supports were led, m, and by what.
-    led: Vec<Option<Lead>>,
+    led: Vec<Option<SupportTarget>>,
     robot_pose: Option<RigidPose>,
 }
 
 /// A place to which a support was led, m.
 #[derive(Clone, Copy, Debug)]
-enum Lead {
+enum SupportTarget {
     /// It is there.
     Dragged(Vec2),
     /// A hand holds it there by a spring.
@@ -88,8 +88,8 @@ impl LeavableWheels {
         for (k, lead) in self.led.iter().enumerate() {
             let Some(inner) = this.inner_index(k) else { continue };
             match lead {
-                Some(Lead::Dragged(at)) => this.inner.drag_support(inner, *at),
-                Some(Lead::Pulled(at)) => this.inner.pull_support(inner, *at),
+                Some(SupportTarget::Dragged(at)) => this.inner.drag_support(inner, *at),
+                Some(SupportTarget::Pulled(at)) => this.inner.pull_support(inner, *at),
                 None => {}
             }
         }
@@ -112,15 +112,15 @@ impl LeavableWheels {
 
     /// A support is led. A wheel that was a post stays one where its way is clear of the cable;
     /// else it is a wheel again, since posts stand still.
-    fn lead(&mut self, support: usize, lead: Lead) {
+    fn lead(&mut self, support: usize, lead: SupportTarget) {
         if let Some(led) = self.led.get_mut(support) {
             *led = Some(lead);
         }
         match (self.inner_index(support), lead) {
-            (Some(inner), Lead::Dragged(at)) => self.inner.drag_support(inner, at),
-            (Some(inner), Lead::Pulled(at)) => self.inner.pull_support(inner, at),
+            (Some(inner), SupportTarget::Dragged(at)) => self.inner.drag_support(inner, at),
+            (Some(inner), SupportTarget::Pulled(at)) => self.inner.pull_support(inner, at),
             (None, lead) => {
-                let clear = matches!(lead, Lead::Dragged(to) if self.goes_clear(support, to));
+                let clear = matches!(lead, SupportTarget::Dragged(to) if self.goes_clear(support, to));
                 if !(clear && self.move_posts())
                     && let Ok(inner) = self.built(false, Some(&self.inner.state()))
                 {
@@ -148,15 +148,16 @@ impl LeavableWheels {
 
     /// The copy with posts where the wheels were led; None where a hand holds one by a spring.
     fn posts(&self) -> Option<Arc<WheelsAsPosts>> {
-        let leads: Vec<Lead> = self.copy.wheels.iter().filter_map(|w| self.led.get(w.support).copied()?).collect();
-        if leads.iter().any(|lead| matches!(lead, Lead::Pulled(_))) {
+        let leads: Vec<SupportTarget> =
+            self.copy.wheels.iter().filter_map(|w| self.led.get(w.support).copied()?).collect();
+        if leads.iter().any(|lead| matches!(lead, SupportTarget::Pulled(_))) {
             return None;
         }
         if leads.is_empty() {
             return Some(self.copy.clone());
         }
         let place = |k: usize| match self.led.get(k) {
-            Some(Some(Lead::Dragged(at))) if self.copy.replaced[k] => Some(*at),
+            Some(Some(SupportTarget::Dragged(at))) if self.copy.replaced[k] => Some(*at),
             _ => None,
         };
         with_moved_posts(&self.copy, (0..self.copy.replaced.len()).map(place))
@@ -286,11 +287,11 @@ impl Layer for LeavableWheels {
     }
 
     fn drag_support(&mut self, support: usize, target_m: Vec2) {
-        self.lead(support, Lead::Dragged(target_m));
+        self.lead(support, SupportTarget::Dragged(target_m));
     }
 
     fn pull_support(&mut self, support: usize, hand_m: Vec2) {
-        self.lead(support, Lead::Pulled(hand_m));
+        self.lead(support, SupportTarget::Pulled(hand_m));
     }
 
     fn set_robot_pose(&mut self, to: RigidPose) {

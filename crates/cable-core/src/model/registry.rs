@@ -224,7 +224,7 @@ fn at_natural_scale(
     let hand_speed_m_per_s = settings.hand_speed_m_per_s * by.length / by.time;
     let hand_stiffness_n_per_m = settings.hand_stiffness_n_per_m.map(|k| k / by.length);
     let inner = construct(copy, Settings { hand_speed_m_per_s, hand_stiffness_n_per_m, ..settings })?;
-    Ok(Box::new(similar::Similar::new(problem, by, inner)))
+    Ok(Box::new(similar::ScaledModel::new(problem, by, inner)))
 }
 
 fn construct(model: Model, problem: Arc<Problem>, settings: Settings) -> Built {

@@ -21,7 +21,7 @@ use crate::state::State;
 const LONGEST_STEP_S: f64 = 30.0;
 
 /// A model of the similar copy of a cable.
-pub struct Similar {
+pub struct ScaledModel {
     problem: Arc<Problem>,
     by: Similarity,
     inner: Box<dyn Mechanics>,
@@ -30,7 +30,7 @@ pub struct Similar {
     refusal: Option<SolveError>,
 }
 
-impl Similar {
+impl ScaledModel {
     /// Wraps the model of the copy.
     #[must_use]
     pub(super) fn new(problem: Arc<Problem>, by: Similarity, inner: Box<dyn Mechanics>) -> Layered<Self> {
@@ -106,7 +106,7 @@ fn answer(mut a: CableSolution, l: f64, t: f64, place: impl Fn(Vec2) -> Vec2) ->
     a
 }
 
-impl Layer for Similar {
+impl Layer for ScaledModel {
     fn inner(&self) -> &dyn Mechanics {
         &*self.inner
     }

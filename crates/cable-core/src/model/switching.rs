@@ -82,7 +82,7 @@ impl SwitchingModel {
         let fem = match self.fem.take() {
             Some(fem) => fem,
             None => {
-                let fem = self.handed_over()?;
+                let fem = self.hand_over_to_fem()?;
                 self.reason = why;
                 self.interval[0] = self.interval[1];
                 fem
@@ -91,14 +91,14 @@ impl SwitchingModel {
         Ok(self.fem.insert(fem))
     }
 
-    fn handed_over(&self) -> Result<FemModel, SolveError> {
+    fn hand_over_to_fem(&self) -> Result<FemModel, SolveError> {
         let mut fem = self.new_fem()?;
         let answer = self.spans.solution();
         if self.meets_robot(&answer) || (self.spans.time_s() == 0.0 && is_buried(&self.problem, &answer.nodes)) {
             // Found without knowing of the robot, or no answer: laid anew.
         } else if let Some(state) = &self.adopted {
             fem.set_state(state)?;
-        } else if self.spans.stands() {
+        } else if self.spans.has_equilibrium() {
             // Dragged supports are where they came to, not yet where they are drawn.
             for (k, at) in answer.supports.iter().enumerate().filter(|(k, _)| self.is_dragged(*k)) {
                 fem.drag_support(k, Vec2::new(at.x_m, at.y_m));
@@ -376,7 +376,7 @@ impl Mechanics for SwitchingModel {
         if let Some(fem) = &mut self.fem {
             return fem.fall_back(why);
         }
-        let fresh = if self.spans.time_s() > 0.0 { self.handed_over() } else { self.new_fem_with_hands() };
+        let fresh = if self.spans.time_s() > 0.0 { self.hand_over_to_fem() } else { self.new_fem_with_hands() };
         self.fem = fresh.ok();
         self.reason = self.fem.is_some().then(|| ModelReason::Unsound(Box::new(why.clone())));
         self.fem.is_some()

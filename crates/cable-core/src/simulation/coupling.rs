@@ -12,7 +12,7 @@
 //! that either of them knows.
 
 use super::speed_search::{SpeedSearch, Trial};
-use super::{Instant, Simulation};
+use super::{RunPhase, Simulation};
 use crate::breakage::BreakableCable;
 use crate::error::SolveError;
 use crate::math::RigidPose;
@@ -125,12 +125,12 @@ impl Simulation {
         }
         let pulls = self.pulls(step.hitches);
         let balance = start.balance(drive, pulls);
-        let off = balance.speed - speed;
+        let excess_speed = balance.speed - speed;
         // A break is no force that a speed could be found for.
-        let even = (off * start.mass() / step.h).abs() <= start.tolerance(pulls) || self.breaks() > breaks;
+        let even = (excess_speed * start.mass() / step.h).abs() <= start.tolerance(pulls) || self.breaks() > breaks;
         if !even
             && !(self.left_m() > 0.0)
-            && let Some(next) = search.next(Trial { speed, off })
+            && let Some(next) = search.next(Trial { speed, excess_speed })
         {
             return TrialOutcome::Again(next);
         }
@@ -214,7 +214,7 @@ impl Simulation {
         self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
         let done = self.for_each_cable(|c| c.advance(dt_s, inertia));
         let left_m = self.hold_vehicle();
-        self.refresh(Instant::InMotion);
+        self.refresh(RunPhase::InMotion);
         done.map(|()| Some(left_m))
     }
 

@@ -58,11 +58,11 @@ pub(super) fn other_histories(cable: &BreakableCable, sound: impl Fn(&CableSolut
         let at = Vec2::new(reaction.x_m, reaction.y_m);
         let Some(inward) = pull.try_normalize(0.0).filter(|_| support.at.is_some()) else { continue };
         for direction in [-inward, inward] {
-            let found = moved_and_put_back(cable, (k, at), direction, &sound);
+            let found = move_and_return(cable, (k, at), direction, &sound);
             left.extend(found.iter().map(|f| f.tensions));
             moves.extend(found.last().map(|furthest| EndMove {
                 support: support.name.clone(),
-                drawn_out_m: -furthest.way_m * direction.dot(&inward),
+                drawn_out_m: -furthest.displacement_m * direction.dot(&inward),
                 greatest_n: furthest.tensions[2],
             }));
         }
@@ -78,19 +78,19 @@ pub(super) fn other_histories(cable: &BreakableCable, sound: impl Fn(&CableSolut
 
 /// Returns the tensions that are left after a support has been moved from its place (m) in a
 /// direction and put back, further each time, until that makes no difference any more.
-fn moved_and_put_back(
+fn move_and_return(
     cable: &BreakableCable,
     (support, place): (usize, Vec2),
     direction: Vec2,
     sound: impl Fn(&CableSolution) -> bool,
-) -> Vec<Left> {
+) -> Vec<ResidualTensions> {
     let laid = tensions(&cable.answer());
     let mut moved = cable.clone();
-    let (mut found, mut work): (Vec<Left>, usize) = (Vec::new(), 0);
-    for way_m in END_TRAVEL_FRACTIONS.map(|part| part * cable.problem().length) {
-        let Some(there) = drawn_to(&mut moved, support, place + direction * way_m) else { break };
+    let (mut found, mut work): (Vec<ResidualTensions>, usize) = (Vec::new(), 0);
+    for displacement_m in END_TRAVEL_FRACTIONS.map(|part| part * cable.problem().length) {
+        let Some(there) = move_support_to(&mut moved, support, place + direction * displacement_m) else { break };
         let mut put_back = moved.clone();
-        let Some(back) = drawn_to(&mut put_back, support, place) else { break };
+        let Some(back) = move_support_to(&mut put_back, support, place) else { break };
         let answer = put_back.answer();
         if !sound(&answer) {
             break;
@@ -99,7 +99,7 @@ fn moved_and_put_back(
         if found.last().is_some_and(|before| same(before.tensions, now) && !same(laid, now)) {
             break;
         }
-        found.push(Left { way_m, tensions: now });
+        found.push(ResidualTensions { displacement_m, tensions: now });
         work += (there + back) * answer.nodes.len();
         if work > MAX_WORK {
             break;
@@ -110,16 +110,16 @@ fn moved_and_put_back(
 
 /// Draws a support to a place (m) without inertia; the iterations that it took, None where that
 /// fails or breaks the cable.
-fn drawn_to(cable: &mut BreakableCable, support: usize, place: Vec2) -> Option<usize> {
+fn move_support_to(cable: &mut BreakableCable, support: usize, place: Vec2) -> Option<usize> {
     cable.drag_support(support, place);
     let report = cable.advance(MOVE_TIME_S, Inertia::QuasiStatic).ok()?;
     cable.breaks().is_empty().then_some(report.cost.iterations)
 }
 
 /// The tensions that a history left in the cable.
-struct Left {
+struct ResidualTensions {
     /// Way of the end, m.
-    way_m: f64,
+    displacement_m: f64,
     /// Tension at the start, at the end and at most, N.
     tensions: [f64; 3],
 }

@@ -2,7 +2,7 @@
 //! the next more general one is asked for another, and where the number of segments is open, a
 //! finer mesh.
 
-use super::{Instant, Simulation};
+use super::{RunPhase, Simulation};
 use crate::breakage::BreakableCable;
 use crate::error::SolveError;
 use crate::model::{Model, ModelSource};
@@ -14,7 +14,7 @@ impl Simulation {
         let mut first: Option<SolveError> = None;
         loop {
             let found = self.for_each_cable(BreakableCable::settle).and_then(|()| {
-                self.refresh(Instant::AtRest);
+                self.refresh(RunPhase::AtRest);
                 self.check_sound()
             });
             let Err(error) = found else { return Ok(()) };

@@ -24,7 +24,7 @@ pub(super) fn next_cheaper<'a>(
     let settings = Settings { histories: false, ..settings };
     let mut found: Option<NextCheaper> = None;
     for (problem, answer) in cables {
-        if !as_written(problem, answer) {
+        if !supports_as_in_scene(problem, answer) {
             return None;
         }
         let simpler = Arc::new(without(problem, neglects));
@@ -55,7 +55,7 @@ pub(super) fn next_cheaper<'a>(
 }
 
 /// Returns whether all supports are where the scene has them: led elsewhere they are another scene.
-fn as_written(problem: &Problem, answer: &CableSolution) -> bool {
+fn supports_as_in_scene(problem: &Problem, answer: &CableSolution) -> bool {
     let places = problem.supports.iter().zip(&answer.supports).filter_map(|(s, r)| Some((s.at?, r)));
     places.into_iter().all(|(at, r)| (at.x - r.x_m).hypot(at.y - r.y_m) <= SAME_PLACE * problem.length)
 }

@@ -26,7 +26,7 @@ pub(super) struct Trial {
     /// Speed at its end, m/s.
     pub speed: f64,
     /// Excess of the speed that comes out, m/s.
-    pub off: f64,
+    pub excess_speed: f64,
 }
 
 /// Knowledge of the speed that is sought.
@@ -48,7 +48,7 @@ impl SpeedSearch {
     pub fn next(&mut self, now: Trial) -> Option<f64> {
         self.left = self.left.checked_sub(1)?;
         let before = self.last.replace(now);
-        match now.off > 0.0 {
+        match now.excess_speed > 0.0 {
             true => self.low = Some(now.speed),
             false => self.high = Some(now.speed),
         }
@@ -57,8 +57,8 @@ impl SpeedSearch {
         {
             return None;
         }
-        let slope = before.map_or(-1.0, |b| (now.off - b.off) / (now.speed - b.speed));
-        let wanted = now.speed - now.off / if slope < -1.0 { slope } else { -1.0 };
+        let slope = before.map_or(-1.0, |b| (now.excess_speed - b.excess_speed) / (now.speed - b.speed));
+        let wanted = now.speed - now.excess_speed / if slope < -1.0 { slope } else { -1.0 };
         Some(match (self.low, self.high) {
             (Some(low), Some(high)) if !(low < wanted && wanted < high) => 0.5 * (low + high),
             // A force that would throw it back stops it first.

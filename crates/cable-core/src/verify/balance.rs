@@ -55,10 +55,11 @@ fn pieces(checked: &CheckedCable<'_>) -> impl Iterator<Item = CheckedPiece> {
     let nodes = &checked.answer.nodes;
     let last = nodes.len() - 1;
     let same = MATERIAL_TOLERANCE * checked.cable.length_m;
-    let foreign: Vec<AppliedForce> = checked.foreign().collect();
+    let self_contact_forces: Vec<AppliedForce> = checked.self_contact_forces().collect();
     // The last of the nodes at that material, and never before the first piece.
     let node = |s: f64| nodes.partition_point(|n| n.arc_length_m <= s + same).clamp(2, nodes.len()) - 1;
-    let mut known: Vec<_> = checked.points.iter().chain(&foreign).map(|p| (node(p.arc_length), p.force)).collect();
+    let mut known: Vec<_> =
+        checked.points.iter().chain(&self_contact_forces).map(|p| (node(p.arc_length), p.force)).collect();
     known.sort_by_key(|p| p.0);
     let mut known = known.into_iter().peekable();
     // Forces of bodies that the scene does not hold still are known to a node's neighbourhood
@@ -68,7 +69,7 @@ fn pieces(checked: &CheckedCable<'_>) -> impl Iterator<Item = CheckedPiece> {
         // Nodes of one material point are one: where the cable turns round a point, it is not
         // said what it does there.
         nodes[k + 1].arc_length_m - nodes[k].arc_length_m > same
-            && foreign.iter().all(|p| !(p.arc_length >= before - same && p.arc_length <= after + same))
+            && self_contact_forces.iter().all(|p| !(p.arc_length >= before - same && p.arc_length <= after + same))
     };
     let mut from = 0;
     std::iter::from_fn(move || {
@@ -157,7 +158,7 @@ fn check_sums(checked: &CheckedCable<'_>, found: &mut Verification, mut sums: Ba
     let limit = BALANCE_FRACTION * checked.scale;
     let known_here = |c: &&ContactReport| checked.surroundings.find(&c.obstacle).is_some();
     let reported: Vec2 = checked.answer.contacts.iter().filter(known_here).map(|c| vec2(c.force_n)).sum::<Vec2>()
-        + checked.foreign().map(|p| p.force).sum::<Vec2>();
+        + checked.self_contact_forces().map(|p| p.force).sum::<Vec2>();
     let led: Vec2 = checked.holds.iter().filter(|h| matches!(h.role, Role::Wheel { .. })).map(SupportHold::force).sum();
     let known: Vec2 = checked.points.iter().map(|p| p.force).sum();
     let weight = checked.body * checked.cable.length_m;
@@ -201,7 +202,10 @@ fn floor_excess(checked: &CheckedCable<'_>, piece: &CheckedPiece, excess: f64) -
 }
 
 fn on_wheel(checked: &CheckedCable<'_>, piece: &CheckedPiece) -> bool {
-    checked.wheels.iter().any(|&(center, radius, _)| piece.nodes.iter().any(|&k| checked.is_led(k, center, radius)))
+    checked
+        .wheels
+        .iter()
+        .any(|&(center, radius, _)| piece.nodes.iter().any(|&k| checked.is_on_wheel(k, center, radius)))
 }
 
 /// Friction (N) that the bars' own weight may add or hide where the ground turns, all of it,
@@ -257,7 +261,7 @@ fn gather_rays(checked: &CheckedCable<'_>, near: &Neighbours, piece: &CheckedPie
         add(n.normal, checked.surroundings.friction(n.body, checked.cable.friction));
     }
     for &(center, radius, friction) in &checked.wheels {
-        for k in (from..=to).filter(|&k| checked.is_led(k, center, radius)) {
+        for k in (from..=to).filter(|&k| checked.is_on_wheel(k, center, radius)) {
             add((checked.answer.nodes[k].at() - center).try_normalize(0.0).unwrap_or_default(), friction);
         }
     }

@@ -108,9 +108,11 @@ impl CheckedCable<'_> {
     }
 
     /// Forces of what is no obstacle of the scene (the cable itself), as they are reported.
-    pub fn foreign(&self) -> impl Iterator<Item = AppliedForce> {
-        let foreign = self.answer.contacts.iter().filter(|c| self.surroundings.find(&c.obstacle).is_none());
-        foreign.flat_map(|c| &c.samples).map(|s| AppliedForce { arc_length: s.arc_length_m, force: vec2(s.force_n) })
+    pub fn self_contact_forces(&self) -> impl Iterator<Item = AppliedForce> {
+        let self_contact_forces = self.answer.contacts.iter().filter(|c| self.surroundings.find(&c.obstacle).is_none());
+        self_contact_forces
+            .flat_map(|c| &c.samples)
+            .map(|s| AppliedForce { arc_length: s.arc_length_m, force: vec2(s.force_n) })
     }
 
     /// Distance of the centre line from a surface at which they may push, m.
@@ -175,11 +177,11 @@ impl CheckedCable<'_> {
 
     /// Returns whether an end of the bar from node k to the next is on a wheel.
     pub fn is_at_wheel(&self, k: usize) -> bool {
-        self.wheels.iter().any(|w| [k, k + 1].iter().any(|&k| self.is_led(k, w.0, w.1)))
+        self.wheels.iter().any(|w| [k, k + 1].iter().any(|&k| self.is_on_wheel(k, w.0, w.1)))
     }
 
     /// Returns whether a node is on a wheel.
-    pub fn is_led(&self, node: usize, center: Vec2, radius: f64) -> bool {
+    pub fn is_on_wheel(&self, node: usize, center: Vec2, radius: f64) -> bool {
         let reach = self.reach() - 0.5 * self.cable.diameter_m;
         (self.answer.nodes[node].at() - center).norm() <= radius + reach
     }

@@ -13,7 +13,7 @@ use crate::verification::{Law, Verification};
 /// Difference of a piece's way from what it should be, its tolerance, and the material beyond its
 /// way, m.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lengths {
+pub(super) struct LengthDeviation {
     pub value: f64,
     pub limit: f64,
     pub folded: f64,
@@ -92,7 +92,7 @@ fn check_length(checked: &CheckedCable<'_>, found: &mut Verification, near: &Nei
         return;
     }
     let lengths = |strained: Option<(Vec2, f64)>, q: f64| match strained {
-        Some((off, limit)) => Lengths { value: off.norm(), limit, folded: 0.0 },
+        Some((off, limit)) => LengthDeviation { value: off.norm(), limit, folded: 0.0 },
         None => folded(checked, bar, q, touches),
     };
     let spread = lengths(spread, bar.forces[1]);
@@ -100,7 +100,7 @@ fn check_length(checked: &CheckedCable<'_>, found: &mut Verification, near: &Nei
         return;
     }
     let at_end = lengths(strained(checked, bar, at_end, at_end.norm(), touches), at_end.norm());
-    let off = |l: &Lengths| l.value / l.limit;
+    let off = |l: &LengthDeviation| l.value / l.limit;
     let lengths = if off(&at_end) < off(&spread) { at_end } else { spread };
     check_slack(checked, found, near, bar, lengths.limit);
     report_length(checked, found, bar, lengths);
@@ -110,7 +110,7 @@ pub(super) fn report_length(
     checked: &CheckedCable<'_>,
     found: &mut Verification,
     bar: &CheckedBar<'_>,
-    lengths: Lengths,
+    lengths: LengthDeviation,
 ) {
     found.folded_m += lengths.folded;
     if !(lengths.value <= lengths.limit) {
@@ -154,11 +154,11 @@ fn strained(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, end: Vec2, q: f64,
 
 /// A bar whose force, of size `q` (N) at its end, has no direction: it is no longer than its
 /// material.
-fn folded(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, q: f64, touches: bool) -> Lengths {
+fn folded(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, q: f64, touches: bool) -> LengthDeviation {
     let material = checked.thermal * bar.length;
     let stretched = material * (1.0 + larger(bar.forces[0], q) / checked.cable.axial_stiffness_n);
     let (way, limit) = (bar.way.norm(), length_slack(checked, material, touches));
-    Lengths { value: way - stretched, limit, folded: larger(stretched - way, 0.0) }
+    LengthDeviation { value: way - stretched, limit, folded: larger(stretched - way, 0.0) }
 }
 
 /// Slack pulls where it hangs in the air: a shallow bow of weight w and chord c, m longer than
@@ -201,7 +201,7 @@ fn hangs_in_air(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>, near: &Neighbo
     let last = bar.k + 2 == checked.answer.nodes.len();
     // Cable that hangs free beside the bar would give way.
     let held = (bar.k == 0 || touches(bar.k - 1)) && (last || touches(bar.k + 1));
-    let on_itself = || checked.foreign().next().is_some();
+    let on_itself = || checked.self_contact_forces().next().is_some();
     if !held || checked.floor_rubs() || touches(bar.k) || checked.is_at_wheel(bar.k) || on_itself() {
         return false;
     }

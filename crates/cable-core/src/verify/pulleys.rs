@@ -16,7 +16,7 @@ use crate::verification::{Law, Verification};
 const WHEEL_TOLERANCE: f64 = 1e-9;
 
 /// A pulley that leads the cable, with what it does.
-struct Led<'a> {
+struct PulleyContact<'a> {
     reaction: &'a SupportReaction,
     friction: f64,
     /// Centre and radius of the centre line; None for an eye.
@@ -28,7 +28,7 @@ struct Led<'a> {
 /// Friction of pulleys, and the tensions reported beside them.
 pub(super) fn check_pulleys(checked: &CheckedCable<'_>, found: &mut Verification) {
     let nodes = &checked.answer.nodes;
-    for led in led(checked) {
+    for led in pulley_contacts(checked) {
         found.ask(Law::Friction);
         let [first, last] = led.nodes;
         // A node with no material before it, or none beyond it, is an end of the cable: nothing
@@ -38,7 +38,7 @@ pub(super) fn check_pulleys(checked: &CheckedCable<'_>, found: &mut Verification
         }
         let before = checked.force_before(first);
         let after = nodes[last].force();
-        let [least, most] = [-led.friction, led.friction].map(|m| passed(checked, &led, before, m));
+        let [least, most] = [-led.friction, led.friction].map(|m| tension_after_pulley(checked, &led, before, m));
         let value = larger(after.norm() - most, least - after.norm());
         let limit = CONE_EXCESS * larger(most, after.norm()) + BALANCE_FRACTION * checked.scale;
         let mut tell = |law: Law, value: f64, limit: f64| {
@@ -65,7 +65,7 @@ pub(super) fn check_pulleys(checked: &CheckedCable<'_>, found: &mut Verification
 }
 
 /// The tension that friction with m makes of the force before a pulley, N.
-fn passed(checked: &CheckedCable<'_>, led: &Led<'_>, before: Vec2, m: f64) -> f64 {
+fn tension_after_pulley(checked: &CheckedCable<'_>, led: &PulleyContact<'_>, before: Vec2, m: f64) -> f64 {
     let nodes = &checked.answer.nodes;
     let turn = |a: Vec2, b: Vec2| cross(a, b).atan2(a.dot(&b)).abs();
     let [first, last] = led.nodes;
@@ -84,7 +84,7 @@ fn passed(checked: &CheckedCable<'_>, led: &Led<'_>, before: Vec2, m: f64) -> f6
 }
 
 /// Pulleys that lead the cable now, with the nodes on them.
-fn led<'a>(checked: &'a CheckedCable<'_>) -> Vec<Led<'a>> {
+fn pulley_contacts<'a>(checked: &'a CheckedCable<'_>) -> Vec<PulleyContact<'a>> {
     let nodes = &checked.answer.nodes;
     let same = MATERIAL_TOLERANCE * checked.cable.length_m;
     let loads = checked.scene_loads();
@@ -97,7 +97,7 @@ fn led<'a>(checked: &'a CheckedCable<'_>) -> Vec<Led<'a>> {
         };
         let near = nodes.partition_point(|n| n.arc_length_m < hold.arc_length - same).min(nodes.len() - 1);
         let on = |k: usize| match wheel {
-            Some((center, radius)) => checked.is_led(k, center, radius),
+            Some((center, radius)) => checked.is_on_wheel(k, center, radius),
             None => (nodes[k].arc_length_m - hold.arc_length).abs() <= same,
         };
         // Between two nodes of a wheel the nearer one may be just off it.
@@ -110,7 +110,7 @@ fn led<'a>(checked: &'a CheckedCable<'_>) -> Vec<Led<'a>> {
             continue;
         }
         let friction = hold.support.friction.unwrap_or(0.0);
-        out.push(Led { reaction: hold.reaction, friction, wheel, nodes: [first, last] });
+        out.push(PulleyContact { reaction: hold.reaction, friction, wheel, nodes: [first, last] });
     }
     out
 }

@@ -76,7 +76,7 @@ pub(super) fn excess(bars: &[CompressedBar], stiffness: f64, ends: [bool; 2]) ->
         return None;
     }
     let open = conditions(bars, ends);
-    let holds = |part: f64| lowered(bars, stiffness, part) <= open;
+    let holds = |part: f64| negative_pivots(bars, stiffness, part) <= open;
     if holds(1.0) {
         return None;
     }
@@ -110,7 +110,7 @@ fn conditions(bars: &[CompressedBar], ends: [bool; 2]) -> usize {
 
 /// Directions in which the energy falls, with that part of each push: negative pivots of the
 /// tridiagonal second variation (Sylvester).
-fn lowered(bars: &[CompressedBar], stiffness: f64, part: f64) -> usize {
+fn negative_pivots(bars: &[CompressedBar], stiffness: f64, part: f64) -> usize {
     let (mut count, mut before) = (0, None);
     for (k, bar) in bars.iter().enumerate() {
         if bar.held {

@@ -2,7 +2,7 @@
 //! force.
 
 use super::cable::{CheckedBar, CheckedCable};
-use super::flexible_cable::{Lengths, report_length};
+use super::flexible_cable::{LengthDeviation, report_length};
 use super::tolerance::{BALANCE_FRACTION, MOMENT, TURN};
 use crate::math::{cross, larger, smaller};
 use crate::verification::{Law, Verification};
@@ -31,7 +31,7 @@ pub(super) fn check_stiff(checked: &CheckedCable<'_>, found: &mut Verification) 
 }
 
 /// The way of a bar of a stiff cable is an arc.
-fn stiff_length(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>) -> Lengths {
+fn stiff_length(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>) -> LengthDeviation {
     let (a, b) = (bar.from, bar.to);
     let material = checked.thermal * bar.length;
     let bend = larger(a.curvature_per_m.abs(), b.curvature_per_m.abs()) * material;
@@ -40,5 +40,5 @@ fn stiff_length(checked: &CheckedCable<'_>, bar: &CheckedBar<'_>) -> Lengths {
     let stretched = material * (1.0 + pull / checked.cable.axial_stiffness_n);
     let limit =
         checked.length_rounding(material) + (TURN * bend * bend + change / checked.cable.axial_stiffness_n) * material;
-    Lengths { value: (bar.way.norm() - stretched).abs(), limit, folded: 0.0 }
+    LengthDeviation { value: (bar.way.norm() - stretched).abs(), limit, folded: 0.0 }
 }

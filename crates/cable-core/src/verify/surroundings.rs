@@ -58,7 +58,7 @@ impl Edges {
     }
 
     /// Those whose boxes meet a box from `low` to `high`, m.
-    fn meeting(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &SolidEdge> {
+    fn edges_in_box(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &SolidEdge> {
         let all = if self.apart(low, high) { &[][..] } else { &self.sorted[..] };
         let first = all.partition_point(|e| e.low.x < low.x - self.widest);
         let begun = all[first..].iter().take_while(move |e| e.low.x <= high.x);
@@ -192,8 +192,8 @@ impl Surroundings<'_> {
     }
 
     /// Edges whose boxes meet a box from `low` to `high`, m.
-    fn meeting(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &SolidEdge> {
-        self.fixed.meeting(low, high).chain(self.moving.meeting(low, high))
+    fn edges_in_box(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = &SolidEdge> {
+        self.fixed.edges_in_box(low, high).chain(self.moving.edges_in_box(low, high))
     }
 
     pub fn name(&self, body: usize) -> &str {
@@ -214,7 +214,7 @@ impl Surroundings<'_> {
     /// nearest point: for each edge the nearest points of both, and those seen from the two ends.
     pub fn near(&self, a: Vec2, b: Vec2, reach: f64, out: &mut Vec<NearestFeature>) {
         let (low, high) = (a.inf(&b) - Vec2::repeat(reach), a.sup(&b) + Vec2::repeat(reach));
-        for e in self.meeting(low, high) {
+        for e in self.edges_in_box(low, high) {
             let t = e.thickness;
             if crosses(a, b, e.from, e.to) {
                 out.push(NearestFeature { body: e.body, distance: -t, normal: Vec2::zeros(), at: crossing(a, b, e) });
@@ -242,7 +242,7 @@ impl Surroundings<'_> {
         let mut above: Option<(usize, i32)> = None;
         let mut counts: Vec<(usize, i32)> = Vec::new();
         // Those that are nowhere above it do not count.
-        for e in self.meeting(p, Vec2::new(p.x, f64::INFINITY)) {
+        for e in self.edges_in_box(p, Vec2::new(p.x, f64::INFINITY)) {
             if self.bodies.get(e.body).is_none_or(|b| b.kind == Kind::Line) {
                 continue;
             }

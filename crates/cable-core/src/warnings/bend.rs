@@ -20,7 +20,7 @@
 //! where φ = θ/2 from both sides: there the bend is sharpest, with the radius ρ = ½ √(EI/T) /
 //! sin(θ/4). Where ρ is less than that of the corner's own arc, the cable lies on that arc.
 
-use super::guide::{Guide, lead};
+use super::guide::{Guide, guide_at_node};
 use super::tangle::turns;
 use crate::math::larger;
 use crate::problem::Problem;
@@ -79,15 +79,15 @@ impl Bends {
                 }
                 // A corner between two nodes is shared by them, a round by all that lie on it.
                 let pair = (own + turn(k.checked_sub(1))).abs().max((own + turn(Some(k + 1))).abs());
-                let lead = lead(problem, answer, start + k);
-                let shared = match lead {
+                let guide_at_node = guide_at_node(problem, answer, start + k);
+                let shared = match guide_at_node {
                     Guide::Round(radius) | Guide::Corner(radius) => larger(pair, round(piece, &turns, k, radius)),
                     _ => pair,
                 };
-                if lead == Guide::Free && curvature > sharpest {
+                if guide_at_node == Guide::Free && curvature > sharpest {
                     sharpest = curvature;
                 }
-                this.add(problem, n, lead, shared);
+                this.add(problem, n, guide_at_node, shared);
             }
             start += piece.len();
         }
@@ -112,10 +112,10 @@ impl Bends {
         self.free
     }
 
-    fn add(&mut self, problem: &Problem, n: &Node, lead: Guide, turn: f64) {
+    fn add(&mut self, problem: &Problem, n: &Node, guide_at_node: Guide, turn: f64) {
         let stiff = problem.bending_stiffness > 0.0;
         let own = 1.0 / n.curvature_per_m.abs();
-        let line = match lead {
+        let line = match guide_at_node {
             Guide::Free => own,
             Guide::Held if !stiff => return,
             Guide::Round(_) if !stiff && turn < MIN_TURN => return,
@@ -129,12 +129,12 @@ impl Bends {
                 *kept = Some(bend(radius_m));
             }
         };
-        if lead == Guide::Free {
+        if guide_at_node == Guide::Free {
             keep(&mut self.free, line);
             return;
         }
         keep(&mut self.led, line);
-        let judged = match lead {
+        let judged = match guide_at_node {
             Guide::Corner(radius) if stiff && own > CORNER_ARC_RATIO * radius => own,
             Guide::Corner(radius) if self.bending_stiffness > 0.0 => {
                 larger(radius, corner_radius(self.bending_stiffness, n.tension_n, turn))
@@ -143,7 +143,7 @@ impl Bends {
             _ => line,
         };
         keep(&mut self.judged, judged);
-        let round = match lead {
+        let round = match guide_at_node {
             Guide::Round(radius) => Some(radius),
             Guide::Corner(radius) if turn >= CORNER_TURN => Some(radius),
             _ => None,

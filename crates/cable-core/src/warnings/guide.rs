@@ -25,7 +25,7 @@ pub(super) enum Guide {
 }
 
 /// Returns what leads the cable at a node of its answer.
-pub(super) fn lead(problem: &Problem, answer: &CableSolution, node: usize) -> Guide {
+pub(super) fn guide_at_node(problem: &Problem, answer: &CableSolution, node: usize) -> Guide {
     let Some(n) = answer.nodes.get(node) else { return Guide::Free };
     let at = |k: usize| answer.nodes.get(k).map(|n| Vec2::new(n.x_m, n.y_m));
     let here = Vec2::new(n.x_m, n.y_m);

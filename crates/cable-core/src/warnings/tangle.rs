@@ -7,7 +7,7 @@ use crate::math::{Vec2, angle};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Node, Warning, WarningCause};
 
-use super::guide::{Guide, lead};
+use super::guide::{Guide, guide_at_node};
 use crate::contact::self_crossings::{SelfCrossing, crossings};
 
 /// Least sine of the angle at which strands cross. Smaller: a cable that lies along itself, out and
@@ -109,7 +109,9 @@ fn curl(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
             if let Some((length, i, j)) = found {
                 // Only where nothing leads it: the turns of wheels, posts and corners are not its
                 // own.
-                let free = |k: usize| turns[k].abs() < 1e-3 || matches!(lead(problem, answer, start + k), Guide::Free);
+                let free = |k: usize| {
+                    turns[k].abs() < 1e-3 || matches!(guide_at_node(problem, answer, start + k), Guide::Free)
+                };
                 if (i..=j).all(free) {
                     best = Some((length, start + i, start + j));
                 }

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use exploration::Exploration;
 pub use map::{Area, ReachQuery};
 
-use super::{lay, least, stilled, unsupported};
+use super::{frozen_scene, lay, least, unsupported};
 use crate::any_error::Error;
 use crate::contact::World;
 use crate::error::UnsupportedReach;
@@ -50,7 +50,7 @@ pub fn area(query: &ReachQuery, mut progress: impl FnMut(&Area, f64) -> ControlF
 
 /// The search before its first step, and the cable as it is laid.
 fn begin(query: &ReachQuery) -> Result<(Exploration<'_>, Simulation), Error> {
-    let still = unmanned(&stilled(&query.scene, query.now.as_deref()))?;
+    let still = without_robot(&frozen_scene(&query.scene, query.now.as_deref()))?;
     let cable = still.cables.get(query.cable).ok_or_else(|| unsupported(UnsupportedReach::NoSuchCable))?;
     let start = cable.supports.get(query.support).and_then(|s| s.at_m);
     let start = vec2(start.ok_or_else(|| unsupported(UnsupportedReach::SupportWithoutPlace))?);
@@ -99,7 +99,7 @@ fn begin(query: &ReachQuery) -> Result<(Exploration<'_>, Simulation), Error> {
 }
 
 /// Without its robot: where its cable hangs on it, it is held.
-fn unmanned(scene: &Scene) -> Result<Scene, Error> {
+fn without_robot(scene: &Scene) -> Result<Scene, Error> {
     let mut scene = scene.clone();
     let hitch = scene.hitch_m();
     for support in scene.cables.iter_mut().flat_map(|c| &mut c.supports).filter(|s| s.kind == SupportKind::Robot) {

@@ -6,7 +6,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{STEP_S, UNREACHABLE_FACTOR, lay, least, stilled, unsupported};
+use super::{STEP_S, UNREACHABLE_FACTOR, frozen_scene, lay, least, unsupported};
 use crate::any_error::Error;
 use crate::error::{SolveError, UnsupportedReach};
 use crate::math::{Point, larger, smaller};
@@ -123,7 +123,7 @@ pub fn robot_reach(
     count: usize,
     mut progress: impl FnMut(&ReachMap, f64) -> ControlFlow<()>,
 ) -> Result<ReachMap, Error> {
-    let still = stilled(scene, now);
+    let still = frozen_scene(scene, now);
     let vehicle = still.robot.as_ref().ok_or_else(|| unsupported(UnsupportedReach::NoRobot))?;
     let preset = robot_preset(&vehicle.preset).ok_or_else(|| unsupported(UnsupportedReach::UnknownRobot))?;
     let hangs = |k: &usize| scene.cables[*k].supports.iter().any(|s| s.kind == SupportKind::Robot);
@@ -304,7 +304,7 @@ impl Traverse<'_> {
             let left_m = simulation.lead_robot(x, STEP_S, Inertia::QuasiStatic).map_err(|_| Obstruction::NoAnswer)?;
             most = larger(most, simulation.largest_n(self.cables.iter().copied()));
             if is_held_back(left_m) {
-                self.shove(simulation, [x - (to - from) / steps, x])?;
+                self.push_with_inertia(simulation, [x - (to - from) / steps, x])?;
                 most = larger(most, simulation.largest_n(self.cables.iter().copied()));
             }
             if !(most <= self.limit_n) {
@@ -316,7 +316,7 @@ impl Traverse<'_> {
 
     /// A step with inertia, against the heap of cable before the robot. What swings on the way is
     /// not looked at: with what speed a robot does this is not asked.
-    fn shove(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<(), Obstruction> {
+    fn push_with_inertia(&self, simulation: &mut Simulation, [from, to]: [f64; 2]) -> Result<(), Obstruction> {
         let parts = ((to - from).abs() / (PUSH_SPEED_M_PER_S * robot::STEP_S)).ceil();
         let pushes = (PUSH_TIME_S / robot::STEP_S).ceil();
         for k in 1..=(parts + pushes) as usize {

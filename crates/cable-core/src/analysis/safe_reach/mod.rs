@@ -30,7 +30,7 @@ const UNREACHABLE_FACTOR: f64 = 2.0;
 
 /// The scene as it is at the start, for good: nothing moves by itself, lets go or breaks. Supports
 /// and robot stand where an answer has them, if there is one.
-fn stilled(scene: &Scene, now: Option<&Solution>) -> Scene {
+fn frozen_scene(scene: &Scene, now: Option<&Solution>) -> Scene {
     let mut still = scene.clone();
     let environment = &mut still.environment;
     if let Some(&wind) = environment.winds_n_per_m.first() {

@@ -1,8 +1,8 @@
 //! This module solves for the equilibrium: which pulleys slip, where the material lies, where
 //! wheels are touched.
 
-use super::layout::Layout;
-use super::slide::{Arc, Mode, Slide, Stretches};
+use super::layout::AnchorLayout;
+use super::slide::{Mode, SlidingProblem, SpanSolutions, WheelArc};
 use crate::error::{Near, NearKind, NoEquilibrium, Place, SolveError};
 use crate::math::larger;
 use crate::model::Model;
@@ -15,8 +15,8 @@ pub(super) struct Equilibrium {
     /// Material point at each anchor, m.
     pub sigma: Vec<f64>,
     pub modes: Vec<Mode>,
-    pub arcs: Vec<Arc>,
-    pub stretches: Stretches,
+    pub arcs: Vec<WheelArc>,
+    pub stretches: SpanSolutions,
     pub iterations: usize,
     /// Largest unbalanced tension at a pulley, N.
     pub residual: f64,
@@ -31,7 +31,7 @@ pub(super) struct Start<'a> {
     /// First guess of the material points, m.
     pub sigma: Vec<f64>,
     pub modes: Vec<Mode>,
-    pub arcs: Vec<Arc>,
+    pub arcs: Vec<WheelArc>,
 }
 
 /// Balance wanted at a pulley, relative to its tension.
@@ -54,16 +54,16 @@ const LEAVING_FRACTION: f64 = 1e-2;
 const CONE_TOLERANCE: f64 = 1e-10;
 
 /// Finds the balance.
-pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Equilibrium, SolveError> {
+pub(super) fn solve(p: &Problem, layout: &AnchorLayout, start: Start<'_>) -> Result<Equilibrium, SolveError> {
     let Start { held, mut sigma, mut modes, mut arcs } = start;
     let wheels = layout.anchors.iter().any(|a| a.radius > 0.0);
     let mut iterations = 0;
     let (mut lifted, mut near) = (None, None);
     for _ in 0..layout.settings.max_wheel_rounds {
-        let slide = Slide { problem: p, layout, arcs: &arcs };
+        let slide = SlidingProblem { problem: p, layout, arcs: &arcs };
         let found = contact(&slide, held, sigma, near, modes)?;
         iterations += found.iterations;
-        let m = |k: usize| called_upon(&slide, &found.stretches, k, found.modes[k]);
+        let m = |k: usize| required_friction(&slide, &found.stretches, k, found.modes[k]);
         let (turned, off, lift) = slide.turned(&found.stretches, m);
         if !wheels || (off <= ANGLE && lift.is_none()) {
             return Ok(Equilibrium { iterations, ..found });
@@ -83,8 +83,8 @@ pub(super) fn solve(p: &Problem, layout: &Layout, start: Start<'_>) -> Result<Eq
 /// one tension to the other, the weight on it included. With the m of a point, ln(T₂/T₁)/turn, the
 /// material on the wheel would jump where it begins to slip: by 0.1 mm in one of 300 random wheels,
 /// of which neither state was then a balance.
-pub(super) fn called_upon(slide: &Slide<'_>, s: &Stretches, k: usize, mode: Mode) -> f64 {
-    let (Some(b), Some(a)) = Slide::forces(s, k) else { return 0.0 };
+pub(super) fn required_friction(slide: &SlidingProblem<'_>, s: &SpanSolutions, k: usize, mode: Mode) -> f64 {
+    let (Some(b), Some(a)) = SlidingProblem::forces(s, k) else { return 0.0 };
     if let Mode::Slip(m) = mode {
         return m;
     }
@@ -101,7 +101,7 @@ pub(super) fn called_upon(slide: &Slide<'_>, s: &Stretches, k: usize, mode: Mode
     m
 }
 
-fn not_converged(p: &Problem, layout: &Layout, anchor: usize, iterations: usize, residual_n: f64) -> SolveError {
+fn not_converged(p: &Problem, layout: &AnchorLayout, anchor: usize, iterations: usize, residual_n: f64) -> SolveError {
     let place = layout.anchors.get(anchor).map(|a| Place {
         arc_length_m: a.held.unwrap_or(f64::NAN),
         at_m: a.at,
@@ -117,10 +117,10 @@ fn not_converged(p: &Problem, layout: &Layout, anchor: usize, iterations: usize,
 
 /// Balance with friction: pulleys hold or slip, each as its cone and its direction demand.
 fn contact(
-    slide: &Slide<'_>,
+    slide: &SlidingProblem<'_>,
     held: &[f64],
     mut sigma: Vec<f64>,
-    mut near: Option<Stretches>,
+    mut near: Option<SpanSolutions>,
     mut modes: Vec<Mode>,
 ) -> Result<Equilibrium, SolveError> {
     let layout = slide.layout;
@@ -139,7 +139,7 @@ fn contact(
             if a.held.is_some() || a.friction <= 0.0 || (changed && round >= joint) {
                 continue;
             }
-            let (Some(b), Some(f)) = Slide::forces(&found.stretches, k) else { continue };
+            let (Some(b), Some(f)) = SlidingProblem::forces(&found.stretches, k) else { continue };
             let next = match modes[k] {
                 Mode::Stick if slide.excess(k, b, f, a.friction).0 > CONE_TOLERANCE => Mode::Slip(a.friction),
                 Mode::Stick if slide.excess(k, b, f, -a.friction).0 < -CONE_TOLERANCE => Mode::Slip(-a.friction),
@@ -164,7 +164,7 @@ fn contact(
 
 /// Balance with the modes given, by way of slipping pulleys without friction (an energy to go down
 /// in, so any start will do) and friction growing from there to what it is.
-fn from_smooth(slide: &Slide<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equilibrium, SolveError> {
+fn from_smooth(slide: &SlidingProblem<'_>, sigma: Vec<f64>, modes: &[Mode]) -> Result<Equilibrium, SolveError> {
     let with = |part: f64| -> Vec<Mode> {
         modes.iter().map(|m| if let Mode::Slip(m) = m { Mode::Slip(part * m) } else { *m }).collect()
     };
@@ -191,7 +191,12 @@ type Row = [f64; 3];
 
 /// Residuals and slopes at every anchor (zero, one where nothing slides) and the worst relative
 /// residual.
-fn rows(slide: &Slide<'_>, s: &Stretches, modes: &[Mode], smooth: bool) -> Option<(Vec<f64>, Vec<Row>, f64, f64)> {
+fn rows(
+    slide: &SlidingProblem<'_>,
+    s: &SpanSolutions,
+    modes: &[Mode],
+    smooth: bool,
+) -> Option<(Vec<f64>, Vec<Row>, f64, f64)> {
     let n = modes.len();
     let (mut r, mut j) = (vec![0.0; n], vec![[0.0, 1.0, 0.0]; n]);
     let (mut worst, mut newtons) = (0.0f64, 0.0f64);
@@ -204,7 +209,7 @@ fn rows(slide: &Slide<'_>, s: &Stretches, modes: &[Mode], smooth: bool) -> Optio
         if k + 1 == n || modes[k + 1] == Mode::Stick {
             row[2] = 0.0;
         }
-        let tension = Slide::forces(s, k).1?.norm();
+        let tension = SlidingProblem::forces(s, k).1?.norm();
         let relative = if smooth { rk.abs() / (slide.problem.thermal_stretch * tension) } else { rk.abs() };
         worst = larger(worst, relative);
         newtons = larger(newtons, relative * tension);
@@ -271,17 +276,17 @@ fn runs_away(j: &[Row]) -> Option<Vec<f64>> {
 /// Leaves a balance that runs away to where its energy is less, along its way (1) or back (−1)
 /// first; None where it is less at neither.
 fn leave_unstable(
-    slide: &Slide<'_>,
+    slide: &SlidingProblem<'_>,
     sigma: &[f64],
-    s: &Stretches,
+    s: &SpanSolutions,
     way: &[f64],
     first: f64,
-) -> Option<(Vec<f64>, Stretches)> {
+) -> Option<(Vec<f64>, SpanSolutions)> {
     let largest = way.iter().fold(0.0f64, |m, w| larger(m, w.abs()));
     backtrack(LEAVING_FRACTION * slide.problem.length / largest, STEP_HALVINGS, |far| {
         [far * first, -far * first].into_iter().find_map(|far| {
             let step: Vec<f64> = way.iter().map(|w| far * w).collect();
-            let part = part_that_fits(slide, s, &step);
+            let part = max_feasible_step(slide, s, &step);
             let there: Vec<f64> = sigma.iter().zip(&step).map(|(a, b)| a + part * b).collect();
             let t = slide.stretches(&there, Some(s)).filter(|t| t.energy < s.energy)?;
             Some((there, t))
@@ -290,7 +295,7 @@ fn leave_unstable(
 }
 
 /// Largest part of a step that keeps some of every stretch.
-fn part_that_fits(slide: &Slide<'_>, s: &Stretches, p: &[f64]) -> f64 {
+fn max_feasible_step(slide: &SlidingProblem<'_>, s: &SpanSolutions, p: &[f64]) -> f64 {
     let (mut alpha, kept) = (1.0f64, slide.layout.settings.kept_stretch_fraction);
     for (i, stretch) in s.all.iter().enumerate() {
         let Some(stretch) = stretch else { continue };
@@ -312,9 +317,9 @@ fn is_smooth(modes: &[Mode]) -> bool {
 /// Newton for σ with the modes given, from a σ and the stretches near it where they are known. A
 /// balance that runs away is the answer where leaving it leads to none.
 fn newton(
-    slide: &Slide<'_>,
+    slide: &SlidingProblem<'_>,
     sigma: Vec<f64>,
-    near: Option<&Stretches>,
+    near: Option<&SpanSolutions>,
     modes: &[Mode],
 ) -> Result<Equilibrium, SolveError> {
     let mut left = None;
@@ -326,9 +331,9 @@ fn newton(
 /// The same; `left` is the balance that was left last as it runs away, `first` the direction in
 /// which that is tried first.
 fn descend(
-    slide: &Slide<'_>,
+    slide: &SlidingProblem<'_>,
     sigma: Vec<f64>,
-    near: Option<&Stretches>,
+    near: Option<&SpanSolutions>,
     modes: &[Mode],
     first: f64,
     left: &mut Option<Equilibrium>,
@@ -385,19 +390,19 @@ fn descend(
 /// energy where nothing rubs, else or where rounding hides that, a smaller residual. Also the
 /// iterations of the stretches that it took.
 fn search(
-    slide: &Slide<'_>,
+    slide: &SlidingProblem<'_>,
     sigma: &[f64],
-    s: &Stretches,
+    s: &SpanSolutions,
     r: &[f64],
     p: &[f64],
     modes: &[Mode],
-) -> (Option<(Vec<f64>, Stretches)>, usize) {
+) -> (Option<(Vec<f64>, SpanSolutions)>, usize) {
     let smooth = is_smooth(modes);
     let mut spent = 0;
     let slope: f64 = r.iter().zip(p).map(|(a, b)| a * b).sum();
     let size = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>();
     let (energy, norm) = (s.energy, size(r));
-    let found = backtrack(part_that_fits(slide, s, p), STEP_HALVINGS, |alpha| {
+    let found = backtrack(max_feasible_step(slide, s, p), STEP_HALVINGS, |alpha| {
         let trial: Vec<f64> = sigma.iter().zip(p).map(|(a, b)| a + alpha * b).collect();
         let t = slide.stretches(&trial, Some(s))?;
         spent += t.iterations;
@@ -411,7 +416,7 @@ fn search(
 }
 
 /// A dangling end that has run through its pulley.
-fn run_off(slide: &Slide<'_>, s: &Stretches) -> Result<(), SolveError> {
+fn run_off(slide: &SlidingProblem<'_>, s: &SpanSolutions) -> Result<(), SolveError> {
     let ends = [(0, 0), (s.all.len() - 1, slide.arcs.len() - 1)];
     for (i, k) in ends {
         let short = s.all[i].is_some_and(|e| e.to - e.from < RUN_OFF_LENGTH_FRACTION * slide.problem.length);

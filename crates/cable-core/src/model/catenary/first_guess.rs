@@ -1,13 +1,13 @@
 //! The first guess has straight ways from wheel to wheel, and the material spread evenly along
 //! them.
 
-use super::layout::{Anchor, Layout, angle_near, angle_of, direction};
-use super::slide::Arc;
+use super::layout::{Anchor, AnchorLayout, angle_near, angle_of, direction};
+use super::slide::WheelArc;
 use crate::math::Vec2;
 use crate::problem::Problem;
 
 /// The arcs of straight ways from wheel to wheel.
-pub(super) fn first_arcs(layout: &Layout) -> Vec<Arc> {
+pub(super) fn first_arcs(layout: &AnchorLayout) -> Vec<WheelArc> {
     let all = &layout.anchors;
     let hang = |force: Vec2| angle_of(if force.norm() > 0.0 { force } else { layout.weight });
     let arc = |k: usize, a: &Anchor| {
@@ -25,9 +25,9 @@ pub(super) fn first_arcs(layout: &Layout) -> Vec<Arc> {
         // Between a quarter turn back and three quarters round.
         let turn = angle_near(a.facing * (arrive - leave), std::f64::consts::FRAC_PI_2);
         let turn = if turn > 0.0 { turn } else { 0.0 };
-        Arc { arrive, turn, mark: arrive - 0.5 * a.facing * turn, material: a.radius * turn }
+        WheelArc { arrive, turn, mark: arrive - 0.5 * a.facing * turn, material: a.radius * turn }
     };
-    all.iter().enumerate().map(|(k, a)| if a.radius == 0.0 { Arc::default() } else { arc(k, a) }).collect()
+    all.iter().enumerate().map(|(k, a)| if a.radius == 0.0 { WheelArc::default() } else { arc(k, a) }).collect()
 }
 
 /// Direction of the straight line that touches two anchors one after the other, rad. With t along
@@ -46,7 +46,7 @@ fn tangent(from: &Anchor, to: &Anchor) -> Option<f64> {
 ///
 /// Along the route the ends of the scene give, else straight from anchor to anchor; a dangling
 /// end takes what a taut cable leaves over.
-pub(super) fn spread(layout: &Layout, p: &Problem) -> Vec<f64> {
+pub(super) fn spread(layout: &AnchorLayout, p: &Problem) -> Vec<f64> {
     let way = way(layout, p);
     let (n, total) = (layout.anchors.len(), way.1);
     let way = way.0;
@@ -92,7 +92,7 @@ pub(super) fn spread(layout: &Layout, p: &Problem) -> Vec<f64> {
 }
 
 /// Returns how far along the way each anchor lies, and the length of the whole way, m.
-fn way(layout: &Layout, p: &Problem) -> (Vec<f64>, f64) {
+fn way(layout: &AnchorLayout, p: &Problem) -> (Vec<f64>, f64) {
     if p.route.len() > 1 {
         let (mut from, mut total) = (0.0, 0.0);
         let mut out = Vec::with_capacity(layout.anchors.len());
@@ -105,14 +105,14 @@ fn way(layout: &Layout, p: &Problem) -> (Vec<f64>, f64) {
         }
         return (out, total);
     }
-    let out = taut_way(layout);
+    let out = taut_arc_lengths(layout);
     let total = out.last().copied().unwrap_or(0.0);
     (out, total)
 }
 
 /// Returns how far along a taut cable each anchor lies: from tangent point to tangent point,
 /// and round the wheels to their marks, m.
-pub(super) fn taut_way(layout: &Layout) -> Vec<f64> {
+pub(super) fn taut_arc_lengths(layout: &AnchorLayout) -> Vec<f64> {
     let arcs = first_arcs(layout);
     let mut out = Vec::with_capacity(layout.anchors.len());
     let touches = |k: usize| {

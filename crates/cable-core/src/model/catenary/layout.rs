@@ -29,7 +29,7 @@ pub(super) struct Anchor {
 
 /// The cable's holds and loads at an instant.
 #[derive(Clone, Debug)]
-pub(super) struct Layout {
+pub(super) struct AnchorLayout {
     /// In order along the cable; at least one.
     pub anchors: Vec<Anchor>,
     /// Dead loads in order, those at the very ends of a dangling cable included, N.
@@ -58,7 +58,7 @@ const HINT_TENSION_FACTOR: f64 = 1e4;
 
 /// The hint of weight (N/m) of a weightless cable with dead loads of a size (N), and the force up
 /// to which it alone may be the cause, N.
-pub(in crate::model) fn hint_of_weight(p: &Problem, loads: f64) -> (Vec2, f64) {
+pub(in crate::model) fn auxiliary_weight(p: &Problem, loads: f64) -> (Vec2, f64) {
     let whole = if loads > 0.0 { HINT_OF_LOADS * loads } else { HINT_OF_STIFFNESS * p.axial_stiffness };
     (Vec2::new(0.0, -whole / p.length), HINT_TENSION_FACTOR * whole)
 }
@@ -69,7 +69,7 @@ fn place(s: &SupportPoint, dragged: Option<Vec2>, time_s: f64) -> Option<Vec2> {
     Some(dragged.unwrap_or(p))
 }
 
-impl Layout {
+impl AnchorLayout {
     /// The layout at a time.
     ///
     /// # Errors
@@ -129,7 +129,7 @@ impl Layout {
             return;
         }
         let loads: f64 = self.loads.iter().map(|l| l.force.norm()).sum();
-        (self.weight, self.hint) = hint_of_weight(p, loads);
+        (self.weight, self.hint) = auxiliary_weight(p, loads);
     }
 
     /// Sets the side of its wheel on which the cable runs, seen along it: over means above where it

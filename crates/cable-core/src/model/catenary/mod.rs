@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 use self::equilibrium::{Equilibrium, Start, solve};
 use self::first_guess::{first_arcs, nearest_along, spread};
-use self::layout::{Layout, unsupported};
+use self::layout::{AnchorLayout, unsupported};
 pub(crate) use self::multiple_equilibria::other_equilibria;
 use self::report::{report, straight};
 use self::settings::CatenarySettings;
@@ -57,7 +57,7 @@ pub struct CatenaryModel {
 
 /// The material at pulleys from which a balance is sought.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Begin {
+enum InitialMaterial {
     /// That of the present balance.
     AsBefore,
     /// Spread evenly.
@@ -66,11 +66,11 @@ enum Begin {
 
 /// An instant of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Instant {
+enum StepStage {
     /// The last of a step.
-    Shown,
+    Final,
     /// One before it.
-    Hidden,
+    Intermediate,
 }
 
 impl CatenaryModel {
@@ -121,12 +121,12 @@ impl CatenaryModel {
     }
 
     /// The layout at a time.
-    fn layout(&self, time_s: f64) -> Result<Layout, SolveError> {
-        Ok(Layout { settings: self.tuned, ..Layout::new(&self.problem, &self.dragged, time_s)? })
+    fn layout(&self, time_s: f64) -> Result<AnchorLayout, SolveError> {
+        Ok(AnchorLayout { settings: self.tuned, ..AnchorLayout::new(&self.problem, &self.dragged, time_s)? })
     }
 
     /// Balance of a layout.
-    fn balance(&self, layout: &Layout, begin: Begin) -> Result<Equilibrium, SolveError> {
+    fn balance(&self, layout: &AnchorLayout, begin: InitialMaterial) -> Result<Equilibrium, SolveError> {
         let spread = spread(layout, &self.problem);
         let (mut sigma, mut arcs) = (spread, first_arcs(layout));
         let mut modes: Vec<Mode> = layout
@@ -141,7 +141,7 @@ impl CatenaryModel {
             if let Some(s) = self.adopted.get(a.support).copied().flatten() {
                 sigma[i] = s;
             }
-            let Some(old) = self.balance.as_ref().filter(|_| begin == Begin::AsBefore) else { continue };
+            let Some(old) = self.balance.as_ref().filter(|_| begin == InitialMaterial::AsBefore) else { continue };
             if let Some(j) = self.anchored.iter().position(|s| *s == a.support) {
                 (sigma[i], arcs[i], modes[i]) = (old.sigma[j], old.arcs[j], old.modes[j]);
             }
@@ -149,7 +149,7 @@ impl CatenaryModel {
         let held = sigma.clone();
         let start = Start { held: &held, sigma, modes: modes.clone(), arcs: arcs.clone() };
         let found = solve(&self.problem, layout, start);
-        if found.is_ok() || begin == Begin::EvenSpread {
+        if found.is_ok() || begin == InitialMaterial::EvenSpread {
             return found;
         }
         // The last slip directions may be a bad start: from all holding.
@@ -166,12 +166,12 @@ impl CatenaryModel {
     /// they may meet an obstacle.
     fn accept(
         &mut self,
-        layout: &Layout,
+        layout: &AnchorLayout,
         e: Equilibrium,
         time_s: f64,
-        instant: Instant,
+        instant: StepStage,
     ) -> Result<StepReport, SolveError> {
-        if instant == Instant::Shown || !self.problem.world.is_empty() {
+        if instant == StepStage::Final || !self.problem.world.is_empty() {
             let (nodes, reactions) = report(&self.problem, layout, &e);
             if let Some(node) =
                 nodes.iter().position(|n| !(n.x_m.is_finite() && n.y_m.is_finite() && n.tension_n.is_finite()))
@@ -193,7 +193,7 @@ impl CatenaryModel {
 
     /// Obstacles are for other models, unless the cable hangs clear of them and comes there from
     /// the way it is laid without meeting any.
-    fn refuse_contact(&self, layout: &Layout, nodes: &[Node]) -> Result<(), SolveError> {
+    fn refuse_contact(&self, layout: &AnchorLayout, nodes: &[Node]) -> Result<(), SolveError> {
         let world = &self.problem.world;
         if world.is_empty() {
             return Ok(());
@@ -223,9 +223,9 @@ impl CatenaryModel {
     }
 
     /// One slow step to a time, at once; on an error nothing has changed.
-    fn slow_step(&mut self, time_s: f64, instant: Instant) -> Result<StepReport, SolveError> {
+    fn slow_step(&mut self, time_s: f64, instant: StepStage) -> Result<StepReport, SolveError> {
         let layout = self.layout(time_s)?;
-        let e = self.balance(&layout, Begin::AsBefore)?;
+        let e = self.balance(&layout, InitialMaterial::AsBefore)?;
         self.accept(&layout, e, time_s, instant)
     }
 
@@ -262,7 +262,7 @@ pub(super) fn slack_without_weight(problem: &Problem, nodes: &[Node]) -> Option<
 }
 
 /// The way the cable is laid, its material spread evenly along it.
-fn laid(p: &Problem, layout: &Layout) -> State {
+fn laid(p: &Problem, layout: &AnchorLayout) -> State {
     let mut state = State::default();
     if p.route.len() > 1 {
         let total: f64 = p.route.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
@@ -290,12 +290,12 @@ impl Mechanics for CatenaryModel {
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         let layout = self.layout(self.time_s)?;
-        let e = match self.balance(&layout, Begin::AsBefore) {
+        let e = match self.balance(&layout, InitialMaterial::AsBefore) {
             Ok(e) => e,
-            Err(_) => self.balance(&layout, Begin::EvenSpread)?,
+            Err(_) => self.balance(&layout, InitialMaterial::EvenSpread)?,
         };
         let runs_away = e.runs_away;
-        let mut report = self.accept(&layout, e, self.time_s, Instant::Shown)?;
+        let mut report = self.accept(&layout, e, self.time_s, StepStage::Final)?;
         if runs_away {
             report.warnings.push(Warning::new(WarningCause::Unstable, &self.problem.cable.name, 0.0, [0.0; 2]));
         }
@@ -329,7 +329,7 @@ impl Mechanics for CatenaryModel {
         let mut steps = HalvedSteps::new(end, dt_s / pieces, self.tuned.max_step_halvings, JOINED_FRACTION);
         let mut total = StepReport::default();
         while let Some(next) = steps.next(self.time_s) {
-            match self.slow_step(next, if next >= end { Instant::Shown } else { Instant::Hidden }) {
+            match self.slow_step(next, if next >= end { StepStage::Final } else { StepStage::Intermediate }) {
                 Ok(r) => {
                     total.cost.iterations += r.cost.iterations;
                     total.cost.residual_n = r.cost.residual_n;

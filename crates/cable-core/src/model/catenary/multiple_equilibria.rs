@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use super::CatenaryModel;
 use super::equilibrium::{Equilibrium, Start, solve};
-use super::first_guess::{first_arcs, taut_way};
-use super::layout::{Anchor, Layout};
+use super::first_guess::{first_arcs, taut_arc_lengths};
+use super::layout::{Anchor, AnchorLayout};
 use super::report::report;
 use super::slide::Mode;
 use crate::math::{larger, smaller};
@@ -39,8 +39,8 @@ fn tensions(nodes: &[Node]) -> [f64; 3] {
 
 /// The material at the anchors with the slack of one part of the cable in one of its spans, for
 /// each span, m.
-fn starts(problem: &Problem, layout: &Layout, sigma: &[f64]) -> Vec<Vec<f64>> {
-    let way: Vec<f64> = taut_way(layout).into_iter().map(|w| w / problem.thermal_stretch).collect();
+fn starts(problem: &Problem, layout: &AnchorLayout, sigma: &[f64]) -> Vec<Vec<f64>> {
+    let way: Vec<f64> = taut_arc_lengths(layout).into_iter().map(|w| w / problem.thermal_stretch).collect();
     let last = sigma.len() - 1;
     let bounds: Vec<usize> = (0..=last).filter(|&k| k == 0 || k == last || layout.anchors[k].held.is_some()).collect();
     let mut out = Vec::new();

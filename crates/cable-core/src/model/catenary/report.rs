@@ -1,10 +1,10 @@
 //! The report turns a solution into nodes, close enough for straight lines between them, and
 //! support reactions.
 
-use super::equilibrium::{Equilibrium, called_upon};
-use super::layout::Layout;
-use super::slide::Slide;
-use super::wheel::pass;
+use super::equilibrium::{Equilibrium, required_friction};
+use super::layout::AnchorLayout;
+use super::slide::SlidingProblem;
+use super::wheel::traverse_wheel;
 use crate::catenary::Catenary;
 use crate::math::{Vec2, cross, perp};
 use crate::model::arc_nodes;
@@ -127,8 +127,8 @@ impl<'a> Nodes<'a> {
 }
 
 /// Nodes and reactions of a balance.
-pub(super) fn report(p: &Problem, layout: &Layout, e: &Equilibrium) -> (Vec<Node>, Vec<SupportReaction>) {
-    let slide = Slide { problem: p, layout, arcs: &e.arcs };
+pub(super) fn report(p: &Problem, layout: &AnchorLayout, e: &Equilibrium) -> (Vec<Node>, Vec<SupportReaction>) {
+    let slide = SlidingProblem { problem: p, layout, arcs: &e.arcs };
     let greatest = e.stretches.all.iter().flatten().fold(0.0f64, |m, s| {
         let t = if s.start.norm() > s.end.norm() { s.start.norm() } else { s.end.norm() };
         if t > m { t } else { m }
@@ -156,13 +156,13 @@ pub(super) fn report(p: &Problem, layout: &Layout, e: &Equilibrium) -> (Vec<Node
     }
     let mut reactions = reactions(p, &slide, e, &nodes.out);
     if layout.hint > 0.0 {
-        forget_hint(&mut nodes.out, &mut reactions, layout.hint);
+        remove_auxiliary_weight(&mut nodes.out, &mut reactions, layout.hint);
     }
     (nodes.out, reactions)
 }
 
 /// Sets the tension to 0 where only the auxiliary weight pulls: the cable is slack there.
-pub(in crate::model) fn forget_hint(nodes: &mut [Node], reactions: &mut [SupportReaction], hint: f64) {
+pub(in crate::model) fn remove_auxiliary_weight(nodes: &mut [Node], reactions: &mut [SupportReaction], hint: f64) {
     for n in nodes.iter_mut().filter(|n| n.tension_n <= hint) {
         (n.tension_n, n.strain, n.stress_pa, n.force_n) = (0.0, 0.0, 0.0, [0.0; 2]);
     }
@@ -176,16 +176,16 @@ pub(in crate::model) fn forget_hint(nodes: &mut [Node], reactions: &mut [Support
     }
 }
 
-fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &Slide<'_>, e: &Equilibrium, k: usize) {
+fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &SlidingProblem<'_>, e: &Equilibrium, k: usize) {
     let (a, arc) = (&slide.layout.anchors[k], &e.arcs[k]);
-    let (Some(before), Some(_)) = Slide::forces(&e.stretches, k) else { return };
-    let m = called_upon(slide, &e.stretches, k, e.modes[k]);
+    let (Some(before), Some(_)) = SlidingProblem::forces(&e.stretches, k) else { return };
+    let m = required_friction(slide, &e.stretches, k, e.modes[k]);
     let chain = slide.chain(0.0, 1.0);
     let from = e.sigma[k] - arc.split(a.facing).0;
     let parts = arc_nodes::parts(a.radius, arc.turn, slide.problem.radius);
     for i in 0..=parts {
         let psi = arc.turn * i as f64 / parts as f64;
-        let passed = pass(&chain, a, before.norm(), arc.arrive, psi, m);
+        let passed = traverse_wheel(&chain, a, before.norm(), arc.arrive, psi, m);
         let lambda = chain.thermal_stretch * (1.0 + passed.tension / chain.axial_stiffness);
         nodes.push(Point {
             arc_length: from + passed.material,
@@ -196,7 +196,7 @@ fn wheel_nodes(nodes: &mut Nodes<'_>, slide: &Slide<'_>, e: &Equilibrium, k: usi
     }
 }
 
-fn reactions(p: &Problem, slide: &Slide<'_>, e: &Equilibrium, nodes: &[Node]) -> Vec<SupportReaction> {
+fn reactions(p: &Problem, slide: &SlidingProblem<'_>, e: &Equilibrium, nodes: &[Node]) -> Vec<SupportReaction> {
     let at_node = |s: f64| {
         let k = nodes.partition_point(|n| n.arc_length_m < s - 1e-12 * p.length);
         nodes.get(k).map_or(Vec2::zeros(), |n| Vec2::new(n.x_m, n.y_m))
@@ -220,7 +220,7 @@ fn reactions(p: &Problem, slide: &Slide<'_>, e: &Equilibrium, nodes: &[Node]) ->
                 return r;
             };
             let a = &slide.layout.anchors[i];
-            let (before, after) = Slide::forces(&e.stretches, i);
+            let (before, after) = SlidingProblem::forces(&e.stretches, i);
             let (ahead, behind) = e.arcs[i].split(a.facing);
             let (from, to) = (e.sigma[i] - ahead, e.sigma[i] + behind);
             let own =
@@ -240,7 +240,7 @@ fn reactions(p: &Problem, slide: &Slide<'_>, e: &Equilibrium, nodes: &[Node]) ->
 
 /// Nodes before anything is solved: straight ways with the material spread evenly, dangling ends
 /// straight along their load.
-pub(super) fn straight(p: &Problem, layout: &Layout, sigma: &[f64]) -> Vec<Node> {
+pub(super) fn straight(p: &Problem, layout: &AnchorLayout, sigma: &[f64]) -> Vec<Node> {
     let hang = |force: Vec2| {
         let f = if force.norm() > 0.0 { force } else { layout.weight };
         if f.norm() > 0.0 { f / f.norm() } else { -perp(Vec2::x()) }

@@ -15,8 +15,8 @@
 //! S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic simulation of highly
 //! constrained strands", *ACM Transactions on Graphics* 30 (2011) 39.
 
-use super::layout::{Anchor, Layout, angle_near, angle_of};
-use super::wheel::pass;
+use super::layout::{Anchor, AnchorLayout, angle_near, angle_of};
+use super::wheel::traverse_wheel;
 use crate::catenary::{Chain, ChainForce};
 use crate::math::{Vec2, cross, larger};
 use crate::problem::Problem;
@@ -32,7 +32,7 @@ pub(super) enum Mode {
 
 /// One pulley's wheel as it stands (all zero for a point).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Arc {
+pub(super) struct WheelArc {
     /// Angle of the cable where it arrives, rad.
     pub arrive: f64,
     /// Turn of the cable on it, rad, ≥ 0.
@@ -51,7 +51,7 @@ enum CableEnd {
     End,
 }
 
-impl Arc {
+impl WheelArc {
     /// Material from where the cable arrives to the mark, and from there to where it leaves, m.
     pub fn split(&self, facing: f64) -> (f64, f64) {
         let share = if self.turn > 0.0 { facing * (self.arrive - self.mark) / self.turn } else { 0.5 };
@@ -62,7 +62,7 @@ impl Arc {
 /// A stretch between holds, or a dangling end, with derivatives of its end forces by its end
 /// material points.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stretch {
+pub(super) struct SpanSolution {
     pub from: f64,
     pub to: f64,
     pub start: Vec2,
@@ -76,22 +76,22 @@ pub(super) struct Stretch {
 }
 
 /// Everything fixed while σ is sought.
-pub(super) struct Slide<'a> {
+pub(super) struct SlidingProblem<'a> {
     pub problem: &'a Problem,
-    pub layout: &'a Layout,
-    pub arcs: &'a [Arc],
+    pub layout: &'a AnchorLayout,
+    pub arcs: &'a [WheelArc],
 }
 
 /// A state of all stretches.
 #[derive(Clone, Debug)]
-pub(super) struct Stretches {
+pub(super) struct SpanSolutions {
     /// n + 1 of them; the first and last are None where the end is held.
-    pub all: Vec<Option<Stretch>>,
+    pub all: Vec<Option<SpanSolution>>,
     pub energy: f64,
     pub iterations: usize,
 }
 
-impl Slide<'_> {
+impl SlidingProblem<'_> {
     pub fn chain(&self, from: f64, to: f64) -> Chain<'_> {
         Chain {
             from,
@@ -109,14 +109,14 @@ impl Slide<'_> {
 
     /// Points where the cable arrives at an anchor and leaves it, m.
     pub fn touches(&self, k: usize) -> (Vec2, Vec2) {
-        let (a, arc): (&Anchor, &Arc) = (&self.layout.anchors[k], &self.arcs[k]);
+        let (a, arc): (&Anchor, &WheelArc) = (&self.layout.anchors[k], &self.arcs[k]);
         if a.radius == 0.0 { (a.at, a.at) } else { (a.touch(arc.arrive), a.touch(arc.arrive - a.facing * arc.turn)) }
     }
 
     /// Solves every stretch for given σ. None where a stretch has no material, or no answer.
-    pub fn stretches(&self, sigma: &[f64], near: Option<&Stretches>) -> Option<Stretches> {
+    pub fn stretches(&self, sigma: &[f64], near: Option<&SpanSolutions>) -> Option<SpanSolutions> {
         let n = sigma.len();
-        let mut out = Stretches { all: Vec::with_capacity(n + 1), energy: 0.0, iterations: 0 };
+        let mut out = SpanSolutions { all: Vec::with_capacity(n + 1), energy: 0.0, iterations: 0 };
         for i in 0..=n {
             let split = |k: usize| self.arcs[k].split(self.layout.anchors[k].facing);
             let from = if i == 0 { 0.0 } else { sigma[i - 1] + split(i - 1).1 };
@@ -147,7 +147,7 @@ impl Slide<'_> {
     }
 
     /// A stretch between two anchors.
-    fn held(&self, from: f64, to: f64, a: Vec2, b: Vec2, near: Option<Vec2>) -> Option<Stretch> {
+    fn held(&self, from: f64, to: f64, a: Vec2, b: Vec2, near: Option<Vec2>) -> Option<SpanSolution> {
         let chain = self.chain(from, to);
         let f: ChainForce = match chain.solve(b - a, near) {
             Ok(f) => f,
@@ -160,7 +160,7 @@ impl Slide<'_> {
         };
         let (by_from, by_to) = (stiffness * stretch(f.start), stiffness * -stretch(f.end));
         let b_load = self.layout.weight;
-        Some(Stretch {
+        Some(SpanSolution {
             from,
             to,
             start: f.start,
@@ -173,7 +173,7 @@ impl Slide<'_> {
     }
 
     /// A dangling start or end: its force is known, F = ∓(loads beyond).
-    fn dangling(&self, from: f64, to: f64, end: CableEnd) -> Stretch {
+    fn dangling(&self, from: f64, to: f64, end: CableEnd) -> SpanSolution {
         let start = end == CableEnd::Start;
         let load = self.layout.load_between(from, to);
         let b = self.layout.weight;
@@ -184,7 +184,7 @@ impl Slide<'_> {
         // ∫ψ of each catenary in it.
         let complementary: f64 = chain.complementary(f0);
         let zero = Vec2::zeros();
-        Stretch {
+        SpanSolution {
             from,
             to,
             start: f0,
@@ -197,7 +197,7 @@ impl Slide<'_> {
     }
 
     /// Forces before and after anchor k, N.
-    pub fn forces(s: &Stretches, k: usize) -> (Option<Vec2>, Option<Vec2>) {
+    pub fn forces(s: &SpanSolutions, k: usize) -> (Option<Vec2>, Option<Vec2>) {
         let side = |i: usize| s.all.get(i).copied().flatten();
         (side(k).map(|s| s.end), side(k + 1).map(|s| s.start))
     }
@@ -219,10 +219,10 @@ impl Slide<'_> {
         let turn = self.turn(k, before, after);
         let chain = self.chain(0.0, 1.0);
         let arrive = self.arcs[k].arrive;
-        let passed = pass(&chain, a, tb, arrive, turn, m).tension;
+        let passed = traverse_wheel(&chain, a, tb, arrive, turn, m).tension;
         let slope = if a.radius > 0.0 {
             let d = 1e-6 * tb;
-            (pass(&chain, a, tb + d, arrive, turn, m).tension - passed) / d * tb / passed
+            (traverse_wheel(&chain, a, tb + d, arrive, turn, m).tension - passed) / d * tb / passed
         } else {
             1.0
         };
@@ -233,7 +233,7 @@ impl Slide<'_> {
     /// one after.
     ///
     /// `smooth`: in energy form (symmetric), else the logarithm of the slip law.
-    pub fn row(&self, s: &Stretches, k: usize, m: f64, smooth: bool) -> Option<(f64, [f64; 3])> {
+    pub fn row(&self, s: &SpanSolutions, k: usize, m: f64, smooth: bool) -> Option<(f64, [f64; 3])> {
         let (b, a) = (s.all.get(k).copied().flatten()?, s.all.get(k + 1).copied().flatten()?);
         let (fb, fa) = (b.end, a.start);
         let (tb, ta) = (fb.norm(), fa.norm());
@@ -256,7 +256,7 @@ impl Slide<'_> {
 
     /// Turns each wheel's arc to the cable's directions: the new arcs, the largest angle still off,
     /// rad, and a wheel the cable would leave.
-    pub fn turned(&self, s: &Stretches, m: impl Fn(usize) -> f64) -> (Vec<Arc>, f64, Option<usize>) {
+    pub fn turned(&self, s: &SpanSolutions, m: impl Fn(usize) -> f64) -> (Vec<WheelArc>, f64, Option<usize>) {
         let (mut worst, mut lifted) = (0.0f64, None);
         let least = self.layout.settings.least_touch_gain;
         let mut out = Vec::with_capacity(self.arcs.len());
@@ -287,10 +287,10 @@ impl Slide<'_> {
                 arrive = 0.5 * (arrive + leave);
                 turn = 0.0;
             }
-            let passed = pass(&self.chain(0.0, 1.0), a, fb.norm(), arrive, turn, m(k));
+            let passed = traverse_wheel(&self.chain(0.0, 1.0), a, fb.norm(), arrive, turn, m(k));
             let change = (passed.material - arc.material).abs() / a.radius;
             worst = larger(worst, change);
-            out.push(Arc { arrive, turn, material: passed.material, ..*arc });
+            out.push(WheelArc { arrive, turn, material: passed.material, ..*arc });
         }
         (out, worst, lifted)
     }

@@ -61,7 +61,7 @@ fn a_smooth_wheel_conserves_tension_energy_and_height() {
         let r = &m.reactions[1];
         let (tb, ta) = (r.tension_before_n.expect("a pulley"), r.tension_after_n.expect("a pulley"));
         let e = m.balance.as_ref().expect("a balance");
-        let (layout, arc) = (Layout::new(m.problem(), &m.dragged, 0.0).expect("a layout"), e.arcs[1]);
+        let (layout, arc) = (AnchorLayout::new(m.problem(), &m.dragged, 0.0).expect("a layout"), e.arcs[1]);
         let a = &layout.anchors[1];
         let rise = (a.touch(arc.arrive - a.facing * arc.turn) - a.touch(arc.arrive)).y;
         let psi = |t: f64| t + t * t / 2e5;
@@ -180,9 +180,9 @@ fn refusals_name_the_feature() {
 fn nodes_are_close_enough_to_draw_straight_lines_between() {
     let mut m = model(&scene(24.0, vec![Support::fixed("a", [0.0, 5.0]), Support::fixed("b", [10.0, 6.0])]));
     m.settle().expect("rest");
-    let layout = Layout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
+    let layout = AnchorLayout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
     let e = m.balance.as_ref().expect("a balance");
-    let slide = slide::Slide { problem: m.problem(), layout: &layout, arcs: &e.arcs };
+    let slide = slide::SlidingProblem { problem: m.problem(), layout: &layout, arcs: &e.arcs };
     let s = e.stretches.all[1].expect("a stretch");
     let (_, at, c) = slide.chain(s.from, s.to).spans(s.start, layout.anchors[0].at).next().expect("a span");
     for w in m.nodes.windows(2) {
@@ -232,11 +232,11 @@ fn rests_by_the_heavy_capstan([mu, r, axial_stiffness, pull]: [f64; 4], a: [f64;
     balance(&m);
     let r = &m.reactions[1];
     let (tb, ta) = (r.tension_before_n.expect("a pulley"), r.tension_after_n.expect("a pulley"));
-    let layout = Layout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
+    let layout = AnchorLayout::new(m.problem(), &m.dragged, 0.0).expect("a layout");
     let e = m.balance.as_ref().expect("a balance");
-    let slide = slide::Slide { problem: m.problem(), layout: &layout, arcs: &e.arcs };
+    let slide = slide::SlidingProblem { problem: m.problem(), layout: &layout, arcs: &e.arcs };
     let (from, turn) = (e.arcs[1].arrive, e.arcs[1].turn);
-    let by = |mu: f64| wheel::pass(&slide.chain(0.0, 1.0), &layout.anchors[1], tb, from, turn, mu).tension;
+    let by = |mu: f64| wheel::traverse_wheel(&slide.chain(0.0, 1.0), &layout.anchors[1], tb, from, turn, mu).tension;
     assert!(ta > by(-mu) * (1.0 - 1e-6) && ta < by(mu) * (1.0 + 1e-6), "{ta} {} {}", by(-mu), by(mu));
     if let Mode::Slip(m) = e.modes[1] {
         assert!((ta - by(m)).abs() < 1e-6 * ta, "{ta} {}", by(m));

@@ -25,7 +25,7 @@ const STEPS: usize = 32;
 
 /// Result of an integration of the tension round a wheel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Passed {
+pub(super) struct WheelTraverse {
     /// Tension where the cable leaves, N.
     pub tension: f64,
     /// Unstretched material on the arc, m.
@@ -34,9 +34,16 @@ pub(super) struct Passed {
 
 /// Follows the tension round a wheel from `tension` where the cable arrives at angle `from`, over
 /// `turn` rad.
-pub(super) fn pass(chain: &Chain<'_>, a: &Anchor, tension: f64, from: f64, turn: f64, m: f64) -> Passed {
+pub(super) fn traverse_wheel(
+    chain: &Chain<'_>,
+    a: &Anchor,
+    tension: f64,
+    from: f64,
+    turn: f64,
+    m: f64,
+) -> WheelTraverse {
     if a.radius == 0.0 {
-        return Passed { tension: tension * (m * turn).exp(), material: 0.0 };
+        return WheelTraverse { tension: tension * (m * turn).exp(), material: 0.0 };
     }
     let rate = |psi: f64, t: f64| {
         let along = direction(from - a.facing * psi);
@@ -55,5 +62,5 @@ pub(super) fn pass(chain: &Chain<'_>, a: &Anchor, tension: f64, from: f64, turn:
         t += h / 6.0 * (a1.0 + 2.0 * (a2.0 + a3.0) + a4.0);
         s += h / 6.0 * (a1.1 + 2.0 * (a2.1 + a3.1) + a4.1);
     }
-    Passed { tension: t, material: s }
+    WheelTraverse { tension: t, material: s }
 }

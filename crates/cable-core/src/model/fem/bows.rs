@@ -20,7 +20,7 @@ const PUSHED_OUT_FRACTION: f64 = 0.5;
 /// Returns the other equilibria of a compressed cable beside an answer at a time (s); `free` finds
 /// the shapes of the same cable without obstacles, and is asked only where it is compressed enough
 /// to buckle. None where there is no other.
-pub(in crate::model::fem) fn elsewhere(
+pub(in crate::model::fem) fn other_equilibria(
     problem: &Problem,
     time_s: f64,
     dragged: &[Option<Vec2>],

@@ -212,7 +212,7 @@ impl FemModel {
             }
             statics.bows()
         };
-        let histories = bows::elsewhere(&self.problem, self.time_s(), &self.dragged, &self.solution(), free)?;
+        let histories = bows::other_equilibria(&self.problem, self.time_s(), &self.dragged, &self.solution(), free)?;
         let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
         Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
     }

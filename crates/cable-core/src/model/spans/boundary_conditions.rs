@@ -3,14 +3,14 @@
 use std::sync::Arc;
 
 use crate::catenary::PointForce;
-use crate::contact::swept_corners::{self, Corner};
+use crate::contact::swept_corners::{self, ImpassableCorner};
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::Vec2;
 use crate::model::Model;
-use crate::model::catenary::layout::hint_of_weight;
-use crate::model::spans::boundary::capstan::Law;
+use crate::model::catenary::layout::auxiliary_weight;
+use crate::model::spans::boundary::capstan::CableLaw;
 use crate::model::spans::boundary::curve::{Curve, SUPPORT_CONTACT_DISTANCE_M};
-use crate::model::spans::cable_section::{CableSection, Course, Tie};
+use crate::model::spans::cable_section::{CableSection, EndCondition, SolveContext};
 use crate::model::spans::failure::Failure;
 use crate::model::spans::settings::SpansSettings;
 use crate::problem::Problem;
@@ -55,21 +55,21 @@ pub(in crate::model::spans) struct Pulley {
 
 /// Supports and loads of the cable that do not change with time.
 #[derive(Clone, Debug)]
-pub(in crate::model::spans) struct Layout {
+pub(in crate::model::spans) struct SectionLayout {
     pub problem: Arc<Problem>,
     pub settings: Arc<SpansSettings>,
     /// The end of the scene's cable from which it counts.
     pub counted_from: CableEnd,
     loads: Vec<Load>,
     /// Corners that it must not pass, in order of x.
-    pub corners: Arc<[Corner]>,
+    pub corners: Arc<[ImpassableCorner]>,
     /// Sections: material from, to (m) and the support at each end; None = free or dead load.
-    pub sections: Vec<Part>,
+    pub sections: Vec<SectionBounds>,
 }
 
 /// A section between grips.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::model::spans) struct Part {
+pub(in crate::model::spans) struct SectionBounds {
     pub material: [f64; 2],
     pub supports: [Option<usize>; 2],
     pub pulleys: Vec<Pulley>,
@@ -91,7 +91,7 @@ pub(in crate::model::spans) enum CableEnd {
 #[derive(Clone, Debug)]
 pub(in crate::model::spans) struct CableEquilibrium {
     pub sections: Vec<CableSection>,
-    pub course: Course,
+    pub context: SolveContext,
     pub instant: BoundaryConditions,
 }
 
@@ -104,7 +104,7 @@ impl CableEnd {
     }
 }
 
-impl Layout {
+impl SectionLayout {
     /// True if its problem is that of the scene reversed.
     pub fn is_reversed(&self) -> bool {
         self.counted_from == CableEnd::End
@@ -136,8 +136,8 @@ impl Layout {
         for (load, l) in p.loads.iter().enumerate() {
             loads.push(Load { arc_length: l.arc_length, support: None, load });
         }
-        let mut sections: Vec<Part> = Vec::new();
-        let start = Part { material: [0.0, p.length], supports: [None, None], pulleys: Vec::new() };
+        let mut sections: Vec<SectionBounds> = Vec::new();
+        let start = SectionBounds { material: [0.0, p.length], supports: [None, None], pulleys: Vec::new() };
         let mut part = start.clone();
         let bodies = p.world.geometry().bodies().len();
         let mut wheels = 0;
@@ -160,7 +160,11 @@ impl Layout {
                         part.supports[1] = Some(k);
                         sections.push(part.clone());
                     }
-                    part = Part { material: [arc_length, p.length], supports: [Some(k), None], pulleys: Vec::new() };
+                    part = SectionBounds {
+                        material: [arc_length, p.length],
+                        supports: [Some(k), None],
+                        pulleys: Vec::new(),
+                    };
                 }
             }
         }
@@ -228,16 +232,16 @@ impl Layout {
         out.forces.extend(self.loads.iter().map(force));
         (out.load, out.hint) = (p.body_force(time_s), 0.0);
         if out.load.norm() == 0.0 {
-            (out.load, out.hint) = hint_of_weight(p, out.forces.iter().map(|f| f.norm()).sum());
+            (out.load, out.hint) = auxiliary_weight(p, out.forces.iter().map(|f| f.norm()).sum());
         }
         (out.thermal, out.friction) = (p.thermal_stretch, 1.0);
     }
 
-    /// The course at an instant; the boundaries are those of `self.curves()`.
-    pub fn course(&self, curves: Vec<Curve>, instant: &BoundaryConditions) -> Course {
+    /// The context at an instant; the boundaries are those of `self.curves()`.
+    pub fn context(&self, curves: Vec<Curve>, instant: &BoundaryConditions) -> SolveContext {
         let loads = self.loads.iter().map(|l| PointForce { arc_length: l.arc_length, force: Vec2::zeros() });
-        let law = Law::new(instant.load, instant.thermal, self.problem.axial_stiffness);
-        let mut course = Course {
+        let law = CableLaw::new(instant.load, instant.thermal, self.problem.axial_stiffness);
+        let mut context = SolveContext {
             curves,
             law,
             drag: 0.0,
@@ -246,30 +250,30 @@ impl Layout {
             loads: loads.collect(),
             settings: self.settings.clone(),
         };
-        self.set_course(&mut course, instant);
-        course
+        self.set_context(&mut context, instant);
+        context
     }
 
-    /// Sets loads, friction and places of a course to those of an instant.
-    pub fn set_course(&self, course: &mut Course, instant: &BoundaryConditions) {
-        course.law.load = instant.load;
-        course.law.thermal = instant.thermal;
-        for (l, force) in course.loads.iter_mut().zip(&instant.forces) {
+    /// Sets loads, friction and places of a context to those of an instant.
+    pub fn set_context(&self, context: &mut SolveContext, instant: &BoundaryConditions) {
+        context.law.load = instant.load;
+        context.law.thermal = instant.thermal;
+        for (l, force) in context.loads.iter_mut().zip(&instant.forces) {
             l.force = *force;
         }
         for pulley in self.sections.iter().flat_map(|s| &s.pulleys) {
-            for curve in course.curves.iter_mut().skip(pulley.curve).take(2) {
+            for curve in context.curves.iter_mut().skip(pulley.curve).take(2) {
                 curve.shift = instant.places[pulley.support];
             }
         }
         let bodies = self.problem.world.geometry().bodies();
-        for (k, curve) in course.curves.iter_mut().enumerate() {
+        for (k, curve) in context.curves.iter_mut().enumerate() {
             if let Some(body) = bodies.get(k / 2) {
                 curve.friction = body.friction * instant.friction;
             }
         }
         for pulley in self.sections.iter().flat_map(|s| &s.pulleys) {
-            for curve in course.curves.iter_mut().skip(pulley.curve).take(2) {
+            for curve in context.curves.iter_mut().skip(pulley.curve).take(2) {
                 curve.friction = self.problem.supports[pulley.support].friction * instant.friction;
             }
         }
@@ -320,16 +324,16 @@ impl BoundaryConditions {
 /// # Errors
 /// A support inside an obstacle.
 pub(in crate::model::spans) fn place_ends(
-    layout: &Layout,
+    layout: &SectionLayout,
     index: usize,
     section: &mut CableSection,
-    course: &Course,
+    context: &SolveContext,
     instant: &BoundaryConditions,
 ) -> Result<(), Failure> {
     let part = &layout.sections[index];
     for side in 0..2 {
         let Some(support) = part.supports[side] else {
-            if let Tie::Hangs(force) | Tie::Loose(force) = &mut section.ties[side] {
+            if let EndCondition::Hangs(force) | EndCondition::Loose(force) = &mut section.end_conditions[side] {
                 *force = layout.end_force(instant, part.material[side]);
             }
             continue;
@@ -340,7 +344,7 @@ pub(in crate::model::spans) fn place_ends(
         if gap.is_some_and(|g| g < -SUPPORT_CONTACT_DISTANCE_M) {
             return Err(Failure::SupportInside { at });
         }
-        crate::model::spans::contact::support_contact::place(section, course, side, at);
+        crate::model::spans::contact::support_contact::place(section, context, side, at);
     }
     Ok(())
 }

@@ -10,18 +10,18 @@ use std::sync::Arc;
 
 use crate::catenary::{Catenary, Chain, PointForce};
 use crate::math::Vec2;
-use crate::model::spans::boundary::capstan::{Law, Track};
+use crate::model::spans::boundary::capstan::{CableLaw, ContactPath};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::boundary::friction_memory::{Ends, Held, Mode, TensionProfile};
+use crate::model::spans::boundary::friction_memory::{Ends, Mode, StickZone, TensionProfile};
 use crate::model::spans::boundary::loose::Loose;
 use crate::model::spans::settings::SpansSettings;
 
 /// Everything given at an instant.
 #[derive(Clone, Debug)]
-pub(in crate::model::spans) struct Course {
+pub(in crate::model::spans) struct SolveContext {
     /// Boundaries: both senses of each body, then both of each wheel.
     pub curves: Vec<Curve>,
-    pub law: Law,
+    pub law: CableLaw,
     /// Drag against sliding, besides friction, while a cable that runs away is followed, N per m of
     /// slip; else 0.
     pub drag: f64,
@@ -39,9 +39,9 @@ pub(in crate::model::spans) struct Course {
 
 /// Condition at an end of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) enum Tie {
+pub(in crate::model::spans) enum EndCondition {
     /// Held in the air at a point, m.
-    Held(Vec2),
+    Fixed(Vec2),
     /// Hangs free, drawn by a dead force, N.
     Hangs(Vec2),
     /// Held at p on the boundary of the contact beside it.
@@ -50,10 +50,10 @@ pub(in crate::model::spans) enum Tie {
     Loose(Vec2),
 }
 
-impl Tie {
+impl EndCondition {
     /// True if a free span begins here.
     pub fn has_span(&self) -> bool {
-        matches!(self, Self::Held(_) | Self::Hangs(_))
+        matches!(self, Self::Fixed(_) | Self::Hangs(_))
     }
 }
 
@@ -66,14 +66,14 @@ pub(in crate::model::spans) struct Contact {
     pub ends: Ends,
     pub mode: Mode,
     /// The stick zone under the tensions it has, where that was computed.
-    pub held: Option<Held>,
+    pub held: Option<StickZone>,
     pub history: TensionProfile,
     /// The pulley it is, by its support.
     pub wheel: Option<usize>,
     /// Times the mode has changed in this solve.
-    pub flips: u32,
+    pub mode_changes: u32,
     /// Connection to the next contact.
-    pub next: Next,
+    pub next: Connection,
     /// The point load that rests here, where it is one.
     pub load: Option<RestingLoad>,
     /// Smooth for now: found while a rest is sought, where it has not rubbed yet.
@@ -114,7 +114,7 @@ impl Kink {
 
 /// Connection between a contact and the next one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(in crate::model::spans) enum Next {
+pub(in crate::model::spans) enum Connection {
     /// A span.
     #[default]
     Span,
@@ -124,7 +124,7 @@ pub(in crate::model::spans) enum Next {
     Joined,
 }
 
-impl Next {
+impl Connection {
     /// Parts what was joined, which leaves a span; returns whether it was.
     pub fn part(&mut self) -> bool {
         let joined = *self == Self::Joined;
@@ -160,7 +160,7 @@ pub(in crate::model::spans) struct CableSection {
     /// Material at both ends, m.
     pub from: f64,
     pub to: f64,
-    pub ties: [Tie; 2],
+    pub end_conditions: [EndCondition; 2],
     /// In order along the cable.
     pub contacts: Vec<Contact>,
     /// G of each span, N; one more than contacts.
@@ -169,9 +169,9 @@ pub(in crate::model::spans) struct CableSection {
     pub loose: Option<Loose>,
 }
 
-impl Default for Tie {
+impl Default for EndCondition {
     fn default() -> Self {
-        Self::Held(Vec2::zeros())
+        Self::Fixed(Vec2::zeros())
     }
 }
 
@@ -195,18 +195,18 @@ impl Clone for CableSection {
     }
 
     fn clone_from(&mut self, other: &Self) {
-        (self.from, self.to, self.ties) = (other.from, other.to, other.ties);
+        (self.from, self.to, self.end_conditions) = (other.from, other.to, other.end_conditions);
         self.loose.clone_from(&other.loose);
         self.contacts.clone_from(&other.contacts);
         self.forces.clone_from(&other.forces);
     }
 }
 
-impl Course {
+impl SolveContext {
     /// The chain a contact lies on.
-    pub fn track(&self, c: &Contact) -> Track<'_> {
+    pub fn contact_path(&self, c: &Contact) -> ContactPath<'_> {
         let curve = &self.curves[c.curve];
-        Track {
+        ContactPath {
             curve,
             chain_range: c.chain_range,
             law: self.law,
@@ -218,7 +218,7 @@ impl Course {
                 self.mobilised != 0.0 && curve.friction > 0.0
             },
             friction_of_loose: curve.friction,
-            pivot: None,
+            cached_piece: None,
         }
     }
 
@@ -229,7 +229,7 @@ impl Course {
 
     /// Tension a dead force makes at an end that lies, N.
     pub fn pull(&self, c: &Contact, side: usize, force: Vec2) -> f64 {
-        let along = force.dot(&self.track(c).place(c.ends.p[side]).tangent);
+        let along = force.dot(&self.contact_path(c).place(c.ends.p[side]).tangent);
         if side == 0 { -along } else { along }
     }
 
@@ -264,19 +264,19 @@ impl Course {
 
 impl CableSection {
     /// Solves span `k` anew after a change; what has no answer stays.
-    pub fn resolve_span(&mut self, course: &Course, k: usize) {
-        if let Some(g) = self.solve_span(course, k) {
+    pub fn resolve_span(&mut self, context: &SolveContext, k: usize) {
+        if let Some(g) = self.solve_span(context, k) {
             self.forces[k] = g;
         }
     }
 
     /// Calls back with each catenary of span k: its first material point, where that is, and its
     /// shape.
-    pub fn shapes(&self, course: &Course, k: usize, mut each: impl FnMut(f64, Vec2, &Catenary)) {
+    pub fn shapes(&self, context: &SolveContext, k: usize, mut each: impl FnMut(f64, Vec2, &Catenary)) {
         let (from, to) = self.material(k);
-        let chain = course.chain(from, to);
-        let start = self.force(course, k, from);
-        let origin = match self.ends_of(course, k) {
+        let chain = context.chain(from, to);
+        let start = self.force(context, k, from);
+        let origin = match self.span_ends(context, k) {
             [Some(a), _] => a,
             [None, Some(b)] => b - chain.reach(start).0,
             [None, None] => return,
@@ -296,29 +296,31 @@ impl CableSection {
         if self.loose.is_some() {
             return false;
         }
-        let none = k.checked_sub(1).and_then(|j| self.contacts.get(j)).is_some_and(|c| c.next != Next::Span);
-        !none && (k > 0 || self.ties[0].has_span()) && (k < self.contacts.len() || self.ties[1].has_span())
+        let none = k.checked_sub(1).and_then(|j| self.contacts.get(j)).is_some_and(|c| c.next != Connection::Span);
+        !none
+            && (k > 0 || self.end_conditions[0].has_span())
+            && (k < self.contacts.len() || self.end_conditions[1].has_span())
     }
 
     /// True if contact j ends in a pocket on a side.
     pub fn in_pocket(&self, j: usize, side: usize) -> bool {
-        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.next == Next::Pocket)
+        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.next == Connection::Pocket)
     }
 
     /// True if contact j is joined to its neighbour on a side.
     pub fn is_joined(&self, j: usize, side: usize) -> bool {
-        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.next == Next::Joined)
+        (j + side).checked_sub(1).and_then(|i| self.contacts.get(i)).is_some_and(|c| c.next == Connection::Joined)
     }
 
     /// True if the material at a side of contact j is that of a load.
-    pub fn is_marked(&self, j: usize, side: usize) -> bool {
+    pub fn has_load_material(&self, j: usize, side: usize) -> bool {
         self.contacts[j].is_load() || self.is_joined(j, side)
     }
 
     /// True if contact j is joined to a load on a side that sticks.
     pub fn is_pinned(&self, j: usize, side: usize) -> bool {
         let beside = (j + 2 * side).checked_sub(1).and_then(|i| self.contacts.get(i));
-        self.is_joined(j, side) && beside.is_some_and(|c| c.is_load() && c.mode == Mode::Hold)
+        self.is_joined(j, side) && beside.is_some_and(|c| c.is_load() && c.mode == Mode::Stick)
     }
 
     /// Material at both ends of span k, m.
@@ -329,64 +331,64 @@ impl CableSection {
     }
 
     /// Length that span k has to spare over its chord, and the chord, m; None where an end hangs.
-    pub fn slack(&self, course: &Course, k: usize) -> Option<[f64; 2]> {
-        let [Some(a), Some(b)] = self.ends_of(course, k) else { return None };
+    pub fn slack(&self, context: &SolveContext, k: usize) -> Option<[f64; 2]> {
+        let [Some(a), Some(b)] = self.span_ends(context, k) else { return None };
         let (from, to) = self.material(k);
         let chord = (b - a).norm();
-        Some([(to - from) * course.law.thermal - chord, chord])
+        Some([(to - from) * context.law.thermal - chord, chord])
     }
 
     /// Force in span k at a material point, N.
-    pub fn force(&self, course: &Course, k: usize, s: f64) -> Vec2 {
-        self.forces.get(k).copied().unwrap_or_default() - course.load_between(self.from, s)
+    pub fn force(&self, context: &SolveContext, k: usize, s: f64) -> Vec2 {
+        self.forces.get(k).copied().unwrap_or_default() - context.load_between(self.from, s)
     }
 
     /// Start and end of span k, m; None where the end hangs.
-    pub fn ends_of(&self, course: &Course, k: usize) -> [Option<Vec2>; 2] {
-        let tie = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
-        let point = |c: &Contact, side: usize| Some(course.track(c).place(c.ends.p[side]).at);
+    pub fn span_ends(&self, context: &SolveContext, k: usize) -> [Option<Vec2>; 2] {
+        let tie = |t: &EndCondition| if let EndCondition::Fixed(at) = t { Some(*at) } else { None };
+        let point = |c: &Contact, side: usize| Some(context.contact_path(c).place(c.ends.p[side]).at);
         [
             match k.checked_sub(1).and_then(|j| self.contacts.get(j)) {
                 Some(c) => point(c, 1),
-                None => tie(&self.ties[0]),
+                None => tie(&self.end_conditions[0]),
             },
             match self.contacts.get(k) {
                 Some(c) => point(c, 0),
-                None => tie(&self.ties[1]),
+                None => tie(&self.end_conditions[1]),
             },
         ]
     }
 
     /// G that brings span k from its start to its end.
-    pub fn solve_span(&self, course: &Course, k: usize) -> Option<Vec2> {
+    pub fn solve_span(&self, context: &SolveContext, k: usize) -> Option<Vec2> {
         let (from, to) = self.material(k);
-        match self.ends_of(course, k) {
+        match self.span_ends(context, k) {
             [Some(a), Some(b)] => {
-                let near = self.forces.get(k).map(|g| g - course.load_between(self.from, from));
-                let chain = course.chain(from, to);
+                let near = self.forces.get(k).map(|g| g - context.load_between(self.from, from));
+                let chain = context.chain(from, to);
                 let near = near.filter(|f| f.norm() > 0.0 && f.iter().all(|v| v.is_finite()));
                 let found = chain.solve(b - a, near).or_else(|_| chain.solve(b - a, None)).ok()?;
-                Some(found.start + course.load_between(self.from, from))
+                Some(found.start + context.load_between(self.from, from))
             }
-            [None, _] => self.hanging(course, 0),
-            [_, None] => self.hanging(course, 1),
+            [None, _] => self.hanging(context, 0),
+            [_, None] => self.hanging(context, 1),
         }
     }
 
     /// G of a hanging end.
-    pub fn hanging(&self, course: &Course, side: usize) -> Option<Vec2> {
-        match self.ties[side] {
-            Tie::Hangs(force) if side == 0 => Some(-force),
-            Tie::Hangs(force) => Some(force + course.load_between(self.from, self.to)),
+    pub fn hanging(&self, context: &SolveContext, side: usize) -> Option<Vec2> {
+        match self.end_conditions[side] {
+            EndCondition::Hangs(force) if side == 0 => Some(-force),
+            EndCondition::Hangs(force) => Some(force + context.load_between(self.from, self.to)),
             _ => None,
         }
     }
 
     /// Writes the end tensions of contacts as the spans beside them have it.
-    pub fn take_tensions(&mut self, course: &Course) {
+    pub fn update_end_tensions(&mut self, context: &SolveContext) {
         for j in 0..self.contacts.len() {
             for side in 0..2 {
-                if let Some(force) = self.force_at_contact(course, j, side) {
+                if let Some(force) = self.force_at_contact(context, j, side) {
                     self.contacts[j].ends.t[side] = force.norm();
                 } else if self.in_pocket(j, side) {
                     self.contacts[j].ends.t[side] = 0.0;
@@ -395,19 +397,19 @@ impl CableSection {
                 } else if self.contacts[j].is_load() {
                     // Beyond it is nothing.
                     let k = j + 1 - side;
-                    let inner = self.force_at_contact(course, j, 1 - side);
+                    let inner = self.force_at_contact(context, j, 1 - side);
                     self.contacts[j].ends.t[side] = inner.map_or(self.forces[k].x, |f| f.norm());
-                } else if let Tie::Loose(force) = self.ties[side] {
-                    self.contacts[j].ends.t[side] = course.pull(&self.contacts[j], side, force);
+                } else if let EndCondition::Loose(force) = self.end_conditions[side] {
+                    self.contacts[j].ends.t[side] = context.pull(&self.contacts[j], side, force);
                 }
             }
         }
     }
 
     /// Force of the span beside contact j on a side of it; None beside a lying end.
-    pub fn force_at_contact(&self, course: &Course, j: usize, side: usize) -> Option<Vec2> {
+    pub fn force_at_contact(&self, context: &SolveContext, j: usize, side: usize) -> Option<Vec2> {
         let k = j + side;
         let s = self.contacts.get(j)?.ends.s[side];
-        self.has_span(k).then(|| self.force(course, k, s))
+        self.has_span(k).then(|| self.force(context, k, s))
     }
 }

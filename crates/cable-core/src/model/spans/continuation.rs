@@ -1,8 +1,8 @@
 //! The continuation follows an equilibrium through time, and halves load steps that fail.
 //!
 //! A step solves each section for the new supports and loads, and checks the answer. A way to an
-//! instant is made of such steps ([`CableEquilibrium::travel`]). Where no equilibrium near by leads
-//! on, the cable slides under a drag to the next one that holds it.
+//! instant is made of such steps ([`CableEquilibrium::advance_load`]). Where no equilibrium near by
+//! leads on, the cable slides under a drag to the next one that holds it.
 
 use crate::contact::swept_corners;
 use crate::math::{Vec2, larger};
@@ -12,14 +12,14 @@ use crate::model::spans::acceptance::tension_loss;
 use crate::model::spans::acceptance::tunnelling;
 use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::boundary::loose::Loose;
-use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout, place_ends};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, SectionLayout, place_ends};
 use crate::model::spans::cable_section::CableSection;
 use crate::model::spans::changes;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::slip_predictor::predict_slip;
-use crate::model::spans::newton::{Solved, Work};
+use crate::model::spans::newton::{Converged, Workspace};
 use crate::model::spans::slack::{self, LooseShapes};
 
 /// A force that differs by less than this part is the same.
@@ -31,7 +31,7 @@ const END_ROUNDING: f64 = 1.000_001;
 /// Cost of a step, and what happened in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(in crate::model::spans) struct StepStats {
-    pub solved: Solved,
+    pub solved: Converged,
     /// Times a step was halved.
     pub halvings: usize,
     /// Times the cable ran away from where it was to another place that holds it.
@@ -45,162 +45,167 @@ pub(in crate::model::spans) struct StepStats {
 
 /// The end of a continuation that did not come to its instant.
 #[derive(Clone, Debug)]
-pub(in crate::model::spans) struct Stopped {
+pub(in crate::model::spans) struct AdvanceFailure {
     /// The reason why it ended.
     pub failure: Failure,
     /// The part of the way that was gone.
     pub done: f64,
 }
 
-impl From<Stopped> for Failure {
-    fn from(stopped: Stopped) -> Self {
+impl From<AdvanceFailure> for Failure {
+    fn from(stopped: AdvanceFailure) -> Self {
         stopped.failure
     }
 }
 
 impl CableEquilibrium {
     /// One step to an instant; on an error nothing has changed.
-    pub fn step(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) -> Result<StepStats, Failure> {
-        self.step_from(layout, to, &[], work)
+    pub fn step(
+        &mut self,
+        layout: &SectionLayout,
+        to: &BoundaryConditions,
+        workspace: &mut Workspace,
+    ) -> Result<StepStats, Failure> {
+        self.step_from(layout, to, &[], workspace)
     }
 
     /// One step to an instant. `routes` are the shapes of the sections from which a first
     /// equilibrium is sought, else empty.
     pub(super) fn step_from(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         to: &BoundaryConditions,
         routes: &[Vec<Vec2>],
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
         let mut taken = StepStats::default();
-        work.before.clone_from(&self.sections);
-        work.instants[0].clone_from(&self.instant);
+        workspace.before.clone_from(&self.sections);
+        workspace.instants[0].clone_from(&self.instant);
         self.instant.clone_from(to);
-        layout.set_course(&mut self.course, to);
+        layout.set_context(&mut self.context, to);
         for k in 0..self.sections.len() {
-            match self.solve_section(layout, k, routes.get(k).map(Vec::as_slice), work) {
+            match self.solve_section(layout, k, routes.get(k).map(Vec::as_slice), workspace) {
                 Ok(one) => taken = taken.and(one),
                 Err(failure) => {
-                    self.undo(layout, work);
+                    self.undo(layout, workspace);
                     return Err(failure);
                 }
             }
         }
         if let Err(failure) = equilibrium::balanced(layout, self) {
-            self.undo(layout, work);
+            self.undo(layout, workspace);
             return Err(failure);
         }
         Ok(taken)
     }
 
     /// Goes back to where the last step began.
-    fn undo(&mut self, layout: &Layout, work: &Work) {
-        self.sections.clone_from(&work.before);
-        self.instant.clone_from(&work.instants[0]);
-        layout.set_course(&mut self.course, &self.instant);
+    fn undo(&mut self, layout: &SectionLayout, workspace: &Workspace) {
+        self.sections.clone_from(&workspace.before);
+        self.instant.clone_from(&workspace.instants[0]);
+        layout.set_context(&mut self.context, &self.instant);
     }
 
     /// Solves one section for the present instant; on an error it is where it was. `route` is the
     /// shape that a first equilibrium is sought from.
     fn solve_section(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         k: usize,
         route: Option<&[Vec2]>,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
-        let [mut start, mut moved] = std::mem::take(&mut work.sections);
+        let [mut start, mut moved] = std::mem::take(&mut workspace.sections);
         start.clone_from(&self.sections[k]);
-        let found = self.solve_section_from(layout, k, route, [&mut start, &mut moved], work);
+        let found = self.solve_section_from(layout, k, route, [&mut start, &mut moved], workspace);
         if found.is_err() {
             self.sections[k].clone_from(&start);
         }
-        work.sections = [start, moved];
+        workspace.sections = [start, moved];
         found
     }
 
     /// As [`Self::solve_section`]; on an error the section is anywhere.
     fn solve_section_from(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         k: usize,
         route: Option<&[Vec2]>,
         [start, moved]: [&mut CableSection; 2],
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
         if self.sections[k].loose.is_some() {
             return self.lay_loose_again(layout, k);
         }
-        let solved = self.find_section_equilibrium(layout, k, route, [&mut *start, moved], work)?;
+        let solved = self.find_section_equilibrium(layout, k, route, [&mut *start, moved], workspace)?;
         let mut taken = StepStats { solved, ..StepStats::default() };
         if route.is_none() {
-            taken.missing_friction = point_load::fresh(&self.sections[k], &self.course);
+            taken.missing_friction = point_load::unremembered_friction(&self.sections[k], &self.context);
         }
         for c in &mut self.sections[k].contacts {
-            let track = self.course.track(c).seen_from(c.ends.p[0]);
+            let contact_path = self.context.contact_path(c).with_cached_piece(c.ends.p[0]);
             if c.is_load() {
                 c.ends.p[1] = c.ends.p[0];
             }
-            c.history.commit(&track, &c.ends, c.mode, c.held, &mut work.past);
+            c.history.commit(&contact_path, &c.ends, c.mode, c.held, &mut workspace.past);
             // Contacts that route down in this step rub from now on.
             if c.smooth && route.is_none() {
                 c.smooth = false;
-                c.mode = if self.course.curves[c.curve].friction > 0.0 { Mode::Hold } else { c.mode };
+                c.mode = if self.context.curves[c.curve].friction > 0.0 { Mode::Stick } else { c.mode };
             }
         }
-        equilibrium::verify(&self.sections[k], &self.course)?;
-        clearance::clear(&self.sections[k], &self.course, &layout.problem.world)?;
+        equilibrium::verify(&self.sections[k], &self.context)?;
+        clearance::verify(&self.sections[k], &self.context, &layout.problem.world)?;
         if !layout.problem.world.is_empty() && route.is_none() {
-            self.refuse_passing(layout, k, start, work)?;
+            self.refuse_passing(layout, k, start, workspace)?;
         }
         Ok(taken)
     }
 
-    /// Finds the equilibrium of one section: from its shape with the predicted slip; else from where
-    /// each span by itself would be; else with the spans of least tension empty, as they may have
-    /// lost it.
+    /// Finds the equilibrium of one section: from its shape with the predicted slip; else from
+    /// where each span by itself would be; else with the spans of least tension empty, as they may
+    /// have lost it.
     fn find_section_equilibrium(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         k: usize,
         route: Option<&[Vec2]>,
         [start, moved]: [&mut CableSection; 2],
-        work: &mut Work,
-    ) -> Result<Solved, Failure> {
+        workspace: &mut Workspace,
+    ) -> Result<Converged, Failure> {
         let world = &layout.problem.world;
         let section = &mut self.sections[k];
-        place_ends(layout, k, section, &self.course, &self.instant)?;
+        place_ends(layout, k, section, &self.context, &self.instant)?;
         moved.clone_from(section);
-        if route.is_none() && self.course.mobilised == 0.0 {
-            predict_slip(section, &self.course, &mut work.slip_predictor);
+        if route.is_none() && self.context.mobilised == 0.0 {
+            predict_slip(section, &self.context, &mut workspace.slip_predictor);
         }
-        let mut found = changes::solve(section, &mut self.course, world, &layout.corners, route, work);
+        let mut found = changes::solve(section, &mut self.context, world, &layout.corners, route, workspace);
         if found.is_err() {
             section.clone_from(moved);
             let mut other = route.is_none();
             for j in 0..section.spans() {
                 if section.has_span(j)
-                    && let Some(g) = section.solve_span(&self.course, j)
+                    && let Some(g) = section.solve_span(&self.context, j)
                 {
                     other |= (section.forces[j] - g).norm() > FORCE_TOLERANCE * g.norm();
                     section.forces[j] = g;
                 }
             }
             if other {
-                found = changes::solve(section, &mut self.course, world, &layout.corners, route, work);
+                found = changes::solve(section, &mut self.context, world, &layout.corners, route, workspace);
             }
         }
         if found.is_err() {
             // Of the spans with hardly any tension left first the least, then the two least …
             let mut loose = Vec::new();
-            slack_pocket::candidates(start, &self.course, &mut loose);
+            slack_pocket::candidates(start, &self.context, &mut loose);
             for n in 1..=loose.len().min(layout.settings.continuation.max_pockets) {
                 section.clone_from(moved);
                 for (_, k) in &loose[..n] {
-                    slack_pocket::fill(section, &self.course, *k);
+                    slack_pocket::fill(section, &self.context, *k);
                 }
-                let again = changes::solve(section, &mut self.course, world, &layout.corners, route, work);
+                let again = changes::solve(section, &mut self.context, world, &layout.corners, route, workspace);
                 if again.is_ok() {
                     found = again;
                     break;
@@ -213,42 +218,42 @@ impl CableEquilibrium {
     /// Returns an error if a section has passed through a corner since it was `start`.
     fn refuse_passing(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         k: usize,
         start: &CableSection,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<(), Failure> {
         // The shape before the step is drawn with the load and the lengths of before: with those of
         // after it spans of a cable that is let out or loaded in this step would end beside their
         // contacts.
-        let was = &work.instants[0];
+        let was = &workspace.instants[0];
         let other =
             was.load != self.instant.load || was.thermal != self.instant.thermal || was.forces != self.instant.forces;
-        if !other && tunnelling::clear(start, &self.sections[k], &self.course, &layout.corners) {
+        if !other && tunnelling::is_clear(start, &self.sections[k], &self.context, &layout.corners) {
             return Ok(());
         }
-        let [old, new] = &mut work.shapes;
+        let [old, new] = &mut workspace.shapes;
         if other {
-            layout.set_course(&mut self.course, &work.instants[0]);
+            layout.set_context(&mut self.context, &workspace.instants[0]);
         }
-        tunnelling::shape(start, &self.course, old);
+        tunnelling::shape(start, &self.context, old);
         if other {
-            layout.set_course(&mut self.course, &self.instant);
+            layout.set_context(&mut self.context, &self.instant);
         }
-        tunnelling::shape(&self.sections[k], &self.course, new);
-        match swept_corners::through(&layout.corners, old, new, &mut work.turns) {
-            Some(corner) => Err(Failure::Passed { at: corner.at }),
+        tunnelling::shape(&self.sections[k], &self.context, new);
+        match swept_corners::through(&layout.corners, old, new, &mut workspace.turns) {
+            Some(corner) => Err(Failure::Tunnelled { at: corner.at }),
             None => Ok(()),
         }
     }
 
     /// Lays a section that lies loose anew while its supports stay where they are. Supports that
     /// move draw its folds over the ground, and the force for that is not modelled.
-    fn lay_loose_again(&mut self, layout: &Layout, k: usize) -> Result<StepStats, Failure> {
-        let found = slack::loose_section(layout, k, &self.course, &self.instant, LooseShapes::AnyTension);
+    fn lay_loose_again(&mut self, layout: &SectionLayout, k: usize) -> Result<StepStats, Failure> {
+        let found = slack::loose_section(layout, k, &self.context, &self.instant, LooseShapes::AnyTension);
         let section = &mut self.sections[k];
-        let Some(found) = found.filter(|f| f.ties == section.ties) else {
-            return Err(Failure::Drawn { s: section.from });
+        let Some(found) = found.filter(|f| f.end_conditions == section.end_conditions) else {
+            return Err(Failure::SlackDragged { s: section.from });
         };
         *section = found;
         Ok(StepStats::default())
@@ -257,13 +262,13 @@ impl CableEquilibrium {
     /// Length of the material that lies loose and of the ground it lies on, m; None where none
     /// does.
     pub fn loose_lengths(&self) -> Option<[f64; 2]> {
-        let lengths = self.sections.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.lying_lengths(&self.course));
+        let lengths = self.sections.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.lying_lengths(&self.context));
         lengths.reduce(|[a, b], [c, d]| [a + c, b + d])
     }
 
     /// The most that friction can hold of loose cable, N.
     pub fn friction_of_loose(&self) -> f64 {
-        self.sections.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.friction(&self.course)).sum()
+        self.sections.iter().filter_map(|s| s.loose.as_ref()).map(|l| l.friction(&self.context)).sum()
     }
 
     /// Goes to an instant that no balance near by leads to: the cable slides under a drag that is
@@ -272,11 +277,11 @@ impl CableEquilibrium {
     /// Each step is one of implicit Euler of η ds/dt = T₂ − T₁, which falls in energy; η is lowered
     /// as far as it goes (pseudo-transient continuation: C. T. Kelley and D. E. Keyes, SIAM J.
     /// Numer. Anal. 35, 1998).
-    fn follow_runaway(
+    fn pseudo_transient_continuation(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         to: &BoundaryConditions,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
         let tuned = &layout.settings.continuation;
         let (before, old) = (self.sections.clone(), self.instant.clone());
@@ -284,9 +289,9 @@ impl CableEquilibrium {
         let (mut drag, mut taken, mut raised) = (tuned.drag_factor * size, StepStats::default(), 0);
         let mut pushed = None;
         for _ in 0..tuned.max_drag_steps {
-            self.course.drag = drag;
-            let result = self.step(layout, to, work);
-            self.course.drag = 0.0;
+            self.context.drag = drag;
+            let result = self.step(layout, to, workspace);
+            self.context.drag = 0.0;
             match result {
                 Ok(t) => {
                     pushed = None;
@@ -294,7 +299,7 @@ impl CableEquilibrium {
                     drag *= if raised > 0 { 0.5 } else { 0.25 };
                     raised = 0;
                     if drag < tuned.drag_factor * tuned.rest_drag_fraction * size
-                        && let Ok(t) = self.step(layout, to, work)
+                        && let Ok(t) = self.step(layout, to, workspace)
                     {
                         return Ok(taken.and(t));
                     }
@@ -310,17 +315,17 @@ impl CableEquilibrium {
             }
         }
         self.sections = before;
-        layout.set_course(&mut self.course, &old);
+        layout.set_context(&mut self.context, &old);
         self.instant = old;
-        Err(pushed.unwrap_or(Failure::Restless { s: 0.0 }))
+        Err(pushed.unwrap_or(Failure::ContactCycling { s: 0.0 }))
     }
 
     /// The failure that explains best why a step was not taken: of the step itself, or of the cable
     /// held back by a drag, where that would have to push.
     fn failure_to_report(&self, step: Failure, held_back: Failure) -> Failure {
-        let found_nothing = matches!(step, Failure::Stalled { .. } | Failure::Restless { .. });
+        let found_nothing = matches!(step, Failure::Stalled { .. } | Failure::ContactCycling { .. });
         let pushes = matches!(held_back, Failure::Compressed { .. });
-        if found_nothing && pushes && tension_loss::lost(&self.sections, &self.course, &step).is_none() {
+        if found_nothing && pushes && tension_loss::find(&self.sections, &self.context, &step).is_none() {
             held_back
         } else {
             step
@@ -329,7 +334,7 @@ impl CableEquilibrium {
 
     /// Gives hardly any tension to a cable with a free end that lies loose along its route, when it
     /// begins to be drawn: only a cable in tension can be followed.
-    fn take_up_slack(&mut self, layout: &Layout, to: &BoundaryConditions, work: &mut Work) {
+    fn take_up_slack(&mut self, layout: &SectionLayout, to: &BoundaryConditions, workspace: &mut Workspace) {
         let held = |k: usize| layout.sections[k].supports.iter().all(Option::is_some);
         let spreads = |k: usize| self.sections[k].loose.as_ref().is_some_and(Loose::spreads);
         let follows = (0..self.sections.len()).all(|k| self.sections[k].loose.is_none() || (spreads(k) && !held(k)));
@@ -338,40 +343,41 @@ impl CableEquilibrium {
         }
         let instant = self.instant.clone();
         let mut taut = self.clone();
-        if taut.lay_in_tension(layout, &instant, work).is_ok() {
+        if taut.lay_in_tension(layout, &instant, workspace).is_ok() {
             *self = taut;
         }
     }
 
     /// Goes to an instant in steps, the first of which is this part of the way. One that fails is
     /// halved.
-    pub fn travel(
+    pub fn advance_load(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         to: &BoundaryConditions,
         first: f64,
-        work: &mut Work,
-    ) -> Result<StepStats, Stopped> {
-        self.take_up_slack(layout, to, work);
-        let [old, mut from, mut at] = std::mem::take(&mut work.instants);
-        work.instants[0] = old;
+        workspace: &mut Workspace,
+    ) -> Result<StepStats, AdvanceFailure> {
+        self.take_up_slack(layout, to, workspace);
+        let [old, mut from, mut at] = std::mem::take(&mut workspace.instants);
+        workspace.instants[0] = old;
         from.clone_from(&self.instant);
-        let found = self.travel_from(layout, &from, to, &mut at, first, work);
-        let old = std::mem::take(&mut work.instants[0]);
-        work.instants = [old, from, at];
+        let found = self.advance_load_from(layout, &from, to, &mut at, first, workspace);
+        let old = std::mem::take(&mut workspace.instants[0]);
+        workspace.instants = [old, from, at];
         found
     }
 
-    /// As [`Self::travel`], with the instants of both ends, and memory for those between them.
-    fn travel_from(
+    /// As [`Self::advance_load`], with the instants of both ends, and memory for those between
+    /// them.
+    fn advance_load_from(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         from: &BoundaryConditions,
         to: &BoundaryConditions,
         at: &mut BoundaryConditions,
         first: f64,
-        work: &mut Work,
-    ) -> Result<StepStats, Stopped> {
+        workspace: &mut Workspace,
+    ) -> Result<StepStats, AdvanceFailure> {
         let tuned = &layout.settings.continuation;
         let (mut done, mut step, mut taken) = (0.0, first, StepStats::default());
         let mut halvings: u32 = 0;
@@ -381,7 +387,7 @@ impl CableEquilibrium {
         while done < 1.0 {
             let next = if done + END_ROUNDING * step >= 1.0 { 1.0 } else { done + step };
             at.between(from, to, next);
-            let failure = match self.step(layout, at, work) {
+            let failure = match self.step(layout, at, workspace) {
                 // A contact has no friction in the step in which it comes down, so that step has to
                 // be short.
                 Ok(t)
@@ -389,7 +395,7 @@ impl CableEquilibrium {
                         && t.missing_friction > tuned.missing_friction_fraction
                         && step > tuned.landing_step_fraction =>
                 {
-                    self.undo(layout, work);
+                    self.undo(layout, workspace);
                     whole = whole.or(Some(step));
                     (step, taken.halvings) = (0.5 * step, taken.halvings + 1);
                     continue;
@@ -419,9 +425,9 @@ impl CableEquilibrium {
                 let next =
                     if done + tuned.runaway_step_fraction < 1.0 { done + tuned.runaway_step_fraction } else { 1.0 };
                 at.between(from, to, next);
-                let t = match self.follow_runaway(layout, at, work) {
+                let t = match self.pseudo_transient_continuation(layout, at, workspace) {
                     Ok(t) => t,
-                    Err(other) => return Err(Stopped { failure: self.failure_to_report(failure, other), done }),
+                    Err(other) => return Err(AdvanceFailure { failure: self.failure_to_report(failure, other), done }),
                 };
                 (taken, done, halvings, step) = (taken.and(t), next, 0, tuned.runaway_step_fraction);
                 taken.runaways += 1;
@@ -444,7 +450,7 @@ impl StepStats {
     }
 }
 
-impl Solved {
+impl Converged {
     fn and(self, more: Self) -> Self {
         Self {
             iterations: self.iterations + more.iterations,

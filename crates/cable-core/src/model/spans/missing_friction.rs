@@ -1,11 +1,11 @@
 //! A cable that nothing but friction holds slides if there is too little of it: this module finds
 //! how much it would need, and what a cable keeps that was drawn.
 
-use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, SectionLayout};
 use crate::model::spans::cable_section::CableSection;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::first_equilibrium::{FirstShape, shapes_with_friction};
-use crate::model::spans::newton::Work;
+use crate::model::spans::newton::Workspace;
 
 /// Part of the friction that is missing to which it is found: three digits are shown.
 const MISSING_FRICTION_TOLERANCE: f64 = 2e-4;
@@ -21,14 +21,18 @@ impl CableEquilibrium {
     ///
     /// With less friction every contact of the section slides the same way. Contacts that all but
     /// slide just above the multiple prove that friction is missing, and not the search's success.
-    pub fn friction_needed(layout: &Layout, instant: &BoundaryConditions, work: &mut Work) -> Option<f64> {
+    pub fn friction_needed(
+        layout: &SectionLayout,
+        instant: &BoundaryConditions,
+        workspace: &mut Workspace,
+    ) -> Option<f64> {
         let tuned = &layout.settings.continuation;
-        let course = layout.course(layout.curves(), instant);
+        let context = layout.context(layout.curves(), instant);
         let mut rests = |part: f64, shape: FirstShape| {
             let begin = BoundaryConditions { friction: part, ..instant.clone() };
-            let mut network = Self { sections: Vec::new(), course: course.clone(), instant: begin.clone() };
-            let taken = network.lay_along_route(layout, &begin, shape, work).ok()?;
-            (taken.runaways == 0).then_some(network)
+            let mut cable_equilibrium = Self { sections: Vec::new(), context: context.clone(), instant: begin.clone() };
+            let taken = cable_equilibrium.lay_along_route(layout, &begin, shape, workspace).ok()?;
+            (taken.runaways == 0).then_some(cable_equilibrium)
         };
         let (mut low, mut step) = (1.0, tuned.first_missing_part);
         let (mut high, shape) = loop {
@@ -55,7 +59,7 @@ impl CableEquilibrium {
         let found = rests(high, shape)?;
         let near = tuned.mobilised_fraction * (1.0 + MISSING_FRICTION_TOLERANCE * (high - 1.0));
         let slides =
-            |s: &CableSection| [1.0, -1.0].iter().any(|way| point_load::mobilised(s, &found.course, *way, near));
+            |s: &CableSection| [1.0, -1.0].iter().any(|way| point_load::mobilised(s, &found.context, *way, near));
         let unheld =
             layout.sections.iter().zip(&found.sections).filter(|(p, _)| p.supports.iter().all(Option::is_none));
         unheld.map(|(_, s)| s).any(slides).then_some(high)
@@ -63,11 +67,11 @@ impl CableEquilibrium {
 
     /// The balance in which all friction acts against a cable that was drawn one way (1: towards
     /// its end, −1: towards its start). None where there is none.
-    pub fn drawn_one_way(&self, layout: &Layout, way: f64, work: &mut Work) -> Option<Self> {
-        let mut network = self.clone();
-        network.course.mobilised = way;
+    pub fn fully_mobilised(&self, layout: &SectionLayout, way: f64, workspace: &mut Workspace) -> Option<Self> {
+        let mut cable_equilibrium = self.clone();
+        cable_equilibrium.context.mobilised = way;
         let instant = self.instant.clone();
-        network.step(layout, &instant, work).ok()?;
-        Some(network)
+        cable_equilibrium.step(layout, &instant, workspace).ok()?;
+        Some(cable_equilibrium)
     }
 }

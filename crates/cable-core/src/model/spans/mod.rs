@@ -52,13 +52,15 @@ use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
 use crate::model::catenary::slack_without_weight;
 use crate::model::gauge::TensionGauge;
-use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, CableEquilibrium, Layout, unsupported};
+use crate::model::spans::boundary_conditions::{
+    BoundaryConditions, CableEnd, CableEquilibrium, SectionLayout, unsupported,
+};
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::first_equilibrium::{NotFound, SearchStart};
-use crate::model::spans::newton::Work;
+use crate::model::spans::newton::Workspace;
 use crate::model::spans::results::Report;
-use crate::model::spans::reversed::Turned;
+use crate::model::spans::reversed::Reversal;
 use crate::model::spans::settings::SpansSettings;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;
@@ -80,15 +82,15 @@ pub struct SpansModel {
     /// True if other histories are searched.
     histories: bool,
     /// The cable as it is laid: counted from either end.
-    layout: Layout,
+    layout: SectionLayout,
     time_s: f64,
     /// In the order of the layout.
     dragged: Vec<Option<Vec2>>,
-    network: Option<CableEquilibrium>,
-    work: Work,
+    cable_equilibrium: Option<CableEquilibrium>,
+    workspace: Workspace,
     /// The start and the goal of a step, and a part of it.
     instants: [BoundaryConditions; 3],
-    /// The report shown while there is no network.
+    /// The report shown while there is no cable equilibrium.
     shown: Report,
 }
 
@@ -130,35 +132,45 @@ impl SpansModel {
         };
         let nodes = points.iter().enumerate().map(node).collect();
         let shown = Report { nodes, ..Report::default() };
-        let (work, instants) = (Work::default(), <[BoundaryConditions; 3]>::default());
+        let (workspace, instants) = (Workspace::default(), <[BoundaryConditions; 3]>::default());
         let (histories, dragged) = (settings.histories, vec![None; n]);
-        Ok(Self { problem, histories, layout, time_s: 0.0, dragged, network: None, work, instants, shown })
+        Ok(Self {
+            problem,
+            histories,
+            layout,
+            time_s: 0.0,
+            dragged,
+            cable_equilibrium: None,
+            workspace,
+            instants,
+            shown,
+        })
     }
 
     /// True if the cable that was found lies without tension.
     pub(super) fn lies_loose(&self) -> bool {
-        self.network.as_ref().is_some_and(|n| n.loose_lengths().is_some())
+        self.cable_equilibrium.as_ref().is_some_and(|n| n.loose_lengths().is_some())
     }
 
     /// Leaves an equilibrium that runs away at the least push for a stable one; a warning where it
     /// leads to none.
     pub(super) fn leave_unstable(&mut self) -> Option<Warning> {
-        let network = self.network.as_mut()?;
-        let instant = network.instant.clone();
-        let left = network.leave_unstable(&self.layout, &instant, &mut self.work);
+        let cable_equilibrium = self.cable_equilibrium.as_mut()?;
+        let instant = cable_equilibrium.instant.clone();
+        let left = cable_equilibrium.leave_unstable(&self.layout, &instant, &mut self.workspace);
         left.is_err().then(|| self.warning(WarningCause::Unstable))
     }
 
     /// True if a resting place has been found.
-    pub(super) fn stands(&self) -> bool {
-        self.network.is_some()
+    pub(super) fn has_equilibrium(&self) -> bool {
+        self.cable_equilibrium.is_some()
     }
 
     /// The report of the present state.
     fn present_report(&self) -> Report {
-        match &self.network {
-            Some(network) => {
-                let report = results::report(&self.layout, network);
+        match &self.cable_equilibrium {
+            Some(cable_equilibrium) => {
+                let report = results::report(&self.layout, cable_equilibrium);
                 if self.layout.is_reversed() { self.turned().report(&report) } else { report }
             }
             None => self.shown.clone(),
@@ -173,9 +185,9 @@ impl SpansModel {
     /// A failure as an error: a loss of tension where the last state found, `stopped` or the
     /// present one, shows one.
     fn solve_error(&self, stopped: Option<&CableEquilibrium>, failure: Failure) -> SolveError {
-        if let Some(network) = stopped.or(self.network.as_ref())
+        if let Some(cable_equilibrium) = stopped.or(self.cable_equilibrium.as_ref())
             && let Some((loss, arc_length_m, at_m)) =
-                acceptance::tension_loss::lost(&network.sections, &network.course, &failure)
+                acceptance::tension_loss::find(&cable_equilibrium.sections, &cable_equilibrium.context, &failure)
         {
             let arc_length_m = if self.layout.is_reversed() { self.turned().s(arc_length_m) } else { arc_length_m };
             return SolveError::TensionLost { model: Model::Spans, loss, arc_length_m, at_m };
@@ -189,8 +201,8 @@ impl SpansModel {
     }
 
     /// The map from the layout's direction along the cable to the scene's, where they differ.
-    fn turned(&self) -> Turned<'_> {
-        Turned { problem: &self.problem }
+    fn turned(&self) -> Reversal<'_> {
+        Reversal { problem: &self.problem }
     }
 
     /// Finds the first equilibrium: along the route, counted from the cable's upper end; where none
@@ -198,9 +210,9 @@ impl SpansModel {
     fn find_first_equilibrium(
         &mut self,
         instant: &mut BoundaryConditions,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<StepStats, NotFound> {
-        let (network, taken) = match CableEquilibrium::along_route(&self.layout, instant, work) {
+        let (cable_equilibrium, taken) = match CableEquilibrium::along_route(&self.layout, instant, workspace) {
             Ok(found) => found,
             Err(not_found) => {
                 let (mut there, mut dragged) = (BoundaryConditions::default(), self.dragged.clone());
@@ -209,7 +221,7 @@ impl SpansModel {
                     .ok()
                     .and_then(|other| {
                         other.instant(&dragged, self.time_s, &mut there);
-                        Some((CableEquilibrium::along_route(&other, &there, work).ok()?, other))
+                        Some((CableEquilibrium::along_route(&other, &there, workspace).ok()?, other))
                     });
                 match (other, CableEquilibrium::in_heaps(&self.layout, instant)) {
                     (Some((found, other)), _) => {
@@ -221,7 +233,7 @@ impl SpansModel {
                 }
             }
         };
-        self.network = Some(network);
+        self.cable_equilibrium = Some(cable_equilibrium);
         Ok(taken)
     }
 
@@ -243,18 +255,18 @@ impl SpansModel {
     ///
     /// An equilibrium that was found without friction is not sought so again: the search would come
     /// to the place from which the cable is drawn here.
-    fn histories(&self, start: SearchStart, work: &mut Work) -> Histories {
-        let Some(network) = &self.network else { return Histories::NotSought };
+    fn histories(&self, start: SearchStart, workspace: &mut Workspace) -> Histories {
+        let Some(cable_equilibrium) = &self.cable_equilibrium else { return Histories::NotSought };
         let turned = self.layout.is_reversed();
-        let tensions = |network: &CableEquilibrium| self.tensions(network);
-        let laid = tensions(network);
+        let tensions = |cable_equilibrium: &CableEquilibrium| self.tensions(cable_equilibrium);
+        let laid = tensions(cable_equilibrium);
         let drawn = [FrictionMobilised::TowardsStart, FrictionMobilised::TowardsEnd].map(|drawn| {
             let drawn = if turned { reversed::mobilised(drawn) } else { drawn };
-            let found = network.drawn_one_way(&self.layout, drawn.way(), work);
-            found.or_else(|| self.along_route_drawn(drawn, start, work)).map(|n| tensions(&n))
+            let found = cable_equilibrium.fully_mobilised(&self.layout, drawn.way(), workspace);
+            found.or_else(|| self.along_route_mobilised(drawn, start, workspace)).map(|n| tensions(&n))
         });
         // A cable that is longer than its way may as well lie loose.
-        let heap = CableEquilibrium::in_heaps(&self.layout, &network.instant);
+        let heap = CableEquilibrium::in_heaps(&self.layout, &cable_equilibrium.instant);
         let loose =
             heap.filter(|heap| heap.loose_lengths().is_some_and(|[material, _]| material > 0.0)).map(|n| tensions(&n));
         let all = || std::iter::once(laid).chain(drawn.into_iter().flatten()).chain(loose);
@@ -275,9 +287,9 @@ impl SpansModel {
         }
     }
 
-    /// Tensions of a network at the cable's start, at its end and at most, N.
-    fn tensions(&self, network: &CableEquilibrium) -> [f64; 3] {
-        let [start, end, greatest] = results::tensions(network);
+    /// Tensions of a cable equilibrium at the cable's start, at its end and at most, N.
+    fn tensions(&self, cable_equilibrium: &CableEquilibrium) -> [f64; 3] {
+        let [start, end, greatest] = results::tensions(cable_equilibrium);
         if self.layout.is_reversed() { [end, start, greatest] } else { [start, end, greatest] }
     }
 
@@ -286,10 +298,10 @@ impl SpansModel {
         if self.rubs() || self.lies_loose() {
             return None;
         }
-        let network = self.network.as_ref()?;
-        let others = network.other_equilibria(&self.layout, &mut self.work);
+        let cable_equilibrium = self.cable_equilibrium.as_ref()?;
+        let others = cable_equilibrium.other_equilibria(&self.layout, &mut self.workspace);
         let others: Vec<[f64; 3]> = others.iter().map(|n| self.tensions(n)).collect();
-        let histories = Histories::slack_elsewhere(self.tensions(network), &others)?;
+        let histories = Histories::slack_elsewhere(self.tensions(cable_equilibrium), &others)?;
         Some(self.warning(WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories }))
     }
 
@@ -298,17 +310,17 @@ impl SpansModel {
     }
 
     /// The first equilibrium of the cable along its route while it is drawn one way.
-    fn along_route_drawn(
+    fn along_route_mobilised(
         &self,
         drawn: FrictionMobilised,
         start: SearchStart,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Option<CableEquilibrium> {
         let mut layout = self.layout.clone();
         Arc::make_mut(&mut layout.problem).cable.friction_mobilised = drawn;
-        let instant = self.network.as_ref()?.instant.clone();
-        let found = CableEquilibrium::along_route_from(&layout, &instant, start, work);
-        found.ok().map(|(network, _)| network).filter(|n| n.loose_lengths().is_none())
+        let instant = self.cable_equilibrium.as_ref()?.instant.clone();
+        let found = CableEquilibrium::along_route_from(&layout, &instant, start, workspace);
+        found.ok().map(|(cable_equilibrium, _)| cable_equilibrium).filter(|n| n.loose_lengths().is_none())
     }
 
     /// True if some of the cable is held by nothing but friction.
@@ -318,7 +330,7 @@ impl SpansModel {
 
     /// True if the cable touches nothing that rubs, and drawn towards either end comes back to the
     /// same tensions: then no history was found that leaves others.
-    fn hangs_free(&self, histories: &Histories) -> bool {
+    fn is_history_independent(&self, histories: &Histories) -> bool {
         let Histories::Mobilised {
             greatest_n, towards_start_n: Some(_), towards_end_n: Some(_), start_n, end_n, ..
         } = histories
@@ -337,10 +349,10 @@ impl SpansModel {
 }
 
 /// The layout of a cable counted from its start, or from its end.
-fn counted(problem: &Arc<Problem>, from: CableEnd, settings: Arc<SpansSettings>) -> Result<Layout, SolveError> {
+fn counted(problem: &Arc<Problem>, from: CableEnd, settings: Arc<SpansSettings>) -> Result<SectionLayout, SolveError> {
     match from {
-        CableEnd::Start => Layout::new(problem, from, settings),
-        CableEnd::End => Layout::new(&Arc::new(reversed::problem(problem)), from, settings),
+        CableEnd::Start => SectionLayout::new(problem, from, settings),
+        CableEnd::End => SectionLayout::new(&Arc::new(reversed::problem(problem)), from, settings),
     }
 }
 
@@ -357,15 +369,15 @@ fn error_of(problem: &Problem, failure: Failure) -> SolveError {
         Failure::Compressed { s, at, tension } => {
             SolveError::Compressed { model: Model::Spans, tension_n: tension, place: problem.place(s, at, 0.0) }
         }
-        Failure::Restless { s } => unsupported(Unsupported::EndlessContacts { arc_length_m: s }),
+        Failure::ContactCycling { s } => unsupported(Unsupported::EndlessContacts { arc_length_m: s }),
         Failure::OffWheel { support } => unsupported(Unsupported::OffWheel { support: name(support).to_owned() }),
-        Failure::Passed { at } => unsupported(Unsupported::CornerPassed { at_m: at }),
+        Failure::Tunnelled { at } => unsupported(Unsupported::CornerPassed { at_m: at }),
         Failure::SupportInside { at } => unsupported(Unsupported::SupportInside { at_m: at }),
-        Failure::LoadLies { s } => unsupported(Unsupported::LoadOnObstacle { arc_length_m: s }),
+        Failure::LoadInContact { s } => unsupported(Unsupported::LoadOnObstacle { arc_length_m: s }),
         Failure::ContactImpossible { s, at } => {
             unsupported(Unsupported::ContactImpossible { arc_length_m: s, at_m: at })
         }
-        Failure::Drawn { s } => unsupported(Unsupported::LooseCableDrawn { arc_length_m: s }),
+        Failure::SlackDragged { s } => unsupported(Unsupported::LooseCableDrawn { arc_length_m: s }),
         Failure::Unsound { what, s, at } => {
             unsupported(Unsupported::Unverified { finding: what, arc_length_m: s, at_m: at })
         }
@@ -387,32 +399,33 @@ impl Mechanics for SpansModel {
         }
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, self.time_s, &mut instant);
-        let mut work = std::mem::take(&mut self.work);
+        let mut workspace = std::mem::take(&mut self.workspace);
         // A cable that lies loose remembers nothing.
-        self.network = self.network.take().filter(|n| n.loose_lengths().is_none());
-        let found = match &mut self.network {
-            Some(network) => {
-                network.travel(&self.layout, &instant, 1.0, &mut work).map_err(|stopped| stopped.failure.into())
-            }
-            None => self.find_first_equilibrium(&mut instant, &mut work),
+        self.cable_equilibrium = self.cable_equilibrium.take().filter(|n| n.loose_lengths().is_none());
+        let found = match &mut self.cable_equilibrium {
+            Some(cable_equilibrium) => cable_equilibrium
+                .advance_load(&self.layout, &instant, 1.0, &mut workspace)
+                .map_err(|stopped| stopped.failure.into()),
+            None => self.find_first_equilibrium(&mut instant, &mut workspace),
         };
-        let (found, stable) = match &mut self.network {
-            Some(n) if found.is_ok() => match n.leave_unstable(&self.layout, &instant, &mut work) {
+        let (found, stable) = match &mut self.cable_equilibrium {
+            Some(n) if found.is_ok() => match n.leave_unstable(&self.layout, &instant, &mut workspace) {
                 Ok(left) => (found.map(|taken| taken.and(left)), true),
                 Err(_) => (found, false),
             },
             _ => (found, true),
         };
-        let slides = found.is_err() && self.network.is_none() && self.hangs_by_friction();
-        let needed = if slides { CableEquilibrium::friction_needed(&self.layout, &instant, &mut work) } else { None };
-        let loose = self.network.as_ref().and_then(CableEquilibrium::loose_lengths);
+        let slides = found.is_err() && self.cable_equilibrium.is_none() && self.hangs_by_friction();
+        let needed =
+            if slides { CableEquilibrium::friction_needed(&self.layout, &instant, &mut workspace) } else { None };
+        let loose = self.cable_equilibrium.as_ref().and_then(CableEquilibrium::loose_lengths);
         let seeks = self.histories && found.is_ok() && loose.is_none() && self.rubs();
         let start = match &found {
             Ok(taken) if taken.found_without_friction => SearchStart::WithFriction,
             _ => SearchStart::AlsoWithoutFriction,
         };
-        let histories = if seeks { self.histories(start, &mut work) } else { Histories::NotSought };
-        self.work = work;
+        let histories = if seeks { self.histories(start, &mut workspace) } else { Histories::NotSought };
+        self.workspace = workspace;
         let others = if found.is_ok() && stable { self.other_equilibria() } else { None };
         if let Some(part) = needed {
             let why = NoEquilibrium::TooLittleFriction { friction_ratio: part };
@@ -429,10 +442,10 @@ impl Mechanics for SpansModel {
         let mobilised = self.layout.problem.cable.friction_mobilised;
         if let Some([material, ground]) = loose {
             // Whatever the history, nothing but friction on what lies can hold more.
-            let held_n = self.network.as_ref().map_or(0.0, CableEquilibrium::friction_of_loose);
+            let held_n = self.cable_equilibrium.as_ref().map_or(0.0, CableEquilibrium::friction_of_loose);
             let cause = WarningCause::Loose { material_m: material, ground_m: ground, held_n };
             report.warnings.push(self.warning(cause));
-        } else if self.rubs() && mobilised.is_default() && !self.hangs_free(&histories) {
+        } else if self.rubs() && mobilised.is_default() && !self.is_history_independent(&histories) {
             let shown = if taken.found_without_friction {
                 ShownEquilibrium::Frictionless
             } else {
@@ -459,21 +472,21 @@ impl Mechanics for SpansModel {
         if !(dt_s > 0.0 && dt_s <= LONGEST_STEP_S) {
             return Err(SolveError::TimeStep { dt_s, longest_s: 1e6 });
         }
-        if self.network.is_none() {
+        if self.cable_equilibrium.is_none() {
             self.settle()?;
         }
         let (start, end) = (self.time_s, self.time_s + dt_s);
-        let Some(mut network) = self.network.take() else { return Ok(StepReport::default()) };
+        let Some(mut cable_equilibrium) = self.cable_equilibrium.take() else { return Ok(StepReport::default()) };
         let length = self.layout.problem.length;
         let [mut first, mut last, mut instant] = std::mem::take(&mut self.instants);
         self.layout.instant(&self.dragged, end, &mut last);
-        let pieces = (Self::travel(&network.instant, &last)
+        let pieces = (Self::travel(&cable_equilibrium.instant, &last)
             / (self.layout.settings.continuation.max_move_fraction * length))
             .ceil()
             .clamp(1.0, 1000.0);
-        let mut work = std::mem::take(&mut self.work);
+        let mut workspace = std::mem::take(&mut self.workspace);
         let mut sum = StepReport::default();
-        first.clone_from(&network.instant);
+        first.clone_from(&cable_equilibrium.instant);
         let (mut failed, mut ran) = (None, 0);
         for k in 1..=pieces as usize {
             let f = k as f64 / pieces;
@@ -485,7 +498,7 @@ impl Mechanics for SpansModel {
                     instant.places[i] = first.places[i] + (last.places[i] - first.places[i]) * f;
                 }
             }
-            match network.travel(&self.layout, &instant, 1.0, &mut work) {
+            match cable_equilibrium.advance_load(&self.layout, &instant, 1.0, &mut workspace) {
                 Ok(taken) => {
                     let one = self.report_of(taken).cost;
                     sum.cost.iterations += one.iterations;
@@ -501,8 +514,8 @@ impl Mechanics for SpansModel {
                 }
             }
         }
-        self.network = Some(network);
-        (self.work, self.instants) = (work, [first, last, instant]);
+        self.cable_equilibrium = Some(cable_equilibrium);
+        (self.workspace, self.instants) = (workspace, [first, last, instant]);
         match failed {
             Some(failure) => Err(self.solve_error(None, failure)),
             None => {
@@ -528,19 +541,19 @@ impl Mechanics for SpansModel {
         }
         self.time_s = state.time_s;
         self.shown = self.present_report();
-        self.network = None;
+        self.cable_equilibrium = None;
         Ok(())
     }
 
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
         let mut instant = BoundaryConditions::default();
         self.layout.instant(&self.dragged, time_s, &mut instant);
-        let mut work = std::mem::take(&mut self.work);
+        let mut workspace = std::mem::take(&mut self.workspace);
         let nodes = self.layout.is_reversed().then(|| self.turned().nodes(&answer.nodes));
         let nodes = nodes.as_ref().unwrap_or(&answer.nodes);
-        let taken = CableEquilibrium::from_answer(&self.layout, &instant, nodes, &mut work);
-        self.work = work;
-        self.network = Some(taken.map_err(|t| self.plain_error(t))?);
+        let taken = CableEquilibrium::from_answer(&self.layout, &instant, nodes, &mut workspace);
+        self.workspace = workspace;
+        self.cable_equilibrium = Some(taken.map_err(|t| self.plain_error(t))?);
         self.time_s = time_s;
         Ok(())
     }

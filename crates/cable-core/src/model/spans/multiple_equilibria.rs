@@ -5,11 +5,11 @@
 //! of a contact. The cable leaves one balance for another by sliding under a drag.
 
 use crate::math::{bounded, larger, smaller};
-use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, SectionLayout};
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::initial::contacts;
-use crate::model::spans::newton::{self, Work};
+use crate::model::spans::newton::{self, Workspace};
 
 /// Factor of the drag after a step that failed.
 const DRAG_RISE: f64 = 8.0;
@@ -31,24 +31,24 @@ impl CableEquilibrium {
     /// nothing has changed.
     pub fn leave_unstable(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         to: &BoundaryConditions,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
-        if self.is_stable(work) {
+        if self.is_stable(workspace) {
             return Ok(StepStats::default());
         }
         let by = layout.settings.continuation.leaving_fraction * layout.problem.length;
         let before = self.clone();
-        self.slide_from(layout, to, |_| by, work).inspect_err(|_| {
+        self.slide_from(layout, to, |_| by, workspace).inspect_err(|_| {
             *self = before;
-            layout.set_course(&mut self.course, to);
+            layout.set_context(&mut self.context, to);
         })
     }
 
     /// Finds other balances of a slack cable that slides without friction. Slack is moved from each
     /// side of each contact to the other, and on from each balance that is found so.
-    pub fn other_equilibria(&self, layout: &Layout, work: &mut Work) -> Vec<Self> {
+    pub fn other_equilibria(&self, layout: &SectionLayout, workspace: &mut Workspace) -> Vec<Self> {
         let tuned = &layout.settings.continuation;
         let mut found = vec![self.clone()];
         let (mut from, mut tries) = (0, 0);
@@ -60,7 +60,7 @@ impl CableEquilibrium {
                 tries += 1;
                 let (mut other, to) = (base.clone(), base.instant.clone());
                 let moved = |k: usize| if k == contact { passed_on_m } else { 0.0 };
-                if other.slide_from(layout, &to, moved, work).is_ok()
+                if other.slide_from(layout, &to, moved, workspace).is_ok()
                     && !found.iter().any(|f| f.is_same_balance(&other, layout))
                 {
                     found.push(other);
@@ -73,13 +73,13 @@ impl CableEquilibrium {
 
     /// The moves that bring the slack of either side of a contact to the other, at contacts on both
     /// sides of which cable hangs.
-    fn moves_of_slack(&self, layout: &Layout) -> Vec<SlackMove> {
+    fn moves_of_slack(&self, layout: &SectionLayout) -> Vec<SlackMove> {
         let least = layout.settings.continuation.least_slack_fraction;
         let mut moves = Vec::new();
         let mut index = 0;
         for section in &self.sections {
             for j in 0..section.contacts.len() {
-                let slack = [j, j + 1].map(|k| section.has_span(k).then(|| section.slack(&self.course, k)).flatten());
+                let slack = [j, j + 1].map(|k| section.has_span(k).then(|| section.slack(&self.context, k)).flatten());
                 if let [Some([before, near]), Some([after, far])] = slack
                     && before + after > least * smaller(near, far)
                 {
@@ -93,7 +93,7 @@ impl CableEquilibrium {
     }
 
     /// True if two balances have the same material at the same contacts.
-    fn is_same_balance(&self, other: &Self, layout: &Layout) -> bool {
+    fn is_same_balance(&self, other: &Self, layout: &SectionLayout) -> bool {
         let near = layout.settings.continuation.other_balance_fraction * layout.problem.length;
         let [here, there] = [self, other].map(Self::material_at_contacts);
         here.len() == there.len() && here.iter().zip(&there).all(|(a, b)| (a - b).abs() <= near)
@@ -106,10 +106,10 @@ impl CableEquilibrium {
     /// (switched evolution relaxation: W. A. Mulder and B. van Leer, J. Comput. Phys. 59, 1985).
     fn slide_from(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         to: &BoundaryConditions,
         passed_on_m: impl Fn(usize) -> f64,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
         let tuned = &layout.settings.continuation;
         let size = to.load.norm();
@@ -117,17 +117,17 @@ impl CableEquilibrium {
         let mut raised = 0;
         for (k, c) in self.sections.iter_mut().flat_map(|s| &mut s.contacts).enumerate() {
             let by = passed_on_m(k);
-            c.history.pass_on(by);
+            c.history.shift_material(by);
             c.ends.s = c.ends.s.map(|s| s + by);
         }
         for section in &mut self.sections {
-            contacts::solve_spans(section, &self.course).ok_or(Failure::Restless { s: section.from })?;
+            contacts::solve_spans(section, &self.context).ok_or(Failure::ContactCycling { s: section.from })?;
         }
         for _ in 0..tuned.max_drag_steps {
             let materials = self.material_at_contacts();
-            self.course.drag = drag;
-            let result = self.step(layout, to, work);
-            self.course.drag = 0.0;
+            self.context.drag = drag;
+            let result = self.step(layout, to, workspace);
+            self.context.drag = 0.0;
             let Ok(one) = result else {
                 if raised == tuned.max_drag_raises {
                     break;
@@ -141,13 +141,13 @@ impl CableEquilibrium {
             drag *= left.map_or(1.0, |left| bounded(force / left, LEAST_DRAG_FALL, 1.0));
             left = Some(force);
             if drag < tuned.drag_factor * tuned.rest_drag_fraction * size
-                && let Ok(one) = self.step(layout, to, work)
-                && self.is_stable(work)
+                && let Ok(one) = self.step(layout, to, workspace)
+                && self.is_stable(workspace)
             {
                 return Ok(taken.and(one));
             }
         }
-        Err(Failure::Restless { s: 0.0 })
+        Err(Failure::ContactCycling { s: 0.0 })
     }
 
     /// Material at the start of each contact, m.
@@ -156,7 +156,7 @@ impl CableEquilibrium {
     }
 
     /// True if every section is a stable rest and not a balance that runs away.
-    pub fn is_stable(&self, work: &mut Work) -> bool {
-        self.sections.iter().all(|s| newton::stable(s, &self.course, work))
+    pub fn is_stable(&self, workspace: &mut Workspace) -> bool {
+        self.sections.iter().all(|s| newton::stable(s, &self.context, workspace))
     }
 }

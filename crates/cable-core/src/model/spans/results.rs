@@ -3,14 +3,14 @@
 use crate::catenary::PointForce;
 use crate::math::{GAUSS_3, GAUSS_5, Vec2, larger};
 use crate::model::arc_nodes;
-use crate::model::catenary::report::{Nodes, Point, forget_hint};
-use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::boundary::curve::Place;
+use crate::model::catenary::report::{Nodes, Point, remove_auxiliary_weight};
+use crate::model::spans::boundary::capstan::ContactPath;
+use crate::model::spans::boundary::curve::BoundaryPoint;
 use crate::model::spans::boundary::friction_memory::{Mode, TensionProfile};
-use crate::model::spans::boundary::segment_cursor::{Pivot, SegmentCursor};
+use crate::model::spans::boundary::segment_cursor::{CachedPiece, SegmentCursor};
 use crate::model::spans::boundary_conditions::CableEquilibrium;
-use crate::model::spans::boundary_conditions::Layout;
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, Tie};
+use crate::model::spans::boundary_conditions::SectionLayout;
+use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::contact::slack_pocket;
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
@@ -32,15 +32,15 @@ pub(in crate::model::spans) struct Report {
     pub contacts: Vec<ContactReport>,
 }
 
-/// The answer of a network.
-pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibrium) -> Report {
-    let course = &network.course;
+/// The answer of a cable equilibrium.
+pub(in crate::model::spans) fn report(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium) -> Report {
+    let context = &cable_equilibrium.context;
     let mut greatest = 0.0;
-    for section in &network.sections {
+    for section in &cable_equilibrium.sections {
         for k in (0..section.spans()).filter(|&k| section.has_span(k)) {
             let (from, to) = section.material(k);
             for s in [from, to] {
-                let t = section.force(course, k, s).norm();
+                let t = section.force(context, k, s).norm();
                 greatest = if t > greatest { t } else { greatest };
             }
         }
@@ -48,15 +48,15 @@ pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibriu
             greatest = if t > greatest { t } else { greatest };
         }
         if let Some(loose) = &section.loose {
-            greatest = [0, 1].iter().map(|side| loose.end_force(course, *side).norm()).fold(greatest, larger);
+            greatest = [0, 1].iter().map(|side| loose.end_force(context, *side).norm()).fold(greatest, larger);
         }
     }
     let mut nodes = Nodes::new(&layout.problem, greatest);
     nodes.turned = layout.is_reversed();
     let mut contacts = Vec::new();
-    for section in &network.sections {
+    for section in &cable_equilibrium.sections {
         if let Some(loose) = &section.loose {
-            let found = loose.report(course, &mut nodes, layout.problem.radius).into_iter();
+            let found = loose.report(context, &mut nodes, layout.problem.radius).into_iter();
             contacts.extend(found.map(|(obstacle, report)| {
                 let obstacle = layout.problem.world.obstacle_name(obstacle).to_owned();
                 ContactReport { obstacle, ..report }
@@ -65,34 +65,34 @@ pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibriu
         }
         for k in 0..section.spans() {
             if section.has_span(k) {
-                section.shapes(course, k, |s0, at, shape| nodes.catenary(s0, at, shape));
+                section.shapes(context, k, |s0, at, shape| nodes.catenary(s0, at, shape));
             }
             if let Some(c) = section.contacts.get(k) {
-                let track = course.track(c).seen_from(c.ends.p[0]);
-                let stretches = stretches(&track, layout.problem.radius, &c.history, c.ends.p);
+                let contact_path = context.contact_path(c).with_cached_piece(c.ends.p[0]);
+                let stretches = stretches(&contact_path, layout.problem.radius, &c.history, c.ends.p);
                 if c.is_load() {
-                    load_nodes(&mut nodes, section, course, k, &track);
+                    load_nodes(&mut nodes, section, context, k, &contact_path);
                 } else {
-                    contact_nodes(&mut nodes, &track, c, &stretches);
+                    contact_nodes(&mut nodes, &contact_path, c, &stretches);
                 }
-                if let Some(obstacle) = track.curve.obstacle {
+                if let Some(obstacle) = contact_path.curve.obstacle {
                     let name = layout.problem.world.obstacle_name(obstacle);
                     contacts.push(match c.is_load() {
-                        true => load(section, course, k, &track, name),
-                        false => contact(&track, name, c, &stretches),
+                        true => load(section, context, k, &contact_path, name),
+                        false => contact(&contact_path, name, c, &stretches),
                     });
-                    if c.next == Next::Pocket {
-                        contacts.extend(heap(section, course, k, name));
+                    if c.next == Connection::Pocket {
+                        contacts.extend(heap(section, context, k, name));
                     }
                 }
             }
         }
     }
     let mut nodes = nodes.out;
-    let mut supports = supports(layout, network, &nodes);
-    let hint = network.instant.hint;
+    let mut supports = supports(layout, cable_equilibrium, &nodes);
+    let hint = cable_equilibrium.instant.hint;
     if hint > 0.0 {
-        forget_hint(&mut nodes, &mut supports, hint);
+        remove_auxiliary_weight(&mut nodes, &mut supports, hint);
         contacts.retain(|c: &ContactReport| Vec2::from(c.force_n).norm() > hint);
     }
     Report { nodes, supports, contacts }
@@ -100,7 +100,7 @@ pub(in crate::model::spans) fn report(layout: &Layout, network: &CableEquilibriu
 
 /// A stretch of a contact on which tension has one law and the boundary one form.
 #[derive(Clone, Copy)]
-struct Stretch {
+struct ContactStretch {
     from: f64,
     to: f64,
     /// Tension (N) and material (m) at its start.
@@ -108,79 +108,102 @@ struct Stretch {
     arc_length: f64,
     /// Friction coefficient called upon.
     mobilised: f64,
-    pivot: Pivot,
+    cached_piece: CachedPiece,
     /// Of the cable, m.
     cable_radius: f64,
 }
 
-impl Stretch {
-    fn new(track: &Track<'_>, cable_radius: f64, history: &TensionProfile, [from, to]: [f64; 2]) -> Self {
+impl ContactStretch {
+    fn new(contact_path: &ContactPath<'_>, cable_radius: f64, history: &TensionProfile, [from, to]: [f64; 2]) -> Self {
         let middle = 0.5 * (from + to);
-        let (tension, s) = history.at(track, from);
-        let pivot = match track.pivot {
-            Some(pivot) if pivot.reaches(from) && pivot.reaches(to) => pivot,
-            _ => Pivot::new(track.curve, track.chain_range, &track.law, middle),
+        let (tension, s) = history.at(contact_path, from);
+        let cached_piece = match contact_path.cached_piece {
+            Some(cached_piece) if cached_piece.reaches(from) && cached_piece.reaches(to) => cached_piece,
+            _ => CachedPiece::new(contact_path.curve, contact_path.chain_range, &contact_path.law, middle),
         };
-        Self { from, to, tension, arc_length: s, mobilised: history.called(track, middle), pivot, cable_radius }
+        Self {
+            from,
+            to,
+            tension,
+            arc_length: s,
+            mobilised: history.required_friction(contact_path, middle),
+            cached_piece,
+            cable_radius,
+        }
     }
 
     /// Parts that nodes cut it into.
     fn nodes(&self) -> usize {
-        if self.pivot.turns() {
-            arc_nodes::parts(self.pivot.at.stretch, self.to - self.from, self.cable_radius)
+        if self.cached_piece.turns() {
+            arc_nodes::parts(self.cached_piece.at.stretch, self.to - self.from, self.cable_radius)
         } else {
             EDGE_NODES
         }
     }
 
     /// Tension and material at p.
-    fn at(&self, track: &Track<'_>, p: f64) -> (f64, f64) {
-        let piece = SegmentCursor { law: &track.law, from: self.pivot.spot(self.from), p0: self.from };
+    fn at(&self, contact_path: &ContactPath<'_>, p: f64) -> (f64, f64) {
+        let piece =
+            SegmentCursor { law: &contact_path.law, from: self.cached_piece.local_load(self.from), p0: self.from };
         let way = piece.slide(p, self.tension, self.mobilised);
         (way.tension, self.arc_length + way.material)
     }
 }
 
-fn stretches(track: &Track<'_>, cable_radius: f64, history: &TensionProfile, [p1, p2]: [f64; 2]) -> Vec<Stretch> {
-    let knots = history.knots();
-    let mut out = Vec::with_capacity(knots.len() + 1);
+fn stretches(
+    contact_path: &ContactPath<'_>,
+    cable_radius: f64,
+    history: &TensionProfile,
+    [p1, p2]: [f64; 2],
+) -> Vec<ContactStretch> {
+    let breakpoints = history.breakpoints();
+    let mut out = Vec::with_capacity(breakpoints.len() + 1);
     let (mut p, mut k) = (p1, 0);
     while p < p2 {
-        let border = track.next_border(p, p2);
-        while knots.get(k).is_some_and(|knot| knot.coordinate <= p) {
+        let border = contact_path.next_border(p, p2);
+        while breakpoints.get(k).is_some_and(|breakpoint| breakpoint.coordinate <= p) {
             k += 1;
         }
-        let next = knots.get(k).map_or(border, |knot| if knot.coordinate < border { knot.coordinate } else { border });
-        out.push(Stretch::new(track, cable_radius, history, [p, next]));
+        let next = breakpoints
+            .get(k)
+            .map_or(border, |breakpoint| if breakpoint.coordinate < border { breakpoint.coordinate } else { border });
+        out.push(ContactStretch::new(contact_path, cable_radius, history, [p, next]));
         p = next;
     }
     out
 }
 
-fn contact_nodes(nodes: &mut Nodes<'_>, track: &Track<'_>, c: &Contact, stretches: &[Stretch]) {
-    let mut push = |place: &Place, (tension, s): (f64, f64)| {
-        let curvature = if place.stretch > 0.0 { place.turn * track.law.stretch(tension) / place.stretch } else { 0.0 };
+fn contact_nodes(nodes: &mut Nodes<'_>, contact_path: &ContactPath<'_>, c: &Contact, stretches: &[ContactStretch]) {
+    let mut push = |place: &BoundaryPoint, (tension, s): (f64, f64)| {
+        let curvature =
+            if place.stretch > 0.0 { place.turn * contact_path.law.stretch(tension) / place.stretch } else { 0.0 };
         nodes.push(Point { arc_length: s, at: place.at, force: place.tangent * tension, curvature });
     };
-    push(&track.place(c.ends.p[0]), (c.ends.t[0], c.ends.s[0]));
+    push(&contact_path.place(c.ends.p[0]), (c.ends.t[0], c.ends.s[0]));
     for stretch in stretches {
         let (a, b) = (stretch.from, stretch.to);
         let count = stretch.nodes();
         let last = if b < c.ends.p[1] { count } else { count - 1 };
         for i in 1..=last {
             let p = if i == count { b } else { a + (b - a) * i as f64 / count as f64 };
-            push(&stretch.pivot.place(p), stretch.at(track, p));
+            push(&stretch.cached_piece.place(p), stretch.at(contact_path, p));
         }
     }
-    push(&track.place(c.ends.p[1]), (c.ends.t[1], c.ends.s[1]));
+    push(&contact_path.place(c.ends.p[1]), (c.ends.t[1], c.ends.s[1]));
 }
 
 /// The nodes of the load that is contact j: what comes down on it from the air pulls as it comes,
 /// what lies beside it along the ground.
-fn load_nodes(nodes: &mut Nodes<'_>, section: &CableSection, course: &Course, j: usize, track: &Track<'_>) {
+fn load_nodes(
+    nodes: &mut Nodes<'_>,
+    section: &CableSection,
+    context: &SolveContext,
+    j: usize,
+    contact_path: &ContactPath<'_>,
+) {
     let c = &section.contacts[j];
-    let place = track.place(c.ends.p[0]);
-    let pulls = |side: usize| section.force_at_contact(course, j, side);
+    let place = contact_path.place(c.ends.p[0]);
+    let pulls = |side: usize| section.force_at_contact(context, j, side);
     for side in 0..2 {
         // Beyond an end there is nothing: it has what comes to it.
         let ends = (j + side == 0 || j + side == section.contacts.len()) && !section.has_span(j + side);
@@ -192,21 +215,22 @@ fn load_nodes(nodes: &mut Nodes<'_>, section: &CableSection, course: &Course, j:
 
 /// Normal force summed over a contact, its direction, the pull of the load along it, and how far it
 /// turns.
-fn pressed(track: &Track<'_>, stretches: &[Stretch]) -> (f64, Vec2, f64, f64) {
+fn pressed(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> (f64, Vec2, f64, f64) {
     let (mut normal, mut push, mut along, mut turned) = (0.0, Vec2::zeros(), 0.0, 0.0);
     for stretch in stretches {
-        let (a, way, turns) = (stretch.from, stretch.to - stretch.from, stretch.pivot.turns());
+        let (a, way, turns) = (stretch.from, stretch.to - stretch.from, stretch.cached_piece.turns());
         let panels = if turns { (way / PANEL).ceil().max(1.0) } else { 1.0 };
         let h = way / panels;
         let rule: &[(f64, f64)] = if turns && h <= THREE_POINT_ARC { &GAUSS_3 } else { &GAUSS_5 };
         for k in 0..panels as usize {
             for (u, weight) in rule {
                 let p = a + (k as f64 + u) * h;
-                let (t, place, weight) = (stretch.at(track, p).0, stretch.pivot.place(p), weight * h);
-                let press = track.law.press(&place, t);
+                let (t, place, weight) = (stretch.at(contact_path, p).0, stretch.cached_piece.place(p), weight * h);
+                let press = contact_path.law.press(&place, t);
                 normal += weight * press;
                 push += place.normal * (weight * press);
-                along += weight * track.law.load.dot(&place.tangent) * place.stretch / track.law.stretch(t);
+                along +=
+                    weight * contact_path.law.load.dot(&place.tangent) * place.stretch / contact_path.law.stretch(t);
                 turned += weight * place.turn;
             }
         }
@@ -214,13 +238,13 @@ fn pressed(track: &Track<'_>, stretches: &[Stretch]) -> (f64, Vec2, f64, f64) {
     (normal, push, along, turned)
 }
 
-fn contact(track: &Track<'_>, name: &str, c: &Contact, stretches: &[Stretch]) -> ContactReport {
-    let friction = track.friction;
-    let (normal_n, push, along, turned) = pressed(track, stretches);
-    let middle = track.place(0.5 * (c.ends.p[0] + c.ends.p[1]));
+fn contact(contact_path: &ContactPath<'_>, name: &str, c: &Contact, stretches: &[ContactStretch]) -> ContactReport {
+    let friction = contact_path.friction;
+    let (normal_n, push, along, turned) = pressed(contact_path, stretches);
+    let middle = contact_path.place(0.5 * (c.ends.p[0] + c.ends.p[1]));
     let unit = if push.norm() > 0.0 { push.normalize() } else { middle.normal };
     let [t1, t2] = c.ends.t;
-    let slips = friction <= 0.0 || matches!(c.mode, Mode::Slide(_));
+    let slips = friction <= 0.0 || matches!(c.mode, Mode::Slip(_));
     let mut report = ContactReport {
         obstacle: name.to_owned(),
         x_m: middle.at.x,
@@ -229,7 +253,7 @@ fn contact(track: &Track<'_>, name: &str, c: &Contact, stretches: &[Stretch]) ->
         normal: [unit.x, unit.y],
         normal_n,
         friction_n: t1 - t2 - along,
-        force_n: held_by(track, c).into(),
+        force_n: held_by(contact_path, c).into(),
         state: if slips { ContactState::Slip } else { ContactState::Stick },
         turn_deg: turned.to_degrees(),
         tension_before_n: t1,
@@ -239,13 +263,13 @@ fn contact(track: &Track<'_>, name: &str, c: &Contact, stretches: &[Stretch]) ->
         parts: if slips { Vec::new() } else { parts(c, friction, stretches) },
         ..ContactReport::default()
     };
-    report.set_samples(samples(track, stretches));
+    report.set_samples(samples(contact_path, stretches));
     report
 }
 
 /// Forces of the obstacle on the cable between the nodes of a contact: N n on an edge or arc, less
 /// the friction called upon, m N t.
-fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
+fn samples(contact_path: &ContactPath<'_>, stretches: &[ContactStretch]) -> Vec<ContactSample> {
     let mut out = Vec::with_capacity(EDGE_NODES * stretches.len());
     for stretch in stretches {
         let count = stretch.nodes();
@@ -254,9 +278,10 @@ fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
             let (mut force, mut middle) = (Vec2::zeros(), stretch.arc_length);
             for (u, weight) in GAUSS_3 {
                 let p = stretch.from + (k as f64 + u) * h;
-                let (t, s) = stretch.at(track, p);
-                let place = stretch.pivot.place(p);
-                force += (place.normal - place.tangent * stretch.mobilised) * (weight * h * track.law.press(&place, t));
+                let (t, s) = stretch.at(contact_path, p);
+                let place = stretch.cached_piece.place(p);
+                force += (place.normal - place.tangent * stretch.mobilised)
+                    * (weight * h * contact_path.law.press(&place, t));
                 middle = if u == 0.5 { s } else { middle };
             }
             out.push(ContactSample::new(middle, force));
@@ -267,34 +292,35 @@ fn samples(track: &Track<'_>, stretches: &[Stretch]) -> Vec<ContactSample> {
 
 /// The force of an obstacle on what lies on it, N: it holds the load there and what the tensions at
 /// both ends leave over.
-fn held_by(track: &Track<'_>, c: &Contact) -> Vec2 {
-    let [before, after] = [0, 1].map(|side| track.place(c.ends.p[side]).tangent * c.ends.t[side]);
-    before - after - track.law.load * (c.ends.s[1] - c.ends.s[0])
+fn held_by(contact_path: &ContactPath<'_>, c: &Contact) -> Vec2 {
+    let [before, after] = [0, 1].map(|side| contact_path.place(c.ends.p[side]).tangent * c.ends.t[side]);
+    before - after - contact_path.law.load * (c.ends.s[1] - c.ends.s[0])
 }
 
 /// The material that lies loose in the kink behind contact j, m.
 pub(in crate::model::spans) fn loose(section: &CableSection, j: usize) -> Option<[f64; 2]> {
     let (c, next) = (section.contacts.get(j)?, section.contacts.get(j + 1)?);
-    (c.next == Next::Pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
+    (c.next == Connection::Pocket && next.ends.s[0] > c.ends.s[1]).then_some([c.ends.s[1], next.ends.s[0]])
 }
 
 /// Tension at the start, at the end, and the greatest, N.
-pub(in crate::model::spans) fn tensions(network: &CableEquilibrium) -> [f64; 3] {
-    let course = &network.course;
+pub(in crate::model::spans) fn tensions(cable_equilibrium: &CableEquilibrium) -> [f64; 3] {
+    let context = &cable_equilibrium.context;
     let end = |section: Option<&CableSection>, side: usize| {
         let section = section?;
         let outer = if side == 0 { section.contacts.first() } else { section.contacts.last() };
-        Some(match (section.ties[side], outer) {
-            (Tie::Loose(_), Some(c)) => c.ends.t[side],
-            _ => end_force(network, section, side).norm(),
+        Some(match (section.end_conditions[side], outer) {
+            (EndCondition::Loose(_), Some(c)) => c.ends.t[side],
+            _ => end_force(cable_equilibrium, section, side).norm(),
         })
     };
-    let [start, last] = [end(network.sections.first(), 0), end(network.sections.last(), 1)].map(|t| t.unwrap_or(0.0));
+    let [start, last] = [end(cable_equilibrium.sections.first(), 0), end(cable_equilibrium.sections.last(), 1)]
+        .map(|t| t.unwrap_or(0.0));
     let mut greatest = larger(start, last);
-    for section in &network.sections {
+    for section in &cable_equilibrium.sections {
         for k in (0..section.spans()).filter(|&k| section.has_span(k)) {
             let (from, to) = section.material(k);
-            let ends = [from, to].map(|s| section.force(course, k, s).norm());
+            let ends = [from, to].map(|s| section.force(context, k, s).norm());
             greatest = larger(greatest, larger(ends[0], ends[1]));
         }
         let of_loose = section.loose.iter().flat_map(|l| &l.parts).flat_map(|part| part.tension);
@@ -305,11 +331,11 @@ pub(in crate::model::spans) fn tensions(network: &CableEquilibrium) -> [f64; 3] 
 
 /// The sum of all forces on the cable as they are reported, and their size, N: supports and
 /// contacts hold weight and loads.
-pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquilibrium) -> (Vec2, f64) {
-    let (p, course) = (&layout.problem, &network.course);
-    let mut sum = course.law.load * p.length;
+pub(in crate::model::spans) fn unbalanced(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium) -> (Vec2, f64) {
+    let (p, context) = (&layout.problem, &cable_equilibrium.context);
+    let mut sum = context.law.load * p.length;
     let mut size = sum.norm();
-    for load in &course.loads {
+    for load in &context.loads {
         sum += load.force;
         size += load.force.norm();
     }
@@ -317,23 +343,23 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
         sum += force;
         size += force.norm();
     };
-    for (section, part) in network.sections.iter().zip(&layout.sections) {
+    for (section, part) in cable_equilibrium.sections.iter().zip(&layout.sections) {
         for side in 0..2 {
             if part.supports[side].is_some() {
-                add(end_force(network, section, side) * if side == 0 { -1.0 } else { 1.0 });
+                add(end_force(cable_equilibrium, section, side) * if side == 0 { -1.0 } else { 1.0 });
             }
         }
         if let Some(loose) = &section.loose {
-            add(loose.held(course));
+            add(loose.held(context));
         }
         for (j, c) in section.contacts.iter().enumerate() {
             add(match (c.wheel, c.is_load()) {
-                (Some(_), _) => -wheel_force(course, section, j).0,
-                (None, true) => -load_balance(section, course, j).sum,
-                (None, false) => held_by(&course.track(c), c),
+                (Some(_), _) => -wheel_force(context, section, j).0,
+                (None, true) => -load_balance(section, context, j).sum,
+                (None, false) => held_by(&context.contact_path(c), c),
             });
             if let (Some([from, to]), None) = (loose(section, j), c.wheel) {
-                add(-course.load_between(from, to));
+                add(-context.load_between(from, to));
             }
         }
     }
@@ -341,14 +367,20 @@ pub(in crate::model::spans) fn unbalanced(layout: &Layout, network: &CableEquili
 }
 
 /// The contact of the load that is contact j.
-fn load(section: &CableSection, course: &Course, j: usize, track: &Track<'_>, name: &str) -> ContactReport {
+fn load(
+    section: &CableSection,
+    context: &SolveContext,
+    j: usize,
+    contact_path: &ContactPath<'_>,
+    name: &str,
+) -> ContactReport {
     let c = &section.contacts[j];
-    let load_balance = load_balance(section, course, j);
-    let at = track.place(c.ends.p[0]).at;
+    let load_balance = load_balance(section, context, j);
+    let at = contact_path.place(c.ends.p[0]).at;
     // The obstacle holds what all else does to the point.
     let held =
         load_balance.normal * load_balance.press() - load_balance.tangent * load_balance.sum.dot(&load_balance.tangent);
-    let slips = track.friction <= 0.0 || matches!(c.mode, Mode::Slide(_));
+    let slips = contact_path.friction <= 0.0 || matches!(c.mode, Mode::Slip(_));
     ContactReport {
         obstacle: name.to_owned(),
         x_m: at.x,
@@ -371,12 +403,12 @@ fn load(section: &CableSection, course: &Course, j: usize, track: &Track<'_>, na
 
 /// The contacts of the heap in the pocket after contact j: one with each edge that carries a part
 /// of it.
-fn heap(section: &CableSection, course: &Course, j: usize, name: &str) -> Vec<ContactReport> {
+fn heap(section: &CableSection, context: &SolveContext, j: usize, name: &str) -> Vec<ContactReport> {
     let ([before, after], at) = match (&section.contacts[j], section.contacts.get(j + 1)) {
-        (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], course.track(c).place(c.ends.p[1]).at),
+        (c, Some(next)) => ([c.ends.s[1], next.ends.s[0]], context.contact_path(c).place(c.ends.p[1]).at),
         (_, None) => return Vec::new(),
     };
-    let edge = |b: slack_pocket::Borne| {
+    let edge = |b: slack_pocket::BearingContact| {
         let middle = 0.5 * (before + after);
         let mut report = ContactReport {
             obstacle: name.to_owned(),
@@ -393,17 +425,18 @@ fn heap(section: &CableSection, course: &Course, j: usize, name: &str) -> Vec<Co
         report.set_samples(vec![ContactSample::new(middle, b.normal * b.press + b.tangent * b.friction)]);
         report
     };
-    let borne = slack_pocket::heap(section, course, j + 1).into_iter().flatten();
+    let borne = slack_pocket::heap(section, context, j + 1).into_iter().flatten();
     borne.filter(|b| b.press > 0.0).map(edge).collect()
 }
 
 /// Stretches that stick and stretches at the limit of friction, neighbours alike joined; none where
 /// all is alike.
-fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> {
+fn parts(c: &Contact, friction: f64, stretches: &[ContactStretch]) -> Vec<ContactPart> {
     /// Share of mobilised friction from which on it counts as all of it: rounding.
     const LIMIT: f64 = 1.0 - 1e-9;
-    let state =
-        |s: &Stretch| if s.mobilised.abs() >= LIMIT * friction { ContactState::Slip } else { ContactState::Stick };
+    let state = |s: &ContactStretch| {
+        if s.mobilised.abs() >= LIMIT * friction { ContactState::Slip } else { ContactState::Stick }
+    };
     let Some(first) = stretches.first().map(state).filter(|f| stretches.iter().any(|s| state(s) != *f)) else {
         return Vec::new();
     };
@@ -418,46 +451,48 @@ fn parts(c: &Contact, friction: f64, stretches: &[Stretch]) -> Vec<ContactPart> 
 }
 
 /// Force of the cable at an end of a section (pulling along growing arc length), N.
-fn end_force(network: &CableEquilibrium, section: &CableSection, side: usize) -> Vec2 {
-    let course = &network.course;
+fn end_force(cable_equilibrium: &CableEquilibrium, section: &CableSection, side: usize) -> Vec2 {
+    let context = &cable_equilibrium.context;
     if let Some(loose) = &section.loose {
-        return loose.end_force(course, side);
+        return loose.end_force(context, side);
     }
     let (k, s) = if side == 0 { (0, section.from) } else { (section.contacts.len(), section.to) };
-    match section.ties[side] {
-        Tie::Held(_) | Tie::Hangs(_) => section.force(course, k, s),
-        Tie::Lies(p) => {
+    match section.end_conditions[side] {
+        EndCondition::Fixed(_) | EndCondition::Hangs(_) => section.force(context, k, s),
+        EndCondition::Lies(p) => {
             let c = if side == 0 { section.contacts.first() } else { section.contacts.last() };
-            c.map_or(Vec2::zeros(), |c| course.track(c).place(p).tangent * c.ends.t[side])
+            c.map_or(Vec2::zeros(), |c| context.contact_path(c).place(p).tangent * c.ends.t[side])
         }
-        Tie::Loose(_) => Vec2::zeros(),
+        EndCondition::Loose(_) => Vec2::zeros(),
     }
 }
 
-fn supports(layout: &Layout, network: &CableEquilibrium, nodes: &[Node]) -> Vec<SupportReaction> {
+fn supports(layout: &SectionLayout, cable_equilibrium: &CableEquilibrium, nodes: &[Node]) -> Vec<SupportReaction> {
     let p = &layout.problem;
-    let course = &network.course;
+    let context = &cable_equilibrium.context;
     let loads_at = |s: f64| -> Vec2 {
-        let here = course.loads.iter().filter(|l: &&PointForce| l.arc_length == s);
+        let here = context.loads.iter().filter(|l: &&PointForce| l.arc_length == s);
         here.fold(Vec2::zeros(), |sum, l| sum + l.force)
     };
     let mut out = Vec::with_capacity(p.supports.len());
     for (k, s) in p.supports.iter().enumerate() {
         let mut r = SupportReaction { name: s.name.clone(), ..SupportReaction::default() };
-        let at = network.instant.places[k];
-        if let Some((c, section)) =
-            network.sections.iter().find_map(|st| st.contacts.iter().find(|c| c.wheel == Some(k)).map(|c| (c, st)))
+        let at = cable_equilibrium.instant.places[k];
+        if let Some((c, section)) = cable_equilibrium
+            .sections
+            .iter()
+            .find_map(|st| st.contacts.iter().find(|c| c.wheel == Some(k)).map(|c| (c, st)))
         {
-            wheel(&mut r, network, section, c);
+            wheel(&mut r, cable_equilibrium, section, c);
             (r.x_m, r.y_m) = (at.x, at.y);
         } else if let Some(arc_length) = s.arc_length {
             r.arc_length_m = arc_length;
             let mut force = loads_at(arc_length);
             if s.at.is_some() {
-                for (section, part) in network.sections.iter().zip(&layout.sections) {
+                for (section, part) in cable_equilibrium.sections.iter().zip(&layout.sections) {
                     for side in 0..2 {
                         if part.supports[side] == Some(k) {
-                            force += end_force(network, section, side) * if side == 0 { 1.0 } else { -1.0 };
+                            force += end_force(cable_equilibrium, section, side) * if side == 0 { 1.0 } else { -1.0 };
                         }
                     }
                 }
@@ -474,9 +509,9 @@ fn supports(layout: &Layout, network: &CableEquilibrium, nodes: &[Node]) -> Vec<
     out
 }
 
-fn wheel(r: &mut SupportReaction, network: &CableEquilibrium, section: &CableSection, c: &Contact) {
+fn wheel(r: &mut SupportReaction, cable_equilibrium: &CableEquilibrium, section: &CableSection, c: &Contact) {
     let j = section.contacts.iter().position(|d| std::ptr::eq(d, c)).unwrap_or(0);
-    let (sum, [before, after]) = wheel_force(&network.course, section, j);
+    let (sum, [before, after]) = wheel_force(&cable_equilibrium.context, section, j);
     (r.reaction_x_n, r.reaction_y_n) = (sum.x, sum.y);
     r.arc_length_m = 0.5 * (c.ends.s[0] + c.ends.s[1]);
     (r.tension_before_n, r.tension_after_n) = (Some(before.norm()), Some(after.norm()));
@@ -484,8 +519,8 @@ fn wheel(r: &mut SupportReaction, network: &CableEquilibrium, section: &CableSec
 
 /// The force of the cable on the wheel that is contact j, and the forces in the cable before and
 /// after it, N.
-fn wheel_force(course: &Course, section: &CableSection, j: usize) -> (Vec2, [Vec2; 2]) {
-    let [before, after] = [0, 1].map(|side| section.force_at_contact(course, j, side).unwrap_or_default());
+fn wheel_force(context: &SolveContext, section: &CableSection, j: usize) -> (Vec2, [Vec2; 2]) {
+    let [before, after] = [0, 1].map(|side| section.force_at_contact(context, j, side).unwrap_or_default());
     let [from, to] = section.contacts[j].ends.s;
-    (after - before + course.load_between(from, to), [before, after])
+    (after - before + context.load_between(from, to), [before, after])
 }

@@ -59,12 +59,12 @@ pub(in crate::model::spans) fn mobilised(m: FrictionMobilised) -> FrictionMobili
 }
 
 /// Arc lengths of a cable counted from the other end.
-pub(in crate::model::spans) struct Turned<'a> {
+pub(in crate::model::spans) struct Reversal<'a> {
     /// The cable as the scene counts it.
     pub problem: &'a Problem,
 }
 
-impl Turned<'_> {
+impl Reversal<'_> {
     /// An arc length counted from the other end, m: those of supports and loads come out as they
     /// were given.
     pub fn s(&self, s: f64) -> f64 {
@@ -121,16 +121,16 @@ impl Turned<'_> {
     pub fn failure(&self, failure: Failure) -> Failure {
         match failure {
             Failure::Stalled { iterations, residual, s } => Failure::Stalled { iterations, residual, s: self.s(s) },
-            Failure::Restless { s } => Failure::Restless { s: self.s(s) },
+            Failure::ContactCycling { s } => Failure::ContactCycling { s: self.s(s) },
             Failure::Compressed { s, at, tension } => Failure::Compressed { s: self.s(s), at, tension },
             Failure::OffWheel { support } => {
                 Failure::OffWheel { support: (self.problem.supports.len() - 1).saturating_sub(support) }
             }
-            Failure::LoadLies { s } => Failure::LoadLies { s: self.s(s) },
+            Failure::LoadInContact { s } => Failure::LoadInContact { s: self.s(s) },
             Failure::ContactImpossible { s, at } => Failure::ContactImpossible { s: self.s(s), at },
-            Failure::Drawn { s } => Failure::Drawn { s: self.s(s) },
+            Failure::SlackDragged { s } => Failure::SlackDragged { s: self.s(s) },
             Failure::Unsound { what, s, at } => Failure::Unsound { what, s: self.s(s), at },
-            same @ (Failure::Passed { .. } | Failure::SupportInside { .. }) => same,
+            same @ (Failure::Tunnelled { .. } | Failure::SupportInside { .. }) => same,
         }
     }
 }

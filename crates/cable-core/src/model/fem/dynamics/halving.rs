@@ -103,7 +103,7 @@ impl Dynamics {
                         cause: FailureCause::StateNotFinite,
                     });
                     self.rollback.restore(&mut self.cable);
-                    if !self.mend(failure, &mut progress) {
+                    if !self.recover(failure, &mut progress) {
                         *halved += 1;
                         self.halve(failure, &mut progress, request.inertia)?;
                     }
@@ -123,9 +123,9 @@ impl Dynamics {
     fn static_step(&mut self, piece: f64, request: StepRequest<'_>, depth: usize) -> Result<Converged, Failure> {
         let start = self.cable.motion.time;
         let to = start + piece;
-        let mut aims = std::mem::take(&mut self.hand_drive.aims);
-        self.cable.aim(&mut aims, request.dragged, piece / (request.due - start));
-        let tried = self.step_without_pull(to, &aims).or_else(|failure| {
+        let mut hand_targets = std::mem::take(&mut self.hand_drive.hand_targets);
+        self.cable.interpolate_targets(&mut hand_targets, request.dragged, piece / (request.due - start));
+        let tried = self.step_without_pull(to, &hand_targets).or_else(|failure| {
             let tuning = &self.cable.mesh.tuning.equilibrium;
             if failure.cause == FailureCause::CornerPulls || depth < tuning.halvings_before_relaxation {
                 return Err(failure);
@@ -133,15 +133,15 @@ impl Dynamics {
             self.rollback.restore(&mut self.cable);
             self.rollback.save(&self.cable);
             self.cable.motion.time = start;
-            self.relax(to, &aims)
+            self.relax(to, &hand_targets)
         });
-        self.hand_drive.aims = aims;
+        self.hand_drive.hand_targets = hand_targets;
         tried
     }
 
     /// Mends what made a step fail, where that can be done without halving it; returns whether it
     /// was.
-    fn mend(&mut self, failure: Failure, progress: &mut Progress) -> bool {
+    fn recover(&mut self, failure: Failure, progress: &mut Progress) -> bool {
         if failure.cause == FailureCause::CornerPulls && settle_down(&mut self.cable, failure.node) {
             renew_input(&mut self.cable);
             return true;

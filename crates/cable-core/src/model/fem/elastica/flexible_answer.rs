@@ -6,13 +6,13 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, ContactReport, ContactState, Node};
 
 /// The nodes of an answer with their directions counted on.
-pub(super) struct Curve<'a> {
+pub(super) struct ReferenceCurve<'a> {
     pub(super) nodes: &'a [Node],
     /// Direction of each chord, rad.
     pub(super) angles: Vec<f64>,
 }
 
-impl<'a> Curve<'a> {
+impl<'a> ReferenceCurve<'a> {
     /// Counts the directions on from chord to chord.
     pub fn new(nodes: &'a [Node]) -> Self {
         let mut last: Option<f64> = None;

@@ -52,7 +52,7 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, ErrorEstimates, Node};
 pub(in crate::model::fem) use answer::{refine, solution};
 pub(in crate::model::fem) use boundary_value::Elastica;
-use chain::{Chain, LetGo, RestState, Setting};
+use chain::{Chain, ChainInput, RestState, StabilityOutcome};
 
 /// Accuracy of the forces of another equilibrium that a warning reports. Smaller: time; larger: its
 /// tensions have fewer digits than are written.
@@ -71,7 +71,7 @@ pub fn rest(
     flexible: Option<&CableSolution>,
     tolerance: f64,
 ) -> Option<(CableSolution, Cost)> {
-    let setting = Setting { problem, time_s, dragged, friction_source: flexible };
+    let chain_input = ChainInput { problem, time_s, dragged, friction_source: flexible };
     let bent = flexible.and_then(|flexible| {
         let elastica = Elastica::from_flexible(problem, time_s, dragged, flexible)?;
         let found = answer::stiffen_and_refine(elastica, problem, tolerance)?;
@@ -79,12 +79,12 @@ pub fn rest(
     });
     let chain = match &bent {
         // A cable may run away from an equilibrium: a chain that is let go there shows it.
-        Some((answer, _)) => match chain::let_go(setting, answer) {
-            LetGo::Stays | LetGo::Unknown => return bent,
-            LetGo::Leaves(chain) => *chain,
-            LetGo::Unstable => return None,
+        Some((answer, _)) => match chain::test_stability(chain_input, answer) {
+            StabilityOutcome::Stays | StabilityOutcome::Unknown => return bent,
+            StabilityOutcome::Leaves(chain) => *chain,
+            StabilityOutcome::Unstable => return None,
         },
-        None => chain::rest_of_flexible(setting)?,
+        None => chain::rest_of_flexible(chain_input)?,
     };
     let bent_from = |chain: &Chain<'_>| {
         let elastica = Elastica::from_chain(chain)?;
@@ -115,7 +115,7 @@ pub fn rest_near(
     from: &[Node],
     shape: &[Node],
 ) -> Option<Vec<Node>> {
-    let chain = Chain::rest_near(Setting { problem, time_s, dragged, friction_source: None }, shape)?;
+    let chain = Chain::rest_near(ChainInput { problem, time_s, dragged, friction_source: None }, shape)?;
     let (found, _) = answer::stiffen_and_refine(Elastica::from_chain(&chain)?, problem, BOW_TOLERANCE)?;
     keeps_sides(problem, from, &found).then_some(found.nodes)
 }

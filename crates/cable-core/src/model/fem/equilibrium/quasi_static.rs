@@ -55,7 +55,11 @@ fn crosses_itself(x: &[Vec2]) -> bool {
 
 impl Dynamics {
     /// A step without inertia to the time `to` (s); friction remembers.
-    pub(in crate::model::fem) fn rest_step(&mut self, to: f64, dragged: &[Option<Vec2>]) -> Result<Converged, Failure> {
+    pub(in crate::model::fem) fn quasi_static_step(
+        &mut self,
+        to: f64,
+        dragged: &[Option<Vec2>],
+    ) -> Result<Converged, Failure> {
         self.rest_rounds(to, dragged, f64::INFINITY)
     }
 
@@ -79,7 +83,7 @@ impl Dynamics {
             self.cable.adapt_slip();
             self.cable.adapt_stiffness([f64::INFINITY, 0.0], 1.0);
             self.cable.input.max_iterations = self.cable.mesh.tuning.equilibrium.max_iterations;
-            self.cable.input.most_noise =
+            self.cable.input.max_noise =
                 self.cable.mesh.tuning.equilibrium.squeezed_residual * self.cable.input.tolerance;
             let mut unknowns = self.solver.present_unknowns(&self.cable);
             let mut done = self.solver.solve_lawfully(&mut self.cable, &mut unknowns);
@@ -127,7 +131,7 @@ impl Dynamics {
         for (part, iterations) in tuning.polish_residuals.into_iter().zip(tuning.polish_iterations) {
             self.rollback.save(&self.cable);
             prepare_way(&mut self.cable, [to, to], Some(dragged));
-            self.cable.input.most_noise = exact;
+            self.cable.input.max_noise = exact;
             (self.cable.input.tolerance, self.cable.input.max_iterations) =
                 (larger(part * exact, rounding), iterations);
             let mut unknowns = self.solver.present_unknowns(&self.cable);
@@ -162,7 +166,7 @@ impl Dynamics {
         self.rollback.save(&self.cable);
         let reach = self.cable.problem.length / self.cable.meshing.even_bars as f64;
         let laid = self.cable.motion.positions.clone();
-        let found = self.rest_step(self.cable.motion.time, dragged).is_ok();
+        let found = self.quasi_static_step(self.cable.motion.time, dragged).is_ok();
         let near = |(a, b): (&Vec2, &Vec2)| (a - b).norm() <= reach;
         if !(found
             && laid.len() == self.cable.motion.positions.len()

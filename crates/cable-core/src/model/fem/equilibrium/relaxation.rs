@@ -172,7 +172,7 @@ impl Dynamics {
             }
             relaxation.resistance *= if moved < SHORT_MOVE_M { RESISTANCE_FALL } else { 1.0 };
             if relaxation.is_nearly_over(round, moved) {
-                match self.rest_step(to, dragged) {
+                match self.quasi_static_step(to, dragged) {
                     Ok(done) => {
                         return Ok(Converged { iterations: relaxation.iterations + done.iterations, ..done });
                     }
@@ -200,11 +200,11 @@ impl Dynamics {
         let even = self.cable.problem.length / self.cable.meshing.even_bars as f64;
         self.cable.input.inertia.fill(relaxation.resistance);
         for k in 0..self.cable.mesh.nodes() {
-            self.cable.input.inertia[k] *= self.cable.mesh.share(k) / even;
+            self.cable.input.inertia[k] *= self.cable.mesh.tributary_length(k) / even;
         }
         let exact = self.cable.input.tolerance;
         self.cable.input.tolerance = if relaxation.exact_rounds { exact } else { LOOSE_TOLERANCE * exact };
-        self.cable.input.most_noise = noise * exact;
+        self.cable.input.max_noise = noise * exact;
         // The contacts of a first shape carry no normal force yet: without refreshing, the cable
         // would slide as if on ice.
         let mut unknowns = self.solver.present_unknowns(&self.cable);

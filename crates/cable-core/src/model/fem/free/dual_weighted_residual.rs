@@ -11,18 +11,18 @@
 //! span; in a slack one, whose horizontal force is a small part of its tension, what is left after
 //! one is no longer small beside that.
 //!
-//! The estimate is of the error of the whole force vector beside every stop, in parts of the
+//! The estimate is of the error of the whole force vector beside every station, in parts of the
 //! greatest tension: a slack span may have its greatest tension right to many digits and its
 //! horizontal force wrong in the third.
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::free::beam::equilibrium::Beam;
 use crate::model::fem::free::element::Material;
-use crate::model::fem::free::pulley_balance::Network;
+use crate::model::fem::free::pulley_balance::PulleyNetwork;
 use crate::model::fem::free::results::Point;
 use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
-use crate::model::fem::free::stations::{Layout, SpanEnds};
+use crate::model::fem::free::stations::{SpanEnds, StationLayout};
 
 /// Rounds of the correction, and the part of it below which another round changes nothing that
 /// shows.
@@ -33,7 +33,7 @@ const CORRECTION_TOLERANCE: f64 = 0.01;
 const REFINEMENT_FACTOR: usize = 4;
 const MOST_FINER: usize = 5;
 /// Most elements of a span that is only solved for its error: some milliseconds.
-const MOST_CELLS: usize = 1 << 15;
+const MAX_ELEMENTS: usize = 1 << 15;
 /// Rounding errors of a span's closure, in units of the last place of its length. Measured against
 /// the closed form: up to 5, of two answers.
 const ROUNDING: f64 = 8.0;
@@ -50,9 +50,9 @@ const NODE_TOLERANCE_M: f64 = 1e-9;
 /// The same without friction: tensions of stiff cables beside pulleys agree to that.
 const SMOOTH_PULLEY_TOLERANCE: f64 = 1e-10;
 
-/// Estimated error of the force vector on any stop, in parts of the greatest tension.
+/// Estimated error of the force vector on any station, in parts of the greatest tension.
 #[must_use]
-pub fn relative_error(network: &mut Network) -> f64 {
+pub fn relative_error(network: &mut PulleyNetwork) -> f64 {
     let (mut largest, mut error) = (0.0, 0.0);
     let changes = force_errors(network);
     for (forces, change) in network.forces.iter().zip(&changes) {
@@ -78,7 +78,7 @@ pub fn relative_error(network: &mut Network) -> f64 {
 /// Estimated error of the shape, m: what the chords up to a node lack in all, and what the force
 /// that closes the span moves its end.
 #[must_use]
-pub fn position_error(network: &mut Network) -> f64 {
+pub fn position_error(network: &mut PulleyNetwork) -> f64 {
     let changes = force_errors(network);
     let (mut most, layout) = (0.0, &network.layout);
     for (&ends, span) in network.ends.iter().zip(&network.spans) {
@@ -86,7 +86,7 @@ pub fn position_error(network: &mut Network) -> f64 {
         elements(&network.material, layout, ends, span.force, |ds, f| {
             lack += network.material.chord_error(ds, f).norm();
         });
-        let closing = changes.get(ends.first).map_or(0.0, |c| (span.walk.compliance * c[1]).norm());
+        let closing = changes.get(ends.first).map_or(0.0, |c| (span.span_response.compliance * c[1]).norm());
         most = larger(most, lack + closing);
     }
     most + ROUNDING * f64::EPSILON * layout.length
@@ -106,19 +106,19 @@ pub fn apart(some: &[Point], others: &[Point]) -> f64 {
 }
 
 /// Round-off of lengths in the force of the stiffest span, N.
-fn rounding(network: &Network) -> f64 {
+fn rounding(network: &PulleyNetwork) -> f64 {
     let mut most = 0.0;
     for (&SpanEnds { first, last }, span) in network.ends.iter().zip(&network.spans) {
-        let length = network.layout.stops[last].arc_length - network.layout.stops[first].leaves();
-        let stiffness = span.walk.compliance.try_inverse().map_or(0.0, |k| k.norm());
+        let length = network.layout.stations[last].arc_length - network.layout.stations[first].leaves();
+        let stiffness = span.span_response.compliance.try_inverse().map_or(0.0, |k| k.norm());
         most = larger(most, stiffness * length * ROUNDING * f64::EPSILON);
     }
     most
 }
 
-/// Estimated error of the tension force before and after each stop, N.
-fn force_errors(network: &mut Network) -> Vec<[Vec2; 2]> {
-    let mut errors = vec![[Vec2::zeros(); 2]; network.layout.stops.len()];
+/// Estimated error of the tension force before and after each station, N.
+fn force_errors(network: &mut PulleyNetwork) -> Vec<[Vec2; 2]> {
+    let mut errors = vec![[Vec2::zeros(); 2]; network.layout.stations.len()];
     for (&ends, span) in network.ends.iter().zip(&network.spans) {
         let off = closing_force(network, ends, span);
         errors[ends.first][1] = off;
@@ -135,16 +135,16 @@ fn force_errors(network: &mut Network) -> Vec<[Vec2; 2]> {
 /// By how much more force at its start the exact catenary would close a span, N. Where a fold lies
 /// in one element its lack says nothing about the force: the span is solved on finer elements until
 /// it does.
-fn closing_force(network: &Network, ends: SpanEnds, span: &Span) -> Vec2 {
-    let (material, goal) = (&network.material, span.walk.reach);
+fn closing_force(network: &PulleyNetwork, ends: SpanEnds, span: &Span) -> Vec2 {
+    let (material, goal) = (&network.material, span.span_response.reach);
     if let Some(off) = correction(material, &network.layout, ends, span.force, goal) {
         return off;
     }
     let mut layout = network.layout.clone();
     let mut force = span.force;
     for _ in 0..MOST_FINER {
-        layout.stops[ends.first..ends.last].iter_mut().for_each(|s| s.cells *= REFINEMENT_FACTOR);
-        if layout.stops[ends.first..ends.last].iter().map(|s| s.cells).sum::<usize>() > MOST_CELLS {
+        layout.stations[ends.first..ends.last].iter_mut().for_each(|s| s.element_count *= REFINEMENT_FACTOR);
+        if layout.stations[ends.first..ends.last].iter().map(|s| s.element_count).sum::<usize>() > MAX_ELEMENTS {
             break;
         }
         let guess = span::first_guess(material, &layout, ends, goal);
@@ -160,13 +160,13 @@ fn closing_force(network: &Network, ends: SpanEnds, span: &Span) -> Vec2 {
 }
 
 /// The same by rounds of the correction; None where they do not settle.
-fn correction(material: &Material, layout: &Layout, ends: SpanEnds, force: Vec2, goal: Vec2) -> Option<Vec2> {
+fn correction(material: &Material, layout: &StationLayout, ends: SpanEnds, force: Vec2, goal: Vec2) -> Option<Vec2> {
     let (mut off, mut before) = (Vec2::zeros(), f64::INFINITY);
     for _ in 0..ROUNDS {
         let mut lack = Vec2::zeros();
-        let walk = span::walk(material, layout, ends, force + off);
+        let span_response = span::span_response(material, layout, ends, force + off);
         elements(material, layout, ends, force + off, |ds, f| lack += material.chord_error(ds, f));
-        let change = -(walk.compliance.try_inverse()? * (walk.reach + lack - goal));
+        let change = -(span_response.compliance.try_inverse()? * (span_response.reach + lack - goal));
         off += change;
         if !(change.norm() < before) {
             return None;
@@ -179,11 +179,11 @@ fn correction(material: &Material, layout: &Layout, ends: SpanEnds, force: Vec2,
     None
 }
 
-/// Greatest difference of a force on a stop between a network and the same on half as long bars, in
-/// parts of the greatest tension, for an error of fourth order: sixteen fifteenths of it is the
+/// Greatest difference of a force on a station between a network and the same on half as long bars,
+/// in parts of the greatest tension, for an error of fourth order: sixteen fifteenths of it is the
 /// error of the coarser.
 #[must_use]
-pub fn difference(coarse: &Network, fine: &Network) -> f64 {
+pub fn difference(coarse: &PulleyNetwork, fine: &PulleyNetwork) -> f64 {
     let (mut largest, mut off) = (0.0, 0.0);
     for (a, b) in coarse.forces.iter().zip(&fine.forces) {
         let d = [a[0] - b[0], a[1] - b[1]];
@@ -193,19 +193,19 @@ pub fn difference(coarse: &Network, fine: &Network) -> f64 {
     if largest > 0.0 { off / (0.9375 * largest) } else { off }
 }
 
-/// Adds what frictionless pulleys do to small changes of the forces beside the stops: they slide
+/// Adds what frictionless pulleys do to small changes of the forces beside the stations: they slide
 /// until the tensions agree again.
-fn let_pulleys_follow(network: &Network, changes: &mut [[Vec2; 2]]) {
+fn let_pulleys_follow(network: &PulleyNetwork, changes: &mut [[Vec2; 2]]) {
     let pulleys = network.pulleys();
-    let faults: Vec<Option<f64>> = pulleys
+    let imbalances: Vec<Option<f64>> = pulleys
         .iter()
         .map(|&k| {
             let (wheel, [before, after]) = (network.wheel(k)?, network.forces[k]);
-            network.fault(k, &wheel)?;
-            Some(network.fault_rate(&wheel, 0.0, [before, after], changes[k]))
+            network.imbalance(k, &wheel)?;
+            Some(network.imbalance_rate(&wheel, 0.0, [before, after], changes[k]))
         })
         .collect();
-    let (slides, _) = network.newton_step(&pulleys, &faults);
+    let (slides, _) = network.newton_step(&pulleys, &imbalances);
     for (&of, slide) in pulleys.iter().zip(slides) {
         for (k, change) in changes.iter_mut().enumerate() {
             let rates = network.rates_at(k, of);
@@ -215,13 +215,13 @@ fn let_pulleys_follow(network: &Network, changes: &mut [[Vec2; 2]]) {
     }
 }
 
-/// Estimated relative error of the forces on the finer of two meshes: of fourth order at the stops,
-/// a fifteenth of the change, of third between nodes, where a stiff cable may have its greatest
-/// tension, a seventh.
+/// Estimated relative error of the forces on the finer of two meshes: of fourth order at the
+/// stations, a fifteenth of the change, of third between nodes, where a stiff cable may have its
+/// greatest tension, a seventh.
 #[must_use]
 pub fn halving_error(coarse: &Beam, fine: &Beam) -> f64 {
     let (mut largest, mut change) = (fine.bending_force(), 0.0);
-    for (a, b) in coarse.stop_forces().iter().flatten().zip(fine.stop_forces().iter().flatten()) {
+    for (a, b) in coarse.station_forces().iter().flatten().zip(fine.station_forces().iter().flatten()) {
         let (size, off) = (b.norm(), (b - a).norm());
         largest = larger(largest, size);
         change = larger(change, off / 15.0);

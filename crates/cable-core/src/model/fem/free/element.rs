@@ -38,7 +38,7 @@ pub struct Material {
 
 /// Chord, compliance and energy of an element under a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Response {
+pub struct ElementResponse {
     /// From the first node to the second, m.
     pub chord: Vec2,
     /// ∂chord/∂F, m/N.
@@ -57,7 +57,7 @@ impl Material {
     /// Chord (m), compliance and energy of `ds` metres of cable whose middle carries the tension
     /// force `force` (N).
     #[must_use]
-    pub fn respond(&self, ds: f64, force: Vec2) -> Response {
+    pub fn respond(&self, ds: f64, force: Vec2) -> ElementResponse {
         let rest = self.thermal_stretch * ds;
         let g = self.body * (GAUSS_2_HALF_DISTANCE * ds);
         let ((t1, u1), (t2, u2)) = (self.direction(force + g), self.direction(force - g));
@@ -67,7 +67,7 @@ impl Material {
         let xx = c1 * (1.0 - u1.x * u1.x) + c2 * (1.0 - u2.x * u2.x) + elastic;
         let yy = c1 * (1.0 - u1.y * u1.y) + c2 * (1.0 - u2.y * u2.y) + elastic;
         let xy = -c1 * u1.x * u1.y - c2 * u2.x * u2.y;
-        Response {
+        ElementResponse {
             chord: (u1 + u2) * half + force * elastic,
             compliance: Mat2::new(xx, xy, xy, yy),
             energy: half * (t1 + t2) + 0.5 * elastic * force.norm_squared(),

@@ -4,20 +4,20 @@
 use crate::error::{NoEquilibrium, Place, SolveError};
 use crate::math::Vec2;
 use crate::model::Model;
-use crate::model::fem::free::pulley_balance::{Failure, Network};
+use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
 use crate::problem::Problem;
 
 /// The error that a failure of a network means at a time (s), in the words of the scene.
-pub(super) fn solve_error(problem: &Problem, network: &Network, time: f64, failure: Failure) -> SolveError {
+pub(super) fn solve_error(problem: &Problem, network: &PulleyNetwork, time: f64, failure: Failure) -> SolveError {
     let name = |k: usize| {
-        let support = network.layout.stops.get(k).and_then(|s| s.support).and_then(|i| problem.supports.get(i));
+        let support = network.layout.stations.get(k).and_then(|s| s.support).and_then(|i| problem.supports.get(i));
         support.map_or_else(|| "?".to_owned(), |s| s.name.clone())
     };
     let not_converged = |k: usize, residual_n: f64| SolveError::NotConverged {
         model: Model::Fem,
         iterations: network.steps,
         residual_n,
-        place: network.layout.stops.get(k).map_or_else(Box::<Place>::default, |s| {
+        place: network.layout.stations.get(k).map_or_else(Box::<Place>::default, |s| {
             problem.place(s.arc_length, s.point(0).unwrap_or(Vec2::repeat(f64::NAN)), time)
         }),
     };

@@ -18,7 +18,7 @@ use crate::model::fem::free::element::{Material, turn_between};
 use crate::model::fem::free::pulley_state::PulleyState;
 use crate::model::fem::free::span;
 use crate::model::fem::free::span::{Span, elements};
-use crate::model::fem::free::stations::{Hold, Layout, SpanEnds, Wheel};
+use crate::model::fem::free::stations::{Restraint, SpanEnds, StationLayout, Wheel};
 use crate::numerics::backtrack;
 
 /// Newton steps for the pulleys together. Measured: 3 to 8.
@@ -35,42 +35,42 @@ const MAX_ROUNDS: usize = 60;
 const BALANCE_TOLERANCE: f64 = 1e-12;
 /// As above where no step makes it smaller (a stiff cable: ρ has lost its last digits).
 const BALANCE_LIMIT: f64 = 1e-8;
-/// Part of the room to the next stop that a step may take.
+/// Part of the room to the next station that a step may take.
 const STEP_ROOM_FRACTION: f64 = 0.4;
-/// Least cable between a pulley and the next stop, in parts of the cable.
+/// Least cable between a pulley and the next station, in parts of the cable.
 const END_CABLE_FRACTION: f64 = 1e-7;
 
 /// The reason why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Failure {
-    /// The span that starts at this stop could not be solved; the force left, N.
+    /// The span that starts at this station could not be solved; the force left, N.
     Span(usize, f64),
-    /// The cable runs out through the pulley at this stop.
+    /// The cable runs out through the pulley at this station.
     RunsOut(usize),
-    /// The balance at the pulley of this stop could not be found; the force left, N.
+    /// The balance at the pulley of this station could not be found; the force left, N.
     Unbalanced(usize, f64),
     /// The cable leaves its wheel.
     LeavesWheel(usize),
 }
 
-/// The cable between its stops.
+/// The cable between its stations.
 #[derive(Clone, Debug)]
-pub struct Network {
-    /// The stops.
-    pub layout: Layout,
+pub struct PulleyNetwork {
+    /// The stations.
+    pub layout: StationLayout,
     /// Values that the elements share.
     pub material: Material,
-    /// The stops at each span's ends.
+    /// The stations at each span's ends.
     pub ends: Vec<SpanEnds>,
     /// The spans' answers, as `ends`.
     pub spans: Vec<Span>,
-    /// Tension force just before and just after each stop, N.
+    /// Tension force just before and just after each station, N.
     pub forces: Vec<[Vec2; 2]>,
     /// Newton steps of all kinds.
     pub steps: usize,
     /// Largest unbalanced force, N.
     pub residual: f64,
-    /// Arc length at each stop before anything slid (friction remembers it), m.
+    /// Arc length at each station before anything slid (friction remembers it), m.
     held_at: Vec<f64>,
     warm: bool,
     /// Every pulley with what friction remembers of it, in order; empty until it was asked for
@@ -79,22 +79,22 @@ pub struct Network {
 }
 
 /// The law of a pulley at the present forces.
-struct Balance {
+struct PulleyLaw {
     /// ln(T_after/T_before).
     ratio: f64,
     /// Its bounds and its frictionless value: lower, frictionless, upper.
     law: [f64; 3],
 }
 
-impl Network {
+impl PulleyNetwork {
     /// A network that has not been solved.
     #[must_use]
-    pub fn new(layout: Layout, material: Material) -> Self {
+    pub fn new(layout: StationLayout, material: Material) -> Self {
         let ends: Vec<_> = layout.spans().collect();
         let mut network = Self {
             spans: vec![Span::default(); ends.len()],
-            forces: vec![[Vec2::zeros(); 2]; layout.stops.len()],
-            held_at: layout.stops.iter().map(|s| s.arc_length).collect(),
+            forces: vec![[Vec2::zeros(); 2]; layout.stations.len()],
+            held_at: layout.stations.iter().map(|s| s.arc_length).collect(),
             ends,
             layout,
             material,
@@ -107,7 +107,7 @@ impl Network {
         network
     }
 
-    /// Takes over the forces of a network with the same stops, to start from.
+    /// Takes over the forces of a network with the same stations, to start from.
     pub fn start_from(&mut self, other: &Self) {
         if other.ends == self.ends && other.warm {
             self.spans.clone_from(&other.spans);
@@ -126,7 +126,7 @@ impl Network {
     /// The reason why there is no answer.
     pub fn solve(&mut self) -> Result<(), Failure> {
         self.steps = 0;
-        let wheels = self.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.radius > 0.0));
+        let wheels = self.layout.stations.iter().any(|s| matches!(s.restraint, Restraint::Pulley(w) if w.radius > 0.0));
         if wheels {
             self.balance_on_wheels()?
         } else {
@@ -142,14 +142,14 @@ impl Network {
         for i in 0..self.ends.len() {
             self.solve_span(i)?;
         }
-        self.hang_tails();
+        self.set_free_end_forces();
         Ok(())
     }
 
     fn solve_span(&mut self, i: usize) -> Result<(), Failure> {
         let ends = self.ends[i];
         let SpanEnds { first, last } = ends;
-        let (Some(a), Some(b)) = (self.layout.stops[first].point(1), self.layout.stops[last].point(0)) else {
+        let (Some(a), Some(b)) = (self.layout.stations[first].point(1), self.layout.stations[last].point(0)) else {
             return Err(Failure::Span(first, f64::NAN));
         };
         let d = b - a;
@@ -161,7 +161,7 @@ impl Network {
         self.steps += span.steps;
         self.residual = larger(self.residual, span.residual);
         self.forces[first][1] = span.force;
-        self.forces[last][0] = span.walk.end_force;
+        self.forces[last][0] = span.span_response.end_force;
         self.spans[i] = span;
         Ok(())
     }
@@ -182,62 +182,63 @@ impl Network {
     }
 
     /// Forces of the stretches that end free: the load beyond.
-    fn hang_tails(&mut self) {
+    fn set_free_end_forces(&mut self) {
         let Some((first, last)) = self.layout.anchored() else { return };
-        let end = self.layout.stops.len() - 1;
+        let end = self.layout.stations.len() - 1;
         self.forces[0][0] = Vec2::zeros();
         self.forces[end][1] = Vec2::zeros();
         if first > 0 {
-            let start = -self.layout.stops[0].load;
+            let start = -self.layout.stations[0].load;
             self.forces[first][0] =
                 elements(&self.material, &self.layout, SpanEnds { first: 0, last: first }, start, |_, _| ());
         }
         if last < end {
-            let stops = &self.layout.stops;
-            let loads: Vec2 = stops[last + 1..].iter().map(|s| s.load).sum();
-            self.forces[last][1] = loads + self.material.body * (stops[end].arc_length - stops[last].leaves());
+            let stations = &self.layout.stations;
+            let loads: Vec2 = stations[last + 1..].iter().map(|s| s.load).sum();
+            self.forces[last][1] = loads + self.material.body * (stations[end].arc_length - stations[last].leaves());
         }
     }
 
-    /// The pulley at a stop.
-    pub(in crate::model::fem) fn wheel(&self, stop: usize) -> Option<Wheel> {
-        match self.layout.stops[stop].hold {
-            Hold::Pulley(w) => Some(w),
+    /// The pulley at a station.
+    pub(in crate::model::fem) fn wheel(&self, station: usize) -> Option<Wheel> {
+        match self.layout.stations[station].restraint {
+            Restraint::Pulley(w) => Some(w),
             _ => None,
         }
     }
 
-    /// The stops with pulleys.
+    /// The stations with pulleys.
     pub(in crate::model::fem) fn pulleys(&self) -> Vec<usize> {
-        (0..self.layout.stops.len()).filter(|&k| self.wheel(k).is_some()).collect()
+        (0..self.layout.stations.len()).filter(|&k| self.wheel(k).is_some()).collect()
     }
 
-    fn law(&self, stop: usize, wheel: &Wheel) -> Balance {
-        let [before, after] = self.forces[stop];
+    fn law(&self, station: usize, wheel: &Wheel) -> PulleyLaw {
+        let [before, after] = self.forces[station];
         let ratio = (after.norm() / before.norm()).ln();
         if wheel.radius > 0.0 {
-            let clockwise = self.clockwise_at(stop, wheel);
-            let law = [-1.0, 0.0, 1.0].map(|sign| self.round_wheel(wheel, before, clockwise, sign));
-            return Balance { ratio, law };
+            let clockwise = self.clockwise_at(station, wheel);
+            let law = [-1.0, 0.0, 1.0].map(|sign| self.log_tension_ratio(wheel, before, clockwise, sign));
+            return PulleyLaw { ratio, law };
         }
         let bound = wheel.friction * turn_between(before, after).abs();
-        Balance { ratio, law: [-bound, 0.0, bound] }
+        PulleyLaw { ratio, law: [-bound, 0.0, bound] }
     }
 
     /// Slide of the arc length at a pulley since friction last held, m (the middle of a wheel's
     /// arc).
-    fn slid(&self, stop: usize) -> f64 {
-        self.layout.stops[stop].arc_length + 0.5 * self.layout.stops[stop].lap - self.held_at[stop]
+    fn slid(&self, station: usize) -> f64 {
+        self.layout.stations[station].arc_length + 0.5 * self.layout.stations[station].material_on_wheel
+            - self.held_at[station]
     }
 
     /// Imbalance at a pulley: 0 where it rests, else positive where the arc length must shrink.
     /// `None`: held.
-    pub(in crate::model::fem) fn fault(&self, stop: usize, wheel: &Wheel) -> Option<f64> {
-        let b = self.law(stop, wheel);
+    pub(in crate::model::fem) fn imbalance(&self, station: usize, wheel: &Wheel) -> Option<f64> {
+        let b = self.law(station, wheel);
         if !(wheel.friction > 0.0) {
             return Some(b.ratio - b.law[1]);
         }
-        let slid = self.slid(stop);
+        let slid = self.slid(station);
         let still = 1e-12 * self.layout.length;
         if slid > still {
             Some(b.ratio - b.law[0])
@@ -272,23 +273,23 @@ impl Network {
             *self = bisected;
         }
         let pulleys = self.pulleys();
-        let worst = pulleys.iter().copied().find(|&k| self.wheel(k).and_then(|w| self.fault(k, &w)).is_some());
-        let stop = worst.unwrap_or(0);
-        Err(Failure::Unbalanced(stop, self.unbalance(stop)))
+        let worst = pulleys.iter().copied().find(|&k| self.wheel(k).and_then(|w| self.imbalance(k, &w)).is_some());
+        let station = worst.unwrap_or(0);
+        Err(Failure::Unbalanced(station, self.unbalance(station)))
     }
 
-    fn unbalance(&self, stop: usize) -> f64 {
-        let fault = self.wheel(stop).and_then(|w| self.fault(stop, &w)).unwrap_or(0.0);
-        fault.abs() * self.forces[stop][0].norm()
+    fn unbalance(&self, station: usize) -> f64 {
+        let imbalance = self.wheel(station).and_then(|w| self.imbalance(station, &w)).unwrap_or(0.0);
+        imbalance.abs() * self.forces[station][0].norm()
     }
 
     /// Newton on all pulleys; true when they rest in a stable place.
     fn newton(&mut self, pulleys: &[usize]) -> bool {
-        let faults = |n: &Self| -> Vec<Option<f64>> {
-            pulleys.iter().map(|&k| n.wheel(k).and_then(|w| n.fault(k, &w))).collect()
+        let imbalances = |n: &Self| -> Vec<Option<f64>> {
+            pulleys.iter().map(|&k| n.wheel(k).and_then(|w| n.imbalance(k, &w))).collect()
         };
         let size = |f: &[Option<f64>]| f.iter().flatten().fold(0.0, |a: f64, b| if b.abs() <= a { a } else { b.abs() });
-        let mut now = faults(self);
+        let mut now = imbalances(self);
         for _ in 0..MAX_STEPS {
             let (step, stable) = self.newton_step(pulleys, &now);
             if size(&now) <= BALANCE_TOLERANCE {
@@ -296,12 +297,12 @@ impl Network {
                     pulleys.iter().map(|&k| self.unbalance(k)).fold(self.residual, |a, b| if b <= a { a } else { b });
                 return stable;
             }
-            let from: Vec<f64> = pulleys.iter().map(|&k| self.layout.stops[k].arc_length).collect();
+            let from: Vec<f64> = pulleys.iter().map(|&k| self.layout.stations[k].arc_length).collect();
             let better = backtrack(1.0, MAX_HALVINGS, |part| {
                 self.move_pulleys(pulleys, &from, &step, part);
                 self.steps += 1;
                 self.solve_spans().ok()?;
-                Some(faults(self)).filter(|next| size(next) < size(&now))
+                Some(imbalances(self)).filter(|next| size(next) < size(&now))
             });
             let Some(next) = better else {
                 self.move_pulleys(pulleys, &from, &step, 0.0);
@@ -316,13 +317,13 @@ impl Network {
     /// held it.
     fn move_pulleys(&mut self, pulleys: &[usize], from: &[f64], step: &[f64], alpha: f64) {
         for (i, &k) in pulleys.iter().enumerate() {
-            self.layout.stops[k].arc_length = from[i];
+            self.layout.stations[k].arc_length = from[i];
         }
         let mut limited = Vec::with_capacity(pulleys.len());
         for (i, &k) in pulleys.iter().enumerate() {
-            let stops = &self.layout.stops;
-            let down = STEP_ROOM_FRACTION * (from[i] - stops[k - 1].leaves());
-            let up = STEP_ROOM_FRACTION * (stops[k + 1].arc_length - from[i] - stops[k].lap);
+            let stations = &self.layout.stations;
+            let down = STEP_ROOM_FRACTION * (from[i] - stations[k - 1].leaves());
+            let up = STEP_ROOM_FRACTION * (stations[k + 1].arc_length - from[i] - stations[k].material_on_wheel);
             let mut move_by = bounded(alpha * step[i], -down, up);
             let slid = self.slid(k);
             let friction = self.wheel(k).is_some_and(|w| w.friction > 0.0);
@@ -332,21 +333,21 @@ impl Network {
             limited.push(from[i] + move_by);
         }
         for (i, &k) in pulleys.iter().enumerate() {
-            self.layout.stops[k].arc_length = limited[i];
+            self.layout.stations[k].arc_length = limited[i];
         }
     }
 
     /// The Newton step of each pulley's arc length, and whether all pivots are positive.
-    pub(in crate::model::fem) fn newton_step(&self, pulleys: &[usize], faults: &[Option<f64>]) -> (Vec<f64>, bool) {
+    pub(in crate::model::fem) fn newton_step(&self, pulleys: &[usize], imbalances: &[Option<f64>]) -> (Vec<f64>, bool) {
         let n = pulleys.len();
         let (mut diagonal, mut below, mut above) = (vec![1.0; n], vec![0.0; n], vec![0.0; n]);
-        let mut right: Vec<f64> = faults.iter().map(|f| -f.unwrap_or(0.0)).collect();
+        let mut right: Vec<f64> = imbalances.iter().map(|f| -f.unwrap_or(0.0)).collect();
         for (i, &k) in pulleys.iter().enumerate() {
-            let Some(fault) = faults[i] else { continue };
+            let Some(imbalance) = imbalances[i] else { continue };
             let Some(wheel) = self.wheel(k) else { continue };
             let [before, after] = self.forces[k];
             let own = self.rates_at(k, k);
-            let rate = |r: [Vec2; 2]| self.fault_rate(&wheel, fault, [before, after], r);
+            let rate = |r: [Vec2; 2]| self.imbalance_rate(&wheel, imbalance, [before, after], r);
             diagonal[i] = rate(own);
             if i > 0 {
                 below[i] = rate(self.rates_at(k, pulleys[i - 1]));
@@ -374,7 +375,7 @@ impl Network {
         (right, stable)
     }
 
-    /// ∂(force before, force after the pulley at stop `k`)/∂(arc length at the pulley of stop
+    /// ∂(force before, force after the pulley at station `k`)/∂(arc length at the pulley of station
     /// `of`).
     pub(in crate::model::fem) fn rates_at(&self, k: usize, of: usize) -> [Vec2; 2] {
         let mut rates = [Vec2::zeros(); 2];
@@ -399,7 +400,7 @@ impl Network {
             if k == first && first > 0 {
                 rates[0] -= self.material.body;
             }
-            if k == last && last + 1 < self.layout.stops.len() {
+            if k == last && last + 1 < self.layout.stations.len() {
                 rates[1] -= self.material.body;
             }
         }
@@ -407,10 +408,10 @@ impl Network {
     }
 
     /// Change of the imbalance at a pulley when the forces beside it change by `rates`.
-    pub(in crate::model::fem) fn fault_rate(
+    pub(in crate::model::fem) fn imbalance_rate(
         &self,
         wheel: &Wheel,
-        fault: f64,
+        imbalance: f64,
         [before, after]: [Vec2; 2],
         rates: [Vec2; 2],
     ) -> f64 {
@@ -423,7 +424,7 @@ impl Network {
             perp(after).dot(&rates[1]) / after.norm_squared() - perp(before).dot(&rates[0]) / before.norm_squared();
         // The bound that holds: the lower one where ρ lies below it or the pulley gave cable to the
         // side before.
-        let lower = (after.norm() / before.norm()).ln() - fault < 0.0;
+        let lower = (after.norm() / before.norm()).ln() - imbalance < 0.0;
         let sign = if lower { -1.0 } else { 1.0 };
         ratio - sign * wheel.friction * turn.signum() * turning
     }
@@ -433,69 +434,71 @@ impl Network {
         (0..self.pulleys().len()).try_for_each(|p| self.bisect(self.pulleys()[p]))
     }
 
-    /// Brings one pulley to rest with the others held: the change of its fault from − to +.
-    fn bisect(&mut self, stop: usize) -> Result<(), Failure> {
-        let Some(wheel) = self.wheel(stop) else { return Ok(()) };
-        let start = self.layout.stops[stop].arc_length;
-        let held = if wheel.friction > 0.0 { start - self.slid(stop) } else { start };
-        self.try_at(stop, held)?;
-        let Some(fault) = self.fault(stop, &wheel) else { return Ok(()) };
+    /// Brings one pulley to rest with the others held: the change of its imbalance from − to +.
+    fn bisect(&mut self, station: usize) -> Result<(), Failure> {
+        let Some(wheel) = self.wheel(station) else { return Ok(()) };
+        let start = self.layout.stations[station].arc_length;
+        let held = if wheel.friction > 0.0 { start - self.slid(station) } else { start };
+        self.try_at(station, held)?;
+        let Some(imbalance) = self.imbalance(station, &wheel) else { return Ok(()) };
         let least = END_CABLE_FRACTION * self.layout.length;
-        let limit = if fault < 0.0 {
-            self.layout.stops[stop + 1].arc_length - self.layout.stops[stop].lap - least
+        let limit = if imbalance < 0.0 {
+            self.layout.stations[station + 1].arc_length - self.layout.stations[station].material_on_wheel - least
         } else {
-            self.layout.stops[stop - 1].leaves() + least
+            self.layout.stations[station - 1].leaves() + least
         };
-        // From where friction held it towards the limit; the fault keeps its sign until it rests.
+        // From where friction held it towards the limit; the imbalance keeps its sign until it
+        // rests.
         let (mut near, mut far) = (held, limit);
-        self.try_at(stop, limit)?;
-        let at_limit = self.fault(stop, &wheel);
-        if at_limit.is_some_and(|f| f * fault > 0.0) {
-            return self.pass(stop, fault < 0.0);
+        self.try_at(station, limit)?;
+        let at_limit = self.imbalance(station, &wheel);
+        if at_limit.is_some_and(|f| f * imbalance > 0.0) {
+            return self.pass(station, imbalance < 0.0);
         }
         for _ in 0..60 {
             let middle = 0.5 * (near + far);
-            self.try_at(stop, middle)?;
-            match self.fault(stop, &wheel) {
-                Some(f) if f * fault > 0.0 => near = middle,
+            self.try_at(station, middle)?;
+            match self.imbalance(station, &wheel) {
+                Some(f) if f * imbalance > 0.0 => near = middle,
                 _ => far = middle,
             }
             if (far - near).abs() <= 1e-6 * self.layout.length {
                 break;
             }
         }
-        self.try_at(stop, far)
+        self.try_at(station, far)
     }
 
-    fn try_at(&mut self, stop: usize, arc_length: f64) -> Result<(), Failure> {
-        self.layout.stops[stop].arc_length = arc_length;
+    fn try_at(&mut self, station: usize, arc_length: f64) -> Result<(), Failure> {
+        self.layout.stations[station].arc_length = arc_length;
         for i in 0..self.ends.len() {
-            if self.ends[i].first == stop || self.ends[i].last == stop {
+            if self.ends[i].first == station || self.ends[i].last == station {
                 self.solve_span(i)?;
             }
         }
-        self.hang_tails();
+        self.set_free_end_forces();
         Ok(())
     }
 
-    /// A pulley that wants beyond the stop beside it: past a load the load changes sides, past an
-    /// end it runs out.
-    fn pass(&mut self, stop: usize, up: bool) -> Result<(), Failure> {
-        let other = if up { stop + 1 } else { stop - 1 };
-        let inner = other > 0 && other + 1 < self.layout.stops.len();
+    /// A pulley that wants beyond the station beside it: past a load the load changes sides, past
+    /// an end it runs out.
+    fn pass(&mut self, station: usize, up: bool) -> Result<(), Failure> {
+        let other = if up { station + 1 } else { station - 1 };
+        let inner = other > 0 && other + 1 < self.layout.stations.len();
         if !inner {
-            return Err(Failure::RunsOut(stop));
+            return Err(Failure::RunsOut(station));
         }
-        if self.layout.stops[other].anchors() {
-            return Err(Failure::Unbalanced(stop, self.unbalance(stop)));
+        if self.layout.stations[other].anchors() {
+            return Err(Failure::Unbalanced(station, self.unbalance(station)));
         }
-        let cells = (self.layout.stops[stop].cells, self.layout.stops[other].cells);
-        self.layout.stops.swap(stop, other);
-        self.held_at.swap(stop, other);
-        (self.layout.stops[stop].cells, self.layout.stops[other].cells) = cells;
+        let element_count = (self.layout.stations[station].element_count, self.layout.stations[other].element_count);
+        self.layout.stations.swap(station, other);
+        self.held_at.swap(station, other);
+        (self.layout.stations[station].element_count, self.layout.stations[other].element_count) = element_count;
         let least = 2.0 * END_CABLE_FRACTION * self.layout.length * if up { 1.0 } else { -1.0 };
-        let load_at = self.layout.stops[stop].arc_length;
-        self.layout.stops[other].arc_length = load_at + least - if up { 0.0 } else { self.layout.stops[other].lap };
+        let load_at = self.layout.stations[station].arc_length;
+        self.layout.stations[other].arc_length =
+            load_at + least - if up { 0.0 } else { self.layout.stations[other].material_on_wheel };
         self.ends = self.layout.spans().collect();
         self.spans = vec![Span::default(); self.ends.len()];
         self.warm = false;

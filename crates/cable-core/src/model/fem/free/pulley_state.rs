@@ -1,7 +1,7 @@
 //! A pulley holds its cable by friction or lets it slide, and remembers where it held it.
 
 use crate::math::Vec2;
-use crate::model::spans::contact::wheel_friction::{OnWheel, WheelFriction};
+use crate::model::spans::contact::wheel_friction::{CableProperties, WheelFriction};
 
 /// State of friction at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,7 +53,7 @@ impl PulleyState {
 
     /// Tension (N), normal and material (m) at a fraction of its arc, where its cable was in the
     /// last step; None for a point.
-    pub fn on_arc(&self, on: &OnWheel, fraction: f64) -> Option<(f64, Vec2, f64)> {
+    pub fn on_arc(&self, on: &CableProperties, fraction: f64) -> Option<(f64, Vec2, f64)> {
         let FrictionState::Wheel(wheel) = &self.friction else { return None };
         let angle = self.angles[0] + (self.angles[1] - self.angles[0]) * fraction;
         let (tension, material) = wheel.at(on, angle);

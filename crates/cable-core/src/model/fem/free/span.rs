@@ -1,7 +1,7 @@
 //! A span consists of the elements between two anchors; it is solved for the force at its start.
 //!
 //! Node by node the tension force is known once it is known at the start: F drops by q Δs along an
-//! element and by the load at a stop. What is left are two unknowns however many elements there
+//! element and by the load at a station. What is left are two unknowns however many elements there
 //! are, and their equation is the minimum of a convex function (the dual of the potential energy):
 //! ```text
 //! minimise  D(F₀) = Σ Ψₑ(Fₑ) − F₀·d,     ∇D = Σ chordₑ − d,     ∇²D = Σ ∂chordₑ/∂Fₑ
@@ -11,7 +11,7 @@
 
 use crate::math::{Mat2, Vec2};
 use crate::model::fem::free::element::Material;
-use crate::model::fem::free::stations::{Layout, SpanEnds};
+use crate::model::fem::free::stations::{SpanEnds, StationLayout};
 use crate::numerics::backtrack;
 
 /// Newton steps a span may take. Measured: 3 to 14, up to 40 for a span folded on itself.
@@ -32,7 +32,7 @@ const FORCE_ROUNDING: f64 = 1e-15;
 
 /// The shape of a span under a start force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Walk {
+pub struct SpanResponse {
     /// From its first to its last node, m.
     pub reach: Vec2,
     /// ∂reach/∂F₀, m/N.
@@ -49,7 +49,7 @@ pub struct Span {
     /// Tension force just after its first node, N.
     pub force: Vec2,
     /// Its shape.
-    pub walk: Walk,
+    pub span_response: SpanResponse,
     /// Newton steps taken.
     pub steps: usize,
     /// Unbalanced force that its gap stands for, N.
@@ -57,45 +57,45 @@ pub struct Span {
 }
 
 impl Span {
-    /// Changes of the forces at both ends with the arc length at an end (`by_end`: the last stop,
-    /// else the first).
+    /// Changes of the forces at both ends with the arc length at an end (`by_end`: the last
+    /// station, else the first).
     #[must_use]
-    pub fn force_rates(&self, material: &Material, layout: &Layout, ends: SpanEnds, by_end: bool) -> [Vec2; 2] {
+    pub fn force_rates(&self, material: &Material, layout: &StationLayout, ends: SpanEnds, by_end: bool) -> [Vec2; 2] {
         let rate = reach_rate(material, layout, ends, self.force, by_end);
-        let start = self.walk.compliance.try_inverse().map_or(Vec2::repeat(f64::NAN), |k| -(k * rate));
+        let start = self.span_response.compliance.try_inverse().map_or(Vec2::repeat(f64::NAN), |k| -(k * rate));
         [start, start + material.body * if by_end { -1.0 } else { 1.0 }]
     }
 }
 
-/// Runs over the elements between two stops: `each(ds, middle force)`; returns the force before the
-/// last stop.
+/// Runs over the elements between two stations: `each(ds, middle force)`; returns the force before
+/// the last station.
 pub fn elements(
     material: &Material,
-    layout: &Layout,
+    layout: &StationLayout,
     SpanEnds { first, last }: SpanEnds,
     start: Vec2,
     mut each: impl FnMut(f64, Vec2),
 ) -> Vec2 {
     let mut force = start;
     for k in first..last {
-        let (stop, next) = (&layout.stops[k], &layout.stops[k + 1]);
+        let (station, next) = (&layout.stations[k], &layout.stations[k + 1]);
         if k > first {
-            force -= stop.load;
+            force -= station.load;
         }
-        let ds = (next.arc_length - stop.leaves()) / stop.cells as f64;
+        let ds = (next.arc_length - station.leaves()) / station.element_count as f64;
         let drop = material.body * ds;
-        for e in 0..stop.cells {
+        for e in 0..station.element_count {
             each(ds, force - drop * (e as f64 + 0.5));
         }
-        force -= drop * stop.cells as f64;
+        force -= drop * station.element_count as f64;
     }
     force
 }
 
 /// The shape of a span under a start force.
 #[must_use]
-pub fn walk(material: &Material, layout: &Layout, ends: SpanEnds, start: Vec2) -> Walk {
-    let mut w = Walk::default();
+pub fn span_response(material: &Material, layout: &StationLayout, ends: SpanEnds, start: Vec2) -> SpanResponse {
+    let mut w = SpanResponse::default();
     w.end_force = elements(material, layout, ends, start, |ds, force| {
         let r = material.respond(ds, force);
         w.reach += r.chord;
@@ -108,7 +108,7 @@ pub fn walk(material: &Material, layout: &Layout, ends: SpanEnds, start: Vec2) -
 /// ∂reach/∂(arc length at one end), at a constant start force.
 fn reach_rate(
     material: &Material,
-    layout: &Layout,
+    layout: &StationLayout,
     SpanEnds { first, last }: SpanEnds,
     start: Vec2,
     by_end: bool,
@@ -117,31 +117,32 @@ fn reach_rate(
     let mut rate = Vec2::zeros();
     let mut force = start;
     for k in first..last {
-        let (stop, next) = (&layout.stops[k], &layout.stops[k + 1]);
+        let (station, next) = (&layout.stations[k], &layout.stations[k + 1]);
         if k > first {
-            force -= stop.load;
+            force -= station.load;
         }
-        let cells = stop.cells as f64;
-        let ds = (next.arc_length - stop.leaves()) / cells;
-        for e in 0..stop.cells {
-            let middle = (e as f64 + 0.5) / cells;
+        let element_count = station.element_count as f64;
+        let ds = (next.arc_length - station.leaves()) / element_count;
+        for e in 0..station.element_count {
+            let middle = (e as f64 + 0.5) / element_count;
             let f = force - material.body * (ds * (e as f64 + 0.5));
             if k == moving {
                 let compliance = material.respond(ds, f).compliance;
-                rate += material.chord_rate(ds, f) * (sign / cells) - compliance * material.body * (sign * middle);
+                rate +=
+                    material.chord_rate(ds, f) * (sign / element_count) - compliance * material.body * (sign * middle);
             } else if k > moving {
                 rate -= material.respond(ds, f).compliance * material.body * sign;
             }
         }
-        force -= material.body * (ds * cells);
+        force -= material.body * (ds * element_count);
     }
     rate
 }
 
 /// The whole load on a span, N, and its length, m of arc length.
-fn load_and_length(material: &Material, layout: &Layout, SpanEnds { first, last }: SpanEnds) -> (Vec2, f64) {
-    let length = layout.stops[last].arc_length - layout.stops[first].leaves();
-    let loads: Vec2 = layout.stops[first + 1..last].iter().map(|s| s.load).sum();
+fn load_and_length(material: &Material, layout: &StationLayout, SpanEnds { first, last }: SpanEnds) -> (Vec2, f64) {
+    let length = layout.stations[last].arc_length - layout.stations[first].leaves();
+    let loads: Vec2 = layout.stations[first + 1..last].iter().map(|s| s.load).sum();
     (material.body * length + loads, length)
 }
 
@@ -149,7 +150,7 @@ fn load_and_length(material: &Material, layout: &Layout, SpanEnds { first, last 
 /// first guess (A. Peyrot and A. Goulois, *Analysis of cable structures*, Computers & Structures
 /// 1979), point loads spread evenly.
 #[must_use]
-pub fn first_guess(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2) -> Vec2 {
+pub fn first_guess(material: &Material, layout: &StationLayout, ends: SpanEnds, d: Vec2) -> Vec2 {
     let (load, length) = load_and_length(material, layout, ends);
     let rest = length * material.thermal_stretch;
     let (chord, weight) = (d.norm(), load.norm());
@@ -203,11 +204,11 @@ const CROSS_LOAD_FRACTION: f64 = 1e-6;
 /// Solves a span between points `d` apart (m) from a start force. `None` when Newton fails (a
 /// number blew up).
 #[must_use]
-pub fn solve(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
+pub fn solve(material: &Material, layout: &StationLayout, ends: SpanEnds, d: Vec2, guess: Vec2) -> Option<Span> {
     let (load, length) = load_and_length(material, layout, ends);
     let size = length.max(d.norm());
     let mut force = guess;
-    let mut w = walk(material, layout, ends, force);
+    let mut w = span_response(material, layout, ends, force);
     for steps in 0..MAX_STEPS {
         let gap = w.reach - d;
         let stiffness = w.compliance.try_inverse()?;
@@ -215,14 +216,14 @@ pub fn solve(material: &Material, layout: &Layout, ends: SpanEnds, d: Vec2, gues
         if !(step.x.is_finite() && step.y.is_finite()) {
             return None;
         }
-        let done = |w: Walk, force: Vec2| Some(Span { force, walk: w, steps, residual: step.norm() });
+        let done = |w: SpanResponse, force: Vec2| Some(Span { force, span_response: w, steps, residual: step.norm() });
         if gap.norm() <= CLOSURE_TOLERANCE * size || step.norm() <= FORCE_ROUNDING * (force.norm() + load.norm()) {
             return done(w, force);
         }
         let (value, slope) = (w.energy - force.dot(&d), gap.dot(&step));
         let taken = backtrack(1.0, MAX_HALVINGS, |alpha| {
             let trial = force + step * alpha;
-            let t = walk(material, layout, ends, trial);
+            let t = span_response(material, layout, ends, trial);
             let descends = t.energy - trial.dot(&d) <= value + ARMIJO * alpha * slope;
             let closes = (t.reach - d).norm() <= (1.0 - ARMIJO * alpha) * gap.norm();
             let accepted =

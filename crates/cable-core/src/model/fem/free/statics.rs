@@ -1,8 +1,8 @@
 //! `Statics` finds the equilibrium of a cable that touches nothing but its supports, and follows it
 //! quasi-statically.
 //!
-//! A flexible cable is solved span by span (`span`, `pulley_balance`): no start can fail, and what is
-//! found is in tension and stable by construction. The mesh follows the error estimate where the
+//! A flexible cable is solved span by span (`span`, `pulley_balance`): no start can fail, and what
+//! is found is in tension and stable by construction. The mesh follows the error estimate where the
 //! scene does not give one.
 
 use crate::numerics::HalvedSteps;
@@ -11,13 +11,13 @@ use std::sync::Arc;
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::free::beam::equilibrium::{Beam, Outcome, STEP_TOLERANCE};
-use crate::model::fem::free::beam::refinement::{Refined, refine};
+use crate::model::fem::free::beam::refinement::{RefinedBeam, refine};
 use crate::model::fem::free::dual_weighted_residual;
 use crate::model::fem::free::failure_report::solve_error;
-use crate::model::fem::free::pulley_balance::{Failure, Network};
+use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
 use crate::model::fem::free::results;
 use crate::model::fem::free::results::Point;
-use crate::model::fem::free::stations::{Hold, Layout, place};
+use crate::model::fem::free::stations::{Restraint, StationLayout, place};
 use crate::model::fem::free::straight_route::straight_points;
 use crate::model::fem::free::weight_hint::material_at;
 use crate::model::initial_equilibrium::initial_equilibrium;
@@ -52,9 +52,9 @@ const JOINED_FRACTION: f64 = 0.5;
 
 /// The balance of pulleys without friction. On wheels it is found with the material on them by a
 /// mean of the tension (to 1e-7 of it), and then exactly.
-fn solve_smooth(network: &mut Network) -> Result<bool, Failure> {
+fn solve_smooth(network: &mut PulleyNetwork) -> Result<bool, Failure> {
     network.solve()?;
-    if network.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.radius > 0.0)) {
+    if network.layout.stations.iter().any(|s| matches!(s.restraint, Restraint::Pulley(w) if w.radius > 0.0)) {
         let mut exact = network.clone();
         exact.remember();
         if exact.balance_with_friction().is_ok() {
@@ -74,18 +74,18 @@ pub struct Statics {
     /// Arc length at each support that slides, m.
     slid: Vec<Option<f64>>,
     /// The flexible cable of the last answer: where the next one starts.
-    network: Option<Network>,
+    network: Option<PulleyNetwork>,
     /// The same on a finer mesh where pulleys rub: it tells what the mesh does to what friction
     /// remembers.
-    finer: Option<Network>,
+    finer: Option<PulleyNetwork>,
     /// The stiff cable of the last answer.
     beam: Option<Beam>,
-    /// The stops of the last answer and the tension forces before and after them, N.
-    rested: Option<(Layout, Vec<[Vec2; 2]>)>,
+    /// The stations of the last answer and the tension forces before and after them, N.
+    rested: Option<(StationLayout, Vec<[Vec2; 2]>)>,
     points: Vec<Point>,
     estimate: Option<f64>,
     /// Estimated error of the shape, m.
-    moved: Option<f64>,
+    shape_error: Option<f64>,
     /// True if it was put where it is: then it is not as it was laid.
     adopted: bool,
 }
@@ -106,7 +106,7 @@ impl Statics {
             rested: None,
             points: Vec::new(),
             estimate: None,
-            moved: None,
+            shape_error: None,
             adopted: false,
             time: 0.0,
             problem,
@@ -177,14 +177,14 @@ impl Statics {
     /// Rest at a time; on an error nothing has changed.
     fn rest_at(&mut self, time: f64, dragged: &[Option<Vec2>]) -> Result<StepReport, SolveError> {
         let adaptive = self.settings.segments.or(self.problem.cable.segments).is_none();
-        let mut layout = Layout::new(&self.problem, time, dragged, &self.slid);
-        if layout.stops.len() < 2 || layout.anchored().is_none() {
+        let mut layout = StationLayout::new(&self.problem, time, dragged, &self.slid);
+        if layout.stations.len() < 2 || layout.anchored().is_none() {
             return Err(SolveError::NoRestingPlace { why: NoEquilibrium::NothingHolds });
         }
-        let (material, hinted) = material_at(&self.problem, time, &layout);
+        let (material, has_auxiliary_weight) = material_at(&self.problem, time, &layout);
         let (mut segments, mut iterations) = (self.segments, 0);
         layout.cut(segments);
-        let mut network = Network::new(layout, material);
+        let mut network = PulleyNetwork::new(layout, material);
         if let Some(old) = &self.network {
             network.start_from(old);
         }
@@ -197,7 +197,7 @@ impl Statics {
                 let feature = Unsupported::BendingOverPulleys;
                 return Err(SolveError::Unsupported { model: Model::Fem, feature });
             }
-            return self.bend(network, time, hinted);
+            return self.bend(network, time, has_auxiliary_weight);
         }
         let mut estimate = dual_weighted_residual::relative_error(&mut network);
         for _ in 0..MAX_MESHES {
@@ -221,25 +221,25 @@ impl Statics {
         }
         self.time = time;
         self.segments = segments;
-        for stop in &network.layout.stops {
-            if let (Some(k), Hold::Pulley(_)) = (stop.support, stop.hold)
+        for station in &network.layout.stations {
+            if let (Some(k), Restraint::Pulley(_)) = (station.support, station.restraint)
                 && let Some(slid) = self.slid.get_mut(k)
             {
-                *slid = Some(stop.arc_length + 0.5 * stop.lap);
+                *slid = Some(station.arc_length + 0.5 * station.material_on_wheel);
             }
         }
         results::points(&network, self.problem.radius, &mut self.points);
         self.estimate = Some(estimate);
-        self.moved = Some(dual_weighted_residual::position_error(&mut network));
+        self.shape_error = Some(dual_weighted_residual::position_error(&mut network));
         self.rested = Some((network.layout.clone(), network.forces.clone()));
         let cost = Cost { iterations, residual_n: network.residual, ..Cost::default() };
         self.network = Some(network);
-        Ok(StepReport { cost, warnings: self.warnings(hinted) })
+        Ok(StepReport { cost, warnings: self.warnings(has_auxiliary_weight) })
     }
 
     /// The balance of pulleys that rub: from what they remember, else as the cable was laid;
     /// whether it was laid anew.
-    fn begin_rubbing(&self, network: &mut Network, dragged: &[Option<Vec2>]) -> Result<bool, Failure> {
+    fn begin_rubbing(&self, network: &mut PulleyNetwork, dragged: &[Option<Vec2>]) -> Result<bool, Failure> {
         if let Some(old) = &self.network
             && network.remember_from(old)
         {
@@ -263,7 +263,7 @@ impl Statics {
     /// Goes the same way with bars half as long in steps half as long and with a memory of its own:
     /// by how much the forces differ, in parts of the greatest. What mesh and steps do to friction
     /// adds up in what friction remembers, of which the present balance knows nothing.
-    fn follow_finer(&mut self, network: &Network, time: f64, dragged: &[Option<Vec2>], first: bool) -> f64 {
+    fn follow_finer(&mut self, network: &PulleyNetwork, time: f64, dragged: &[Option<Vec2>], first: bool) -> f64 {
         let Some(finer) = self.finer(network, time, dragged, first) else {
             // It begins anew from here.
             self.finer = None;
@@ -274,9 +274,15 @@ impl Statics {
         off
     }
 
-    fn finer(&self, network: &Network, time: f64, dragged: &[Option<Vec2>], first: bool) -> Option<Network> {
-        let segments: usize = network.layout.stops.iter().map(|s| s.cells).sum();
-        let cut = |mut layout: Layout| {
+    fn finer(
+        &self,
+        network: &PulleyNetwork,
+        time: f64,
+        dragged: &[Option<Vec2>],
+        first: bool,
+    ) -> Option<PulleyNetwork> {
+        let segments: usize = network.layout.stations.iter().map(|s| s.element_count).sum();
+        let cut = |mut layout: StationLayout| {
             layout.cut(2 * segments);
             layout
         };
@@ -285,9 +291,9 @@ impl Statics {
             let middle = 0.5 * (self.time + time);
             let halfway: Vec<Option<Vec2>> =
                 (0..dragged.len()).map(|k| Some((dragged[k]? + self.support_at(k).or(dragged[k])?) * 0.5)).collect();
-            let layout = cut(Layout::new(&self.problem, middle, &halfway, &self.slid));
+            let layout = cut(StationLayout::new(&self.problem, middle, &halfway, &self.slid));
             let (material, _) = material_at(&self.problem, middle, &layout);
-            let mut step = Network::new(layout, material);
+            let mut step = PulleyNetwork::new(layout, material);
             step.start_from(old);
             if !step.remember_from(old) {
                 return None;
@@ -296,7 +302,7 @@ impl Statics {
             step.commit_friction();
             half = Some(step);
         }
-        let mut finer = Network::new(cut(network.layout.clone()), network.material);
+        let mut finer = PulleyNetwork::new(cut(network.layout.clone()), network.material);
         match half.as_ref().or(self.finer.as_ref().filter(|_| !first)) {
             Some(old) => {
                 finer.start_from(old);
@@ -317,21 +323,26 @@ impl Statics {
     /// Position of a support in the last answer, of a wheel its centre (where the cable meets it is
     /// no move of the support), m.
     fn support_at(&self, support: usize) -> Option<Vec2> {
-        let stop = self.network.as_ref()?.layout.stops.iter().find(|s| s.support == Some(support))?;
-        match stop.hold {
-            Hold::Pulley(wheel) => Some(wheel.center),
-            _ => stop.point(0),
+        let station = self.network.as_ref()?.layout.stations.iter().find(|s| s.support == Some(support))?;
+        match station.restraint {
+            Restraint::Pulley(wheel) => Some(wheel.center),
+            _ => station.point(0),
         }
     }
 
     /// Rest with bending stiffness, from the flexible cable.
-    fn bend(&mut self, network: Network, time: f64, hinted: bool) -> Result<StepReport, SolveError> {
+    fn bend(
+        &mut self,
+        network: PulleyNetwork,
+        time: f64,
+        has_auxiliary_weight: bool,
+    ) -> Result<StepReport, SolveError> {
         let given = self.settings.segments.or(self.problem.cable.segments).is_some();
         // A stiff cable has a shape of its own: it needs no hint of weight.
-        let body = if hinted { Vec2::zeros() } else { network.material.body };
+        let body = if has_auxiliary_weight { Vec2::zeros() } else { network.material.body };
         let stiff = Beam::new(&network, self.problem.bending_stiffness, body).wound_as(&self.problem.route);
         let wanted = if given { None } else { Some(ESTIMATE_FRACTION * self.settings.tolerance) };
-        let Refined { beam, outcome, steps, estimate, moved } = refine(stiff, wanted, MOST_SEGMENTS);
+        let RefinedBeam { beam, outcome, steps, estimate, shape_error } = refine(stiff, wanted, MOST_SEGMENTS);
         let iterations = network.steps + steps;
         match outcome {
             Outcome::Stable => {}
@@ -343,8 +354,8 @@ impl Statics {
         self.time = time;
         // A mesh that the user gives is answered at its nodes.
         self.points = beam.points(!given);
-        self.rested = Some((beam.layout().clone(), beam.stop_forces()));
-        (self.estimate, self.moved) = (estimate.map(|e| larger(e, STEP_TOLERANCE)), moved);
+        self.rested = Some((beam.layout().clone(), beam.station_forces()));
+        (self.estimate, self.shape_error) = (estimate.map(|e| larger(e, STEP_TOLERANCE)), shape_error);
         let cost = Cost { iterations, residual_n: beam.residual, ..Cost::default() };
         self.network = Some(network);
         // A stiff cable has a shape of its own without weight, too.
@@ -360,7 +371,7 @@ impl Statics {
         self.beam.as_ref().map_or_else(Vec::new, |b| std::iter::once(b).chain(&b.other_bows()).map(nodes).collect())
     }
 
-    fn warnings(&self, hinted: bool) -> Vec<Warning> {
+    fn warnings(&self, has_auxiliary_weight: bool) -> Vec<Warning> {
         let problem = &self.problem;
         let mut out = Vec::new();
         let mut warn = |cause, value: f64, limit: f64| {
@@ -370,7 +381,7 @@ impl Statics {
             let (shown, histories) = (ShownEquilibrium::EvenlyLaid, Histories::NotSought);
             warn(WarningCause::ManyEquilibria { shown, histories }, 0.0, 0.0);
         }
-        if hinted && problem.loads.is_empty() {
+        if has_auxiliary_weight && problem.loads.is_empty() {
             warn(WarningCause::Weightless, 0.0, 0.0);
         }
         if let Some(estimate) = self.estimate
@@ -407,7 +418,7 @@ impl Statics {
         (self.network, self.beam) = (None, None);
         self.adopted = true;
         self.rested = None;
-        (self.estimate, self.moved) = (None, None);
+        (self.estimate, self.shape_error) = (None, None);
         self.points.clear();
         self.points.extend(state.arc_length_m.iter().zip(&state.position_m).map(|(&arc_length, &at)| Point {
             arc_length,
@@ -448,7 +459,8 @@ impl Statics {
             },
             ..CableSolution::default()
         };
-        let mut errors = ErrorEstimates { position_m: self.moved, ..ErrorEstimates::of_forces(&answer, self.estimate) };
+        let mut errors =
+            ErrorEstimates { position_m: self.shape_error, ..ErrorEstimates::of_forces(&answer, self.estimate) };
         // The greatest tension of a stiff cable may be between the nodes of a given mesh.
         if let Some(beam) = &self.beam {
             let unseen = (beam.greatest_tension() - greatest_tension(&answer.nodes)).abs();

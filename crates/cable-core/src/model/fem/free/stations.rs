@@ -1,18 +1,18 @@
 //! Stations are supports and point loads in order of arc length, with the elements between them.
 //!
-//! A stop either anchors the cable (held, or a pulley it slides through) or carries a load on a
-//! free point. The elements between two stops follow them when the arc length at a pulley changes,
-//! so a pulley needs no new mesh: node arc lengths are the stops' ones and fixed fractions in
-//! between.
+//! A station either anchors the cable (held, or a pulley it slides through) or carries a load on a
+//! free point. The elements between two stations follow them when the arc length at a pulley
+//! changes, so a pulley needs no new mesh: node arc lengths are the stations' ones and fixed
+//! fractions in between.
 
 use crate::math::Vec2;
 use crate::model::fem::system::mesh::bars_between;
 use crate::problem::Problem;
 use crate::scene::{PulleySide, SupportKind};
 
-/// The way in which a stop holds the cable.
+/// The way in which a station holds the cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Hold {
+pub enum Restraint {
     /// Not at all.
     Free,
     /// At a point, m.
@@ -38,67 +38,67 @@ pub struct Wheel {
 
 /// A support or a point load.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stop {
+pub struct Station {
     /// Its arc length (of a wheel: where the cable meets it), m.
     pub arc_length: f64,
     /// Material on the wheel, m.
-    pub lap: f64,
+    pub material_on_wheel: f64,
     /// The way in which it holds the cable.
-    pub hold: Hold,
+    pub restraint: Restraint,
     /// Dead load, N.
     pub load: Vec2,
     /// Index of the support; None for a point load.
     pub support: Option<usize>,
     /// Direction of a clamp, rad.
     pub clamp: Option<f64>,
-    /// Elements from here to the next stop.
-    pub cells: usize,
+    /// Elements from here to the next station.
+    pub element_count: usize,
 }
 
-impl Stop {
-    /// Arc length at which the cable leaves the stop, m.
+impl Station {
+    /// Arc length at which the cable leaves the station, m.
     #[must_use]
     pub fn leaves(&self) -> f64 {
-        self.arc_length + self.lap
+        self.arc_length + self.material_on_wheel
     }
 
     /// True if it holds the cable in place.
     #[must_use]
     pub fn anchors(&self) -> bool {
-        self.hold != Hold::Free
+        self.restraint != Restraint::Free
     }
 
     /// Points where the cable arrives (`0`) and leaves (`1`), m; None for a free point.
     #[must_use]
     pub fn point(&self, side: usize) -> Option<Vec2> {
-        match self.hold {
-            Hold::Free => None,
-            Hold::Fixed(p) => Some(p),
-            Hold::Pulley(w) => Some(w.center + w.contact[side.min(1)] * w.radius),
+        match self.restraint {
+            Restraint::Free => None,
+            Restraint::Fixed(p) => Some(p),
+            Restraint::Pulley(w) => Some(w.center + w.contact[side.min(1)] * w.radius),
         }
     }
 }
 
-/// The stops at both ends of a span.
+/// The stations at both ends of a span.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SpanEnds {
-    /// Index of the stop at its start.
+    /// Index of the station at its start.
     pub first: usize,
-    /// Index of the stop at its end.
+    /// Index of the station at its end.
     pub last: usize,
 }
 
-/// The stops of one cable at a time, first and last at its ends.
+/// The stations of one cable at a time, first and last at its ends.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Layout {
+pub struct StationLayout {
     /// In order of arc length.
-    pub stops: Vec<Stop>,
+    pub stations: Vec<Station>,
     /// Cable length, m.
     pub length: f64,
 }
 
-impl Layout {
-    /// The stops at a time (s). `slid` gives the arc length at each support where it is known
+impl StationLayout {
+    /// The stations at a time (s). `slid` gives the arc length at each support where it is known
     /// (pulleys after the first answer); the others are laid: the cable's material spread evenly
     /// along the way through its supports.
     #[must_use]
@@ -106,80 +106,90 @@ impl Layout {
         let gravity =
             if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
         let laid = arcs_along_route(problem, time_s, dragged);
-        let mut stops: Vec<Stop> = Vec::with_capacity(problem.supports.len() + problem.loads.len());
+        let mut stations: Vec<Station> = Vec::with_capacity(problem.supports.len() + problem.loads.len());
         for (k, support) in problem.supports.iter().enumerate() {
             let at = place(problem, k, time_s, dragged);
             let end = k == 0 || k + 1 == problem.supports.len();
-            let hold = match (support.kind, at) {
-                (_, None) | (SupportKind::Load | SupportKind::Free, _) => Hold::Free,
-                (SupportKind::Pulley, Some(center)) => Hold::Pulley(Wheel {
+            let restraint = match (support.kind, at) {
+                (_, None) | (SupportKind::Load | SupportKind::Free, _) => Restraint::Free,
+                (SupportKind::Pulley, Some(center)) => Restraint::Pulley(Wheel {
                     center,
                     radius: support.wheel_radius,
                     friction: support.friction,
                     side: support.side,
                     contact: [Vec2::zeros(); 2],
                 }),
-                (_, Some(p)) => Hold::Fixed(p),
+                (_, Some(p)) => Restraint::Fixed(p),
             };
-            if hold == Hold::Free && support.kind == SupportKind::Pulley && !end {
+            if restraint == Restraint::Free && support.kind == SupportKind::Pulley && !end {
                 continue; // let go: the cable no longer knows it
             }
             let known = support.arc_length.or(slid.get(k).copied().flatten());
             let released = at.is_none() && !matches!(support.kind, SupportKind::Load | SupportKind::Free);
-            stops.push(Stop {
+            stations.push(Station {
                 arc_length: known.unwrap_or(laid.get(k).copied().unwrap_or(0.0)),
-                lap: 0.0,
-                hold,
+                material_on_wheel: 0.0,
+                restraint,
                 load: support.force.at(time_s) + gravity * support.mass,
                 support: Some(k),
                 clamp: if released { None } else { support.angle },
-                cells: 0,
+                element_count: 0,
             });
         }
         for load in &problem.loads {
-            let at = stops.partition_point(|s| s.arc_length <= load.arc_length).clamp(1, stops.len().max(1));
+            let at = stations.partition_point(|s| s.arc_length <= load.arc_length).clamp(1, stations.len().max(1));
             let force = load.force.at(time_s);
-            match stops.get_mut(at - 1) {
-                Some(s) if s.arc_length >= load.arc_length && !matches!(s.hold, Hold::Pulley(_)) => s.load += force,
-                _ => stops.insert(at.min(stops.len()), point_load(load.arc_length, force)),
+            match stations.get_mut(at - 1) {
+                Some(s) if s.arc_length >= load.arc_length && !matches!(s.restraint, Restraint::Pulley(_)) => {
+                    s.load += force
+                }
+                _ => stations.insert(at.min(stations.len()), point_load(load.arc_length, force)),
             }
         }
         // A load on the very end belongs to the end.
-        while let [.., end, load] = stops.as_mut_slice() {
+        while let [.., end, load] = stations.as_mut_slice() {
             if load.support.is_some() {
                 break;
             }
             end.load += load.load;
-            stops.pop();
+            stations.pop();
         }
-        Self { stops, length: problem.length }
+        Self { stations, length: problem.length }
     }
 
-    /// Gives each stretch between stops its share of about `segments` elements.
+    /// Gives each stretch between stations its share of about `segments` elements.
     pub fn cut(&mut self, segments: usize) {
-        for k in 1..self.stops.len() {
-            let stretch = self.stops[k].arc_length - self.stops[k - 1].leaves();
-            self.stops[k - 1].cells = bars_between(stretch, self.length, segments);
+        for k in 1..self.stations.len() {
+            let stretch = self.stations[k].arc_length - self.stations[k - 1].leaves();
+            self.stations[k - 1].element_count = bars_between(stretch, self.length, segments);
         }
     }
 
-    /// The spans: runs of stops from one anchor to the next.
+    /// The spans: runs of stations from one anchor to the next.
     pub fn spans(&self) -> impl Iterator<Item = SpanEnds> + '_ {
-        let anchors = self.stops.iter().enumerate().filter(|(_, s)| s.anchors()).map(|(k, _)| k);
+        let anchors = self.stations.iter().enumerate().filter(|(_, s)| s.anchors()).map(|(k, _)| k);
         anchors.clone().zip(anchors.skip(1)).map(|(first, last)| SpanEnds { first, last })
     }
 
     /// The first and last anchor.
     #[must_use]
     pub fn anchored(&self) -> Option<(usize, usize)> {
-        let first = self.stops.iter().position(Stop::anchors)?;
-        let last = self.stops.iter().rposition(Stop::anchors)?;
+        let first = self.stations.iter().position(Station::anchors)?;
+        let last = self.stations.iter().rposition(Station::anchors)?;
         Some((first, last))
     }
 }
 
-fn point_load(arc_length: f64, load: Vec2) -> Stop {
-    Stop { arc_length, lap: 0.0, hold: Hold::Free, load, support: None, clamp: None, cells: 0 }
+fn point_load(arc_length: f64, load: Vec2) -> Station {
+    Station {
+        arc_length,
+        material_on_wheel: 0.0,
+        restraint: Restraint::Free,
+        load,
+        support: None,
+        clamp: None,
+        element_count: 0,
+    }
 }
 
 /// Position of a support at a time, dragged there by hand or not, m.

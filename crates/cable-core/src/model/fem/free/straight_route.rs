@@ -2,41 +2,42 @@
 
 use crate::math::Vec2;
 use crate::model::fem::free::results::Point;
-use crate::model::fem::free::stations::Layout;
+use crate::model::fem::free::stations::StationLayout;
 use crate::problem::Problem;
 
 /// The straight way through the supports at the time 0, in so many segments; `slid` is the arc
 /// length at each support that slides, m. Ends that hang hang down.
 pub(super) fn straight_points(problem: &Problem, segments: usize, slid: &[Option<f64>]) -> Vec<Point> {
-    let mut layout = Layout::new(problem, 0.0, &[], slid);
+    let mut layout = StationLayout::new(problem, 0.0, &[], slid);
     layout.cut(segments);
     let Some((first, last)) = layout.anchored() else { return Vec::new() };
     let down = problem.body_force(0.0);
     let down = if down.norm() > 0.0 { down / down.norm() } else { Vec2::new(0.0, -1.0) };
-    let stops = &layout.stops;
+    let stations = &layout.stations;
     let at = |k: usize| -> Vec2 {
-        let anchor = |j: usize| stops[j].point(0).unwrap_or_default();
+        let anchor = |j: usize| stations[j].point(0).unwrap_or_default();
         let (a, b) = (
-            (0..=k).rev().find(|&j| stops[j].anchors()).unwrap_or(first),
-            (k..stops.len()).find(|&j| stops[j].anchors()).unwrap_or(last),
+            (0..=k).rev().find(|&j| stations[j].anchors()).unwrap_or(first),
+            (k..stations.len()).find(|&j| stations[j].anchors()).unwrap_or(last),
         );
         if k < first || k > last {
             return anchor(a.max(first).min(last))
-                + down * (stops[k].arc_length - stops[a.max(first).min(last)].arc_length).abs();
+                + down * (stations[k].arc_length - stations[a.max(first).min(last)].arc_length).abs();
         }
-        let width = stops[b].arc_length - stops[a].arc_length;
-        let f = if width > 0.0 { (stops[k].arc_length - stops[a].arc_length) / width } else { 0.0 };
+        let width = stations[b].arc_length - stations[a].arc_length;
+        let f = if width > 0.0 { (stations[k].arc_length - stations[a].arc_length) / width } else { 0.0 };
         anchor(a) + (anchor(b) - anchor(a)) * f
     };
     let point = |arc_length: f64, at: Vec2| Point { arc_length, at, ..Point::default() };
     let mut points = Vec::new();
-    for k in 0..stops.len() - 1 {
-        let (a, b, s, d) = (at(k), at(k + 1), stops[k].arc_length, stops[k + 1].arc_length - stops[k].arc_length);
-        for e in 0..stops[k].cells {
-            let f = e as f64 / stops[k].cells as f64;
+    for k in 0..stations.len() - 1 {
+        let (a, b, s, d) =
+            (at(k), at(k + 1), stations[k].arc_length, stations[k + 1].arc_length - stations[k].arc_length);
+        for e in 0..stations[k].element_count {
+            let f = e as f64 / stations[k].element_count as f64;
             points.push(point(s + d * f, a + (b - a) * f));
         }
     }
-    points.push(point(layout.length, at(stops.len() - 1)));
+    points.push(point(layout.length, at(stations.len() - 1)));
     points
 }

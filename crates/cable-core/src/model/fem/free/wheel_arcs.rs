@@ -7,8 +7,8 @@
 
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
-use crate::model::fem::free::pulley_balance::{Failure, Network};
-use crate::model::fem::free::stations::{Hold, Wheel};
+use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
+use crate::model::fem::free::stations::{Restraint, Wheel};
 use crate::scene::PulleySide;
 
 /// Steps of the integration round a wheel.
@@ -21,10 +21,16 @@ const CONTACT_ANGLE_TOLERANCE: f64 = 1e-12;
 /// As above where round-off allows no better.
 const CONTACT_ANGLE_LIMIT: f64 = 1e-8;
 
-impl Network {
+impl PulleyNetwork {
     /// ln(T_after/T_before) round a wheel, passed `clockwise` (+1) or the other way (−1), with
     /// friction pulling along (`sign` +1) or against.
-    pub(in crate::model::fem) fn round_wheel(&self, wheel: &Wheel, before: Vec2, clockwise: f64, sign: f64) -> f64 {
+    pub(in crate::model::fem) fn log_tension_ratio(
+        &self,
+        wheel: &Wheel,
+        before: Vec2,
+        clockwise: f64,
+        sign: f64,
+    ) -> f64 {
         let m = &self.material;
         let [meets, leaves] = wheel.contact;
         let turn = arc(meets, leaves, clockwise);
@@ -58,21 +64,21 @@ impl Network {
         }
     }
 
-    /// The same at a stop, by the anchors before and after it.
-    pub(in crate::model::fem) fn clockwise_at(&self, stop: usize, wheel: &Wheel) -> f64 {
-        self.clockwise(wheel, self.passing(stop))
+    /// The same at a station, by the anchors before and after it.
+    pub(in crate::model::fem) fn clockwise_at(&self, station: usize, wheel: &Wheel) -> f64 {
+        self.clockwise(wheel, self.passing(station))
     }
 
-    /// The way the cable passes a stop, from the anchor before to the anchor after.
-    fn passing(&self, stop: usize) -> Vec2 {
-        let near = |k: usize| match self.layout.stops[k].hold {
-            Hold::Free => None,
-            Hold::Fixed(p) => Some(p),
-            Hold::Pulley(w) => Some(w.center),
+    /// The way the cable passes a station, from the anchor before to the anchor after.
+    fn passing(&self, station: usize) -> Vec2 {
+        let near = |k: usize| match self.layout.stations[k].restraint {
+            Restraint::Free => None,
+            Restraint::Fixed(p) => Some(p),
+            Restraint::Pulley(w) => Some(w.center),
         };
-        let here = near(stop).unwrap_or_default();
-        let before = (0..stop).rev().find_map(near).unwrap_or(here);
-        let after = (stop + 1..self.layout.stops.len()).find_map(near).unwrap_or(here);
+        let here = near(station).unwrap_or_default();
+        let before = (0..station).rev().find_map(near).unwrap_or(here);
+        let after = (station + 1..self.layout.stations.len()).find_map(near).unwrap_or(here);
         after - before
     }
 
@@ -85,7 +91,7 @@ impl Network {
                 let up = Vec2::new(0.0, if wheel.side == PulleySide::Over { 1.0 } else { -1.0 });
                 let tilt = perp(up) * clockwise * if wheel.side == PulleySide::Over { 0.05 } else { -0.05 };
                 wheel.contact = [(up + tilt).normalize(), (up - tilt).normalize()];
-                self.layout.stops[k].hold = Hold::Pulley(wheel);
+                self.layout.stations[k].restraint = Restraint::Pulley(wheel);
             }
         }
     }
@@ -94,7 +100,7 @@ impl Network {
     pub(in crate::model::fem) fn balance_on_wheels(&mut self) -> Result<(), Failure> {
         for round in 1..=WHEEL_ROUNDS {
             self.balance()?;
-            let (moved, lifted) = self.meet_wheels();
+            let (moved, lifted) = self.update_wheel_contacts();
             match lifted {
                 Some(k) if moved <= CONTACT_ANGLE_TOLERANCE || round == WHEEL_ROUNDS => {
                     return Err(Failure::LeavesWheel(k));
@@ -113,7 +119,7 @@ impl Network {
     /// the cable would leave at these forces. On the way to an answer that may pass (a span too
     /// slack yet hangs clear of the wheel's side): it is left touching in one point between the two
     /// directions.
-    fn meet_wheels(&mut self) -> (f64, Option<usize>) {
+    fn update_wheel_contacts(&mut self) -> (f64, Option<usize>) {
         let (mut largest, mut lifted) = (0.0, None);
         for k in self.pulleys() {
             let Some(mut wheel) = self.wheel(k).filter(|w| w.radius > 0.0) else { continue };
@@ -132,12 +138,12 @@ impl Network {
             // Simpson's mean over the arc.
             let tension = [0.0, 0.5, 1.0].map(|f| tension(&wheel, &self.material, [before, after], f));
             let tension = (tension[0] + 4.0 * tension[1] + tension[2]) / 6.0;
-            let lap =
+            let material_on_wheel =
                 wheel.radius * turn / (self.material.thermal_stretch * (1.0 + tension / self.material.axial_stiffness));
-            let stop = &mut self.layout.stops[k];
-            stop.arc_length -= 0.5 * (lap - stop.lap);
-            stop.lap = lap;
-            stop.hold = Hold::Pulley(wheel);
+            let station = &mut self.layout.stations[k];
+            station.arc_length -= 0.5 * (material_on_wheel - station.material_on_wheel);
+            station.material_on_wheel = material_on_wheel;
+            station.restraint = Restraint::Pulley(wheel);
         }
         (largest, lifted)
     }

@@ -2,31 +2,31 @@
 //! with the answer of another model or with that of another mesh.
 
 use crate::math::{larger, perp};
-use crate::model::fem::free::pulley_balance::Network;
+use crate::model::fem::free::pulley_balance::PulleyNetwork;
 use crate::model::fem::free::pulley_state::{FrictionState, PointFriction, PulleyState};
-use crate::model::fem::free::stations::Hold;
-use crate::model::spans::contact::wheel_friction::{OnWheel, WheelEnds, WheelFriction};
+use crate::model::fem::free::stations::Restraint;
+use crate::model::spans::contact::wheel_friction::{CableProperties, WheelEnds, WheelFriction};
 use crate::solution::CableSolution;
 
 /// A node of an answer that is no farther than this from a wheel, of its radius, lies on it.
 const ON_WHEEL: f64 = 1e-9;
 
-impl Network {
+impl PulleyNetwork {
     /// The cable as the law of wheels sees it.
-    pub fn on_wheel(&self) -> OnWheel {
+    pub fn cable_properties(&self) -> CableProperties {
         let m = &self.material;
-        OnWheel { load: m.body, thermal: m.thermal_stretch, stiffness: m.axial_stiffness }
+        CableProperties { load: m.body, thermal: m.thermal_stretch, stiffness: m.axial_stiffness }
     }
 
     /// True if friction at a pulley remembers.
     pub fn rubs(&self) -> bool {
-        self.layout.stops.iter().any(|s| matches!(s.hold, Hold::Pulley(w) if w.friction > 0.0))
+        self.layout.stations.iter().any(|s| matches!(s.restraint, Restraint::Pulley(w) if w.friction > 0.0))
     }
 
     /// Begins the memory of every pulley with the balance found; on each wheel friction is shared
     /// evenly.
     pub fn remember(&mut self) {
-        let on = self.on_wheel();
+        let on = self.cable_properties();
         self.pulley_states = Vec::new();
         for k in self.pulleys() {
             let Some(mut pulley) = self.blank(k) else { continue };
@@ -46,7 +46,7 @@ impl Network {
     /// Begins the memory of every pulley with an answer of another model; false where that does not
     /// say enough.
     pub fn remember_answer(&mut self, answer: &CableSolution) -> bool {
-        let on = self.on_wheel();
+        let on = self.cable_properties();
         let mut found = Vec::new();
         for k in self.pulleys() {
             let (Some(mut pulley), Some(wheel)) = (self.blank(k), self.wheel(k)) else { return false };
@@ -84,24 +84,24 @@ impl Network {
     /// A pulley that remembers nothing yet, where the layout has it.
     fn blank(&self, k: usize) -> Option<PulleyState> {
         let wheel = self.wheel(k)?;
-        let stop = &self.layout.stops[k];
+        let station = &self.layout.stations[k];
         let friction = if wheel.radius > 0.0 {
             FrictionState::Wheel(WheelFriction::new(wheel.radius, wheel.friction, self.clockwise_at(k, &wheel)))
         } else {
             let mode = if wheel.friction > 0.0 { PointFriction::Holds } else { PointFriction::Slides(0.0) };
-            FrictionState::Point { friction: wheel.friction, mode, held: stop.arc_length }
+            FrictionState::Point { friction: wheel.friction, mode, held: station.arc_length }
         };
         Some(PulleyState {
-            support: stop.support,
+            support: station.support,
             friction,
             angles: [0.0; 2],
-            material: [stop.arc_length, stop.leaves()],
+            material: [station.arc_length, station.leaves()],
         })
     }
 
     /// True if another network has the same pulleys; then their memory is taken over.
     pub fn remember_from(&mut self, other: &Self) -> bool {
-        let support = |n: &Self, k: usize| n.layout.stops[k].support;
+        let support = |n: &Self, k: usize| n.layout.stations[k].support;
         let own: Vec<Option<usize>> = self.pulleys().into_iter().map(|k| support(self, k)).collect();
         let same = own.len() == other.pulley_states.len()
             && own.iter().zip(&other.pulley_states).all(|(a, b)| *a == b.support);
@@ -113,7 +113,7 @@ impl Network {
 
     /// Takes the state after a step into the memory of friction.
     pub fn commit_friction(&mut self) {
-        let on = self.on_wheel();
+        let on = self.cable_properties();
         let mut pulley_states = std::mem::take(&mut self.pulley_states);
         for (k, r) in self.pulleys().into_iter().zip(&mut pulley_states) {
             let ends = self.ends_at(k, r);

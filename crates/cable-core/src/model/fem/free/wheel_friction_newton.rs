@@ -21,9 +21,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::math::{Vec2, cross, larger, perp};
 use crate::model::fem::free::element::turn_between;
-use crate::model::fem::free::pulley_balance::{Failure, Network};
+use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
 use crate::model::fem::free::pulley_state::{FrictionState, PointFriction, PulleyState, Unknown};
-use crate::model::fem::free::stations::{Hold, Stop};
+use crate::model::fem::free::stations::{Restraint, Station};
 
 /// Newton steps for one set of modes. Measured: 2 to 8.
 const MAX_STEPS: usize = 40;
@@ -41,7 +41,7 @@ const RESIDUAL_LIMIT: f64 = 1e-8;
 const MATERIAL: f64 = 0.01;
 /// Farthest that an end may go round its wheel in a step, rad: more comes out on the other side.
 const MOST_TURN: f64 = 0.5;
-/// Part of what lies between two stops that a step may take.
+/// Part of what lies between two stations that a step may take.
 const STEP_ROOM_FRACTION: f64 = 0.4;
 /// Part of the cone or the length by which a mode is left: how many roundings.
 const MODE_CHANGE_ROUNDINGS: f64 = 30.0;
@@ -49,18 +49,18 @@ const MODE_CHANGE_ROUNDINGS: f64 = 30.0;
 const CONE_ROUNDING: f64 = 1e-12;
 const STEP_TOLERANCE: f64 = 1e-13;
 /// Entries that a pulley changes: two indices and a force each.
-type Touched = Vec<(usize, usize, Vec2)>;
+type ForceEntries = Vec<(usize, usize, Vec2)>;
 
 /// The equations of all pulleys at a state.
 struct Equations {
     residual: DVector<f64>,
     /// By the unknowns, with the forces frozen.
     own: DMatrix<f64>,
-    /// By the force beside a stop: row, stop, side, slope.
+    /// By the force beside a station: row, station, side, slope.
     by_force: Vec<(usize, usize, usize, Vec2)>,
 }
 
-impl Network {
+impl PulleyNetwork {
     /// Finds the balance of all pulleys from what they remember; the memory itself stays.
     ///
     /// # Errors
@@ -91,19 +91,19 @@ impl Network {
         Err(Failure::Unbalanced(pulleys.first().copied().unwrap_or(0), self.residual))
     }
 
-    /// Lays the stops where the unknowns are and solves the spans between.
+    /// Lays the stations where the unknowns are and solves the spans between.
     fn take_unknowns(&mut self, pulleys: &[usize]) -> Result<(), Failure> {
         for (&k, r) in pulleys.iter().zip(&self.pulley_states) {
-            let stop: &mut Stop = &mut self.layout.stops[k];
-            (stop.arc_length, stop.lap) = (r.material[0], r.material[1] - r.material[0]);
-            if let (Hold::Pulley(wheel), FrictionState::Wheel(w)) = (&mut stop.hold, &r.friction) {
+            let station: &mut Station = &mut self.layout.stations[k];
+            (station.arc_length, station.material_on_wheel) = (r.material[0], r.material[1] - r.material[0]);
+            if let (Restraint::Pulley(wheel), FrictionState::Wheel(w)) = (&mut station.restraint, &r.friction) {
                 wheel.contact = r.angles.map(|p| w.directions(p)[1]);
             }
         }
-        let stops = &self.layout.stops;
-        let runs_out = (1..stops.len()).find(|&k| !(stops[k].arc_length > stops[k - 1].leaves()));
+        let stations = &self.layout.stations;
+        let runs_out = (1..stations.len()).find(|&k| !(stations[k].arc_length > stations[k - 1].leaves()));
         if let Some(k) = runs_out {
-            return Err(Failure::RunsOut(if stops[k].support.is_some() && self.wheel(k).is_some() {
+            return Err(Failure::RunsOut(if stations[k].support.is_some() && self.wheel(k).is_some() {
                 k
             } else {
                 k - 1
@@ -113,7 +113,7 @@ impl Network {
     }
 
     fn equations(&mut self, pulleys: &[usize]) -> Equations {
-        let on = self.on_wheel();
+        let on = self.cable_properties();
         let count: usize = self.pulley_states.iter().map(|r| r.unknowns().len()).sum();
         let mut e = Equations {
             residual: DVector::zeros(count),
@@ -171,7 +171,8 @@ impl Network {
         e
     }
 
-    /// Changes of the forces beside the stops with an unknown of pulley `k`: stop, side, slope.
+    /// Changes of the forces beside the stations with an unknown of pulley `k`: station, side,
+    /// slope.
     fn force_slopes(&self, k: usize, r: &PulleyState, unknown: Unknown) -> Vec<(usize, usize, Vec2)> {
         let mut out = Vec::with_capacity(4);
         let both = unknown == Unknown::Both;
@@ -179,7 +180,7 @@ impl Network {
             let span = self.ends.iter().position(|e| if side == 0 { e.last == k } else { e.first == k });
             let material = both || unknown == Unknown::Material(side);
             let Some(i) = span else {
-                if material && (if side == 0 { k > 0 } else { k + 1 < self.layout.stops.len() }) {
+                if material && (if side == 0 { k > 0 } else { k + 1 < self.layout.stations.len() }) {
                     out.push((k, side, -self.material.body));
                 }
                 continue;
@@ -192,7 +193,7 @@ impl Network {
             {
                 // The end of the span goes along the cable, dx/dp = R t.
                 let moved = w.directions(r.angles[side])[0] * wheel.radius * if side == 0 { 1.0 } else { -1.0 };
-                let stiffness = self.spans[i].walk.compliance.try_inverse();
+                let stiffness = self.spans[i].span_response.compliance.try_inverse();
                 [stiffness.map_or(Vec2::repeat(f64::NAN), |s| s * moved); 2]
             } else {
                 continue;
@@ -204,15 +205,15 @@ impl Network {
     }
 
     /// The whole derivative of the equations, and the slopes of the forces by each unknown.
-    fn tangent(&self, pulleys: &[usize], e: &Equations) -> (DMatrix<f64>, Vec<Touched>) {
+    fn tangent(&self, pulleys: &[usize], e: &Equations) -> (DMatrix<f64>, Vec<ForceEntries>) {
         let mut matrix = e.own.clone();
         let mut slopes = Vec::with_capacity(matrix.ncols());
         for (&k, r) in pulleys.iter().zip(&self.pulley_states) {
             for &unknown in r.unknowns() {
                 let column = slopes.len();
                 let of = self.force_slopes(k, r, unknown);
-                for &(row, stop, side, by) in &e.by_force {
-                    for &(_, _, d) in of.iter().filter(|s| s.0 == stop && s.1 == side) {
+                for &(row, station, side, by) in &e.by_force {
+                    for &(_, _, d) in of.iter().filter(|s| s.0 == station && s.1 == side) {
                         matrix[(row, column)] += by.dot(&d);
                     }
                 }
@@ -254,10 +255,10 @@ impl Network {
         if worst <= RESIDUAL_LIMIT { Ok(()) } else { Err(Failure::Unbalanced(first, worst)) }
     }
 
-    /// The longest part of a step that keeps the order of the stops and the side of the wheels.
+    /// The longest part of a step that keeps the order of the stations and the side of the wheels.
     fn longest_step(&self, pulleys: &[usize], step: &DVector<f64>) -> f64 {
         let (mut alpha, mut column) = (1.0, 0);
-        let stops = &self.layout.stops;
+        let stations = &self.layout.stations;
         let mut limit = |by: f64, most: f64| {
             if by > most {
                 alpha = if most / by < alpha { most / by } else { alpha };
@@ -268,8 +269,10 @@ impl Network {
                 let by = step[column];
                 column += 1;
                 let room = |side: usize| match side {
-                    0 if k > 0 => STEP_ROOM_FRACTION * (stops[k].arc_length - stops[k - 1].leaves()),
-                    1 if k + 1 < stops.len() => STEP_ROOM_FRACTION * (stops[k + 1].arc_length - stops[k].leaves()),
+                    0 if k > 0 => STEP_ROOM_FRACTION * (stations[k].arc_length - stations[k - 1].leaves()),
+                    1 if k + 1 < stations.len() => {
+                        STEP_ROOM_FRACTION * (stations[k + 1].arc_length - stations[k].leaves())
+                    }
                     _ => f64::INFINITY,
                 };
                 match unknown {
@@ -302,7 +305,7 @@ impl Network {
 
     /// Asks every pulley whether it holds or slides; true where one changed.
     fn change_modes(&mut self, pulleys: &[usize], one: bool) -> bool {
-        let on = self.on_wheel();
+        let on = self.cable_properties();
         let mut changed = false;
         let mut pulley_states = std::mem::take(&mut self.pulley_states);
         for (&k, r) in pulleys.iter().zip(&mut pulley_states) {
@@ -340,13 +343,13 @@ impl Network {
         changed
     }
 
-    /// Adds to small changes of the forces beside the stops what the pulleys do about them.
+    /// Adds to small changes of the forces beside the stations what the pulleys do about them.
     pub fn let_rubbing_follow(&mut self, changes: &mut [[Vec2; 2]]) {
         let pulleys = self.pulleys();
         let e = self.equations(&pulleys);
         let mut right = DVector::zeros(e.residual.len());
-        for &(row, stop, side, by) in &e.by_force {
-            right[row] -= by.dot(&changes[stop][side]);
+        for &(row, station, side, by) in &e.by_force {
+            right[row] -= by.dot(&changes[station][side]);
         }
         let (matrix, slopes) = self.tangent(&pulleys, &e);
         let Some(moves) = matrix.lu().solve(&right) else {
@@ -354,8 +357,8 @@ impl Network {
             return;
         };
         for (of, by) in slopes.iter().zip(moves.iter()) {
-            for &(stop, side, slope) in of {
-                changes[stop][side] += slope * *by;
+            for &(station, side, slope) in of {
+                changes[station][side] += slope * *by;
             }
         }
     }

@@ -16,7 +16,7 @@
 
 use crate::contact::geometry::Geometry;
 use crate::math::Vec2;
-use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
+use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath, angle_between};
 
 /// The corner, post or pulley of a sliding node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,13 +48,13 @@ pub enum StickSlip {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlidingNode {
     /// The round it sits on.
-    pub end: End,
+    pub end: BarEnd,
     /// Coulomb friction.
     pub friction: f64,
     /// The corner, post or pulley over which it runs.
     pub slide_over: SlideOver,
     /// State of its friction.
-    pub grip: StickSlip,
+    pub stick_slip: StickSlip,
     /// γ.
     pub factor: f64,
     /// μφ with the turn last seen.
@@ -67,18 +67,18 @@ pub struct SlidingNode {
     pub lying_fractions: [f64; 2],
     /// Tensions between which friction acted in the last step with inertia. None at rest and of a
     /// new node.
-    pub balanced: Option<Balanced>,
+    pub balanced: Option<BalancedTensions>,
 }
 
 impl SlidingNode {
     /// One on a round, through which nothing has slid yet.
     #[must_use]
-    pub fn new(end: End, friction: f64, slide_over: SlideOver) -> Self {
+    pub fn new(end: BarEnd, friction: f64, slide_over: SlideOver) -> Self {
         Self {
             end,
             friction,
             slide_over,
-            grip: StickSlip::Stick,
+            stick_slip: StickSlip::Stick,
             factor: 1.0,
             exponent: 0.0,
             floor_factor: 1.0,
@@ -96,7 +96,7 @@ impl SlidingNode {
     /// True if its arc length is held in the present step.
     #[must_use]
     pub fn sticks(&self) -> bool {
-        self.friction > 0.0 && self.grip == StickSlip::Stick
+        self.friction > 0.0 && self.stick_slip == StickSlip::Stick
     }
 
     /// The feature it runs over.
@@ -118,7 +118,7 @@ impl SlidingNode {
 /// Tensions between which friction acted at a sliding node in a step with inertia: tensions as they
 /// are reported lack the loss of the bars, and nothing says how what slides speeds up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Balanced {
+pub struct BalancedTensions {
     /// Pull where the cable comes on to the round, less the inertia of what slides, and where it
     /// leaves it, N.
     pub pull: [f64; 2],
@@ -128,7 +128,7 @@ pub struct Balanced {
 
 /// The load of a sliding node.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Load {
+pub struct SlidingNodeLoad {
     /// Tension just before and just after, N.
     pub tension: [f64; 2],
     /// The same as the energy's slope sees it: along the bars, not along the sagging cable, N.
@@ -153,7 +153,7 @@ pub struct Load {
     pub floor: [f64; 3],
 }
 
-impl Load {
+impl SlidingNodeLoad {
     /// The load between two bars with middle tensions `tension` (N) and ways `path`; `body` is the
     /// force per metre (N/m) and `share` the metres of cable from the middle of each bar to the
     /// node.
@@ -161,7 +161,7 @@ impl Load {
     /// dF/ds = −b: the tension force at the node is that of the bar's middle ∓ b·share, and the
     /// turn is from one to the other.
     #[must_use]
-    pub fn new(node: &SlidingNode, tension: [f64; 2], path: [&Path; 2], body: Vec2, share: [f64; 2]) -> Self {
+    pub fn new(node: &SlidingNode, tension: [f64; 2], path: [&TangentPath; 2], body: Vec2, share: [f64; 2]) -> Self {
         let t = [path[0].direction, path[1].direction];
         let force = [t[0] * tension[0] - body * share[0], t[1] * tension[1] + body * share[1]];
         let ends = [force[0].norm(), force[1].norm()];
@@ -198,21 +198,22 @@ impl Load {
         [self.lifted[0] - self.floor[0], self.lifted[1] + self.floor[2]]
     }
 
-    /// The grip by the law of friction: `slid` is the slide of the arc length in this step (m),
-    /// `inertia` the force (N) that its inertia adds to the slope, `stiffness` is EA (N). A node
-    /// holds or slips by the very slope that the step balances: with another, however near to it,
-    /// one that is about to slip is said to slip where it holds and to hold where it slips, for
-    /// ever.
+    /// The friction state by the law of friction: `slid` is the slide of the arc length in this
+    /// step (m), `inertia` the force (N) that its inertia adds to the slope, `stiffness` is EA (N).
+    /// A node holds or slips by the very slope that the step balances: with another, however near
+    /// to it, one that is about to slip is said to slip where it holds and to hold where it slips,
+    /// for ever.
     #[must_use]
-    pub fn grip(&self, node: &SlidingNode, slid: f64, [inertia, slack]: [f64; 2], stiffness: f64) -> StickSlip {
+    pub fn stick_slip(&self, node: &SlidingNode, slid: f64, [inertia, slack]: [f64; 2], stiffness: f64) -> StickSlip {
         let cone = node.exponent.exp();
         let [before, after] = self.at_material;
-        let slope = |grip: StickSlip| {
-            let (ratio, factor) = (self.ratio(grip, node.exponent), self.factor(grip, node.exponent, stiffness));
+        let slope = |stick_slip: StickSlip| {
+            let (ratio, factor) =
+                (self.ratio(stick_slip, node.exponent), self.factor(stick_slip, node.exponent, stiffness));
             let floor = self.floor[0] + self.floor[1] * mean_factor(ratio) + self.floor[2] * ratio;
             after * factor + floor - before + inertia
         };
-        match node.grip {
+        match node.stick_slip {
             StickSlip::Stick if slope(StickSlip::ToStart) < -slack => StickSlip::ToStart,
             StickSlip::Stick if slope(StickSlip::ToEnd) > slack => StickSlip::ToEnd,
             // Without friction both ways are one.
@@ -222,20 +223,20 @@ impl Load {
         }
     }
 
-    /// Tension before over tension after the round for a grip.
+    /// Tension before over tension after the round for a friction state.
     #[must_use]
-    pub fn ratio(&self, grip: StickSlip, exponent: f64) -> f64 {
-        match grip {
+    pub fn ratio(&self, stick_slip: StickSlip, exponent: f64) -> f64 {
+        match stick_slip {
             StickSlip::Stick => 1.0,
             StickSlip::ToStart => exponent.exp(),
             StickSlip::ToEnd => (-exponent).exp(),
         }
     }
 
-    /// γ for a grip, for a cable of axial stiffness `stiffness` (N).
+    /// γ for a friction state, for a cable of axial stiffness `stiffness` (N).
     #[must_use]
-    pub fn factor(&self, grip: StickSlip, exponent: f64, stiffness: f64) -> f64 {
-        let ratio = self.ratio(grip, exponent);
+    pub fn factor(&self, stick_slip: StickSlip, exponent: f64, stiffness: f64) -> f64 {
+        let ratio = self.ratio(stick_slip, exponent);
         let after = self.pull[1];
         ratio * (1.0 + ratio * after / (2.0 * stiffness)) / (1.0 + after / (2.0 * stiffness))
     }
@@ -253,7 +254,7 @@ pub fn round_of(geometry: &Geometry, feature: usize, clear: f64, least: f64) -> 
     }
     let corner = body.corner((feature - body.first) / 2)?;
     let turns = match (corner.before, corner.after) {
-        (Some(a), Some(b)) => angle_between(a, b).abs() > least && body.juts_out(&corner),
+        (Some(a), Some(b)) => angle_between(a, b).abs() > least && body.is_exposed(&corner),
         _ => true,
     };
     turns.then_some((corner.at, body.offset + clear))

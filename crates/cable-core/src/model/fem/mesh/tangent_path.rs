@@ -19,7 +19,7 @@ const COINCIDENT_CENTRE_FRACTION: f64 = 1e-9;
 
 /// One end of a bar.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct End {
+pub struct BarEnd {
     /// Centre, m.
     pub center: Vec2,
     /// Radius, m; 0 = a point.
@@ -30,7 +30,7 @@ pub struct End {
     pub sense: f64,
 }
 
-impl End {
+impl BarEnd {
     /// A plain point.
     #[inline]
     #[must_use]
@@ -50,7 +50,7 @@ impl End {
 
 /// The way from one end to the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Path {
+pub struct TangentPath {
     /// Whole length P, m.
     pub length: f64,
     /// Length l of the straight part, m.
@@ -69,7 +69,7 @@ pub fn angle_between(a: Vec2, b: Vec2) -> f64 {
     cross(a, b).atan2(a.dot(&b))
 }
 
-impl Path {
+impl TangentPath {
     /// The way between two points.
     #[inline]
     #[must_use]
@@ -81,7 +81,7 @@ impl Path {
 
     /// The way between two ends.
     #[must_use]
-    pub fn between(a: &End, b: &End) -> Self {
+    pub fn between(a: &BarEnd, b: &BarEnd) -> Self {
         let d = b.center - a.center;
         if a.radius > 0.0
             && b.radius > 0.0
@@ -102,16 +102,16 @@ impl Path {
         } else {
             Vec2::x()
         };
-        let normal = |end: &End| perp(direction) * -end.sense;
+        let normal = |end: &BarEnd| perp(direction) * -end.sense;
         let ends = [a.center + normal(a) * a.radius, b.center + normal(b) * b.radius];
-        let arc = |end: &End| if end.radius > 0.0 { end.sense * angle_between(normal(end), end.mark) } else { 0.0 };
+        let arc = |end: &BarEnd| if end.radius > 0.0 { end.sense * angle_between(normal(end), end.mark) } else { 0.0 };
         let arcs = [-arc(a), arc(b)];
         let length = straight + a.radius * arcs[0] + b.radius * arcs[1];
         Self { length, straight, direction, ends, arcs }
     }
 
     /// Along one round, from mark to mark.
-    fn round(a: &End, b: &End) -> Self {
+    fn round(a: &BarEnd, b: &BarEnd) -> Self {
         let turn = a.sense * angle_between(a.mark, b.mark);
         let turn = if turn < 0.0 { turn + std::f64::consts::TAU } else { turn };
         let (sin, cos) = (0.5 * a.sense * turn).sin_cos();
@@ -147,9 +147,9 @@ mod tests {
         // A wheel of radius 1 at the origin, passed clockwise over its top, from (−2, 0) to (2, 0):
         // the tangents are √3 long and meet it 60° before and after the top... of 120° in all, 60°
         // wrapped.
-        let wheel = End { center: Vec2::zeros(), radius: 1.0, mark: Vec2::y(), sense: -1.0 };
-        let first = Path::between(&End::point(Vec2::new(-2.0, 0.0)), &wheel);
-        let last = Path::between(&wheel, &End::point(Vec2::new(2.0, 0.0)));
+        let wheel = BarEnd { center: Vec2::zeros(), radius: 1.0, mark: Vec2::y(), sense: -1.0 };
+        let first = TangentPath::between(&BarEnd::point(Vec2::new(-2.0, 0.0)), &wheel);
+        let last = TangentPath::between(&wheel, &BarEnd::point(Vec2::new(2.0, 0.0)));
         let sixth = std::f64::consts::FRAC_PI_6;
         for (path, arc) in [(first, first.arcs[1]), (last, last.arcs[0])] {
             assert!((path.straight - 3f64.sqrt()).abs() < 1e-14);
@@ -161,10 +161,12 @@ mod tests {
 
     #[test]
     fn a_whole_turn_is_the_sum_of_its_marks() {
-        let mark = |angle: f64| End { center: Vec2::zeros(), radius: 0.5, mark: unit(angle), sense: 1.0 };
-        let path = Path::between(&mark(3.0), &mark(5.0));
+        let mark = |angle: f64| BarEnd { center: Vec2::zeros(), radius: 0.5, mark: unit(angle), sense: 1.0 };
+        let path = TangentPath::between(&mark(3.0), &mark(5.0));
         assert!((path.length - 1.0).abs() < 1e-14);
-        assert!((Path::between(&mark(5.0), &mark(3.0)).length - 0.5 * (std::f64::consts::TAU - 2.0)).abs() < 1e-14);
+        assert!(
+            (TangentPath::between(&mark(5.0), &mark(3.0)).length - 0.5 * (std::f64::consts::TAU - 2.0)).abs() < 1e-14
+        );
     }
 
     proptest! {
@@ -174,10 +176,10 @@ mod tests {
         ) {
             let sense = if over { -1.0 } else { 1.0 };
             let mark = Vec2::new(0.0, -sense);
-            let wheel = End { center: Vec2::zeros(), radius: r, mark, sense };
+            let wheel = BarEnd { center: Vec2::zeros(), radius: r, mark, sense };
             let (p, h) = (Vec2::new(from.0, from.1), 1e-5);
             let d = Vec2::new(step.0, step.1) * h;
-            let at = |p: Vec2| Path::between(&End::point(p), &wheel);
+            let at = |p: Vec2| TangentPath::between(&BarEnd::point(p), &wheel);
             let (path, plus, minus) = (at(p), at(p + d), at(p - d));
             let slope = plus.length - minus.length;
             prop_assert!((slope + 2.0 * path.direction.dot(&d)).abs() < 1e-9 * h.sqrt());
@@ -191,9 +193,9 @@ mod tests {
             to in (2.0f64..4.0, -1.0f64..1.0), r in (0.1f64..0.9, 0.1f64..0.9), senses in (any::<bool>(), any::<bool>()),
         ) {
             let sense = |over: bool| if over { -1.0 } else { 1.0 };
-            let a = End { center: Vec2::zeros(), radius: r.0, mark: Vec2::y(), sense: sense(senses.0) };
-            let b = End { center: Vec2::new(to.0, to.1), radius: r.1, mark: Vec2::y(), sense: sense(senses.1) };
-            let path = Path::between(&a, &b);
+            let a = BarEnd { center: Vec2::zeros(), radius: r.0, mark: Vec2::y(), sense: sense(senses.0) };
+            let b = BarEnd { center: Vec2::new(to.0, to.1), radius: r.1, mark: Vec2::y(), sense: sense(senses.1) };
+            let path = TangentPath::between(&a, &b);
             for (end, at) in [(a, path.ends[0]), (b, path.ends[1])] {
                 let n = (at - end.center) / end.radius;
                 prop_assert!((n.norm() - 1.0).abs() < 1e-12);

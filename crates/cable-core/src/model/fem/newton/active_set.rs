@@ -22,7 +22,7 @@
 use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
 use crate::linalg::{BandFactor, solve_coupled};
 use crate::math::Vec2;
-use crate::model::fem::newton::gap_constraint::Stop;
+use crate::model::fem::newton::gap_constraint::GapConstraint;
 use crate::model::fem::settings::NewtonTuning;
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
@@ -33,7 +33,7 @@ use crate::model::fem::system::step_context::{StepContext, longest};
 #[derive(Clone, Debug)]
 pub struct PredictedContacts {
     touches: Vec<ContactPair>,
-    stops: Vec<Stop>,
+    gap_constraints: Vec<GapConstraint>,
     pairs: Vec<SelfPair>,
     order: SortedNodes,
     right: Vec<f64>,
@@ -56,7 +56,7 @@ impl PredictedContacts {
     pub fn new(nodes: usize) -> Self {
         Self {
             touches: Vec::with_capacity(nodes),
-            stops: Vec::with_capacity(nodes),
+            gap_constraints: Vec::with_capacity(nodes),
             pairs: Vec::new(),
             order: SortedNodes::default(),
             right: Vec::with_capacity(2 * nodes),
@@ -110,9 +110,9 @@ impl PredictedContacts {
         let Equations { system, factor, coupling } = equations;
         self.find_contacts(context, x, direction);
         let reach = contacts.barrier.reach;
-        self.stops.clear();
+        self.gap_constraints.clear();
         for touch in self.touches.iter().filter(|t| t.pair.weight > 0.0) {
-            self.stops.push(Stop::of(
+            self.gap_constraints.push(GapConstraint::of(
                 touch,
                 mesh,
                 system,
@@ -123,15 +123,20 @@ impl PredictedContacts {
             let within = reach + 2.0 * longest(direction);
             contacts.self_contacts.shape.pairs(x, &mesh.arc_length, within, &mut self.order, &mut self.pairs);
             for pair in self.pairs.iter().filter(|p| p.weight > 0.0) {
-                self.stops.push(Stop::of_own(pair, mesh, system, landing_gap(&mesh.tuning.newton, pair.gap_m, reach)));
+                self.gap_constraints.push(GapConstraint::of_own(
+                    pair,
+                    mesh,
+                    system,
+                    landing_gap(&mesh.tuning.newton, pair.gap_m, reach),
+                ));
             }
         }
-        let Self { stops, right, step, .. } = self;
+        let Self { gap_constraints, right, step, .. } = self;
         step.clear();
         step.extend_from_slice(direction);
         for _ in 0..mesh.tuning.newton.active_set_rounds {
             let (mut stiffer, mut changed) = (false, false);
-            for stop in stops.iter_mut() {
+            for stop in gap_constraints.iter_mut() {
                 let [new, moved] = stop.hold(system, coupling, right, mesh, x, step);
                 stiffer |= new;
                 changed |= moved;
@@ -213,7 +218,7 @@ mod tests {
         d.begin_step(STEP, &[]);
         let mut unknowns = d.solver.present_unknowns(&d.cable);
         let mut memory = Workspace::new(&d.cable.mesh).unwrap();
-        let done = memory.descend(&d.cable.step_context(), &mut unknowns).unwrap();
+        let done = memory.minimise_by_line_search(&d.cable.step_context(), &mut unknowns).unwrap();
         let landed = memory.touches.len();
         println!("{} iterations, {landed} nodes landed", done.iterations);
         assert!(landed > 90 && done.iterations <= 8, "{landed} {}", done.iterations);

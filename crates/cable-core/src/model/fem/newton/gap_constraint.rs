@@ -18,7 +18,7 @@ enum Pivot {
 
 /// One contact ahead.
 #[derive(Clone, Copy, Debug)]
-pub struct Stop {
+pub struct GapConstraint {
     /// Nodes and their parts of the gap's slope; those of part 0 count for nothing.
     shares: [(usize, f64); 3],
     normal: Vec2,
@@ -34,7 +34,7 @@ pub struct Stop {
     held_to: Option<f64>,
 }
 
-impl Stop {
+impl GapConstraint {
     /// The contact of an obstacle.
     pub fn of(touch: &ContactPair, mesh: &Mesh, system: &System, least: f64) -> Self {
         let (gap, [a, b]) = (&touch.pair.gap, touch.shares());
@@ -183,7 +183,7 @@ mod tests {
             let after = touch(&then).unwrap();
             // The gap has no sign: what is crossed is left to the sweep.
             prop_assume!(after.pair.gap.normal.dot(&before.pair.gap.normal) > 0.0);
-            let stop = Stop::of(&before, &d.cable.mesh, &System::new(&d.cable.mesh), 0.0);
+            let stop = GapConstraint::of(&before, &d.cable.mesh, &System::new(&d.cable.mesh), 0.0);
             let change = stop.opening(&moves) + stop.bend(&x, &moves);
             prop_assert!((after.pair.gap.gap_m - before.pair.gap.gap_m - change).abs() < 1e-12);
         }
@@ -201,7 +201,7 @@ mod tests {
                 found.into_iter().find(|p| (p.node, p.segment) == (4, 0)).unwrap()
             };
             let (before, after) = (pair(&x), pair(&then));
-            let stop = Stop::of_own(&before, &d.cable.mesh, &System::new(&d.cable.mesh), 0.0);
+            let stop = GapConstraint::of_own(&before, &d.cable.mesh, &System::new(&d.cable.mesh), 0.0);
             let change = stop.opening(&moves) + stop.bend(&x, &moves);
             prop_assert!((after.gap_m - before.gap_m - change).abs() < 1e-12);
         }

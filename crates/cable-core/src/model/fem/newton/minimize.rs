@@ -19,7 +19,7 @@ use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::bar_energy;
-use crate::model::fem::system::contact::contact_energy::{add_floor, add_friction, add_touch};
+use crate::model::fem::system::contact::contact_energy::{add_barrier, add_floor, add_friction};
 use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::model::fem::system::contact::self_contact;
 use crate::model::fem::system::contact::self_contact::{Coupling, SelfContactLaws};
@@ -95,9 +95,9 @@ pub struct Workspace {
     pub(in crate::model::fem) order: SortedNodes,
     /// Entries of the Hessian outside its band, from contacts of the cable with itself.
     pub(in crate::model::fem) coupling: Coupling,
-    pub(in crate::model::fem) ahead: PredictedContacts,
+    pub(in crate::model::fem) predicted_contacts: PredictedContacts,
     /// Pulls carried as unknowns; empty: those of the present lengths.
-    pub(in crate::model::fem) carried: Vec<bar_energy::Carried>,
+    pub(in crate::model::fem) carried: Vec<bar_energy::BarIterate>,
     /// Branches of the friction of contacts, where that is being found out; empty: those of the
     /// present unknowns.
     pub(in crate::model::fem) branches: Vec<friction::Branch>,
@@ -141,7 +141,7 @@ impl Workspace {
             own_pairs: Vec::new(),
             order: SortedNodes::default(),
             coupling: Coupling::new(),
-            ahead: PredictedContacts::new(mesh.nodes()),
+            predicted_contacts: PredictedContacts::new(mesh.nodes()),
             carried: Vec::with_capacity(mesh.nodes()),
             branches: Vec::with_capacity(mesh.nodes()),
             slid: Vec::with_capacity(mesh.nodes()),
@@ -220,7 +220,7 @@ impl Workspace {
         }
         for touch in &touches {
             let scale = input.scale.get(touch.node).copied().unwrap_or(node_scale(input, touch.node));
-            let (energy, stiffness) = add_touch(s, mesh, touch, scale, contacts, x, curvature);
+            let (energy, stiffness) = add_barrier(s, mesh, touch, scale, contacts, x, curvature);
             value += energy;
             let rounding = GAP_ROUNDING * x[touch.node].norm();
             round.add(&contacts.barrier, touch.pair.gap.gap_m, stiffness, rounding);
@@ -262,8 +262,8 @@ impl Workspace {
         let mut worst = Residual { force: 0.0, node: 0, excess: 0.0, drift: 0.0 };
         // On the way to a rest any force may be hidden, for what is laid in touch begins there, and
         // where an outline squeezes the cable.
-        let hidden = if input.moves && !input.outlined { self.rounding.relief } else { self.rounding.noise };
-        let known = smaller(hidden, input.most_noise);
+        let hidden = if input.moves && !input.has_moving_outline { self.rounding.relief } else { self.rounding.noise };
+        let known = smaller(hidden, input.max_noise);
         let accepted = larger(input.tolerance, known);
         let mut drift = Vec2::zeros();
         for node in 0..mesh.nodes() {
@@ -329,13 +329,13 @@ impl Workspace {
         }
         if !self.coupling.is_empty() {
             self.coupling.retain(|&(i, j, _)| !mesh.held[i / 2] && !mesh.held[j / 2]);
-            self.ahead.keep(&self.direction);
+            self.predicted_contacts.keep(&self.direction);
             return solve_coupled(&s.hessian, &self.coupling, &mut self.direction).is_ok()
                 && self.direction.iter().all(|d| d.is_finite());
         }
-        self.ahead.keep(&self.direction);
+        self.predicted_contacts.keep(&self.direction);
         if self.factor.factor_and_solve(&s.hessian, &mut self.direction).is_err() {
-            self.direction.copy_from_slice(self.ahead.kept());
+            self.direction.copy_from_slice(self.predicted_contacts.kept());
             return false;
         }
         self.direction.iter().all(|d| d.is_finite())
@@ -345,7 +345,7 @@ impl Workspace {
     ///
     /// # Errors
     /// With the worst node and its unbalanced force.
-    pub(in crate::model::fem) fn descend(
+    pub(in crate::model::fem) fn minimise_by_line_search(
         &mut self,
         step: &StepContext<'_>,
         unknowns: &mut Unknowns,
@@ -402,7 +402,7 @@ impl Workspace {
                 }
             }
             if input.moves {
-                self.look_ahead(step, unknowns);
+                self.predict_contacts(step, unknowns);
             }
             let mut slope = self.slope();
             if !(slope < 0.0) && !left {
@@ -449,8 +449,8 @@ impl Workspace {
     }
 
     /// Finds the direction again if something is in its way; returns how much of it is free.
-    pub(in crate::model::fem) fn look_ahead(&mut self, step: &StepContext<'_>, unknowns: &Unknowns) -> f64 {
-        let free = self.free_from_here(step, unknowns, 1.0);
+    pub(in crate::model::fem) fn predict_contacts(&mut self, step: &StepContext<'_>, unknowns: &Unknowns) -> f64 {
+        let free = self.step_bound_from_assembly(step, unknowns, 1.0);
         if free >= step.mesh.tuning.newton.free_step_fraction {
             return free;
         }
@@ -461,12 +461,12 @@ impl Workspace {
             self.plain.clone_from(&self.direction);
         }
         let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
-        self.ahead.solve(step, equations, &unknowns.positions, &mut self.direction);
+        self.predicted_contacts.solve(step, equations, &unknowns.positions, &mut self.direction);
         if needs_descent && !(self.slope() <= step.mesh.tuning.newton.min_descent_fraction * downhill) {
             self.direction.clone_from(&self.plain);
             return free;
         }
-        self.free_from_here(step, unknowns, 1.0)
+        self.step_bound_from_assembly(step, unknowns, 1.0)
     }
 
     /// Moves `unknowns` along the direction as far as is free and lowers Φ; None if nothing does.
@@ -475,8 +475,8 @@ impl Workspace {
         let StepContext { mesh, input, .. } = *step;
         let Descent { value, slope, supports_move } = descent;
         let n = mesh.nodes();
-        let whole = self.whole(input);
-        let mut fraction = self.free_from_here(step, unknowns, whole);
+        let whole = self.max_step_fraction(input);
+        let mut fraction = self.step_bound_from_assembly(step, unknowns, whole);
         let noise = ENERGY_NOISE * (self.magnitude.abs() + value.abs());
         for _ in 0..mesh.tuning.newton.max_halvings {
             let mut trial = std::mem::take(&mut self.trial);

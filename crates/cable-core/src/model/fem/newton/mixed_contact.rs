@@ -49,16 +49,16 @@ impl Workspace {
         unknowns: &mut Unknowns,
     ) -> Result<Converged, Failure> {
         if !step.input.moves {
-            return self.descend(step, unknowns);
+            return self.minimise_by_line_search(step, unknowns);
         }
         if let Some(done) = self.undamped_newton(step, SelfTouch::Avoid, unknowns) {
             return Ok(done);
         }
         let mut undamped = self.undamped_iterations;
-        let mut done = self.descend(step, unknowns);
+        let mut done = self.minimise_by_line_search(step, unknowns);
         if done.is_err() && self.near_enough {
             self.go_back(unknowns);
-            done = self.descend(step, unknowns);
+            done = self.minimise_by_line_search(step, unknowns);
         }
         if done.is_err() && step.contacts.self_contacts.shape.is_on() {
             self.go_back(unknowns);
@@ -83,7 +83,7 @@ impl Workspace {
         self.begun.positions.clone_from(&unknowns.positions);
         self.begun.slides.clone_from(&unknowns.slides);
         self.goal.clone_from(&step.input.target);
-        self.carry_pulls(step.mesh, unknowns);
+        self.init_bar_iterates(step.mesh, unknowns);
         let done = self.iterate_undamped(step, self_touch, unknowns);
         self.carried.clear();
         self.branches.clear();
@@ -99,13 +99,13 @@ impl Workspace {
         unknowns.slides.clone_from(&self.begun.slides);
     }
 
-    fn carry_pulls(&mut self, mesh: &Mesh, unknowns: &Unknowns) {
+    fn init_bar_iterates(&mut self, mesh: &Mesh, unknowns: &Unknowns) {
         self.carried.clear();
         for (e, l) in mesh.rest_length.iter().enumerate() {
             let strain = (unknowns.positions[e + 1] - unknowns.positions[e]).norm() / l - 1.0;
             let taut = strain >= 0.0;
             let pull = bar_energy::stiffness(mesh, taut) * strain;
-            self.carried.push(bar_energy::Carried { pull, taut });
+            self.carried.push(bar_energy::BarIterate { pull, taut });
         }
     }
 
@@ -124,9 +124,9 @@ impl Workspace {
             };
             (d[0], d[1]) = (to.x - unknowns.positions[k].x, to.y - unknowns.positions[k].y);
         }
-        self.ahead.stop(step, &unknowns.positions, &mut self.direction);
-        let whole = self.whole(input);
-        let free = self.free_way(step, unknowns, whole);
+        self.predicted_contacts.stop(step, &unknowns.positions, &mut self.direction);
+        let whole = self.max_step_fraction(input);
+        let free = self.ccd_step_bound(step, unknowns, whole);
         self.place(mesh, unknowns, free);
     }
 
@@ -172,8 +172,8 @@ impl Workspace {
                     return None;
                 }
             }
-            let free = self.look_ahead(step, unknowns);
-            let whole = self.whole(input);
+            let free = self.predict_contacts(step, unknowns);
+            let whole = self.max_step_fraction(input);
             self.slid.clear();
             self.slid.extend(contacts.friction_contacts.iter().map(|r| r.sliding(&unknowns.positions)));
             self.walk(mesh, input, unknowns, if free < whole { free } else { whole });
@@ -216,11 +216,11 @@ impl Workspace {
                 }
             }
             counted = part;
-            self.ahead.keep(&self.direction);
+            self.predicted_contacts.keep(&self.direction);
             if self.factor.factor_and_solve(&self.system.hessian, &mut self.direction).is_ok() {
                 return self.direction.iter().all(|d| d.is_finite());
             }
-            self.direction.copy_from_slice(self.ahead.kept());
+            self.direction.copy_from_slice(self.predicted_contacts.kept());
         }
         false
     }
@@ -247,7 +247,7 @@ impl Workspace {
             let p = d.norm();
             let (now, slope) = bar_energy::pull(mesh, input, e, carried.taut, p);
             let along = if p > 0.0 { d.dot(&(step(e + 1) - step(e))) / p } else { 0.0 };
-            *carried = bar_energy::Carried { pull: now + slope * along, taut: p + along >= mesh.rest_length[e] };
+            *carried = bar_energy::BarIterate { pull: now + slope * along, taut: p + along >= mesh.rest_length[e] };
         }
         self.place(mesh, unknowns, part);
     }
@@ -370,7 +370,7 @@ mod tests {
                 let mut memory = Workspace::new(&trial.cable.mesh).unwrap();
                 let (step, mut found) = (trial.cable.step_context(), expected.clone());
                 let found_undamped = memory.undamped_newton(&step, SelfTouch::Avoid, &mut found).is_some();
-                if found_undamped && memory.descend(&step, &mut expected).is_ok() {
+                if found_undamped && memory.minimise_by_line_search(&step, &mut expected).is_ok() {
                     let off = found.positions.iter().zip(&expected.positions).map(|(a, b)| (a - b).norm());
                     worst = off.fold(worst, larger);
                     compared += 1;

@@ -32,7 +32,7 @@ type Symmetric = [f64; 3];
 
 /// Memory of the solver; a copy of the model makes its own.
 #[derive(Debug, Default)]
-pub struct FreeStep {
+pub struct MixedFreeSolver {
     /// Pull of each bar, N.
     pull: Vec<f64>,
     /// Pull of each bar as long as it is, N.
@@ -50,21 +50,21 @@ pub struct FreeStep {
     start: Vec<Vec2>,
 }
 
-impl Clone for FreeStep {
+impl Clone for MixedFreeSolver {
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
 /// Residual of the equations.
-struct Balance {
+struct EquilibriumResidual {
     /// Largest unbalanced force of a free node, N.
     force: f64,
     /// Largest difference between a bar's pull carried and that of its length, beyond rounding, N.
     pull: f64,
 }
 
-impl FreeStep {
+impl MixedFreeSolver {
     /// Finds the unknowns at the end of a step; None (and the unknowns as it was) where it does not
     /// converge.
     pub fn solve(&mut self, mesh: &Mesh, input: &StepInput, unknowns: &mut Unknowns) -> Option<Converged> {
@@ -135,7 +135,7 @@ impl FreeStep {
 
     /// Gradient with the pulls carried into `gradient`, matrix into the blocks, the force of the
     /// present lengths (the right side) into `step`.
-    fn assemble(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2], curvature: Curvature) -> Balance {
+    fn assemble(&mut self, mesh: &Mesh, input: &StepInput, x: &[Vec2], curvature: Curvature) -> EquilibriumResidual {
         for i in 0..x.len() {
             let (k, away) = (input.inertia[i], x[i] - input.predicted[i]);
             let rest = away * k - input.force[i];
@@ -143,7 +143,7 @@ impl FreeStep {
             self.step[i] = -rest;
             self.diagonal[i] = [k, 0.0, k];
         }
-        let mut balance = Balance { force: 0.0, pull: 0.0 };
+        let mut balance = EquilibriumResidual { force: 0.0, pull: 0.0 };
         for e in 0..mesh.rest_length.len() {
             let (d, l) = (x[e + 1] - x[e], mesh.rest_length[e]);
             let p = d.norm();
@@ -300,10 +300,10 @@ mod tests {
                 let s = k as f64 / (n - 1) as f64 * std::f64::consts::PI;
                 let push = Vec2::new(waves[0] * s.sin() + waves[1] * (2.0 * s).sin(), waves[2] * s.sin() + waves[3] * (3.0 * s).sin());
                 input.predicted[k] = d.cable.motion.positions[k] + push * 0.004;
-                input.inertia[k] = d.cable.mesh.share(k) * a * a;
+                input.inertia[k] = d.cable.mesh.tributary_length(k) * a * a;
             }
             let start = Unknowns { positions: d.cable.motion.positions.clone(), slides: vec![0.0; n] };
-            let (mut free, mut found) = (FreeStep::default(), start.clone());
+            let (mut free, mut found) = (MixedFreeSolver::default(), start.clone());
             let Some(done) = free.solve(&d.cable.mesh, &input, &mut found) else { return Err(TestCaseError::fail("not solved")) };
             prop_assert!(done.residual <= 1e-7 && done.iterations <= 12, "{done:?}");
             let (mut general, mut expected) = (Workspace::new(&d.cable.mesh).unwrap(), start);
@@ -324,7 +324,7 @@ mod tests {
         input.predicted[7].x = f64::NAN;
         let start = Unknowns { positions: d.cable.motion.positions.clone(), slides: vec![0.0; d.cable.mesh.nodes()] };
         let mut unknowns = start.clone();
-        assert_eq!(FreeStep::default().solve(&d.cable.mesh, &input, &mut unknowns), None);
+        assert_eq!(MixedFreeSolver::default().solve(&d.cable.mesh, &input, &mut unknowns), None);
         assert_eq!(unknowns, start);
     }
 }

@@ -3,21 +3,21 @@
 
 use crate::contact::sweep::Sweep;
 use crate::math::Vec2;
-use crate::model::fem::mesh::tangent_path::{End, Path};
+use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath};
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::system::step_context::{StepContext, longest};
 use crate::model::fem::system::step_input::{StepInput, Unknowns};
 
 impl Workspace {
     /// The part of the direction in which no node moves too far.
-    pub(in crate::model::fem) fn whole(&self, input: &StepInput) -> f64 {
+    pub(in crate::model::fem) fn max_step_fraction(&self, input: &StepInput) -> f64 {
         let largest = longest(&self.direction);
         if largest > input.max_move { input.max_move / largest } else { 1.0 }
     }
 
     /// The largest part (at most `fraction`) of the direction that crosses nothing and leaves some
     /// cable between sliding nodes and their neighbours.
-    pub(in crate::model::fem) fn free_way(
+    pub(in crate::model::fem) fn ccd_step_bound(
         &mut self,
         step: &StepContext<'_>,
         unknowns: &Unknowns,
@@ -59,8 +59,9 @@ impl Workspace {
             let to = if slides == [false, false] {
                 [from[0] + move_of(e) * free, from[1] + move_of(e + 1) * free]
             } else {
-                let end = |k: usize| mesh.sliding[k].as_ref().map_or(End::point(x[k] + move_of(k) * free), |s| s.end);
-                Path::between(&end(e), &end(e + 1)).ends
+                let end =
+                    |k: usize| mesh.sliding[k].as_ref().map_or(BarEnd::point(x[k] + move_of(k) * free), |s| s.end);
+                TangentPath::between(&end(e), &end(e + 1)).ends
             };
             let sweep = Sweep::new(from, to, mesh.tuning.newton.kept_gap_fraction).at_most(most);
             free *= match contacts.search.lists.of(e, [from, to], sweep.margin) {
@@ -82,7 +83,7 @@ impl Workspace {
     /// The same from where the system was assembled last. A step shorter than every gap leaves,
     /// whichever way it goes, is free: nearly all last iterations are, and sweeps of every bar cost
     /// as much as the rest of one.
-    pub(in crate::model::fem) fn free_from_here(
+    pub(in crate::model::fem) fn step_bound_from_assembly(
         &mut self,
         step: &StepContext<'_>,
         unknowns: &Unknowns,
@@ -97,7 +98,7 @@ impl Workspace {
         let gaps = self.touches.iter().map(|t| t.pair.gap.gap_m);
         let least = gaps.fold(contacts.barrier.reach, |a, b| if b < a { b } else { a });
         let is_short = fraction * longest(&self.direction) <= (1.0 - mesh.tuning.newton.kept_gap_fraction) * least;
-        if is_short && plain() { fraction } else { self.free_way(step, unknowns, fraction) }
+        if is_short && plain() { fraction } else { self.ccd_step_bound(step, unknowns, fraction) }
     }
 }
 
@@ -150,8 +151,8 @@ mod tests {
                 for (k, (way, s)) in memory.direction.iter_mut().zip(&seed).enumerate() {
                     *way = gaps * least * (s - if k % 2 == 1 { down } else { 0.0 });
                 }
-                let looked = memory.free_way(&step, &unknowns, 1.0);
-                let told = memory.free_from_here(&step, &unknowns, 1.0);
+                let looked = memory.ccd_step_bound(&step, &unknowns, 1.0);
+                let told = memory.step_bound_from_assembly(&step, &unknowns, 1.0);
                 prop_assert!(told == looked, "{} free where {} is", told, looked);
             }
         }

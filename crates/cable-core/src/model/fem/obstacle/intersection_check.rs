@@ -10,7 +10,7 @@ use crate::error::SolveError;
 use crate::math::{Vec2, bounded, perp, smaller};
 use crate::model::Model;
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
-use crate::model::fem::mesh::tangent_path::Path;
+use crate::model::fem::mesh::tangent_path::TangentPath;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_context::StepContext;
@@ -79,7 +79,7 @@ impl<'a> IntersectionCheck<'a> {
 
     /// True if the straight part of a way between two nodes meets nothing, nor the edges of the
     /// corners it is tangent to.
-    pub(in crate::model::fem) fn way_is_clear(&self, way: &Path, nodes: [Option<&SlidingNode>; 2]) -> bool {
+    pub(in crate::model::fem) fn way_is_clear(&self, way: &TangentPath, nodes: [Option<&SlidingNode>; 2]) -> bool {
         let geometry = self.problem.world.geometry();
         let rounds = nodes.map(|s| s.and_then(SlidingNode::feature));
         (0..2).all(|j| {
@@ -93,7 +93,7 @@ impl<'a> IntersectionCheck<'a> {
             return true;
         }
         let x = self.positions;
-        let way = Path::between(&self.mesh.end(k - 1, x), &self.mesh.end(k + 1, x));
+        let way = TangentPath::between(&self.mesh.end(k - 1, x), &self.mesh.end(k + 1, x));
         self.way_is_clear(&way, [k - 1, k + 1].map(|j| self.mesh.sliding[j].as_ref()))
     }
 

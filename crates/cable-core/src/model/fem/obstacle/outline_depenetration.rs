@@ -19,7 +19,7 @@
 use std::sync::Arc;
 
 use crate::contact::distance::segment_segment;
-use crate::contact::geometry::{Geometry, Part};
+use crate::contact::geometry::{Geometry, ObstaclePart};
 use crate::contact::self_contact_pairs::SortedNodes;
 use crate::contact::sweep::Sweep;
 use crate::math::{Vec2, larger};
@@ -45,7 +45,7 @@ const NONE: f64 = 1e-13;
 /// Returns whether a segment that moves evenly stays clear of an edge because its ends stay on one
 /// side of the edge's line. For a cable that is drawn along the ground this decides at once, where
 /// the sweep advances by one gap's width at a time.
-fn is_passed_by(geometry: &Geometry, part: Part, from: [Vec2; 2], to: [Vec2; 2]) -> bool {
+fn is_passed_by(geometry: &Geometry, part: ObstaclePart, from: [Vec2; 2], to: [Vec2; 2]) -> bool {
     let Some(body) = geometry.bodies().get(part.body) else { return false };
     let Some(edge) = part.edge.and_then(|k| body.edges.get(k)) else { return false };
     let heights = [from[0], from[1], to[0], to[1]].map(|p| (p - edge.p).dot(&edge.normal()));
@@ -263,7 +263,8 @@ impl<'a> OutlineStep<'a> {
             let to = mesh.straight(e, x);
             let sweep = Sweep::new(from, to, self.swept_gap_fraction());
             let parts = geometry.parts(sweep.low, sweep.high, sweep.margin);
-            let parts = parts.filter(|p: &Part| (p.body == own) == of_outline && !is_passed_by(geometry, *p, from, to));
+            let parts =
+                parts.filter(|p: &ObstaclePart| (p.body == own) == of_outline && !is_passed_by(geometry, *p, from, to));
             geometry.free_fraction_among(parts, &sweep, mesh.rounds(e)) >= 1.0
         };
         let clear = ends.iter().enumerate().all(|(e, from)| {

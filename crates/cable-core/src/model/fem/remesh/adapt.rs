@@ -15,7 +15,7 @@ use crate::model::Inertia;
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::remesh::arc_marks::{move_marks, wind};
-use crate::model::fem::remesh::criteria::{Criteria, Share};
+use crate::model::fem::remesh::criteria::{Criteria, MaterialShare};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::cable::CableState;
@@ -117,7 +117,7 @@ fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: Slid
     m.previous_positions[k] = m.positions[k];
     m.velocities[k] = Vec2::zeros();
     m.previous_velocities[k] = Vec2::zeros();
-    cable.contacts.floor_slid[k] = floor_friction::as_slide(cable.contacts.floor_slid[k], along);
+    cable.contacts.floor_slip[k] = floor_friction::as_slide(cable.contacts.floor_slip[k], along);
 }
 
 /// A sliding node becomes one that moves with its material: something else is in the way of a
@@ -125,7 +125,7 @@ fn make_sliding(cable: &mut CableState, k: usize, arc_length: f64, sliding: Slid
 ///
 /// It goes where its two tangents meet, 1/cos(φ/2) radii from the centre, so that the bars lie
 /// where they lay. The material there is not that of its mark, unless that was in the middle of
-/// the arc: see [`Share`]. (A mark 0.08 mm off gave a slack cable of 2 MN 2000 N there, and
+/// the arc: see [`MaterialShare`]. (A mark 0.08 mm off gave a slack cable of 2 MN 2000 N there, and
 /// broke it.)
 pub(in crate::model::fem) fn settle_down(cable: &mut CableState, k: usize) -> bool {
     match cable.mesh.sliding.get(k).copied().flatten() {
@@ -161,14 +161,14 @@ fn make_material(cable: &mut CableState, k: usize) -> bool {
     let ways = [0, 1].map(|j| mesh.path(k - 1 + j, &cable.motion.positions).length);
     let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
     if ways[0] > 0.0 && ways[1] > 0.0 {
-        let first = whole * Share::of(ways, before, whole).first;
+        let first = whole * MaterialShare::of(ways, before, whole).first;
         mesh.arc_length[k] = mesh.arc_length[k - 1] + first / mesh.thermal_stretch;
         mesh.rest_length[k - 1] = first;
         mesh.rest_length[k] = whole - first;
     }
     let m = &mut cable.motion;
-    let slid = floor_friction::as_move(cable.contacts.floor_slid[k], along.try_normalize(0.0).unwrap_or_default());
-    cable.contacts.floor_slid[k] = slid;
+    let slid = floor_friction::as_move(cable.contacts.floor_slip[k], along.try_normalize(0.0).unwrap_or_default());
+    cable.contacts.floor_slip[k] = slid;
     m.velocities[k] = along * (-0.5 * m.slide_rates[k]);
     m.previous_velocities[k] = m.velocities[k];
     m.previous_positions[k] = m.positions[k] - m.velocities[k] * m.step_before;

@@ -2,7 +2,7 @@
 
 use crate::math::smaller;
 use crate::model::fem::mesh::sliding_node::SlidingNode;
-use crate::model::fem::mesh::tangent_path::{End, rotate};
+use crate::model::fem::mesh::tangent_path::{BarEnd, rotate};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::results::keep_answer;
 use crate::model::fem::state::cable::CableState;
@@ -58,7 +58,8 @@ pub(in crate::model::fem) fn move_marks(cable: &mut CableState, rests: bool) -> 
 /// Turns the mark of a node by an angle (rad), past material (m).
 fn turn_mark(cable: &mut CableState, k: usize, shift: f64, material: f64) {
     let Some(node) = cable.mesh.sliding[k] else { return };
-    let turned = SlidingNode { end: End { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
+    let turned =
+        SlidingNode { end: BarEnd { mark: rotate(node.end.mark, node.end.sense * shift), ..node.end }, ..node };
     cable.mesh.sliding[k] = Some(turned);
     cable.mesh.arc_length[k] += material;
     cable.motion.previous_arc_length[k] += material;
@@ -120,7 +121,7 @@ fn add_mark(cable: &mut CableState, k: usize, side: usize, angle: f64) {
     let s = [cable.mesh.arc_length[bar], cable.mesh.arc_length[bar + 1]];
     let part = angle * node.end.radius / length * (s[1] - s[0]);
     let arc_length = if side == 0 { s[1] - part } else { s[0] + part };
-    insert(cable, bar + 1, arc_length, Some(SlidingNode { end: End { mark, ..node.end }, ..node }));
+    insert(cable, bar + 1, arc_length, Some(SlidingNode { end: BarEnd { mark, ..node.end }, ..node }));
 }
 
 /// The part of an arc before its mark: with the tension T₁ of one bar before it and T₂ of the other

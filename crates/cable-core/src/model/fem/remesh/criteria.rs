@@ -3,11 +3,11 @@
 use crate::contact::Gap;
 use crate::math::{bounded, perp};
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
-use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
+use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath, angle_between};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::meshing::Meshing;
-use crate::model::fem::state::motion::Motion;
+use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::system::step_context::StepContext;
 use crate::model::fem::system::step_input::load_scale;
 
@@ -16,14 +16,14 @@ const LEAST_PART: f64 = 1e-3;
 
 /// The shares of two bars in their material where their paths change.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Share {
+pub(super) struct MaterialShare {
     /// Part of the first.
     pub(super) first: f64,
     /// Growth of the strain of stretched bars; less than zero: the slack that is left.
     added_strain: f64,
 }
 
-impl Share {
+impl MaterialShare {
     /// Ways (m), how much each bar is stretched (length over unstretched length), and the
     /// unstretched length of both (m). What is stretched keeps its strain and takes what it needs
     /// for that from what is slack; where that is not enough both are stretched by as much more.
@@ -45,7 +45,7 @@ impl Share {
 pub(super) struct Criteria<'a> {
     step: StepContext<'a>,
     meshing: &'a Meshing,
-    motion: &'a Motion,
+    motion: &'a NodalMotion,
 }
 
 impl<'a> Criteria<'a> {
@@ -91,13 +91,15 @@ impl<'a> Criteria<'a> {
     /// The share of the material between two nodes of a cable in motion where a sliding node comes
     /// between them; None where the cable is not taut, pulled by less than what its own speed
     /// across, hitting something, would make of it, or where the node would stretch it.
-    pub(super) fn share_of_sliding(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> Option<Share> {
+    pub(super) fn share_of_sliding(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> Option<MaterialShare> {
         let (mesh, x) = (self.step.mesh, &self.motion.positions);
-        let ways =
-            [Path::between(&mesh.end(before, x), &sliding.end), Path::between(&sliding.end, &mesh.end(after, x))];
+        let ways = [
+            TangentPath::between(&mesh.end(before, x), &sliding.end),
+            TangentPath::between(&sliding.end, &mesh.end(after, x)),
+        ];
         let stretch = [before, after - 1].map(|e| mesh.path(e, x).length / mesh.rest_length[e]);
         let whole = (before..after).map(|e| mesh.rest_length[e]).sum();
-        let share = Share::of(ways.map(|w| w.length), stretch, whole);
+        let share = MaterialShare::of(ways.map(|w| w.length), stretch, whole);
         let near = mesh.arc_length[before] - mesh.tuning.remesh.neighbourhood_m
             ..mesh.arc_length[after] + mesh.tuning.remesh.neighbourhood_m;
         let speed = |k: usize| {
@@ -123,11 +125,14 @@ impl<'a> Criteria<'a> {
         let stretch = [0, 1].map(|j| lengths[j] / mesh.rest_length[k - 1 + j]);
         let whole = mesh.rest_length[k - 1] + mesh.rest_length[k];
         half < mesh.tuning.remesh.max_tangent_half_turn_rad
-            && self.may_change(mesh.lesser_tension(stretch), &Share::of(lengths.map(|l| l + longer), stretch, whole))
+            && self.may_change(
+                mesh.lesser_tension(stretch),
+                &MaterialShare::of(lengths.map(|l| l + longer), stretch, whole),
+            )
     }
 
     /// True if a change of the mesh adds so little to a tension (N) that it does not show.
-    fn may_change(&self, tension: f64, share: &Share) -> bool {
+    fn may_change(&self, tension: f64, share: &MaterialShare) -> bool {
         let StepContext { problem, mesh, .. } = self.step;
         let weight = load_scale(problem).0 * problem.length;
         let tuning = &mesh.tuning.remesh;
@@ -139,8 +144,10 @@ impl<'a> Criteria<'a> {
     /// would meet nothing.
     pub(super) fn fits(&self, [before, after]: [usize; 2], sliding: &SlidingNode) -> bool {
         let (mesh, x) = (self.step.mesh, &self.motion.positions);
-        let paths =
-            [Path::between(&mesh.end(before, x), &sliding.end), Path::between(&sliding.end, &mesh.end(after, x))];
+        let paths = [
+            TangentPath::between(&mesh.end(before, x), &sliding.end),
+            TangentPath::between(&sliding.end, &mesh.end(after, x)),
+        ];
         let slide_over = |k: usize| mesh.sliding[k].as_ref();
         let nodes = [[slide_over(before), Some(sliding)], [Some(sliding), slide_over(after)]];
         let turn = if sliding.end.radius > 0.0 {
@@ -216,7 +223,7 @@ impl<'a> Criteria<'a> {
         let before = path.arcs[0] * mesh.end(bar, x).radius;
         let part = if path.length > 0.0 { (before + fraction * path.straight) / path.length } else { fraction };
         let arc_length = s[0] + bounded(part, LEAST_PART, 1.0 - LEAST_PART) * (s[1] - s[0]);
-        let end = End { center, radius, mark: gap.normal, sense };
+        let end = BarEnd { center, radius, mark: gap.normal, sense };
         let slide_over = SlideOver::Obstacle { obstacle: gap.obstacle, feature: gap.feature };
         let sliding = SlidingNode::new(end, gap.friction, slide_over);
         Some((bar, arc_length, sliding))

@@ -37,7 +37,7 @@ fn put_in(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<Sli
     let v_before = earlier(k - 1) * (1.0 - part) + earlier(k) * part;
     // The floor does to it what it does to its neighbours.
     let slid = |j: usize| {
-        let slid = cable.contacts.floor_slid[j];
+        let slid = cable.contacts.floor_slip[j];
         if mesh.sliding[j].is_some() { floor_friction::as_move(slid, t) } else { slid }
     };
     let between = slid(k - 1) * (1.0 - part) + slid(k) * part;
@@ -58,7 +58,7 @@ fn put_in(cable: &mut CableState, k: usize, arc_length: f64, sliding: Option<Sli
         },
     );
     cable.answers.reaction.insert(k, Vec2::zeros());
-    cable.contacts.floor_slid.insert(k, between);
+    cable.contacts.floor_slip.insert(k, between);
     renumber(cable, |node| Some(if node >= k { node + 1 } else { node }));
 }
 
@@ -120,7 +120,7 @@ fn take_out(cable: &mut CableState, k: usize) {
     cable.mesh.remove_node(k);
     cable.motion.remove_node(k);
     cable.answers.reaction.remove(k);
-    cable.contacts.floor_slid.remove(k);
+    cable.contacts.floor_slip.remove(k);
     renumber(cable, |node| match node.cmp(&k) {
         std::cmp::Ordering::Less => Some(node),
         std::cmp::Ordering::Equal => None,

@@ -2,12 +2,12 @@
 
 use crate::energy::bending::turn;
 use crate::math::{Vec2, larger};
-use crate::model::fem::mesh::sliding_node::{Balanced, Load, SlideOver};
+use crate::model::fem::mesh::sliding_node::{BalancedTensions, SlideOver, SlidingNodeLoad};
 use crate::model::fem::results::forces::LyingEnd;
 use crate::model::fem::results::self_contact;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
-use crate::model::fem::system::contact::floor_friction::OverRound;
+use crate::model::fem::system::contact::floor_friction::RoundFloorFriction;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// One report for each stretch of neighbouring contacts with one obstacle.
@@ -98,10 +98,10 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
             // The law of friction holds between the pulls along the bars: what hangs across them is
             // the cable's own weight, and what the floor takes of what slides here is not the
             // round's.
-            let acts = node.balanced.unwrap_or(Balanced { pull: load.at_round(), turn: load.turn });
+            let acts = node.balanced.unwrap_or(BalancedTensions { pull: load.at_round(), turn: load.turn });
             let [a, b] = acts.pull;
             let floor = load.floor[1];
-            let over = OverRound::between([a, b], floor);
+            let over = RoundFloorFriction::between([a, b], floor);
             let mean = over.map_or(0.5 * (a + b), |over| over.normal(1.0));
             // A bar that would push lies slack there.
             let pressed = larger(mean * acts.turn, 0.0);
@@ -136,7 +136,7 @@ fn rounds(d: &CableState, x: &[Vec2], out: &mut Vec<ContactReport>) {
 
 /// Force of a round on the cable at a sliding node, N: the change of the internal force without the
 /// part of the floor.
-fn round_force(load: &Load) -> Vec2 {
+fn round_force(load: &SlidingNodeLoad) -> Vec2 {
     let [before, after] = load.force.map(|f| f.try_normalize(0.0).unwrap_or_default());
     let on = (before + after).try_normalize(0.0).unwrap_or_default();
     -load.jump - before * load.floor[0] - on * load.floor[1] - after * load.floor[2]

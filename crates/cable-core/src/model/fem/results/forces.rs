@@ -65,7 +65,7 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
             let taken = ground.map_or(Vec2::zeros(), |g| {
                 let pressed = hung.dot(&g.normal).min(0.0);
                 let along = perp(g.normal);
-                let half = d.problem.body_force(d.time()) * d.mesh.share(node);
+                let half = d.problem.body_force(d.time()) * d.mesh.tributary_length(node);
                 let most = -pressed * g.friction;
                 let rubbed = (ground_force(d, node, x) + half).dot(&along).clamp(-most, most);
                 g.normal * pressed - along * rubbed
@@ -76,7 +76,7 @@ pub(super) fn end_forces(d: &CableState, x: &[Vec2], tension: &[f64]) -> ([Vec2;
         let half = half(d, node, usize::from(sign > 0.0), x);
         let body = d.problem.body_force(d.time()) * half;
         let Some(ground) = ground else { return middle + body * sign };
-        let grounded = ground_force(d, next, x) * (half / d.mesh.share(next));
+        let grounded = ground_force(d, next, x) * (half / d.mesh.tributary_length(next));
         let force = middle + (body + grounded) * sign;
         // A cable that lies on an edge up to its end presses on the edge alone; the barrier's width
         // would tilt the last bar.
@@ -127,7 +127,7 @@ fn ground_force(d: &CableState, node: usize, x: &[Vec2]) -> Vec2 {
         sum += rub.touch.pair.gap.normal * rub.touch.load(&d.contacts.barrier) + d.contacts.friction_force(rub, x);
     }
     if let Some(&limit) = d.input.floor_limit.get(node) {
-        sum -= friction::at_plane(d.contacts.floor_slid[node], limit, d.contacts.slip).1;
+        sum -= friction::at_plane(d.contacts.floor_slip[node], limit, d.contacts.slip).1;
     }
     sum
 }
@@ -153,7 +153,7 @@ pub(in crate::model::fem) fn unbalanced(d: &CableState, x: &[Vec2], time_s: f64)
     }
     for k in 0..x.len() {
         let floor =
-            d.input.floor_limit.get(k).map(|&l| friction::at_plane(d.contacts.floor_slid[k], l, d.contacts.slip).1);
+            d.input.floor_limit.get(k).map(|&l| friction::at_plane(d.contacts.floor_slip[k], l, d.contacts.slip).1);
         if d.mesh.sliding[k].is_some() && k > 0 && k + 1 < x.len() {
             let [before, after] = [k - 1, k].map(|e| {
                 let path = d.mesh.path(e, x);

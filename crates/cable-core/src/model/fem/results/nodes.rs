@@ -3,13 +3,13 @@
 
 use crate::math::{Vec2, bounded, larger, perp, smaller};
 use crate::model::arc_nodes;
-use crate::model::fem::mesh::sliding_node::{Load, SlidingNode};
+use crate::model::fem::mesh::sliding_node::{SlidingNode, SlidingNodeLoad};
 use crate::model::fem::mesh::tangent_path::angle_between;
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::results::forces::{curvature_at, half, moments, shear};
 use crate::model::fem::results::weighted_capstan::WeightedCapstan;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::system::contact::floor_friction::OverRound;
+use crate::model::fem::system::contact::floor_friction::RoundFloorFriction;
 use crate::model::fem::time::loss_memory;
 use crate::solution::Node;
 
@@ -108,7 +108,14 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
 /// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the
 /// sliding node before, to where it leaves it, or halfway to the next. Its tension is that of its
 /// weight, and beyond that grows evenly in its logarithm, as friction makes it.
-fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2], tension: &[f64]) -> Vec<OnRound> {
+fn on_round(
+    d: &CableState,
+    k: usize,
+    node: &SlidingNode,
+    load: &SlidingNodeLoad,
+    x: &[Vec2],
+    tension: &[f64],
+) -> Vec<OnRound> {
     let mesh = &d.mesh;
     let paths = [mesh.path(k - 1, x), mesh.path(k, x)];
     let same = [k - 1, k + 1].map(|j| mesh.sliding[j].is_some_and(|s| s.shares_round(node)));
@@ -174,7 +181,7 @@ fn on_round(d: &CableState, k: usize, node: &SlidingNode, load: &Load, x: &[Vec2
     let first = normal(-before);
     let unrubbed = |normal: Vec2| a - d.input.body.dot(&(normal - first)) * radius / mesh.thermal_stretch;
     let last = unrubbed(normal(after));
-    let over = OverRound::between([a, b - (last - a)], floor);
+    let over = RoundFloorFriction::between([a, b - (last - a)], floor);
     let load = [perp(first) * sense, first].map(|v| d.input.body.dot(&v) * radius / mesh.thermal_stretch);
     let pulls = a > 0.0 && b > 0.0;
     // On a round that is small beside its bars, friction of the weight that hangs over it from them

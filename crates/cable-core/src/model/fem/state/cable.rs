@@ -6,9 +6,9 @@ use std::sync::Arc;
 use crate::error::{Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::Model;
-use crate::model::fem::mesh::sliding_node::{Load, SlideOver};
+use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNodeLoad};
 use crate::model::fem::state::meshing::Meshing;
-use crate::model::fem::state::motion::Motion;
+use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::system::contact::contact_set::ContactSet;
 use crate::model::fem::system::contact::friction_contact::slip_at_rest;
@@ -22,7 +22,7 @@ use crate::state::State;
 
 /// Tension at the nodes of a mesh.
 #[derive(Clone, Debug, Default)]
-pub(in crate::model::fem) struct Gauged {
+pub(in crate::model::fem) struct NodeTensions {
     /// Arc length of each node, m.
     pub(in crate::model::fem) arc_length: Vec<f64>,
     /// Tension at each node, N.
@@ -46,7 +46,7 @@ pub(in crate::model::fem) struct StepAnswers {
     /// The answer that was kept.
     pub(in crate::model::fem) kept: Option<Box<CableSolution>>,
     /// Tension after the last step, on the mesh that it balanced.
-    pub(in crate::model::fem) gauged: Gauged,
+    pub(in crate::model::fem) gauged: NodeTensions,
 }
 
 /// The state of a cable in contact.
@@ -56,7 +56,7 @@ pub(in crate::model::fem) struct CableState {
     pub(in crate::model::fem) mesh: Mesh,
     pub(in crate::model::fem) meshing: Meshing,
     pub(in crate::model::fem) contacts: ContactSet,
-    pub(in crate::model::fem) motion: Motion,
+    pub(in crate::model::fem) motion: NodalMotion,
     /// Loss of taut bars where the cable can touch nothing.
     pub(in crate::model::fem) loss: Loss,
     /// The outline of the robot, if there is one.
@@ -92,9 +92,14 @@ impl CableState {
     }
 
     /// Points to which hands draw supports in a part of the path that is left.
-    pub(in crate::model::fem) fn aim(&self, aims: &mut Vec<Option<Vec2>>, dragged: &[Option<Vec2>], part: f64) {
-        aims.clear();
-        aims.extend(dragged.iter().enumerate().map(|(k, target)| {
+    pub(in crate::model::fem) fn interpolate_targets(
+        &self,
+        hand_targets: &mut Vec<Option<Vec2>>,
+        dragged: &[Option<Vec2>],
+        part: f64,
+    ) {
+        hand_targets.clear();
+        hand_targets.extend(dragged.iter().enumerate().map(|(k, target)| {
             let (target, now) = ((*target)?, self.support_position(k));
             Some(now.filter(|_| part < 1.0 - 1e-9).map_or(target, |now| now + (target - now) * part))
         }));
@@ -155,7 +160,7 @@ impl CableState {
     }
 
     /// The load of a sliding node as the cable lies now.
-    pub(in crate::model::fem) fn load(&self, k: usize) -> Option<Load> {
+    pub(in crate::model::fem) fn load(&self, k: usize) -> Option<SlidingNodeLoad> {
         self.step_context().load_at(k, &self.motion.positions, None)
     }
 

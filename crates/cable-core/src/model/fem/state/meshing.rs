@@ -20,7 +20,7 @@ pub(in crate::model::fem) struct Meshing {
     /// Node of each point load, and its force.
     pub(in crate::model::fem) loads: Vec<(usize, Series)>,
     /// True if the last step was found to touch nothing but its supports.
-    pub(in crate::model::fem) freely: bool,
+    pub(in crate::model::fem) was_contact_free: bool,
     /// Room for the contacts among which corners are looked for.
     pub(in crate::model::fem) found: Vec<ContactPair>,
 }

@@ -16,7 +16,7 @@ const STEPS_BEFORE_BDF3: usize = 3;
 
 /// The parts of the state that a step may change, kept to go back to.
 #[derive(Clone, Debug, Default)]
-pub(in crate::model::fem) struct Motion {
+pub(in crate::model::fem) struct NodalMotion {
     /// Position of each node, m; of a sliding one its mark.
     pub(in crate::model::fem) positions: Vec<Vec2>,
     /// Velocity of each node that moves with its material, m/s.
@@ -49,7 +49,7 @@ pub(in crate::model::fem) struct Motion {
     pub(in crate::model::fem) account: Account,
 }
 
-impl Motion {
+impl NodalMotion {
     /// Becomes a copy without new memory where there is room.
     pub(in crate::model::fem) fn copy_from(&mut self, other: &Self) {
         let Self {

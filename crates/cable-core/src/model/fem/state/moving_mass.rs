@@ -5,7 +5,7 @@ use crate::model::fem::mesh::sliding_node::SlideOver;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::momentum_account::{CONTACTS, SUPPORTS, kind_of};
-use crate::model::fem::state::motion::Motion;
+use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::system::mesh::Mesh;
 use crate::problem::Problem;
 
@@ -15,7 +15,7 @@ pub(in crate::model::fem) struct MovingMass<'a> {
     problem: &'a Problem,
     mesh: &'a Mesh,
     meshing: &'a Meshing,
-    motion: &'a Motion,
+    motion: &'a NodalMotion,
 }
 
 impl<'a> MovingMass<'a> {
@@ -37,7 +37,7 @@ impl<'a> MovingMass<'a> {
         let mut sum = Vec2::zeros();
         for (k, v) in v.iter().enumerate() {
             if mesh.sliding[k].is_none() {
-                sum += v * mesh.share(k);
+                sum += v * mesh.tributary_length(k);
             }
         }
         sum *= self.problem.linear_density;

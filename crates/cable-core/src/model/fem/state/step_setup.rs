@@ -55,7 +55,7 @@ fn set_forces(cable: &mut CableState, to: f64) {
     input.body = body;
     input.to = to;
     input.force.clear();
-    input.force.extend((0..cable.mesh.nodes()).map(|k| body * cable.mesh.share(k)));
+    input.force.extend((0..cable.mesh.nodes()).map(|k| body * cable.mesh.tributary_length(k)));
     for (node, force) in &cable.meshing.loads {
         input.force[*node] += force.at(to);
     }
@@ -120,7 +120,7 @@ fn set_wheels(cable: &mut CableState, [from, to]: [f64; 2], dragged_to: impl Fn(
 fn clear_inertia_and_loss(cable: &mut CableState) {
     let (mesh, input) = (&cable.mesh, &mut cable.input);
     let n = mesh.nodes();
-    input.outlined = cable.outline.is_some();
+    input.has_moving_outline = cable.outline.is_some();
     input.max_iterations = mesh.tuning.step.max_iterations;
     input.max_move = mesh.tuning.newton.max_move_m;
     input.moves = false;
@@ -128,7 +128,7 @@ fn clear_inertia_and_loss(cable: &mut CableState) {
     input.loss.clear();
     input.loss.resize(mesh.rest_length.len(), [0.0; 2]);
     input.bending_damping = 0.0;
-    input.most_noise = f64::INFINITY;
+    input.max_noise = f64::INFINITY;
     input.inertia.clear();
     input.inertia.resize(n, 0.0);
     input.predicted.clone_from(&cable.motion.positions);

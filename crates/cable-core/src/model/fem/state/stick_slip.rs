@@ -86,22 +86,22 @@ pub(in crate::model::fem) fn update_stick_slip(
         let pulls = load.pull[0].abs() + load.pull[1].abs();
         let slack = cable.input.tolerance + EVEN_FORCE * pulls;
         let stiffness = cable.mesh.axial_stiffness;
-        let grip = load.grip(&next, unknowns.slides[k], [inertia, slack], stiffness);
-        if grip != node.grip {
+        let stick_slip = load.stick_slip(&next, unknowns.slides[k], [inertia, slack], stiffness);
+        if stick_slip != node.stick_slip {
             changes.wrong += 1;
             if !one || changes.wrong == 1 {
-                next.grip = grip;
+                next.stick_slip = stick_slip;
             }
         }
-        next.factor = load.factor(next.grip, next.exponent, stiffness);
+        next.factor = load.factor(next.stick_slip, next.exponent, stiffness);
         let floor = floor_friction::reaches(&cable.mesh, k, &unknowns.positions, Some(&unknowns.slides));
-        next.floor_factor = floor_friction::factor(floor, load.ratio(next.grip, next.exponent));
+        next.floor_factor = floor_friction::factor(floor, load.ratio(next.stick_slip, next.exponent));
         if next.sticks() && !node.sticks() {
             unknowns.slides[k] = 0.0;
         }
         let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SCALE_TOLERANCE;
         changes.same &= same(next.factor, node.factor) && same(next.floor_factor, node.floor_factor);
-        let off = ((load.factor(node.grip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
+        let off = ((load.factor(node.stick_slip, exponent, stiffness) - node.factor) * load.pull[1]).abs();
         changes.lawful &= off <= cable.mesh.tuning.step.grip_tolerance * pulls * exponent + slack;
         cable.mesh.sliding[k] = Some(next);
     }

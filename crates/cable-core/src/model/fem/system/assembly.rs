@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn shares_add_up_to_the_length() {
         let mesh = mesh(0.0);
-        assert!(((0..9).map(|k| mesh.share(k)).sum::<f64>() - 4.0).abs() < 1e-14);
+        assert!(((0..9).map(|k| mesh.tributary_length(k)).sum::<f64>() - 4.0).abs() < 1e-14);
         assert_eq!(mesh.node_at(1.5 + 1e-9), Some(3));
         assert_eq!(mesh.node_at(1.6), None);
     }

@@ -31,7 +31,7 @@ pub fn stiffness(mesh: &Mesh, stretched: bool) -> f64 {
 
 /// The values of a bar that one iteration passes to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Carried {
+pub struct BarIterate {
     /// Its pull, N.
     pub pull: f64,
     /// True if it counts as stretched.
@@ -47,7 +47,7 @@ pub fn rest_length(mesh: &Mesh, e: usize, slide: &[f64]) -> f64 {
 /// The energy of a bar with a sliding node in a step, J, and its slopes by the length P of its way
 /// and by its unstretched length L.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::model::fem) struct Stretch {
+pub(in crate::model::fem) struct BarEnergy {
     energy: f64,
     /// ∂E/∂P, the pull, and ∂E/∂L, N.
     slope: [f64; 2],
@@ -55,7 +55,7 @@ pub(in crate::model::fem) struct Stretch {
     curvature: [f64; 3],
 }
 
-impl Stretch {
+impl BarEnergy {
     /// A spring of stiffness `k` (N) whose strain P/L − q is measured from `q` − 1: E = ½ k L (P/L
     /// − q)².
     fn spring(k: f64, q: f64, [p, l]: [f64; 2]) -> Self {
@@ -101,14 +101,14 @@ impl Stretch {
 #[must_use]
 pub fn pull_at_slide(mesh: &Mesh, input: &StepInput, e: usize, j: usize, x: &[Vec2], slide: &[f64]) -> f64 {
     let at = [mesh.path(e, x).length, rest_length(mesh, e, slide)];
-    -mesh.thermal_stretch * Stretch::of(mesh, input, e, at).slope[1] + lifted(mesh, input.body, e, j, x)
+    -mesh.thermal_stretch * BarEnergy::of(mesh, input, e, at).slope[1] + lifted(mesh, input.body, e, j, x)
 }
 
 /// Tension along its path of a bar with a sliding node at an end, N, at the present length of its
 /// way and with an unstretched length `l`, m.
 #[must_use]
 pub fn pull_on(mesh: &Mesh, input: &StepInput, e: usize, x: &[Vec2], l: f64) -> f64 {
-    Stretch::of(mesh, input, e, [mesh.path(e, x).length, l]).slope[0]
+    BarEnergy::of(mesh, input, e, [mesh.path(e, x).length, l]).slope[0]
 }
 
 /// Force that lifts the weight from the centroid of a bar to its start (`j` 0) or end (1), N.
@@ -137,7 +137,7 @@ pub fn add_all(
     input: &StepInput,
     unknowns: &Unknowns,
     curvature: Curvature,
-    carried: &[Carried],
+    carried: &[BarIterate],
 ) -> (f64, f64) {
     let (mut energy, mut size) = (0.0, 0.0);
     let mut slides = mesh.sliding.first().is_some_and(Option::is_some);
@@ -163,7 +163,7 @@ fn add(
     e: usize,
     x: &[Vec2],
     curvature: Curvature,
-    carried: Option<&Carried>,
+    carried: Option<&BarIterate>,
 ) -> (f64, f64) {
     let d = x[e + 1] - x[e];
     let (p, l, scale) = (d.norm(), mesh.rest_length[e], input.scale[e]);
@@ -203,7 +203,7 @@ fn add_sliding(
     let path = mesh.path(e, &unknowns.positions);
     let (p, l, scale) = (path.length, rest_length(mesh, e, &unknowns.slides), input.scale[e]);
     let slides = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
-    let Stretch { energy, slope: [pull, push], curvature: h } = Stretch::of(mesh, input, e, [p, l]);
+    let BarEnergy { energy, slope: [pull, push], curvature: h } = BarEnergy::of(mesh, input, e, [p, l]);
     let h = h.map(|h| scale * h);
     let t = path.direction;
     let mut geometric = if path.straight > 0.0 { scale * pull / path.straight } else { 0.0 };

@@ -18,7 +18,7 @@
 //! to and fro where a bar is nearly slack.
 
 use crate::math::{Mat2, Vec2, larger, perp, smaller};
-use crate::model::fem::mesh::tangent_path::Path;
+use crate::model::fem::mesh::tangent_path::TangentPath;
 use crate::model::fem::system::mesh::Mesh;
 
 /// The weight of one bar with a sliding node at an end.
@@ -39,7 +39,7 @@ pub struct Weight {
 impl Weight {
     /// The weight of bar `e` on its way `path`, under a body force (N/m).
     #[must_use]
-    pub fn of(mesh: &Mesh, e: usize, path: &Path, body: Vec2) -> Self {
+    pub fn of(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2) -> Self {
         let full = Self::spread_evenly(mesh, e, path, body);
         let lying = lying_fraction(mesh, e);
         if lying == 1.0 { full } else { full.lying(lying, mesh, e, path, body) }
@@ -47,7 +47,7 @@ impl Weight {
 
     /// The same if its material is spread evenly over its way.
     #[must_use]
-    pub fn spread_evenly(mesh: &Mesh, e: usize, path: &Path, body: Vec2) -> Self {
+    pub fn spread_evenly(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2) -> Self {
         let middle = (path.ends[0] + path.ends[1]) * 0.5;
         let slides = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
         let half = slides.map(|slides| if slides { Vec2::zeros() } else { body * 0.5 });
@@ -80,7 +80,7 @@ impl Weight {
 
     /// The same where only a part of the weight on rounds (0 to 1) acts there, and of the rest half
     /// at each end of the bar.
-    fn lying(self, part: f64, mesh: &Mesh, e: usize, path: &Path, body: Vec2) -> Self {
+    fn lying(self, part: f64, mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2) -> Self {
         let at = |j: usize| mesh.sliding[e + j].map_or(path.ends[j], |s| s.position());
         let slide = [mesh.sliding[e].is_some(), mesh.sliding[e + 1].is_some()];
         let half = slide.map(|slides| if slides { Vec2::zeros() } else { body * 0.5 });
@@ -95,7 +95,7 @@ impl Weight {
 
     /// ∂²(b·c)/∂x² at the free end `j` (0 or 1) of bar `e`, N/m².
     #[must_use]
-    pub fn bend(mesh: &Mesh, e: usize, j: usize, path: &Path, at: Vec2, body: Vec2) -> Mat2 {
+    pub fn bend(mesh: &Mesh, e: usize, j: usize, path: &TangentPath, at: Vec2, body: Vec2) -> Mat2 {
         let Some(round) = mesh.sliding[e + 1 - j].map(|s| s.end).filter(|end| end.radius > 0.0) else {
             return Mat2::zeros();
         };
@@ -157,7 +157,7 @@ fn lying_fraction(mesh: &Mesh, e: usize) -> f64 {
 /// The part of the weight of bar `e` on rounds that may act there while the bar as a whole pulls
 /// with `tension` (N): the middle of its straight part would push beyond.
 #[must_use]
-pub fn may_lie(mesh: &Mesh, e: usize, path: &Path, body: Vec2, tension: f64) -> f64 {
+pub fn may_lie(mesh: &Mesh, e: usize, path: &TangentPath, body: Vec2, tension: f64) -> f64 {
     let excess = Weight::spread_evenly(mesh, e, path, body).excess * (mesh.arc_length[e + 1] - mesh.arc_length[e]);
     let pull = larger(tension, 0.0);
     if !mesh.is_flexible() || pull >= excess { 1.0 } else { pull / excess }
@@ -187,7 +187,7 @@ pub fn on_ends(mesh: &Mesh, e: usize, x: &[Vec2], slide: Option<&[f64]>, body: V
 pub fn on_node(mesh: &Mesh, k: usize, x: &[Vec2], body: Vec2) -> Vec2 {
     let last = mesh.nodes() - 1;
     if (k.saturating_sub(1)..=(k + 1).min(last)).all(|j| mesh.sliding[j].is_none()) {
-        return body * mesh.share(k);
+        return body * mesh.tributary_length(k);
     }
     let before = if k > 0 { on_ends(mesh, k - 1, x, None, body)[1] } else { Vec2::zeros() };
     let after = if k < last { on_ends(mesh, k, x, None, body)[0] } else { Vec2::zeros() };
@@ -208,7 +208,7 @@ pub(in crate::model::fem) fn parts_that_lie(mesh: &Mesh, k: usize, x: &[Vec2], b
 mod tests {
     use super::*;
     use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
-    use crate::model::fem::mesh::tangent_path::End;
+    use crate::model::fem::mesh::tangent_path::BarEnd;
     use proptest::prelude::*;
 
     const BODY: Vec2 = Vec2::new(0.7, -3.0);
@@ -217,7 +217,7 @@ mod tests {
         Vec2::new(angle.cos(), angle.sin())
     }
 
-    fn on(end: End) -> SlidingNode {
+    fn on(end: BarEnd) -> SlidingNode {
         let slide_over = SlideOver::Obstacle { obstacle: 0, feature: 0 };
         SlidingNode { lying_fractions: [0.7; 2], ..SlidingNode::new(end, 0.3, slide_over) }
     }
@@ -225,10 +225,11 @@ mod tests {
     /// A bar with its mark on a round at the origin at one end (`j` the free one), and a mark at an
     /// angle from its tangent point.
     fn bar(j: usize, at: Vec2, radius: f64, sense: f64, lap: f64) -> (Mesh, Vec<Vec2>) {
-        let round = |mark: Vec2| End { center: Vec2::zeros(), radius, mark, sense };
-        let ends = |mark: Vec2| if j == 1 { [round(mark), End::point(at)] } else { [End::point(at), round(mark)] };
+        let round = |mark: Vec2| BarEnd { center: Vec2::zeros(), radius, mark, sense };
+        let ends =
+            |mark: Vec2| if j == 1 { [round(mark), BarEnd::point(at)] } else { [BarEnd::point(at), round(mark)] };
         let [a, b] = ends(Vec2::x());
-        let touches = Path::between(&a, &b).ends[1 - j] / radius;
+        let touches = TangentPath::between(&a, &b).ends[1 - j] / radius;
         let back =
             crate::model::fem::mesh::tangent_path::rotate(touches, if j == 1 { -sense * lap } else { sense * lap });
         let mut sliding = vec![None, None];

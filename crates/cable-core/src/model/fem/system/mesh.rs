@@ -6,7 +6,7 @@ use crate::energy::axial::Bar;
 use crate::linalg::{BARS_HALF_BANDWIDTH, BENDING_HALF_BANDWIDTH};
 use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
-use crate::model::fem::mesh::tangent_path::{End, Path, angle_between};
+use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath, angle_between};
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::system::mass::Spread;
 use crate::problem::Problem;
@@ -79,7 +79,7 @@ impl Mesh {
     #[must_use]
     pub fn mass_with(&self, problem: &Problem, support_node: &[Option<usize>], node: usize) -> f64 {
         let lumps = problem.supports.iter().zip(support_node).filter(|(_, k)| **k == Some(node));
-        problem.linear_density * self.share(node) + lumps.map(|(s, _)| s.mass).sum::<f64>()
+        problem.linear_density * self.tributary_length(node) + lumps.map(|(s, _)| s.mass).sum::<f64>()
     }
 
     /// Becomes a copy without new memory where there is room; `slides`: whether there can be
@@ -122,18 +122,18 @@ impl Mesh {
 
     /// The end that node `k` makes for the bars beside it.
     #[must_use]
-    pub fn end(&self, k: usize, x: &[Vec2]) -> End {
-        self.sliding[k].as_ref().map_or_else(|| End::point(x[k]), |s| s.end)
+    pub fn end(&self, k: usize, x: &[Vec2]) -> BarEnd {
+        self.sliding[k].as_ref().map_or_else(|| BarEnd::point(x[k]), |s| s.end)
     }
 
     /// The way of bar `e`.
     #[inline]
     #[must_use]
-    pub fn path(&self, e: usize, x: &[Vec2]) -> Path {
+    pub fn path(&self, e: usize, x: &[Vec2]) -> TangentPath {
         if self.sliding[e].is_none() && self.sliding[e + 1].is_none() {
-            return Path::line(x[e], x[e + 1]);
+            return TangentPath::line(x[e], x[e + 1]);
         }
-        Path::between(&self.end(e, x), &self.end(e + 1, x))
+        TangentPath::between(&self.end(e, x), &self.end(e + 1, x))
     }
 
     /// Ends of the straight part of bar `e`, m.
@@ -167,7 +167,7 @@ impl Mesh {
     /// of them is spread), m: weight, wind and what momentum a node has are this times their value
     /// per metre.
     #[must_use]
-    pub fn share(&self, node: usize) -> f64 {
+    pub fn tributary_length(&self, node: usize) -> f64 {
         let s = &self.arc_length;
         let before = if node > 0 { s[node] - s[node - 1] } else { 0.0 };
         let after = if node + 1 < s.len() { s[node + 1] - s[node] } else { 0.0 };

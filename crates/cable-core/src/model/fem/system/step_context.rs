@@ -2,7 +2,7 @@
 
 use crate::contact::friction;
 use crate::math::{Vec2, larger};
-use crate::model::fem::mesh::sliding_node::Load;
+use crate::model::fem::mesh::sliding_node::SlidingNodeLoad;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::contact::contact_set::ContactSet;
@@ -42,7 +42,12 @@ impl StepContext<'_> {
     }
 
     /// The load of a sliding node at positions `x` (m) and slides (m), if there are such.
-    pub(in crate::model::fem) fn load_at(&self, k: usize, x: &[Vec2], slide: Option<&[f64]>) -> Option<Load> {
+    pub(in crate::model::fem) fn load_at(
+        &self,
+        k: usize,
+        x: &[Vec2],
+        slide: Option<&[f64]>,
+    ) -> Option<SlidingNodeLoad> {
         let (mesh, node) = (self.mesh, self.mesh.sliding.get(k)?.as_ref()?);
         if k == 0 || k + 1 >= mesh.nodes() {
             return None;
@@ -63,11 +68,11 @@ impl StepContext<'_> {
         let share = [0, 1].map(|j| weight[j].carried(material[j])[1 - j]);
         let straight = [0, 1].map(|j| weight[j].in_the_middle(tension[j], material[j], true));
         let floor = self.problem.floor_friction.map_or([0.0; 3], |(rough, normal)| {
-            let slid = self.contacts.floor_slid[k].x + slide.map_or(0.0, |s| s[k]);
+            let slid = self.contacts.floor_slip[k].x + slide.map_or(0.0, |s| s[k]);
             let per_m = friction::at(slid, rough * normal, self.contacts.slip).1;
             floor_friction::reaches(mesh, k, x, slide).map(|reach| per_m * reach)
         });
-        let load = Load::new(node, straight, [&path[0], &path[1]], body, share);
+        let load = SlidingNodeLoad::new(node, straight, [&path[0], &path[1]], body, share);
         // Between steps the input may be of another mesh, and nothing is balanced.
         let at_material = slide.map_or(load.pull, |slide| {
             [k - 1, k].map(|e| bar_energy::pull_at_slide(mesh, self.input, e, k - e, x, slide))
@@ -79,7 +84,7 @@ impl StepContext<'_> {
             let theta = tension[j] * (1.0 + 0.5 * compliance * tension[j]) + body.dot(&(weight[j].center - x[k]));
             2.0 * theta / (1.0 + larger(1.0 + 2.0 * compliance * theta, 0.0).sqrt())
         });
-        Some(Load { floor, lifted, at_material, ..load })
+        Some(SlidingNodeLoad { floor, lifted, at_material, ..load })
     }
 }
 

@@ -59,7 +59,7 @@ pub struct StepInput {
     /// True if held nodes may stop short of it where an obstacle or the cable is in the way.
     pub may_lag: bool,
     /// True if an outline that is not of the cable may squeeze it against an obstacle.
-    pub outlined: bool,
+    pub has_moving_outline: bool,
     /// Positions at the start of the step, m.
     pub start: Vec<Vec2>,
     /// Positions from which the iteration begins, m, if an outline moved; else empty.
@@ -69,7 +69,7 @@ pub struct StepInput {
     /// Unbalanced force to reach, N.
     pub tolerance: f64,
     /// Unbalanced force that is accepted at most where contact forces are known no better, N.
-    pub most_noise: f64,
+    pub max_noise: f64,
     /// Iterations allowed.
     pub max_iterations: usize,
     /// Largest move of a node in one iteration, m.

@@ -397,7 +397,7 @@ fn legs_that_land_on_each_other_go_on_together() {
             Vec2::new(if d.cable.mesh.arc_length[k] < 2.0 { 2.0 } else { -1.0 } * way, 0.3 * way);
     }
     let momentum = |d: &Dynamics| {
-        (0..d.cable.mesh.nodes()).map(|k| d.cable.motion.velocities[k] * d.cable.mesh.share(k)).sum::<Vec2>()
+        (0..d.cable.mesh.nodes()).map(|k| d.cable.motion.velocities[k] * d.cable.mesh.tributary_length(k)).sum::<Vec2>()
     };
     let fastest = |d: &Dynamics| {
         rubs.iter().map(|r| r.pair.normal.dot(&r.pair.difference(&d.cable.motion.velocities)).abs()).fold(0.0, f64::max)

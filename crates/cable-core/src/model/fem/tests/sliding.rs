@@ -282,7 +282,7 @@ fn a_node_that_leaves_its_corner_leaves_the_tension_as_it_was() {
     // The material that is there, but for what its strain makes of a hundredth of a millimetre.
     let mark = crate::model::fem::mesh::tangent_path::rotate(node.end.mark, node.end.sense * aside);
     d.cable.mesh.sliding[k] = Some(crate::model::fem::mesh::sliding_node::SlidingNode {
-        end: crate::model::fem::mesh::tangent_path::End { mark, ..node.end },
+        end: crate::model::fem::mesh::tangent_path::BarEnd { mark, ..node.end },
         ..node
     });
     let material = aside * radius;

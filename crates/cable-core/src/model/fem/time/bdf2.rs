@@ -11,9 +11,9 @@
 //! second; this 1 − β and 1 − 2β of that.
 
 use crate::math::Vec2;
-use crate::model::fem::mesh::sliding_node::{Balanced, StickSlip};
+use crate::model::fem::mesh::sliding_node::{BalancedTensions, StickSlip};
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::motion::Motion;
+use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::system::loss_branches::damping_time;
 use crate::model::fem::system::step_input::Unknowns;
 use crate::model::fem::time::loss_memory;
@@ -55,11 +55,11 @@ impl Weights {
         }
     }
 
-    pub(in crate::model::fem) fn place(self, m: &Motion, k: usize) -> Vec2 {
+    pub(in crate::model::fem) fn place(self, m: &NodalMotion, k: usize) -> Vec2 {
         self.of([&m.positions, &m.previous_positions, &m.older_positions], k)
     }
 
-    fn velocity(self, m: &Motion, k: usize) -> Vec2 {
+    fn velocity(self, m: &NodalMotion, k: usize) -> Vec2 {
         self.of([&m.velocities, &m.previous_velocities, &m.older_velocities], k)
     }
 
@@ -69,7 +69,7 @@ impl Weights {
     }
 
     /// Those of a step of `h` (s) after a motion.
-    pub(in crate::model::fem) fn of_step(motion: &Motion, h: f64) -> Self {
+    pub(in crate::model::fem) fn of_step(motion: &NodalMotion, h: f64) -> Self {
         if motion.looks_back_three(h) { Self::blended(h) } else { Self::bdf2(h, motion.step_before) }
     }
 }
@@ -84,12 +84,12 @@ pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unkn
             // The step balances slopes by the slide, where inertia counts by what is stretched.
             let [before, after] = load.at_material;
             let stretch = 1.0 + 0.5 * (comes + leaves) / cable.mesh.axial_stiffness;
-            let pulls = match node.grip {
+            let pulls = match node.stick_slip {
                 _ if load.floor != [0.0; 3] => comes - inertia,
                 StickSlip::Stick => leaves + (before - inertia - after) / stretch,
                 slips => load.ratio(slips, node.exponent) * leaves,
             };
-            node.balanced = Some(Balanced { pull: [pulls, leaves], turn: load.turn });
+            node.balanced = Some(BalancedTensions { pull: [pulls, leaves], turn: load.turn });
         }
     }
 }
@@ -124,7 +124,7 @@ pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weight
     let (m, input, mesh) = (&cable.motion, &mut cable.input, &cable.mesh);
     for k in 0..m.positions.len() {
         input.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
-        input.inertia[k] = cable.problem.linear_density * mesh.share(k) * a * a;
+        input.inertia[k] = cable.problem.linear_density * mesh.tributary_length(k) * a * a;
         if mesh.sliding[k].is_some() {
             let w_hat = m.slide_rates[k] * now - m.previous_slide_rates[k] * past;
             let s = mesh.arc_length[k];

@@ -43,7 +43,7 @@ pub(in crate::model::fem) struct HandDrive {
     /// True for dragged supports that a hand holds by a spring.
     pub(in crate::model::fem) pulled: Vec<bool>,
     /// Room for the points to which hands draw supports in a part of a step.
-    pub(in crate::model::fem) aims: Vec<Option<Vec2>>,
+    pub(in crate::model::fem) hand_targets: Vec<Option<Vec2>>,
 }
 
 impl HandDrive {

@@ -3,7 +3,7 @@
 use crate::math::Vec2;
 use crate::model::fem::obstacle::outline_depenetration::place_outline;
 use crate::model::fem::state::cable::CableState;
-use crate::model::fem::state::motion::Motion;
+use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::state::step_setup::renew_input;
 use crate::model::fem::system::contact::contact_set::ContactSet;
 use crate::model::fem::system::mesh::Mesh;
@@ -11,7 +11,7 @@ use crate::model::fem::system::mesh::Mesh;
 /// A state to go back to.
 #[derive(Clone, Debug)]
 struct Checkpoint {
-    motion: Motion,
+    motion: NodalMotion,
     mesh: Mesh,
     contacts: ContactSet,
     support_node: Vec<Option<usize>>,

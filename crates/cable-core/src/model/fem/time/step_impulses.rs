@@ -85,19 +85,19 @@ pub(in crate::model::fem) fn forces_in_step(cable: &CableState, unknowns: &Unkno
     for &(k, stiffness, at) in &input.hands {
         sum[SUPPORTS] += (at - x[k]) * stiffness;
     }
-    if cable.meshing.freely {
+    if cable.meshing.was_contact_free {
         return sum;
     }
     let moves = |k: usize| mesh.sliding[k].is_none();
     for touch in touches {
-        sum[CONTACTS] += touch.pair.gap.normal * (touch.load(&cable.contacts.barrier) * touch.felt(moves));
+        sum[CONTACTS] += touch.pair.gap.normal * (touch.load(&cable.contacts.barrier) * touch.material_share(moves));
     }
     for rub in &cable.contacts.friction_contacts {
         let (_, slope, _) = friction::at(rub.sliding(x), rub.limit, cable.contacts.slip);
-        sum[CONTACTS] -= rub.tangent * (slope * rub.touch.felt(moves));
+        sum[CONTACTS] -= rub.tangent * (slope * rub.touch.material_share(moves));
     }
     for (k, &limit) in input.floor_limit.iter().enumerate().filter(|(k, _)| moves(*k)) {
-        let slid = cable.contacts.floor_slid[k] + (x[k] - input.start[k]);
+        let slid = cable.contacts.floor_slip[k] + (x[k] - input.start[k]);
         sum[CONTACTS] -= friction::at_plane(slid, limit, cable.contacts.slip).1;
     }
     for k in 1..mesh.nodes().saturating_sub(1) {

@@ -77,7 +77,7 @@ impl StepSizeController {
             return;
         }
         let (m, mesh) = (&cable.motion, &cable.mesh);
-        let free = || (0..m.velocities.len()).filter(|&k| mesh.is_free(k)).map(|k| (k, mesh.share(k)));
+        let free = || (0..m.velocities.len()).filter(|&k| mesh.is_free(k)).map(|k| (k, mesh.tributary_length(k)));
         let (mut length, mut mean) = (0.0, [Vec2::zeros(); 2]);
         for (k, share) in free() {
             length += share;

@@ -119,7 +119,7 @@ impl SolverMemory {
                 for (k, reaction) in cable.answers.reaction.iter_mut().enumerate() {
                     *reaction = -self.free.gradient_at(k);
                 }
-                cable.meshing.freely = true;
+                cable.meshing.was_contact_free = true;
                 return Ok(done);
             }
             // It would have met something: from the start again, with contact.
@@ -134,7 +134,7 @@ impl SolverMemory {
             })?),
         };
         memory.work_left = self.work_left;
-        cable.meshing.freely = false;
+        cable.meshing.was_contact_free = false;
         let done = memory.minimise(&cable.step_context(), unknowns);
         self.work_left = memory.work_left;
         for k in 0..cable.mesh.nodes() {

@@ -8,9 +8,9 @@ use crate::model::Settings;
 use crate::model::fem::mesh::bar_count::bar_count;
 use crate::model::fem::newton::initial_guess::{depenetrate, place_nodes, route};
 use crate::model::fem::settings::Tuning;
-use crate::model::fem::state::cable::{CableState, Gauged, StepAnswers};
+use crate::model::fem::state::cable::{CableState, NodeTensions, StepAnswers};
 use crate::model::fem::state::meshing::Meshing;
-use crate::model::fem::state::motion::Motion;
+use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::state::step_setup::prepare_input;
 use crate::model::fem::system::contact::contact_set::ContactSet;
@@ -56,7 +56,7 @@ pub(in crate::model::fem) fn cable_along_route(
     let input = StepInput { tolerance: tolerance(&problem, whole), ..StepInput::default() };
     let mut cable = CableState {
         contacts: ContactSet::new(barrier, contact, n),
-        motion: Motion {
+        motion: NodalMotion {
             positions: place_nodes(&mesh, &route),
             velocities: vec![Vec2::zeros(); n],
             previous_positions: vec![Vec2::zeros(); n],
@@ -69,7 +69,7 @@ pub(in crate::model::fem) fn cable_along_route(
             followers: vec![None; problem.supports.len()],
             hands: vec![None; problem.supports.len()],
             placement: problem.outline.as_ref().map(|o| o.placement),
-            ..Motion::default()
+            ..NodalMotion::default()
         },
         meshing: Meshing {
             // A sliding node scales the forces of all that lies beyond it; what touches itself
@@ -80,7 +80,7 @@ pub(in crate::model::fem) fn cable_along_route(
             bar_weight: normal_per_m * even,
             support_node,
             loads,
-            freely: false,
+            was_contact_free: false,
             found: Vec::with_capacity(n),
         },
         loss: if mesh.spread.is_lumped() { Loss::default() } else { Loss::of(&problem, even) },
@@ -90,7 +90,7 @@ pub(in crate::model::fem) fn cable_along_route(
             stepped: None,
             keeps: false,
             kept: None,
-            gauged: Gauged::default(),
+            gauged: NodeTensions::default(),
         },
         outline,
         mesh,

@@ -10,7 +10,7 @@
 
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
-use crate::model::fem::mesh::tangent_path::{End, angle_between, rotate};
+use crate::model::fem::mesh::tangent_path::{BarEnd, angle_between, rotate};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::state::cable::CableState;
@@ -73,7 +73,7 @@ impl SolutionCurve<'_> {
     }
 
     /// Material at an angle (rad) from the beginning of an arc, m.
-    fn at_turn(&self, arc: &Arc, angle: f64) -> f64 {
+    fn at_turn(&self, arc: &RoundArc, angle: f64) -> f64 {
         let center = arc.node.end.center;
         let mut turned = 0.0;
         for n in self.0[arc.nodes[0]..=arc.nodes[1]].windows(2) {
@@ -149,7 +149,7 @@ pub(in crate::model::fem) fn adopt_sliding_nodes(cable: &mut CableState, curve: 
             let end = arc.node.end;
             let mark = rotate(end.mark, end.sense * part * arc.turn);
             let at = curve.at_turn(&arc, part * arc.turn);
-            add_sliding_node(cable, at, SlidingNode { end: End { mark, ..end }, ..arc.node });
+            add_sliding_node(cable, at, SlidingNode { end: BarEnd { mark, ..end }, ..arc.node });
         }
         clear_of_nodes(cable, arc.material);
     }
@@ -185,9 +185,9 @@ fn clear_of_nodes(cable: &mut CableState, [from, to]: [f64; 2]) {
 }
 
 /// The rounds that the answer lies on, in order.
-fn arcs_of_solution(cable: &CableState, curve: &SolutionCurve<'_>) -> Vec<Arc> {
+fn arcs_of_solution(cable: &CableState, curve: &SolutionCurve<'_>) -> Vec<RoundArc> {
     let geometry = cable.problem.world.geometry();
-    let mut out: Vec<Arc> = Vec::new();
+    let mut out: Vec<RoundArc> = Vec::new();
     for (i, n) in curve.0.iter().enumerate() {
         let within = ON_ROUND * cable.problem.radius;
         let Some(gap) = cable.problem.world.signed_gap(n.at(), within).filter(|g| g.gap_m.abs() <= within) else {
@@ -200,9 +200,9 @@ fn arcs_of_solution(cable: &CableState, curve: &SolutionCurve<'_>) -> Vec<Arc> {
         if out.last().is_some_and(|a| a.node.slide_over == slide_over && a.nodes[1] + 1 >= i) {
             continue;
         }
-        let end = End { center, radius, mark: gap.normal, sense: 1.0 };
+        let end = BarEnd { center, radius, mark: gap.normal, sense: 1.0 };
         let node = SlidingNode::new(end, gap.friction, slide_over);
-        let mut arc = Arc { nodes: [i, i], turn: 0.0, material: [n.arc_length_m; 2], node };
+        let mut arc = RoundArc { nodes: [i, i], turn: 0.0, material: [n.arc_length_m; 2], node };
         arc.grow(curve, radius - clearance);
         if arc.turn > cable.mesh.tuning.remesh.min_turn_rad {
             out.push(arc);
@@ -309,7 +309,7 @@ pub(in crate::model::fem) fn adopt_floor_friction(cable: &mut CableState, curve:
         let Some((asked, way)) = asked.and_then(|a| Some((a.norm(), a.try_normalize(0.0)?))) else { continue };
         // The floor resists with R(2u − u²).
         let part = if asked < *limit { asked / limit } else { 1.0 };
-        cable.contacts.floor_slid[k] = way * (cable.contacts.slip * (1.0 - (1.0 - part).sqrt()));
+        cable.contacts.floor_slip[k] = way * (cable.contacts.slip * (1.0 - (1.0 - part).sqrt()));
     }
 }
 
@@ -340,7 +340,7 @@ pub(in crate::model::fem) fn adopt_friction(cable: &mut CableState, curve: &Solu
 }
 
 /// A round that an answer lies on; the mark of its node is where the cable comes on to it.
-struct Arc {
+struct RoundArc {
     /// First and last node of the answer on it.
     nodes: [usize; 2],
     /// Whole turn, rad.
@@ -350,7 +350,7 @@ struct Arc {
     node: SlidingNode,
 }
 
-impl Arc {
+impl RoundArc {
     /// Takes in all nodes before and after that lie on a round of this radius (m).
     fn grow(&mut self, curve: &SolutionCurve<'_>, radius: f64) {
         let center = self.node.end.center;

@@ -4,9 +4,9 @@
 use std::sync::Arc;
 
 use crate::math::{Vec2, perp};
-use crate::model::fem::free::stations::{Hold, Layout};
+use crate::model::fem::free::stations::{Restraint, StationLayout};
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode};
-use crate::model::fem::mesh::tangent_path::End;
+use crate::model::fem::mesh::tangent_path::BarEnd;
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::remesh::adapt::even_out;
 use crate::model::fem::remesh::edit::{insert, remove};
@@ -19,10 +19,10 @@ use crate::state::State;
 /// the layout lays it.
 pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Option<&State>) {
     let problem = Arc::clone(&cable.problem);
-    let layout = Layout::new(&problem, cable.motion.time, &[], &[]);
-    for stop in &layout.stops {
-        let (Hold::Pulley(wheel), Some(support)) = (stop.hold, stop.support) else { continue };
-        let s = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or(stop.arc_length);
+    let layout = StationLayout::new(&problem, cable.motion.time, &[], &[]);
+    for station in &layout.stations {
+        let (Restraint::Pulley(wheel), Some(support)) = (station.restraint, station.support) else { continue };
+        let s = state.and_then(|s| s.on_round(wheel.center, wheel.radius)).unwrap_or(station.arc_length);
         let k = cable.mesh.arc_length.partition_point(|&a| a <= s).clamp(1, cable.mesh.nodes() - 1);
         let room = 0.05 * problem.length / cable.meshing.even_bars as f64;
         let (low, high) = (cable.mesh.arc_length[k - 1] + room, cable.mesh.arc_length[k] - room);
@@ -30,7 +30,7 @@ pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Optio
         let passing = cable.motion.positions[k] - cable.motion.positions[k - 1];
         let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
         let right = if passing.x < 0.0 { -1.0 } else { 1.0 };
-        let end = End { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense: -up * right };
+        let end = BarEnd { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense: -up * right };
         insert(cable, k, at, Some(SlidingNode::new(end, wheel.friction, SlideOver::Pulley(support))));
     }
     even_out(cable);
@@ -70,7 +70,7 @@ fn farthest(cable: &CableState, e: usize, state: &State) -> Option<(f64, Vec2)> 
 }
 
 /// Takes all sliding nodes out.
-pub(in crate::model::fem) fn unthread(cable: &mut CableState) {
+pub(in crate::model::fem) fn remove_all_sliding_nodes(cable: &mut CableState) {
     let mut k = 1;
     while k + 1 < cable.mesh.nodes() {
         if cable.mesh.sliding[k].is_some() {

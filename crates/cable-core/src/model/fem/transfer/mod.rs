@@ -12,8 +12,8 @@ use crate::math::Vec2;
 use crate::model::Settings;
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::newton::initial_guess::depenetrate;
-use crate::model::fem::newton::mixed_free::FreeStep;
-use crate::model::fem::newton::solver_memory::{Memory, SolverMemory};
+use crate::model::fem::newton::mixed_free::MixedFreeSolver;
+use crate::model::fem::newton::solver_memory::{SolverMemory, WorkspaceMemory};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::obstacle::outline_depenetration::put_outline;
 use crate::model::fem::settings::Tuning;
@@ -29,7 +29,7 @@ use crate::model::fem::transfer::from_solution::{
     SolutionCurve, adopt_floor_friction, adopt_friction, adopt_sliding_nodes, adopt_stretch, restore_positions,
     state_of_solution,
 };
-use crate::model::fem::transfer::from_state::{follow_corners, thread_pulleys, unthread};
+use crate::model::fem::transfer::from_state::{follow_corners, remove_all_sliding_nodes, thread_pulleys};
 use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;
@@ -46,8 +46,8 @@ impl Dynamics {
             rollback: Rollback::default(),
             solver: SolverMemory {
                 unknowns: Unknowns::default(),
-                memory: Memory(None),
-                free: FreeStep::default(),
+                memory: WorkspaceMemory(None),
+                free: MixedFreeSolver::default(),
                 decay: Vec::new(),
                 work_left: WorkBudget::Unlimited,
             },
@@ -61,7 +61,7 @@ impl Dynamics {
                 hand_speed: settings.hand_speed_m_per_s,
                 hand_stiffness: settings.hand_stiffness_n_per_m,
                 pulled: vec![false; cable.problem.supports.len()],
-                aims: Vec::new(),
+                hand_targets: Vec::new(),
             },
             rested: false,
             cable,
@@ -119,11 +119,12 @@ impl Dynamics {
         // Bars that stick from node to node are far from their balance by hardly any way: where
         // Newton's method alone does not find it, a resistance that fades leads there. From bars
         // that cut a corner it would lead to where they still do.
-        let found =
-            self.rest_step(time_s, dragged).or_else(|failed| match IntersectionCheck::of(&self.cable).cuts_nothing() {
+        let found = self.quasi_static_step(time_s, dragged).or_else(|failed| {
+            match IntersectionCheck::of(&self.cable).cuts_nothing() {
                 true => self.relax(time_s, dragged),
                 false => Err(failed),
-            });
+            }
+        });
         if found.is_ok() {
             self.rested = true;
         } else {
@@ -138,7 +139,7 @@ impl Dynamics {
         let led = put_outline(&mut self.cable);
         let same = state.arc_length_m == self.cable.mesh.arc_length && !led;
         if !same {
-            unthread(&mut self.cable);
+            remove_all_sliding_nodes(&mut self.cable);
         }
         for (k, &s) in self.cable.mesh.arc_length.iter().enumerate() {
             if self.cable.mesh.sliding[k].is_some() {

@@ -11,7 +11,7 @@ use crate::contact::World;
 use crate::contact::geometry::{Body, Edge};
 use crate::error::EquilibriumFault;
 use crate::math::{Vec2, cross, perp, smaller};
-use crate::model::spans::cable_section::{CableSection, Contact, Course};
+use crate::model::spans::cable_section::{CableSection, Contact, SolveContext};
 use crate::model::spans::failure::Failure;
 
 /// Depth that is none, m: what is asked of every answer.
@@ -23,12 +23,12 @@ const TURN: f64 = 1.0;
 
 /// A triangle that holds a stretch of cable: its corners, and its sides as (point, unit vector
 /// inwards).
-struct Hull {
+struct BoundingTriangle {
     corners: [Vec2; 3],
     sides: [(Vec2, Vec2); 3],
 }
 
-impl Hull {
+impl BoundingTriangle {
     /// Of a stretch from a to b with these directions of travel there (of any length, 0: straight).
     fn of([a, b]: [Vec2; 2], along: [Vec2; 2]) -> Self {
         let d = b - a;
@@ -107,11 +107,15 @@ impl Hull {
 }
 
 /// Checks that a section is clear of everything.
-pub(in crate::model::spans) fn clear(section: &CableSection, course: &Course, world: &World) -> Result<(), Failure> {
+pub(in crate::model::spans) fn verify(
+    section: &CableSection,
+    context: &SolveContext,
+    world: &World,
+) -> Result<(), Failure> {
     let mut inside = None;
     for k in 0..section.spans() {
         if section.has_span(k) {
-            section.shapes(course, k, |s0, at, shape| {
+            section.shapes(context, k, |s0, at, shape| {
                 let length = shape.span().length;
                 let point = |s: f64| (at + shape.position_at(s), shape.force_at(s));
                 let fold = shape.lowest_s();
@@ -122,7 +126,7 @@ pub(in crate::model::spans) fn clear(section: &CableSection, course: &Course, wo
             });
         }
         if let Some(c) = section.contacts.get(k) {
-            inside = inside.or_else(|| contact(c, course, world));
+            inside = inside.or_else(|| contact(c, context, world));
         }
         if let Some((s, at)) = inside {
             return Err(Failure::Unsound { what: EquilibriumFault::InsideObstacle, s, at });
@@ -132,16 +136,16 @@ pub(in crate::model::spans) fn clear(section: &CableSection, course: &Course, wo
 }
 
 /// The place at which a contact is inside something.
-fn contact(c: &Contact, course: &Course, world: &World) -> Option<(f64, Vec2)> {
-    let track = course.track(c).seen_from(c.ends.p[0]);
+fn contact(c: &Contact, context: &SolveContext, world: &World) -> Option<(f64, Vec2)> {
+    let contact_path = context.contact_path(c).with_cached_piece(c.ends.p[0]);
     let mut p = c.ends.p[0];
     while p < c.ends.p[1] {
-        let border = track.next_border(p, c.ends.p[1]);
-        let arc = track.turns(0.5 * (p + border));
+        let border = contact_path.next_border(p, c.ends.p[1]);
+        let arc = contact_path.turns(0.5 * (p + border));
         let q = if arc && border > p + TURN { p + TURN } else { border };
-        let piece = track.curve.piece(track.curve.locate(0.5 * (p + q), c.chain_range));
+        let piece = contact_path.curve.piece(contact_path.curve.locate(0.5 * (p + q), c.chain_range));
         let point = |p: f64| {
-            let place = track.place(p);
+            let place = contact_path.place(p);
             (place.at, place.tangent)
         };
         let found = inside_on(world, &point, [p, q], piece.feature.filter(|_| arc));
@@ -173,7 +177,7 @@ fn search(
     depth: u32,
 ) -> Option<(f64, Vec2)> {
     let [(from, a), (to, b)] = part;
-    if Hull::of([a.0, b.0], [a.1, b.1]).misses(body, beside) {
+    if BoundingTriangle::of([a.0, b.0], [a.1, b.1]).misses(body, beside) {
         return None;
     }
     let s = 0.5 * (from + to);

@@ -4,10 +4,10 @@
 
 use crate::error::EquilibriumFault;
 use crate::math::{GAUSS_5, Vec2, bounded, cross};
-use crate::model::spans::boundary::capstan::{Step, Track};
+use crate::model::spans::boundary::capstan::{ContactPath, SlideResult};
 use crate::model::spans::boundary_conditions::CableEquilibrium;
-use crate::model::spans::boundary_conditions::Layout;
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Tie};
+use crate::model::spans::boundary_conditions::SectionLayout;
+use crate::model::spans::cable_section::{CableSection, Contact, EndCondition, SolveContext};
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::failure::Failure;
@@ -33,7 +33,7 @@ const PANEL: f64 = 0.5;
 
 /// Returns an error unless the solution satisfies equilibrium. The caller keeps the stick zones
 /// that the contacts were solved with.
-pub(in crate::model::spans) fn verify(section: &CableSection, course: &Course) -> Result<(), Failure> {
+pub(in crate::model::spans) fn verify(section: &CableSection, context: &SolveContext) -> Result<(), Failure> {
     let mut before = section.from;
     let greatest = section
         .contacts
@@ -42,7 +42,7 @@ pub(in crate::model::spans) fn verify(section: &CableSection, course: &Course) -
         .chain(
             (0..section.spans())
                 .filter(|&k| section.has_span(k))
-                .map(|k| section.force(course, k, section.material(k).0).norm()),
+                .map(|k| section.force(context, k, section.material(k).0).norm()),
         )
         .fold(0.0f64, |m, t| if t > m { t } else { m });
     for k in 0..section.spans() {
@@ -54,35 +54,38 @@ pub(in crate::model::spans) fn verify(section: &CableSection, course: &Course) -
         }
         before = to;
         if section.has_span(k) {
-            span(section, course, k)?;
+            span(section, context, k)?;
         }
         if k < section.contacts.len() {
-            contact(section, course, k, greatest)?;
+            contact(section, context, k, greatest)?;
         }
     }
     Ok(())
 }
 
 /// Checks that supports and contacts, as they are reported, hold all of the weight and the loads:
-/// what no part of the network asked for is missed by each part's own check.
-pub(in crate::model::spans) fn balanced(layout: &Layout, network: &CableEquilibrium) -> Result<(), Failure> {
-    let (left, size) = results::unbalanced(layout, network);
+/// what no part of the cable equilibrium asked for is missed by each part's own check.
+pub(in crate::model::spans) fn balanced(
+    layout: &SectionLayout,
+    cable_equilibrium: &CableEquilibrium,
+) -> Result<(), Failure> {
+    let (left, size) = results::unbalanced(layout, cable_equilibrium);
     if left.norm() <= BALANCE_TOLERANCE * size {
         return Ok(());
     }
-    let section = network.sections.first();
-    let at = section.and_then(|s| s.ends_of(&network.course, 0)[0]).unwrap_or_default();
+    let section = cable_equilibrium.sections.first();
+    let at = section.and_then(|s| s.span_ends(&cable_equilibrium.context, 0)[0]).unwrap_or_default();
     Err(Failure::Unsound { what: EquilibriumFault::Unbalanced, s: 0.0, at })
 }
 
 /// The span closes.
-fn span(section: &CableSection, course: &Course, k: usize) -> Result<(), Failure> {
+fn span(section: &CableSection, context: &SolveContext, k: usize) -> Result<(), Failure> {
     let (from, to) = section.material(k);
-    if let [Some(a), Some(b)] = section.ends_of(course, k) {
+    if let [Some(a), Some(b)] = section.span_ends(context, k) {
         let (mut at, mut before) = (a, from);
-        let loads = course.loads.iter().map(|l| l.arc_length).filter(|s| *s > from && *s < to);
+        let loads = context.loads.iter().map(|l| l.arc_length).filter(|s| *s > from && *s < to);
         for next in loads.chain(std::iter::once(to)) {
-            at += way(section, course, k, [before, next]);
+            at += way(section, context, k, [before, next]);
             before = next;
         }
         if !((at - b).norm() <= BALANCE_TOLERANCE * (section.to - section.from)) {
@@ -97,25 +100,26 @@ fn span(section: &CableSection, course: &Course, k: usize) -> Result<(), Failure
 /// With b along the load, H the part of F across it and s* where F is across it, s = s* + (H/b)
 /// sinh v makes T = H cosh v: smooth however sharp the cable folds. Straight up and down (H = 0)
 /// the integral is split at the fold.
-fn way(section: &CableSection, course: &Course, k: usize, [from, to]: [f64; 2]) -> Vec2 {
+fn way(section: &CableSection, context: &SolveContext, k: usize, [from, to]: [f64; 2]) -> Vec2 {
     // Inside the piece: a load at its start acts before it.
-    let start = section.force(course, k, 0.5 * (from + to)) + course.law.load * (0.5 * (to - from));
-    let force = |s: f64| start - course.law.load * (s - from);
-    let b = course.law.load.norm();
-    let across = if b > 0.0 { cross(start, course.law.load).abs() / b } else { 0.0 };
+    let start = section.force(context, k, 0.5 * (from + to)) + context.law.load * (0.5 * (to - from));
+    let force = |s: f64| start - context.law.load * (s - from);
+    let b = context.law.load.norm();
+    let across = if b > 0.0 { cross(start, context.law.load).abs() / b } else { 0.0 };
     if !(across > FOLD_FORCE_FRACTION * b * (to - from)) {
-        let fold = if b > 0.0 { bounded(from + start.dot(&course.law.load) / (b * b), from, to) } else { to };
-        let straight = |a: f64, c: f64| if c > a { course.rate(force(0.5 * (a + c))) * (c - a) } else { Vec2::zeros() };
+        let fold = if b > 0.0 { bounded(from + start.dot(&context.law.load) / (b * b), from, to) } else { to };
+        let straight =
+            |a: f64, c: f64| if c > a { context.rate(force(0.5 * (a + c))) * (c - a) } else { Vec2::zeros() };
         return straight(from, fold) + straight(fold, to);
     }
-    let middle = from + start.dot(&course.law.load) / (b * b);
+    let middle = from + start.dot(&context.law.load) / (b * b);
     // T² = H² + b² (s − s*)²: smooth as it is far from s* ± i H/b.
     let far = (0.5 * (from + to) - middle).hypot(across / b);
     if middle < 2.0 * from - to || middle > 2.0 * to - from || far > ONE_PANEL_FOLD_DISTANCE * (to - from) {
         let panels = if far > ONE_PANEL_FOLD_DISTANCE * (to - from) { 1 } else { TAUT_PANELS };
         let h = (to - from) / panels as f64;
         let points = (0..panels).flat_map(|j| GAUSS_5.map(|(u, weight)| (from + (j as f64 + u) * h, weight * h)));
-        return points.fold(Vec2::zeros(), |sum, (s, weight)| sum + course.rate(force(s)) * weight);
+        return points.fold(Vec2::zeros(), |sum, (s, weight)| sum + context.rate(force(s)) * weight);
     }
     let (v0, v1) = ((b * (from - middle) / across).asinh(), (b * (to - middle) / across).asinh());
     let panels = ((v1 - v0) / PANEL).ceil().max(1.0);
@@ -124,7 +128,7 @@ fn way(section: &CableSection, course: &Course, k: usize, [from, to]: [f64; 2]) 
     for j in 0..panels as usize {
         for (u, weight) in GAUSS_5 {
             let v = v0 + (j as f64 + u) * h;
-            sum += course.rate(force(middle + across / b * v.sinh())) * (weight * h * across / b * v.cosh());
+            sum += context.rate(force(middle + across / b * v.sinh())) * (weight * h * across / b * v.cosh());
         }
     }
     sum
@@ -132,20 +136,21 @@ fn way(section: &CableSection, course: &Course, k: usize, [from, to]: [f64; 2]) 
 
 /// A contact presses, does not push along itself, keeps the cone, and the spans leave it along its
 /// tangent.
-fn contact(section: &CableSection, course: &Course, j: usize, greatest: f64) -> Result<(), Failure> {
+fn contact(section: &CableSection, context: &SolveContext, j: usize, greatest: f64) -> Result<(), Failure> {
     let c = &section.contacts[j];
-    let (track, e) = (course.track(c).seen_from(c.ends.p[0]), &c.ends);
-    let unsound = |what: EquilibriumFault, p: f64, s: f64| Failure::Unsound { what, s, at: track.place(p).at };
-    let (first, last) = (track.curve.origin(c.chain_range.first), track.curve.end(c.chain_range.last));
-    if !(track.curve.is_round() || e.p[0] >= first - CHAIN_END_TOLERANCE && e.p[1] <= last + CHAIN_END_TOLERANCE) {
+    let (contact_path, e) = (context.contact_path(c).with_cached_piece(c.ends.p[0]), &c.ends);
+    let unsound = |what: EquilibriumFault, p: f64, s: f64| Failure::Unsound { what, s, at: contact_path.place(p).at };
+    let (first, last) = (contact_path.curve.origin(c.chain_range.first), contact_path.curve.end(c.chain_range.last));
+    if !(contact_path.curve.is_round() || e.p[0] >= first - CHAIN_END_TOLERANCE && e.p[1] <= last + CHAIN_END_TOLERANCE)
+    {
         return Err(unsound(EquilibriumFault::ContactBeyondBoundary, e.p[0], e.s[0]));
     }
     if c.is_load() {
-        return point_load::verify(section, course, j);
+        return point_load::verify(section, context, j);
     }
     for side in 0..2 {
-        if let Some(force) = section.force_at_contact(course, j, side) {
-            let tangent = track.place(e.p[side]).tangent;
+        if let Some(force) = section.force_at_contact(context, j, side) {
+            let tangent = contact_path.place(e.p[side]).tangent;
             if !(cross(force, tangent).abs() <= BALANCE_TOLERANCE * force.norm() && force.dot(&tangent) > 0.0) {
                 return Err(unsound(EquilibriumFault::SpanNotTangent, e.p[side], e.s[side]));
             }
@@ -153,29 +158,29 @@ fn contact(section: &CableSection, course: &Course, j: usize, greatest: f64) -> 
             if e.t[side] != 0.0 {
                 return Err(unsound(EquilibriumFault::SlackUnderTension, e.p[side], e.s[side]));
             }
-            if side == 1 && slack_pocket::heap(section, course, j + 1).is_none() {
+            if side == 1 && slack_pocket::heap(section, context, j + 1).is_none() {
                 return Err(unsound(EquilibriumFault::LooseCableSlides, e.p[side], e.s[side]));
             }
         } else if section.is_joined(j, side) {
             // The load beside it is looked at by itself.
-        } else if let Tie::Loose(force) = section.ties[side] {
-            let lifts = force.dot(&track.place(e.p[side]).normal);
-            if !((e.t[side] - course.pull(c, side, force)).abs() <= BALANCE_TOLERANCE * greatest
+        } else if let EndCondition::Loose(force) = section.end_conditions[side] {
+            let lifts = force.dot(&contact_path.place(e.p[side]).normal);
+            if !((e.t[side] - context.pull(c, side, force)).abs() <= BALANCE_TOLERANCE * greatest
                 && lifts <= BALANCE_TOLERANCE * force.norm())
             {
                 return Err(unsound(EquilibriumFault::EndTension, e.p[side], e.s[side]));
             }
         }
         if !(e.t[side] >= -COMPRESSION_ROUNDING * greatest - 1e-9) {
-            return Err(Failure::Compressed { s: e.s[side], at: track.place(e.p[side]).at, tension: e.t[side] });
+            return Err(Failure::Compressed { s: e.s[side], at: contact_path.place(e.p[side]).at, tension: e.t[side] });
         }
     }
     if let Some(l) =
-        course.loads.iter().find(|l| l.arc_length > e.s[0] && l.arc_length < e.s[1] && l.force.norm() > 0.0)
+        context.loads.iter().find(|l| l.arc_length > e.s[0] && l.arc_length < e.s[1] && l.force.norm() > 0.0)
     {
-        return Err(Failure::LoadLies { s: l.arc_length });
+        return Err(Failure::LoadInContact { s: l.arc_length });
     }
-    along(&track, c, greatest, section.to - section.from)
+    along(&contact_path, c, greatest, section.to - section.from)
 }
 
 /// Material that may be missing along a contact, of the section's length. Smaller: contacts laid
@@ -184,62 +189,62 @@ fn contact(section: &CableSection, course: &Course, j: usize, greatest: f64) -> 
 const LOST_MATERIAL_FRACTION: f64 = 1e-4;
 
 /// Along a contact friction keeps its cone, nothing pushes along it and nothing pulls it off. On
-/// each stretch between two knots one part of friction is called upon: what holds for that and at
-/// the next knot holds all along. No material of the section's `length` (m) is lost between two
-/// knots, nor between the ends and the first and last of them.
-fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(), Failure> {
-    let friction = track.friction_of_loose;
+/// each stretch between two breakpoints one part of friction is called upon: what holds for that
+/// and at the next breakpoint holds all along. No material of the section's `length` (m) is lost
+/// between two breakpoints, nor between the ends and the first and last of them.
+fn along(contact_path: &ContactPath<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(), Failure> {
+    let friction = contact_path.friction_of_loose;
     let room = BALANCE_TOLERANCE * (greatest + 1e-9);
     let lost = |found: f64, kept: f64| !((found - kept).abs() <= LOST_MATERIAL_FRACTION * length);
-    if let (0.0, [first, .., last]) = (track.drag, c.history.knots())
+    if let (0.0, [first, .., last]) = (contact_path.drag, c.history.breakpoints())
         && (lost(first.arc_length, c.ends.s[0]) || lost(last.arc_length, c.ends.s[1]))
     {
         return Err(Failure::Unsound {
             what: EquilibriumFault::MaterialAtContactEnd,
             s: first.arc_length,
-            at: track.place(first.coordinate).at,
+            at: contact_path.place(first.coordinate).at,
         });
     }
-    for pair in c.history.knots().windows(2) {
-        let (knot, next) = (&pair[0], &pair[1]);
-        let (mut p, mut t, mut s) = (knot.coordinate, knot.tension, knot.arc_length);
+    for pair in c.history.breakpoints().windows(2) {
+        let (breakpoint, next) = (&pair[0], &pair[1]);
+        let (mut p, mut t, mut s) = (breakpoint.coordinate, breakpoint.tension, breakpoint.arc_length);
         let unsound = |what: EquilibriumFault| {
-            Err(Failure::Unsound { what, s: knot.arc_length, at: track.place(knot.coordinate).at })
+            Err(Failure::Unsound { what, s: breakpoint.arc_length, at: contact_path.place(breakpoint.coordinate).at })
         };
         while p < next.coordinate {
-            let q = track.next_border(p, next.coordinate);
-            let whole = track.slide(p, q, t, knot.mobilised);
-            let look = |x: f64, way: Step| {
-                let place = track.place(x);
+            let q = contact_path.next_border(p, next.coordinate);
+            let whole = contact_path.slide(p, q, t, breakpoint.mobilised);
+            let look = |x: f64, way: SlideResult| {
+                let place = contact_path.place(x);
                 if !(way.tension >= -COMPRESSION_ROUNDING * greatest - 1e-9) {
                     return Err(Failure::Compressed { s: s + way.material, at: place.at, tension: way.tension });
                 }
-                if !(track.law.press(&place, way.tension) >= -room) {
+                if !(contact_path.law.press(&place, way.tension) >= -room) {
                     return unsound(EquilibriumFault::ContactPulls);
                 }
                 Ok(())
             };
-            if !firm(track, p, q, t, knot.mobilised) {
+            if !firm(contact_path, p, q, t, breakpoint.mobilised) {
                 let mut found = look(q, whole);
-                track.loosest(p, q, knot.mobilised, |x| {
-                    found = found.clone().and_then(|()| look(x, track.slide(p, x, t, knot.mobilised)))
+                contact_path.minimum_candidates(p, q, breakpoint.mobilised, |x| {
+                    found = found.clone().and_then(|()| look(x, contact_path.slide(p, x, t, breakpoint.mobilised)))
                 });
                 found?;
             }
             (p, t, s) = (q, whole.tension, s + whole.material);
         }
         // On its way under a drag it is no answer yet.
-        if track.drag > 0.0 {
+        if contact_path.drag > 0.0 {
             continue;
         }
-        if !(knot.mobilised.abs() <= friction * (1.0 + BALANCE_TOLERANCE)) {
+        if !(breakpoint.mobilised.abs() <= friction * (1.0 + BALANCE_TOLERANCE)) {
             return unsound(EquilibriumFault::FrictionBeyondCone);
         }
         if lost(s, next.arc_length) {
             return unsound(EquilibriumFault::MaterialAlongContact);
         }
         if !((t - next.tension).abs() <= room) {
-            return sampled(track, c, friction, room);
+            return sampled(contact_path, c, friction, room);
         }
     }
     Ok(())
@@ -247,24 +252,32 @@ fn along(track: &Track<'_>, c: &Contact, greatest: f64, length: f64) -> Result<(
 
 /// True if tension and pressure cannot vanish on a short way round an arc: dT/dp > −|m|T − 2cb, and
 /// N ds/dp > T − cb.
-fn firm(track: &Track<'_>, p: f64, q: f64, t: f64, m: f64) -> bool {
-    let place = track.place(p);
-    let load = place.stretch * track.law.load.norm() / track.law.thermal;
-    place.turn != 0.0 && track.law.stiffness > 0.0 && t - (q - p) * (m.abs() * t + 2.0 * load) > load && m.abs() <= 1.0
+fn firm(contact_path: &ContactPath<'_>, p: f64, q: f64, t: f64, m: f64) -> bool {
+    let place = contact_path.place(p);
+    let load = place.stretch * contact_path.law.load.norm() / contact_path.law.thermal;
+    place.turn != 0.0
+        && contact_path.law.stiffness > 0.0
+        && t - (q - p) * (m.abs() * t + 2.0 * load) > load
+        && m.abs() <= 1.0
 }
 
 /// Checks the cone from point to point where the load has changed since something was laid: what
 /// sticks has changed by less than friction takes up.
-fn sampled(track: &Track<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Failure> {
+fn sampled(contact_path: &ContactPath<'_>, c: &Contact, friction: f64, room: f64) -> Result<(), Failure> {
     let past = &c.history;
     let [first, last] = c.ends.p;
-    let (mut p, mut t) = (first, past.at(track, first).0);
+    let (mut p, mut t) = (first, past.at(contact_path, first).0);
     for i in 1..=SAMPLES {
         let q = first + (last - first) * i as f64 / SAMPLES as f64;
-        let (next, s) = past.at(track, q);
-        let (low, high) = (track.slide(p, q, t, -friction).tension, track.slide(p, q, t, friction).tension);
+        let (next, s) = past.at(contact_path, q);
+        let (low, high) =
+            (contact_path.slide(p, q, t, -friction).tension, contact_path.slide(p, q, t, friction).tension);
         if !(next >= low - room && next <= high + room) {
-            return Err(Failure::Unsound { what: EquilibriumFault::FrictionBeyondCone, s, at: track.place(q).at });
+            return Err(Failure::Unsound {
+                what: EquilibriumFault::FrictionBeyondCone,
+                s,
+                at: contact_path.place(q).at,
+            });
         }
         (p, t) = (q, next);
     }

@@ -9,7 +9,7 @@ use crate::catenary::Catenary;
 use crate::contact::geometry::Body;
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, larger, perp};
-use crate::model::spans::cable_section::{CableSection, Course};
+use crate::model::spans::cable_section::{CableSection, SolveContext};
 
 /// Stretches of a catenary looked through for points nearest to a corner. Fewer: a corner near both
 /// branches of a deep catenary is seen from one only.
@@ -42,7 +42,7 @@ pub(in crate::model::spans) struct Penetration {
 type Side = (Vec2, Vec2);
 
 /// One catenary at its place.
-struct Arc<'a> {
+struct SpanArc<'a> {
     s0: f64,
     at: Vec2,
     shape: &'a Catenary,
@@ -58,7 +58,7 @@ pub(in crate::model::spans) fn tangent(at: Vec2, force: Vec2, load: Vec2) -> Opt
     (normal.dot(&load) < -HANGING_ANGLE * load.norm()).then_some((at, normal))
 }
 
-impl<'a> Arc<'a> {
+impl<'a> SpanArc<'a> {
     fn new(s0: f64, at: Vec2, shape: &'a Catenary, load: Vec2) -> Self {
         let (start, end) = (shape.start_force(), shape.end_force());
         let sides = [tangent(at, start, load), tangent(at + shape.span().chord, end, load)];
@@ -146,7 +146,7 @@ impl<'a> Arc<'a> {
 /// The deepest point of span k inside anything, if deeper than `tolerance` (m).
 pub(in crate::model::spans) fn deepest(
     section: &CableSection,
-    course: &Course,
+    context: &SolveContext,
     world: &World,
     k: usize,
     tolerance: f64,
@@ -155,8 +155,8 @@ pub(in crate::model::spans) fn deepest(
         return None;
     }
     let mut best: Option<Penetration> = None;
-    section.shapes(course, k, |s0, at, shape| {
-        let arc = Arc::new(s0, at, shape, course.law.load);
+    section.shapes(context, k, |s0, at, shape| {
+        let arc = SpanArc::new(s0, at, shape, context.law.load);
         let (low, high) = arc.bounds();
         for (index, body) in world.geometry().bodies().iter().enumerate() {
             search(&arc, body, low, high, tolerance, |s| {
@@ -177,7 +177,7 @@ pub(in crate::model::spans) fn deepest(
 }
 
 /// Calls back with the points of a catenary that may be deepest in a body.
-fn search(arc: &Arc<'_>, body: &Body, low: Vec2, high: Vec2, tolerance: f64, mut found: impl FnMut(f64)) {
+fn search(arc: &SpanArc<'_>, body: &Body, low: Vec2, high: Vec2, tolerance: f64, mut found: impl FnMut(f64)) {
     if let Some(center) = body.center {
         if arc.misses(center, body.offset - tolerance) {
             return;
@@ -212,7 +212,7 @@ fn search(arc: &Arc<'_>, body: &Body, low: Vec2, high: Vec2, tolerance: f64, mut
             }
         }
         for corner in body.corners_of(k) {
-            if body.juts_out(&corner) {
+            if body.is_exposed(&corner) {
                 let outward = corner.outward();
                 arc.nearest(corner.at, |s| {
                     let d = arc.point(s) - corner.at;

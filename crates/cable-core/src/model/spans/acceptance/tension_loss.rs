@@ -2,23 +2,23 @@
 
 use crate::error::TensionLoss;
 use crate::math::{Vec2, cross};
-use crate::model::spans::cable_section::{CableSection, Course};
+use crate::model::spans::cable_section::{CableSection, SolveContext};
 use crate::model::spans::failure::Failure;
 
 /// The kind of loss, its place on the cable (m) and in the plane (m), in the last state that was
 /// found.
-pub(in crate::model::spans) fn lost(
+pub(in crate::model::spans) fn find(
     sections: &[CableSection],
-    course: &Course,
+    context: &SolveContext,
     failure: &Failure,
 ) -> Option<(TensionLoss, f64, Vec2)> {
     if let Failure::Compressed { s, at, .. } = failure {
         return Some((TensionLoss::Lay, *s, *at));
     }
-    if !matches!(failure, Failure::Stalled { .. } | Failure::Restless { .. } | Failure::Unsound { .. }) {
+    if !matches!(failure, Failure::Stalled { .. } | Failure::ContactCycling { .. } | Failure::Unsound { .. }) {
         return None;
     }
-    let b = course.law.load;
+    let b = context.law.load;
     // A cable without weight hangs in no bight.
     if b.norm() == 0.0 {
         return None;
@@ -26,13 +26,13 @@ pub(in crate::model::spans) fn lost(
     for section in sections {
         for k in (0..section.spans()).filter(|&k| section.has_span(k)) {
             let (from, to) = section.material(k);
-            let force = section.force(course, k, from);
+            let force = section.force(context, k, from);
             let across = cross(force, b).abs() / b.norm();
-            if across > course.settings.verify.fold_force_fraction * b.norm() * (to - from) {
+            if across > context.settings.verify.fold_force_fraction * b.norm() * (to - from) {
                 continue;
             }
             let mut place = None;
-            section.shapes(course, k, |s0, at, shape| {
+            section.shapes(context, k, |s0, at, shape| {
                 let s = shape.lowest_s();
                 place = place.or(Some((s0 + s, at + shape.position_at(s))));
             });

@@ -1,10 +1,10 @@
 //! The tunnelling check compares the cable's shape before and after a step as points
 //! (`contact/swept_corners.rs`), and decides when that is not necessary.
 
-use crate::contact::swept_corners::Corner;
+use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::{Vec2, cross, larger, smaller};
 use crate::model::spans::acceptance::penetration;
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Next};
+use crate::model::spans::cable_section::{CableSection, Connection, Contact, SolveContext};
 
 /// A corner this near to a tangent is on it, m: rounding.
 const TANGENCY_DISTANCE_M: f64 = 1e-12;
@@ -12,17 +12,17 @@ const TANGENCY_DISTANCE_M: f64 = 1e-12;
 /// True if the ends of the spans alone tell that nothing was passed: contacts are the same, and
 /// every corner lies on the same side of each span before and after. A span is convex: above its
 /// tangents and below its chord, seen against the load.
-pub(in crate::model::spans) fn clear(
+pub(in crate::model::spans) fn is_clear(
     old: &CableSection,
     new: &CableSection,
-    course: &Course,
-    corners: &[Corner],
+    context: &SolveContext,
+    corners: &[ImpassableCorner],
 ) -> bool {
-    let (load, unchecked) = (course.law.load, course.settings.verify.unchecked_move);
+    let (load, unchecked) = (context.law.load, context.settings.verify.unchecked_move);
     let same = |(a, b): (&Contact, &Contact)| {
         let moved = |side: usize| (a.ends.p[side] - b.ends.p[side]).abs();
-        (a.curve, a.chain_range, a.wheel, a.next == Next::Pocket, a.is_load())
-            == (b.curve, b.chain_range, b.wheel, b.next == Next::Pocket, b.is_load())
+        (a.curve, a.chain_range, a.wheel, a.next == Connection::Pocket, a.is_load())
+            == (b.curve, b.chain_range, b.wheel, b.next == Connection::Pocket, b.is_load())
             && moved(0) < unchecked
             && moved(1) < unchecked
     };
@@ -30,9 +30,9 @@ pub(in crate::model::spans) fn clear(
         && load.y < 0.0
         && old.contacts.len() == new.contacts.len()
         && old.contacts.iter().zip(&new.contacts).all(same)
-        && [0, 1].into_iter().all(|k| old.ties[k].has_span() == new.ties[k].has_span())
+        && [0, 1].into_iter().all(|k| old.end_conditions[k].has_span() == new.end_conditions[k].has_span())
         && (0..new.spans()).filter(|&k| new.has_span(k)).all(|k| {
-            let spans = [old, new].map(|section| SpanBound::of(section, course, k));
+            let spans = [old, new].map(|section| SpanBound::of(section, context, k));
             let [Some(a), Some(b)] = spans else { return false };
             let (low, high) = (smaller(a.low, b.low), larger(a.high, b.high));
             let first = corners.partition_point(|c| c.at.x < low);
@@ -55,13 +55,13 @@ struct SpanBound {
 
 impl SpanBound {
     /// None where an end hangs or loads act on the way.
-    fn of(section: &CableSection, course: &Course, k: usize) -> Option<Self> {
+    fn of(section: &CableSection, context: &SolveContext, k: usize) -> Option<Self> {
         let (from, to) = section.material(k);
-        let [Some(a), Some(b)] = section.ends_of(course, k) else { return None };
-        if course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to) {
+        let [Some(a), Some(b)] = section.span_ends(context, k) else { return None };
+        if context.loads.iter().any(|l| l.arc_length > from && l.arc_length < to) {
             return None;
         }
-        let side = |at: Vec2, s: f64| penetration::tangent(at, section.force(course, k, s), course.law.load);
+        let side = |at: Vec2, s: f64| penetration::tangent(at, section.force(context, k, s), context.law.load);
         let (low, high) = (smaller(a.x, b.x), larger(a.x, b.x));
         Some(Self { low, high, ends: [a, b], tangents: [side(a, from), side(b, to)] })
     }
@@ -80,20 +80,20 @@ impl SpanBound {
 }
 
 /// A shape of a section as points.
-pub(in crate::model::spans) fn shape(section: &CableSection, course: &Course, out: &mut Vec<Vec2>) {
-    let points = course.settings.verify.tunnelling_points;
+pub(in crate::model::spans) fn shape(section: &CableSection, context: &SolveContext, out: &mut Vec<Vec2>) {
+    let points = context.settings.verify.tunnelling_points;
     out.clear();
     for k in 0..section.spans() {
         if section.has_span(k) {
-            section.shapes(course, k, |_, at, c| {
+            section.shapes(context, k, |_, at, c| {
                 let h = c.span().length / points as f64;
                 out.extend((0..=points).map(|i| at + c.position_at(i as f64 * h)));
             });
         }
         if let Some(c) = section.contacts.get(k) {
-            let track = course.track(c);
+            let contact_path = context.contact_path(c);
             let [a, b] = c.ends.p;
-            out.extend((0..=points).map(|i| track.place(a + (b - a) * i as f64 / points as f64).at));
+            out.extend((0..=points).map(|i| contact_path.place(a + (b - a) * i as f64 / points as f64).at));
         }
     }
 }

@@ -16,7 +16,7 @@
 //! g₁') + h³/120 (g₀'' + g₁''): one exponential and one turn for a stretch, and nothing in between.
 
 use crate::math::{exp, sin_cos};
-use crate::model::spans::boundary::capstan::{Law, LocalLoad, Step};
+use crate::model::spans::boundary::capstan::{CableLaw, LocalLoad, SlideResult};
 
 /// Longest stretch taken at once, rad: the rule leaves h⁶/100 800 of what 1/λ changes along it,
 /// itself of the order of T/EA.
@@ -29,7 +29,7 @@ pub(in crate::model::spans) const SHORT_ARC: f64 = 1e-3;
 
 /// A way along an arc, in as many stretches as it needs.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct Way {
+pub(in crate::model::spans) struct ArcPath {
     /// Radius, m.
     c: f64,
     count: usize,
@@ -56,7 +56,7 @@ pub(in crate::model::spans) struct Rates {
     m: f64,
 }
 
-impl Way {
+impl ArcPath {
     /// From a place so far along its arc (either way).
     pub fn new(from: &LocalLoad, way: f64) -> Self {
         let (h, count) = if way.abs() <= PANEL {
@@ -73,7 +73,7 @@ impl Way {
     }
 
     /// Slides along it with m from the tension `t`; and how it goes on from there.
-    pub fn slide(&self, law: &Law, t: f64, m: f64) -> (Step, Rates) {
+    pub fn slide(&self, law: &CableLaw, t: f64, m: f64) -> (SlideResult, Rates) {
         if self.h.abs() <= SHORT_ARC {
             return self.hair(law, t, m);
         }
@@ -96,17 +96,17 @@ impl Way {
     }
 
     /// No more than a hair's breadth.
-    fn hair(&self, law: &Law, t: f64, m: f64) -> (Step, Rates) {
+    fn hair(&self, law: &CableLaw, t: f64, m: f64) -> (SlideResult, Rates) {
         let ((c, h), [bt, bn]) = ((self.c, self.h), self.load);
         let start = Point::new(law, c, law.thermal * law.compliance, bt + m * bn, m * bt - bn, t, m);
         let rates = start.rates(c, law.thermal * law.compliance, 1.0, m);
-        let step = rates.on(&Step::none(t), h);
+        let step = rates.on(&SlideResult::none(t), h);
         let shifted = |[a, b, d]: [f64; 3]| [a + h * (b + 0.5 * h * d), b + h * d, d];
         (step, Rates { tension: shifted(rates.tension), material: shifted(rates.material), ..rates })
     }
 
     /// A stretch, with the loads at its start and end; `grown` = e^{mh}.
-    fn stretch(&self, law: &Law, load: [[f64; 2]; 2], t: f64, m: f64, grown: f64) -> (Step, Rates) {
+    fn stretch(&self, law: &CableLaw, load: [[f64; 2]; 2], t: f64, m: f64, grown: f64) -> (SlideResult, Rates) {
         let (c, h, [[bt, bn], [bt1, bn1]]) = (self.c, self.h, load);
         let k = law.thermal * law.compliance;
         let start = Point::new(law, c, k, bt + m * bn, m * bt - bn, t, m);
@@ -131,8 +131,12 @@ impl Way {
         let squares = [f * f, grown * g * g];
         let change = m * (squares[0] - squares[1]) + 2.0 * (f * f1 - grown * g * g1);
         let by = h * (0.5 * (squares[0] + squares[1]) + h / 12.0 * change);
-        let step =
-            Step { tension: end.tension, material: c * material, by_tension: grown, material_by_tension: -c * k * by };
+        let step = SlideResult {
+            tension: end.tension,
+            material: c * material,
+            by_tension: grown,
+            material_by_tension: -c * k * by,
+        };
         (step, end.rates(c, k, grown, m))
     }
 }
@@ -149,7 +153,7 @@ struct Point {
 }
 
 impl Point {
-    fn new(law: &Law, c: f64, k: f64, q: f64, r: f64, tension: f64, m: f64) -> Self {
+    fn new(law: &CableLaw, c: f64, k: f64, q: f64, r: f64, tension: f64, m: f64) -> Self {
         let stretch = law.stretch(tension);
         let f = 1.0 / stretch;
         let slope = m * tension - c * f * q;
@@ -175,10 +179,10 @@ impl Point {
 
 impl Rates {
     /// A little further on.
-    pub fn on(&self, way: &Step, by: f64) -> Step {
+    pub fn on(&self, way: &SlideResult, by: f64) -> SlideResult {
         let ([first, second, third], [per, change, again]) = (self.tension, self.material);
         let turn = self.m * by;
-        Step {
+        SlideResult {
             tension: way.tension + by * (first + 0.5 * by * (second + by / 3.0 * third)),
             material: way.material + by * (per + 0.5 * by * (change + by / 3.0 * again)),
             by_tension: way.by_tension * (1.0 + turn * (1.0 + 0.5 * turn * (1.0 + turn / 3.0))),

@@ -33,7 +33,7 @@ const ARC_END_TOLERANCE: f64 = 1e-9;
 
 /// The form of a piece of the curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) enum Form {
+pub(in crate::model::spans) enum PieceShape {
     /// Straight.
     Edge {
         /// Start, m.
@@ -54,8 +54,8 @@ pub(in crate::model::spans) enum Form {
 
 /// A piece of the curve.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct Piece {
-    pub form: Form,
+pub(in crate::model::spans) struct BoundaryPiece {
+    pub form: PieceShape,
     /// Extent: m on an edge, rad on an arc.
     pub extent: f64,
     /// True if a concave kink lies before it.
@@ -76,7 +76,7 @@ pub(in crate::model::spans) struct Curve {
     /// Displacement from the scene's place, m (a wheel that travels).
     pub shift: Vec2,
     /// Shared by all copies: scanned ground has a million.
-    pieces: Arc<[Piece]>,
+    pieces: Arc<[BoundaryPiece]>,
     starts: Arc<[f64]>,
     /// One turn of a closed boundary in p.
     period: Option<f64>,
@@ -91,7 +91,7 @@ pub(in crate::model::spans) struct ChainRange {
 
 /// A point of the curve.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct Place {
+pub(in crate::model::spans) struct BoundaryPoint {
     pub at: Vec2,
     pub tangent: Vec2,
     pub normal: Vec2,
@@ -118,9 +118,9 @@ impl Curve {
         let c = body.offset;
         let (pieces, closed) = match body.center {
             Some(center) => {
-                let arc = Form::Arc { center, radius: c, from: Vec2::x() };
+                let arc = PieceShape::Arc { center, radius: c, from: Vec2::x() };
                 let extent = f64::INFINITY;
-                (vec![Piece { form: arc, extent, kink_before: false, feature: Some(body.first + 1) }], false)
+                (vec![BoundaryPiece { form: arc, extent, kink_before: false, feature: Some(body.first + 1) }], false)
             }
             None => boundary(body, c),
         };
@@ -131,12 +131,12 @@ impl Curve {
 
     /// A wheel of a radius (of the centre line, m) about the origin; shift it to its place.
     pub fn wheel(radius: f64, friction: f64, sense: f64) -> Self {
-        let form = Form::Arc { center: Vec2::zeros(), radius, from: Vec2::x() };
-        let piece = Piece { form, extent: f64::INFINITY, kink_before: false, feature: None };
+        let form = PieceShape::Arc { center: Vec2::zeros(), radius, from: Vec2::x() };
+        let piece = BoundaryPiece { form, extent: f64::INFINITY, kink_before: false, feature: None };
         Self::new(vec![piece], false, None, friction, sense)
     }
 
-    fn new(pieces: Vec<Piece>, closed: bool, obstacle: Option<usize>, friction: f64, sense: f64) -> Self {
+    fn new(pieces: Vec<BoundaryPiece>, closed: bool, obstacle: Option<usize>, friction: f64, sense: f64) -> Self {
         let mut starts = Vec::with_capacity(pieces.len());
         let mut sum = 0.0;
         for p in &pieces {
@@ -154,15 +154,19 @@ impl Curve {
         let back = |k: usize| {
             let p = self.pieces[n - 1 - k];
             let form = match p.form {
-                Form::Edge { from, tangent } => Form::Edge { from: from + tangent * p.extent, tangent: -tangent },
-                Form::Arc { center, radius, from } if p.extent.is_infinite() => Form::Arc { center, radius, from },
-                Form::Arc { center, radius, from } => {
-                    Form::Arc { center, radius, from: -turned(from, -self.sense * p.extent) }
+                PieceShape::Edge { from, tangent } => {
+                    PieceShape::Edge { from: from + tangent * p.extent, tangent: -tangent }
+                }
+                PieceShape::Arc { center, radius, from } if p.extent.is_infinite() => {
+                    PieceShape::Arc { center, radius, from }
+                }
+                PieceShape::Arc { center, radius, from } => {
+                    PieceShape::Arc { center, radius, from: -turned(from, -self.sense * p.extent) }
                 }
             };
             // The kink after a piece is the kink before it now.
             let kink_before = self.pieces.get(n - k).or(self.pieces.first()).is_some_and(|next| next.kink_before);
-            Piece { form, kink_before, ..p }
+            BoundaryPiece { form, kink_before, ..p }
         };
         let pieces = (0..n).map(back).collect();
         Self::new(pieces, self.period.is_some(), self.obstacle, self.friction, -self.sense)
@@ -170,7 +174,7 @@ impl Curve {
 
     /// True if it is round all the way: a post or a wheel.
     pub fn is_round(&self) -> bool {
-        matches!(self.pieces[..], [Piece { form: Form::Arc { .. }, .. }])
+        matches!(self.pieces[..], [BoundaryPiece { form: PieceShape::Arc { .. }, .. }])
     }
 
     /// The numbers of its pieces in the first turn.
@@ -179,7 +183,7 @@ impl Curve {
     }
 
     /// The piece of a number that counts on over the turns.
-    pub fn piece(&self, i: i64) -> &Piece {
+    pub fn piece(&self, i: i64) -> &BoundaryPiece {
         // Without a division in the first turn.
         let k = i as usize;
         if k < self.pieces.len() {
@@ -191,7 +195,7 @@ impl Curve {
 
     /// True if a piece is an arc.
     pub fn is_arc(&self, i: i64) -> bool {
-        matches!(self.piece(i).form, Form::Arc { .. })
+        matches!(self.piece(i).form, PieceShape::Arc { .. })
     }
 
     /// Start of a piece in p.
@@ -224,25 +228,31 @@ impl Curve {
     }
 
     /// The point at p.
-    pub fn place(&self, p: f64, chain_range: ChainRange) -> Place {
+    pub fn place(&self, p: f64, chain_range: ChainRange) -> BoundaryPoint {
         let i = self.locate(p, chain_range);
         self.place_on(i, p - self.origin(i))
     }
 
     /// The point at x on piece i.
-    pub fn place_on(&self, i: i64, x: f64) -> Place {
+    pub fn place_on(&self, i: i64, x: f64) -> BoundaryPoint {
         match self.piece(i).form {
-            Form::Edge { from, tangent } => Place {
+            PieceShape::Edge { from, tangent } => BoundaryPoint {
                 at: self.shift + from + tangent * x,
                 tangent,
                 normal: perp(tangent) * self.sense,
                 stretch: 1.0,
                 turn: 0.0,
             },
-            Form::Arc { center, radius, from } => {
+            PieceShape::Arc { center, radius, from } => {
                 let tangent = turned(from, -self.sense * x);
                 let normal = perp(tangent) * self.sense;
-                Place { at: self.shift + center + normal * radius, tangent, normal, stretch: radius, turn: -self.sense }
+                BoundaryPoint {
+                    at: self.shift + center + normal * radius,
+                    tangent,
+                    normal,
+                    stretch: radius,
+                    turn: -self.sense,
+                }
             }
         }
     }
@@ -251,8 +261,8 @@ impl Curve {
     pub fn length(&self, a: f64, b: f64, chain_range: ChainRange) -> f64 {
         let (i, j) = (self.locate(a, chain_range), self.locate(b, chain_range));
         let weight = |k: i64| match self.piece(k).form {
-            Form::Edge { .. } => 1.0,
-            Form::Arc { radius, .. } => radius,
+            PieceShape::Edge { .. } => 1.0,
+            PieceShape::Arc { radius, .. } => radius,
         };
         if i == j {
             return (b - a) * weight(i);
@@ -268,10 +278,10 @@ impl Curve {
     fn supports_cable(&self, i: i64, load: Vec2) -> bool {
         let piece = self.piece(i);
         match piece.form {
-            Form::Edge { tangent, .. } => {
+            PieceShape::Edge { tangent, .. } => {
                 piece.extent > 0.0 && -load.dot(&perp(tangent)) * self.sense > PRESSING_FRACTION * load.norm()
             }
-            Form::Arc { .. } => true,
+            PieceShape::Arc { .. } => true,
         }
     }
 
@@ -332,7 +342,7 @@ impl Curve {
     pub fn corner_beside(&self, i: i64, at: Vec2) -> Option<i64> {
         let n = self.pieces.len() as i64;
         let beside = [i - 1, i + 1].into_iter().filter(|&k| self.period.is_some() || (k >= 0 && k < n));
-        let corner = |k: &i64| matches!(self.piece(*k).form, Form::Arc { .. });
+        let corner = |k: &i64| matches!(self.piece(*k).form, PieceShape::Arc { .. });
         let far = |k: &i64| (self.place_on(*k, 0.5 * self.piece(*k).extent).at - at).norm();
         beside.filter(corner).min_by(|a, b| far(a).total_cmp(&far(b))).map(|k| k.rem_euclid(n))
     }
@@ -349,8 +359,8 @@ impl Curve {
     pub fn project(&self, i: i64, at: Vec2) -> f64 {
         let piece = self.piece(i);
         let x = match piece.form {
-            Form::Edge { from, tangent } => bounded((at - self.shift - from).dot(&tangent), 0.0, piece.extent),
-            Form::Arc { center, from, .. } => {
+            PieceShape::Edge { from, tangent } => bounded((at - self.shift - from).dot(&tangent), 0.0, piece.extent),
+            PieceShape::Arc { center, from, .. } => {
                 // n = σ perp t, t at the angle from − σ x.
                 let n = at - self.shift - center;
                 let tangent = -perp(n) * self.sense;
@@ -365,8 +375,8 @@ impl Curve {
     pub fn with_tangent(&self, i: i64, along: Vec2) -> f64 {
         let piece = self.piece(i);
         let x = match piece.form {
-            Form::Edge { .. } => 0.0,
-            Form::Arc { from, .. } => self.arc_at(from, piece.extent, along),
+            PieceShape::Edge { .. } => 0.0,
+            PieceShape::Arc { from, .. } => self.arc_at(from, piece.extent, along),
         };
         self.origin(i) + x
     }
@@ -374,7 +384,7 @@ impl Curve {
     /// Calls back with each place between p and q, on arc i, at which its tangent is that of
     /// `along`.
     pub fn running(&self, i: i64, along: Vec2, p: f64, q: f64, mut each: impl FnMut(f64)) {
-        let Form::Arc { from, .. } = self.piece(i).form else { return };
+        let PieceShape::Arc { from, .. } = self.piece(i).form else { return };
         let turn = std::f64::consts::TAU;
         let mut x = self.origin(i) - self.sense * cross(from, along).atan2(from.dot(&along));
         x += ((p - x) / turn).ceil() * turn;
@@ -388,7 +398,7 @@ impl Curve {
     /// to be `along`; 0 where it does so on the arc.
     pub fn beyond_arc(&self, i: i64, along: Vec2) -> i64 {
         let piece = self.piece(i);
-        let Form::Arc { from, .. } = piece.form else { return 0 };
+        let PieceShape::Arc { from, .. } = piece.form else { return 0 };
         let x = -self.sense * cross(from, along).atan2(from.dot(&along));
         match piece.extent.is_finite() {
             true if x < -ARC_END_TOLERANCE => -1,
@@ -412,7 +422,7 @@ impl Curve {
 
 /// The pieces of a polygon, ground or thin line at an offset, with the solid right of travel; and
 /// whether it closes.
-fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
+fn boundary(body: &Body, c: f64) -> (Vec<BoundaryPiece>, bool) {
     let mut edges: Vec<(Edge, usize)> = Vec::with_capacity(2 * body.edges.len());
     edges.extend(body.edges.iter().enumerate().map(|(k, e)| (*e, k)));
     let loops = body.edges.first().zip(body.edges.last()).is_some_and(|(a, b)| a.p == b.q);
@@ -443,19 +453,24 @@ fn boundary(body: &Body, c: f64) -> (Vec<Piece>, bool) {
         let kink_before = kink(k) > 0.0;
         let first = out.len();
         if arc > 0.0 {
-            let form = Form::Arc { center: e.p, radius: c, from: direction(arc_from) };
-            out.push(Piece { form, extent: arc, kink_before, feature: Some(corner_feature(k)) });
+            let form = PieceShape::Arc { center: e.p, radius: c, from: direction(arc_from) };
+            out.push(BoundaryPiece { form, extent: arc, kink_before, feature: Some(corner_feature(k)) });
         }
         // A kink takes c tan(δ/2) of both its edges.
         let cut = [kink(k), kink(k + 1)].map(|d| c * (0.5 * d).tan());
-        let form = Form::Edge { from: e.p + e.normal() * c + e.tangent * cut[0], tangent: e.tangent };
+        let form = PieceShape::Edge { from: e.p + e.normal() * c + e.tangent * cut[0], tangent: e.tangent };
         let extent = e.length() - cut[0] - cut[1];
         let extent = if extent > 0.0 { extent } else { 0.0 };
         let kink_before = kink_before && out.len() == first;
-        out.push(Piece { form, extent, kink_before, feature: Some(body.first + 2 * index) });
+        out.push(BoundaryPiece { form, extent, kink_before, feature: Some(body.first + 2 * index) });
         if !closed && k + 1 == n && angle > -up {
-            let form = Form::Arc { center: e.q, radius: c, from: direction(angle) };
-            out.push(Piece { form, extent: angle + up, kink_before: false, feature: Some(body.first + 2 * n + 1) });
+            let form = PieceShape::Arc { center: e.q, radius: c, from: direction(angle) };
+            out.push(BoundaryPiece {
+                form,
+                extent: angle + up,
+                kink_before: false,
+                feature: Some(body.first + 2 * n + 1),
+            });
         }
     }
     (out, closed)

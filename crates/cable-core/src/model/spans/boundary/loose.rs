@@ -5,28 +5,28 @@ use crate::math::Vec2;
 /// A section that lies without tension.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::model::spans) struct Loose {
-    pub parts: Vec<Part>,
+    pub parts: Vec<SlackPart>,
     /// Dead loads on free ends, which lie, N.
     pub drawn: Vec2,
 }
 
 /// A part of it, in order along the cable.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::model::spans) struct Part {
+pub(in crate::model::spans) struct SlackPart {
     /// Material at its ends, m.
     pub arc_lengths: [f64; 2],
     /// Tension at its ends, N.
     pub tension: [f64; 2],
-    pub form: Line,
+    pub form: SlackForm,
 }
 
 /// The line on which a part is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) enum Line {
+pub(in crate::model::spans) enum SlackForm {
     /// Plumb, from one point to another.
     Hangs([Vec2; 2]),
     /// On a piece of a boundary.
-    Lies(Stretch),
+    Lies(LyingStretch),
     /// In one place.
     Heap(Heap),
     /// Free between a support and a crest, with tension: from a point, with a force in the cable
@@ -37,7 +37,7 @@ pub(in crate::model::spans) enum Line {
 /// A stretch of a boundary between two coordinates, with the friction that is mobilised against
 /// going on, as a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) struct Stretch {
+pub(in crate::model::spans) struct LyingStretch {
     pub curve: usize,
     pub piece: i64,
     pub coordinates: [f64; 2],
@@ -49,12 +49,12 @@ pub(in crate::model::spans) struct Stretch {
 pub(in crate::model::spans) struct Heap {
     pub at: Vec2,
     /// The edges that carry it.
-    pub edges: [Option<Borne>; 2],
+    pub edges: [Option<BearingEdge>; 2],
 }
 
 /// The share of a heap that an edge carries.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) struct Borne {
+pub(in crate::model::spans) struct BearingEdge {
     /// Index of the boundary.
     pub curve: usize,
     pub normal: Vec2,
@@ -64,7 +64,7 @@ pub(in crate::model::spans) struct Borne {
     pub tangent: Vec2,
 }
 
-impl Borne {
+impl BearingEdge {
     pub fn force(&self) -> Vec2 {
         self.normal * self.press + self.tangent * self.friction
     }

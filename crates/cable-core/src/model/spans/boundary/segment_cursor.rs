@@ -1,13 +1,13 @@
-//! A segment cursor holds one piece of a track as seen from a point of it: places on the same piece
-//! need no search, and their direction is that of the point turned by a small angle. It also finds
-//! where on a piece two tensions become equal.
+//! A segment cursor holds one piece of a contact path as seen from a point of it: places on the
+//! same piece need no search, and their direction is that of the point turned by a small angle. It
+//! also finds where on a piece two tensions become equal.
 
 use std::cell::Cell;
 
 use crate::math::{Vec2, sin_cos};
-use crate::model::spans::boundary::arc::{SHORT_ARC, Way};
-use crate::model::spans::boundary::capstan::{Law, LocalLoad, Step};
-use crate::model::spans::boundary::curve::{ChainRange, Curve, Place};
+use crate::model::spans::boundary::arc::{ArcPath, SHORT_ARC};
+use crate::model::spans::boundary::capstan::{CableLaw, LocalLoad, SlideResult};
+use crate::model::spans::boundary::curve::{BoundaryPoint, ChainRange, Curve};
 use crate::model::spans::numerics::root::{TENSION_ROUNDING, crossing};
 
 /// Part of a piece before which two tensions that meet are not searched for on it again. Larger:
@@ -19,31 +19,42 @@ const FREE_SEARCH_LOOKS: usize = 3;
 
 /// A point of a piece and how far that goes.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct Pivot {
+pub(in crate::model::spans) struct CachedPiece {
     /// Boundary coordinate.
     coordinate: f64,
-    pub at: Place,
+    pub at: BoundaryPoint,
     /// b·t and b·n there, N/m.
     load: [f64; 2],
     /// Start and end of the piece; beyond the ends of its chain it goes on.
     ends: [f64; 2],
 }
 
-impl Pivot {
+impl CachedPiece {
     /// The piece at p.
-    pub fn new(curve: &Curve, chain_range: ChainRange, law: &Law, p: f64) -> Self {
+    pub fn new(curve: &Curve, chain_range: ChainRange, law: &CableLaw, p: f64) -> Self {
         let i = curve.locate(p, chain_range);
         let origin = curve.origin(i);
         let at = curve.place_on(i, p - origin);
         let first = if i > chain_range.first { origin } else { f64::NEG_INFINITY };
         let last = if i < chain_range.last { curve.origin(i + 1) } else { f64::INFINITY };
-        Self { coordinate: p, at, load: law.spot(&at).load, ends: [first, last] }
+        Self { coordinate: p, at, load: law.local_load(&at).load, ends: [first, last] }
     }
 
     /// The places of both ends of a contact, and the piece of the first.
-    pub fn of_ends(curve: &Curve, chain_range: ChainRange, law: &Law, [first, last]: [f64; 2]) -> ([Place; 2], Self) {
-        let pivot = Self::new(curve, chain_range, law, first);
-        ([pivot.at, if pivot.holds(last) { pivot.place(last) } else { curve.place(last, chain_range) }], pivot)
+    pub fn of_ends(
+        curve: &Curve,
+        chain_range: ChainRange,
+        law: &CableLaw,
+        [first, last]: [f64; 2],
+    ) -> ([BoundaryPoint; 2], Self) {
+        let cached_piece = Self::new(curve, chain_range, law, first);
+        (
+            [
+                cached_piece.at,
+                if cached_piece.holds(last) { cached_piece.place(last) } else { curve.place(last, chain_range) },
+            ],
+            cached_piece,
+        )
     }
 
     /// True if p is on this piece.
@@ -62,25 +73,25 @@ impl Pivot {
     }
 
     /// The point at p.
-    pub fn place(&self, p: f64) -> Place {
+    pub fn place(&self, p: f64) -> BoundaryPoint {
         let (at, x) = (&self.at, p - self.coordinate);
         if x == 0.0 {
             return *at;
         }
         if !self.turns() {
-            return Place { at: at.at + at.tangent * x, ..*at };
+            return BoundaryPoint { at: at.at + at.tangent * x, ..*at };
         }
         // dt/dp = −n, dn/dp = t.
         let (sin, cos) = sin_cos(x);
         let tangent: Vec2 = at.tangent * cos - at.normal * sin;
         let normal: Vec2 = at.normal * cos + at.tangent * sin;
-        Place { at: at.at + (normal - at.normal) * at.stretch, tangent, normal, ..*at }
+        BoundaryPoint { at: at.at + (normal - at.normal) * at.stretch, tangent, normal, ..*at }
     }
 
     /// As the law sees the point at p.
-    pub fn spot(&self, p: f64) -> LocalLoad {
-        let spot = LocalLoad { stretch: self.at.stretch, turns: self.turns(), load: self.load };
-        spot.on(p - self.coordinate)
+    pub fn local_load(&self, p: f64) -> LocalLoad {
+        let local_load = LocalLoad { stretch: self.at.stretch, turns: self.turns(), load: self.load };
+        local_load.on(p - self.coordinate)
     }
 }
 
@@ -104,16 +115,16 @@ pub(in crate::model::spans) struct Sliding {
     pub mobilised: f64,
 }
 
-/// One piece of a track, from a point on it.
+/// One piece of a contact path, from a point on it.
 pub(in crate::model::spans) struct SegmentCursor<'a> {
-    pub law: &'a Law,
+    pub law: &'a CableLaw,
     pub from: LocalLoad,
     pub p0: f64,
 }
 
 impl SegmentCursor<'_> {
     /// Slides with m from its point, where the tension is `t`, to p.
-    pub fn slide(&self, p: f64, t: f64, m: f64) -> Step {
+    pub fn slide(&self, p: f64, t: f64, m: f64) -> SlideResult {
         self.law.along(&self.from, p - self.p0, t, m)
     }
 
@@ -125,7 +136,7 @@ impl SegmentCursor<'_> {
         &self,
         p1: f64,
         [Sliding { tension: t, mobilised: m }, Sliding { tension: u, mobilised: n }]: [Sliding; 2],
-    ) -> (Option<f64>, [Step; 2]) {
+    ) -> (Option<f64>, [SlideResult; 2]) {
         let law = self.law;
         let whole = p1 - self.p0;
         let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
@@ -176,10 +187,10 @@ impl SegmentCursor<'_> {
         about: f64,
         whole: f64,
         [Sliding { tension: t, mobilised: m }, Sliding { tension: u, mobilised: n }]: [Sliding; 2],
-    ) -> Option<(f64, [Step; 2])> {
+    ) -> Option<(f64, [SlideResult; 2])> {
         let mut way = about;
         for _ in 0..FREE_SEARCH_LOOKS {
-            let there = Way::new(&self.from, way);
+            let there = ArcPath::new(&self.from, way);
             let [(a, one), (b, two)] = [(t, m), (u, n)].map(|(t, m)| there.slide(self.law, t, m));
             let apart = a.tension - b.tension;
             let [first, second, third] = [0, 1, 2].map(|k| one.tension[k] - two.tension[k]);
@@ -205,16 +216,16 @@ impl SegmentCursor<'_> {
         p1: f64,
         [Sliding { tension: t, mobilised: m }, Sliding { tension: u, mobilised: n }]: [Sliding; 2],
         end: f64,
-    ) -> (f64, [Step; 2]) {
+    ) -> (f64, [SlideResult; 2]) {
         let sign = (t - u).signum();
         let both = |p: f64| [self.slide(p, t, m), self.slide(p, u, n)];
-        let last = Cell::new((f64::NAN, [Step::none(t); 2]));
+        let last = Cell::new((f64::NAN, [SlideResult::none(t); 2]));
         let ends = ((t - u) * sign, end);
         let x = crossing(self.p0, p1, TENSION_ROUNDING * t.abs(), Some(ends), |x| {
             let [a, b] = both(x);
             last.set((x, [a, b]));
-            let spot = self.from.on(x - self.p0);
-            let slope = |t: f64, m: f64| self.law.slope_at(&spot, t, m);
+            let local_load = self.from.on(x - self.p0);
+            let slope = |t: f64, m: f64| self.law.slope_at(&local_load, t, m);
             ((a.tension - b.tension) * sign, (slope(a.tension, m) - slope(b.tension, n)) * sign)
         });
         let (at, ways) = last.get();

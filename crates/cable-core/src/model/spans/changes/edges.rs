@@ -3,7 +3,7 @@
 
 use crate::math::{Vec2, smaller};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::cable_section::{CableSection, Course};
+use crate::model::spans::cable_section::{CableSection, SolveContext};
 
 /// Part of p by which an end of a contact may be off the end of an arc and be taken to be there:
 /// Newton's steps go beyond it by less.
@@ -13,12 +13,12 @@ const ARC_END_FRACTION: f64 = 1e-8;
 /// go on to the corner at the edge's far end, those that route to its start, with their span lifted
 /// off the edge before it, back to the near one; whether there was one. A stiff taut cable turns by
 /// w/T a metre along an edge: next to nothing.
-pub(super) fn follow_edges(section: &mut CableSection, course: &Course) -> bool {
+pub(super) fn follow_edges(section: &mut CableSection, context: &SolveContext) -> bool {
     let mut any = false;
     for j in 0..section.contacts.len() {
         for side in 0..2 {
             let c = &section.contacts[j];
-            let curve = &course.curves[c.curve];
+            let curve = &context.curves[c.curve];
             let p = c.ends.p[side];
             let i = curve.locate(p, c.chain_range);
             let border = |q: f64| (p - q).abs() <= ARC_END_FRACTION * (1.0 + p.abs());
@@ -28,20 +28,20 @@ pub(super) fn follow_edges(section: &mut CableSection, course: &Course) -> bool 
                 && (border(curve.origin(i)) || border(curve.end(i)))
             {
                 let s = section.contacts[j].ends.s[side];
-                let leans = section.force(course, j + side, s).try_normalize(0.0);
-                any |= move_end_over_edges(section, course, j, side, None)
-                    || move_end_back_over_edge(section, course, j, side)
-                    || move_end_over_edges(section, course, j, side, leans);
+                let leans = section.force(context, j + side, s).try_normalize(0.0);
+                any |= move_end_over_edges(section, context, j, side, None)
+                    || move_end_back_over_edge(section, context, j, side)
+                    || move_end_over_edges(section, context, j, side, leans);
             }
         }
     }
     any
 }
 /// Moves the ends of the contacts beside contact k over the edges towards it.
-pub(super) fn move_neighbours_over_edges(section: &mut CableSection, course: &Course, k: usize) {
+pub(super) fn move_neighbours_over_edges(section: &mut CableSection, context: &SolveContext, k: usize) {
     for (j, side) in [(k.checked_sub(1), 1), (Some(k + 1), 0)] {
         if let Some(j) = j.filter(|&j| section.contacts.get(j).is_some_and(|c| c.wheel.is_none() && !c.is_load())) {
-            move_end_over_edges(section, course, j, side, None);
+            move_end_over_edges(section, context, j, side, None);
         }
     }
 }
@@ -49,28 +49,28 @@ pub(super) fn move_neighbours_over_edges(section: &mut CableSection, course: &Co
 /// Moves an end of contact j over edges; returns whether it moved.
 fn move_end_over_edges(
     section: &mut CableSection,
-    course: &Course,
+    context: &SolveContext,
     j: usize,
     side: usize,
     leans: Option<Vec2>,
 ) -> bool {
-    let far = section.ends_of(course, j + side)[side];
+    let far = section.span_ends(context, j + side)[side];
     let c = &mut section.contacts[j];
-    let p = beyond_edges(&course.curves[c.curve], c.chain_range, c.ends.p[side], side, far, leans);
+    let p = beyond_edges(&context.curves[c.curve], c.chain_range, c.ends.p[side], side, far, leans);
     if p == c.ends.p[side] {
         return false;
     }
-    let way = course.curves[c.curve].length(c.ends.p[side], p, c.chain_range) / course.law.stretch(c.ends.t[side]);
+    let way = context.curves[c.curve].length(c.ends.p[side], p, c.chain_range) / context.law.stretch(c.ends.t[side]);
     (c.ends.p[side], c.ends.s[side]) = (p, c.ends.s[side] + way);
     true
 }
 
 /// Moves an end of contact j that lies at the start of an arc, seen along the contact, back over
 /// the edge before it where its span leaves that edge; returns whether it moved.
-fn move_end_back_over_edge(section: &mut CableSection, course: &Course, j: usize, side: usize) -> bool {
-    let Some(far) = section.ends_of(course, j + side)[side] else { return false };
+fn move_end_back_over_edge(section: &mut CableSection, context: &SolveContext, j: usize, side: usize) -> bool {
+    let Some(far) = section.span_ends(context, j + side)[side] else { return false };
     let c = &mut section.contacts[j];
-    let (curve, p) = (&course.curves[c.curve], c.ends.p[side]);
+    let (curve, p) = (&context.curves[c.curve], c.ends.p[side]);
     let (back, forward) = if side == 0 { (1, -1.0) } else { (-1, 1.0) };
     let i = curve.locate(p, c.chain_range);
     let arc = if curve.is_arc(i) { i } else { i - back };
@@ -86,7 +86,7 @@ fn move_end_back_over_edge(section: &mut CableSection, course: &Course, j: usize
     let q = curve.with_tangent(near, way);
     let other = c.ends.p[1 - side];
     let q = if (q - other) * forward > 0.0 { q } else { other };
-    let moved = curve.length(p, q, c.chain_range) / course.law.stretch(c.ends.t[side]);
+    let moved = curve.length(p, q, c.chain_range) / context.law.stretch(c.ends.t[side]);
     (c.ends.p[side], c.ends.s[side]) = (q, c.ends.s[side] + moved);
     moved != 0.0
 }

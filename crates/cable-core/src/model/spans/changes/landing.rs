@@ -1,19 +1,19 @@
 //! A span that runs into an obstacle is laid down on it.
 
-use crate::contact::swept_corners::{self, Corner};
+use crate::contact::swept_corners::{self, ImpassableCorner};
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::acceptance::penetration;
 use crate::model::spans::acceptance::penetration::Penetration;
 use crate::model::spans::acceptance::tunnelling;
 use crate::model::spans::boundary::curve::{ChainRange, SUPPORT_CONTACT_DISTANCE_M};
-use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, Tie};
+use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::changes::edges::{beyond_edges, move_neighbours_over_edges};
 use crate::model::spans::contact::load_landing;
 use crate::model::spans::contact::release_below;
 use crate::model::spans::failure::Failure;
-use crate::model::spans::newton::Work;
+use crate::model::spans::newton::Workspace;
 
 /// Depth inside an obstacle from which a span touches it, of the section: points nearer than that
 /// are one.
@@ -31,7 +31,7 @@ pub(super) enum Purpose {
 /// Lays each span down on the obstacle it is deepest in. Returns whether there was any.
 pub(super) fn touch_obstacles(
     section: &mut CableSection,
-    course: &Course,
+    context: &SolveContext,
     world: &World,
     purpose: Purpose,
 ) -> Result<bool, Failure> {
@@ -42,13 +42,13 @@ pub(super) fn touch_obstacles(
     let mut any = false;
     // From the last span, so that those before keep their number.
     for k in (0..section.spans()).rev() {
-        if let Some(landing) = load_landing::find(section, course, world, k, deep) {
-            load_landing::touch(section, course, k, &landing)?;
+        if let Some(landing) = load_landing::find(section, context, world, k, deep) {
+            load_landing::touch(section, context, k, &landing)?;
             any = true;
             continue;
         }
-        if let Some(hit) = penetration::deepest(section, course, world, k, deep) {
-            lay_down_span(section, course, k, &hit, purpose)?;
+        if let Some(hit) = penetration::deepest(section, context, world, k, deep) {
+            lay_down_span(section, context, k, &hit, purpose)?;
             any = true;
         }
     }
@@ -72,18 +72,18 @@ struct NearestPoint {
 /// whether there was one.
 pub(super) fn touch_passed_corner(
     section: &mut CableSection,
-    course: &Course,
-    corners: &[Corner],
+    context: &SolveContext,
+    corners: &[ImpassableCorner],
     route: &[Vec2],
-    work: &mut Work,
+    workspace: &mut Workspace,
 ) -> Result<bool, Failure> {
     let mut shape = Vec::new();
-    tunnelling::shape(section, course, &mut shape);
-    let Some(corner) = swept_corners::through(corners, route, &shape, &mut work.turns) else { return Ok(false) };
+    tunnelling::shape(section, context, &mut shape);
+    let Some(corner) = swept_corners::through(corners, route, &shape, &mut workspace.turns) else { return Ok(false) };
     let mut nearest: Option<NearestPoint> = None;
-    let points = course.settings.changes.corner_search_points;
+    let points = context.settings.changes.corner_search_points;
     for k in (0..section.spans()).filter(|&k| section.has_span(k)) {
-        section.shapes(course, k, |s0, at, c| {
+        section.shapes(context, k, |s0, at, c| {
             for i in 1..points {
                 let s = c.span().length * i as f64 / points as f64;
                 let p = at + c.position_at(s);
@@ -110,7 +110,7 @@ pub(super) fn touch_passed_corner(
     };
     lay_down_span(
         section,
-        course,
+        context,
         k,
         &Penetration { arc_length: s, at: corner.at, tangent, gap, body: corner.body },
         Purpose::FirstEquilibrium,
@@ -122,7 +122,7 @@ pub(super) fn touch_passed_corner(
 /// there, or a new one begins.
 fn lay_down_span(
     section: &mut CableSection,
-    course: &Course,
+    context: &SolveContext,
     k: usize,
     hit: &Penetration,
     purpose: Purpose,
@@ -130,8 +130,8 @@ fn lay_down_span(
     let impossible = Failure::ContactImpossible { s: hit.arc_length, at: hit.at };
     let back = hit.gap.normal.dot(&perp(hit.tangent)) < 0.0;
     let curve_index = 2 * hit.body + usize::from(back);
-    let Some(curve) = course.curves.get(curve_index) else { return Err(impossible) };
-    let load = course.law.load;
+    let Some(curve) = context.curves.get(curve_index) else { return Err(impossible) };
+    let load = context.law.load;
     // The feature of a kink has no piece of its own: its edges have.
     let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(hit.gap.feature.checked_sub(back)?, hit.at));
     let Some(i) = curve.piece_of(hit.gap.feature, hit.at).or_else(kink) else { return Err(impossible) };
@@ -140,8 +140,8 @@ fn lay_down_span(
     let Some((i, chain_range)) = found else { return Err(impossible) };
     let edge = curve.place_on(i, 0.0).turn == 0.0;
     let p = if edge { curve.project(i, hit.at) } else { curve.with_tangent(i, hit.tangent) };
-    let ends = section.ends_of(course, k);
-    let force = section.force(course, k, hit.arc_length).norm();
+    let ends = section.span_ends(context, k);
+    let force = section.force(context, k, hit.arc_length).norm();
     let same =
         |c: &Contact| c.curve == curve_index && c.chain_range == chain_range && c.wheel.is_none() && !c.is_load();
     let end = |j: Option<usize>, side: usize| {
@@ -154,9 +154,9 @@ fn lay_down_span(
     // A contact on the underside of a post goes on over its bottom only where tension presses it
     // on.
     let bears = |c: &Contact, (from, to): (f64, f64)| {
-        let track = course.track(c);
+        let contact_path = context.contact_path(c);
         let mut bears = true;
-        track.bottoms(from, to, |p| bears &= track.law.press(&track.place(p), force) >= 0.0);
+        contact_path.bottoms(from, to, |p| bears &= contact_path.law.press(&contact_path.place(p), force) >= 0.0);
         bears || !curve.is_round()
     };
     if let Some(c) = k
@@ -174,7 +174,7 @@ fn lay_down_span(
         return Ok(());
     }
     let new = NewContact { curve_index, chain_range, p, force };
-    insert_contact(section, course, k, hit, new, purpose);
+    insert_contact(section, context, k, hit, new, purpose);
     Ok(())
 }
 
@@ -193,32 +193,32 @@ struct NewContact {
 /// chain goes on to there.
 fn insert_contact(
     section: &mut CableSection,
-    course: &Course,
+    context: &SolveContext,
     k: usize,
     hit: &Penetration,
     new: NewContact,
     purpose: Purpose,
 ) {
     let NewContact { curve_index, chain_range, p, force } = new;
-    let curve = &course.curves[curve_index];
+    let curve = &context.curves[curve_index];
     let mut contact = Contact {
         curve: curve_index,
         chain_range,
         ends: Ends { p: [p, p], s: [hit.arc_length, hit.arc_length], t: [force, force] },
-        mode: if curve.friction > 0.0 && purpose == Purpose::Step { Mode::Hold } else { Mode::Slide(0.0) },
+        mode: if curve.friction > 0.0 && purpose == Purpose::Step { Mode::Stick } else { Mode::Slip(0.0) },
         history: TensionProfile::default(),
         wheel: None,
-        flips: 0,
+        mode_changes: 0,
         held: None,
-        next: Next::Span,
+        next: Connection::Span,
         load: None,
         smooth: purpose == Purpose::FirstEquilibrium,
     };
-    let track = course.track(&contact);
+    let contact_path = context.contact_path(&contact);
     let mut held_ends = [None, None];
     for side in 0..2 {
         let outer = if side == 0 { k == 0 } else { k == section.contacts.len() };
-        if let (true, Tie::Held(at)) = (outer, section.ties[side])
+        if let (true, EndCondition::Fixed(at)) = (outer, section.end_conditions[side])
             && let Some(end) = curve.on_chain(chain_range, at, SUPPORT_CONTACT_DISTANCE_M)
             && (if side == 0 { end <= p } else { end >= p })
         {
@@ -226,28 +226,28 @@ fn insert_contact(
             held_ends[side] = Some(end);
             (contact.ends.p[side], contact.ends.s[side]) = (end, s);
             // The length that is laid from the held end to the other.
-            let laid = track.slide(end, p, force, 0.0).material;
+            let laid = contact_path.slide(end, p, force, 0.0).material;
             if held_ends[1 - side].is_none() {
                 contact.ends.s[1 - side] = s + laid;
             }
         }
     }
-    let knot = |side: usize| Knot {
+    let breakpoint = |side: usize| Breakpoint {
         coordinate: contact.ends.p[side],
         arc_length: contact.ends.s[side],
         tension: force,
         mobilised: 0.0,
     };
-    contact.history = TensionProfile::new(knot(0), knot(1));
+    contact.history = TensionProfile::new(breakpoint(0), breakpoint(1));
     let g = section.forces[k];
     section.contacts.insert(k, contact);
     section.forces.insert(k, g);
     for side in 0..2 {
         if let Some(p) = held_ends[side] {
-            section.ties[side] = Tie::Lies(p);
+            section.end_conditions[side] = EndCondition::Lies(p);
         }
     }
     if purpose == Purpose::FirstEquilibrium {
-        move_neighbours_over_edges(section, course, k);
+        move_neighbours_over_edges(section, context, k);
     }
 }

@@ -1,35 +1,36 @@
 //! Two neighbouring contacts of one chain become one.
 
-use crate::model::spans::boundary::capstan::Track;
+use crate::model::spans::boundary::capstan::ContactPath;
 use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::cable_section::{CableSection, Course};
+use crate::model::spans::cable_section::{CableSection, SolveContext};
 use crate::model::spans::contact::release_below;
 
 /// Merges two neighbouring contacts of one chain. Returns whether there were any.
-pub(super) fn merge_contacts(section: &mut CableSection, course: &Course) -> bool {
+pub(super) fn merge_contacts(section: &mut CableSection, context: &SolveContext) -> bool {
     for j in 1..section.contacts.len() {
         let (a, b) = (&section.contacts[j - 1], &section.contacts[j]);
         let loads = a.is_load() || b.is_load();
-        let apart =
-            |track: &Track<'_>| track.curve.is_round() && release_below::hangs_between(track, a.ends.p[1], b.ends.p[0]);
+        let apart = |contact_path: &ContactPath<'_>| {
+            contact_path.curve.is_round() && release_below::hangs_between(contact_path, a.ends.p[1], b.ends.p[0])
+        };
         if a.curve == b.curve
             && a.chain_range == b.chain_range
             && a.wheel.is_none()
             && !loads
             && b.ends.p[1] >= a.ends.p[0]
-            && !apart(&course.track(a))
+            && !apart(&context.contact_path(a))
         {
             let b = section.contacts.remove(j);
             section.forces.remove(j);
             let a = &mut section.contacts[j - 1];
-            a.history.append(&course.track(&b), &b.history);
+            a.history.append(&context.contact_path(&b), &b.history);
             a.smooth &= b.smooth;
             a.next = b.next;
             (a.ends.p[1], a.ends.s[1], a.ends.t[1]) = (b.ends.p[1], b.ends.s[1], b.ends.t[1]);
-            if let (Mode::Slide(m), Mode::Hold) = (a.mode, b.mode)
+            if let (Mode::Slip(m), Mode::Stick) = (a.mode, b.mode)
                 && m != 0.0
             {
-                a.mode = Mode::Hold;
+                a.mode = Mode::Stick;
             }
             return true;
         }

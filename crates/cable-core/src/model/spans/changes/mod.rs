@@ -16,9 +16,9 @@ mod merge;
 mod release;
 
 use crate::contact::World;
-use crate::contact::swept_corners::Corner;
+use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::Vec2;
-use crate::model::spans::cable_section::{CableSection, Course};
+use crate::model::spans::cable_section::{CableSection, SolveContext};
 use crate::model::spans::changes::edges::follow_edges;
 use crate::model::spans::changes::landing::{Purpose, touch_obstacles, touch_passed_corner};
 use crate::model::spans::changes::merge::merge_contacts;
@@ -29,7 +29,7 @@ use crate::model::spans::contact::release_below;
 use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::newton;
-use crate::model::spans::newton::{Solved, Work};
+use crate::model::spans::newton::{Converged, Workspace};
 
 /// Solves a section with the contacts that belong to its answer.
 ///
@@ -37,31 +37,31 @@ use crate::model::spans::newton::{Solved, Work};
 /// touches the corners between.
 pub(in crate::model::spans) fn solve(
     section: &mut CableSection,
-    course: &mut Course,
+    context: &mut SolveContext,
     world: &World,
-    corners: &[Corner],
+    corners: &[ImpassableCorner],
     route: Option<&[Vec2]>,
-    work: &mut Work,
-) -> Result<Solved, Failure> {
-    let tuned = course.settings.changes;
+    workspace: &mut Workspace,
+) -> Result<Converged, Failure> {
+    let tuned = context.settings.changes;
     let purpose = if route.is_some() { Purpose::FirstEquilibrium } else { Purpose::Step };
-    let (mut sum, mut caught) = (Solved::default(), 0);
+    let (mut sum, mut caught) = (Converged::default(), 0);
     for _ in 0..tuned.max_changes {
-        point_load::join(section, course)?;
-        let found = match newton::solve(section, course, work) {
+        point_load::join(section, context)?;
+        let found = match newton::solve(section, context, workspace) {
             Ok(found) => found,
             Err(stall) => {
                 sum.iterations += stall.iterations;
-                if follow_edges(section, course) || kink_load::enter(section, course) {
+                if follow_edges(section, context) || kink_load::enter(section, context) {
                     continue;
                 }
                 caught += 1;
                 if caught <= tuned.max_load_releases
-                    && (release_vanishing_contact(section, course)? || point_load::catch(section, course))
+                    && (release_vanishing_contact(section, context)? || point_load::catch(section, context))
                 {
                     continue;
                 }
-                if let Some(support) = lifted_wheel(section, course) {
+                if let Some(support) = lifted_wheel(section, context) {
                     return Err(Failure::OffWheel { support });
                 }
                 let s = section.material(stall.at).0;
@@ -72,22 +72,22 @@ pub(in crate::model::spans) fn solve(
         sum.residual = found.residual;
         // Tunnelled corners are checked before penetrations: they tell on which side of an obstacle
         // the cable belongs.
-        let changed = release_turned_contact(section, course)?
-            || merge_contacts(section, course)
-            || release_below::part(section, course)
-            || kink_load::enter(section, course)
-            || point_load::settle(section, course)?
-            || slack_pocket::open(section, course)
+        let changed = release_turned_contact(section, context)?
+            || merge_contacts(section, context)
+            || release_below::part(section, context)
+            || kink_load::enter(section, context)
+            || point_load::settle(section, context)?
+            || slack_pocket::open(section, context)
             || match route {
-                Some(route) => touch_passed_corner(section, course, corners, route, work)?,
+                Some(route) => touch_passed_corner(section, context, corners, route, workspace)?,
                 None => false,
             }
-            || touch_obstacles(section, course, world, purpose)?;
+            || touch_obstacles(section, context, world, purpose)?;
         if !changed {
             // Other contacts may press the cable on to its wheel again: it is off its wheel when
             // nothing else changes.
-            return lifted_wheel(section, course).map_or(Ok(sum), |support| Err(Failure::OffWheel { support }));
+            return lifted_wheel(section, context).map_or(Ok(sum), |support| Err(Failure::OffWheel { support }));
         }
     }
-    Err(Failure::Restless { s: section.from })
+    Err(Failure::ContactCycling { s: section.from })
 }

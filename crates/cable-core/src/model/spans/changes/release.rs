@@ -1,7 +1,7 @@
 //! Contacts are released that would have to pull, or that have vanished.
 
-use crate::model::spans::boundary::friction_memory::{Knot, Mode, TensionProfile};
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, Tie};
+use crate::model::spans::boundary::friction_memory::{Breakpoint, Mode, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::failure::Failure;
 
 /// Extent (m or rad) by which the interval of a contact has turned round when it is released:
@@ -10,47 +10,50 @@ const RELEASE_OVERLAP: f64 = 1e-10;
 
 /// Releases the contact whose interval has turned round most: it would have to pull. Returns
 /// whether there was one.
-pub(super) fn release_turned_contact(section: &mut CableSection, course: &mut Course) -> Result<bool, Failure> {
+pub(super) fn release_turned_contact(section: &mut CableSection, context: &mut SolveContext) -> Result<bool, Failure> {
     let turned = |c: &Contact| c.ends.p[1] - c.ends.p[0];
     let worst = (0..section.contacts.len())
-        .filter(|&j| !is_round_wheel(&section.contacts[j], course))
+        .filter(|&j| !is_round_wheel(&section.contacts[j], context))
         .min_by(|&a, &b| turned(&section.contacts[a]).total_cmp(&turned(&section.contacts[b])));
     let Some(j) = worst.filter(|&j| turned(&section.contacts[j]) < -RELEASE_OVERLAP) else {
         return Ok(false);
     };
-    remove_contact(section, course, j)
+    remove_contact(section, context, j)
 }
 
 /// True if a contact is a wheel with a radius: the cable passes it on one side. An eye it may pass
 /// on either.
-fn is_round_wheel(c: &Contact, course: &Course) -> bool {
-    c.wheel.is_some() && course.track(c).place(c.ends.p[0]).stretch > 0.0
+fn is_round_wheel(c: &Contact, context: &SolveContext) -> bool {
+    c.wheel.is_some() && context.contact_path(c).place(c.ends.p[0]).stretch > 0.0
 }
 
 /// The wheel on which the interval has turned round most, if on any: it would have to pull there.
-pub(super) fn lifted_wheel(section: &CableSection, course: &Course) -> Option<usize> {
-    let wheels = section.contacts.iter().filter(|c| is_round_wheel(c, course));
+pub(super) fn lifted_wheel(section: &CableSection, context: &SolveContext) -> Option<usize> {
+    let wheels = section.contacts.iter().filter(|c| is_round_wheel(c, context));
     let turned = |c: &&Contact| c.ends.p[1] - c.ends.p[0];
     wheels.min_by(|a, b| turned(a).total_cmp(&turned(b))).filter(|c| turned(c) < -RELEASE_OVERLAP)?.wheel
 }
 
 /// Releases a contact that has shrunk to next to nothing beside a load, whose weight a span that
 /// turned round past it would count. Returns whether there was any.
-pub(super) fn release_vanishing_contact(section: &mut CableSection, course: &mut Course) -> Result<bool, Failure> {
-    let least = course.settings.changes.shed_length_fraction * (section.to - section.from);
+pub(super) fn release_vanishing_contact(
+    section: &mut CableSection,
+    context: &mut SolveContext,
+) -> Result<bool, Failure> {
+    let least = context.settings.changes.shed_length_fraction * (section.to - section.from);
     let small = |c: &Contact| !c.is_load() && c.ends.s[1] - c.ends.s[0] < least;
     let beside = |j: usize| section.is_joined(j, 0) || section.is_joined(j, 1);
     let Some(j) = (0..section.contacts.len()).find(|&j| small(&section.contacts[j]) && beside(j)) else {
         return Ok(false);
     };
-    remove_contact(section, course, j)
+    remove_contact(section, context, j)
 }
 
 /// Removes contact j: the spans beside it become one. A wheel cannot be removed, and an eye is
 /// passed on its other side.
-fn remove_contact(section: &mut CableSection, course: &mut Course, j: usize) -> Result<bool, Failure> {
+fn remove_contact(section: &mut CableSection, context: &mut SolveContext, j: usize) -> Result<bool, Failure> {
     if let Some(support) = section.contacts[j].wheel {
-        if is_round_wheel(&section.contacts[j], course) {
+        if is_round_wheel(&section.contacts[j], context) {
             return Err(Failure::OffWheel { support });
         }
         pass_eye_on_other_side(&mut section.contacts[j]);
@@ -63,35 +66,36 @@ fn remove_contact(section: &mut CableSection, course: &mut Course, j: usize) -> 
     }
     // Beside a load there was no span; now there is the one that was on the other side.
     let before = j.checked_sub(1).is_some_and(|i| section.contacts[i].next.part());
-    if before || contact.next == Next::Joined {
-        let (k, other) = if contact.next == Next::Joined { (j + 1, j) } else { (j, j + 1) };
-        let ends = (other == 0 && !section.ties[0].has_span()) || (other > m && !section.ties[1].has_span());
+    if before || contact.next == Connection::Joined {
+        let (k, other) = if contact.next == Connection::Joined { (j + 1, j) } else { (j, j + 1) };
+        let ends = (other == 0 && !section.end_conditions[0].has_span())
+            || (other > m && !section.end_conditions[1].has_span());
         if ends {
-            return Err(Failure::LoadLies { s: contact.ends.s[0] });
+            return Err(Failure::LoadInContact { s: contact.ends.s[0] });
         }
         section.forces.remove(k);
-        section.resolve_span(course, j);
+        section.resolve_span(context, j);
         return Ok(true);
     }
     // An end that rested on this contact becomes a fixed or a free end.
     for side in 0..2 {
         let outer = if side == 0 { j == 0 } else { j == m };
-        if outer && !section.ties[side].has_span() {
-            section.ties[side] = match section.ties[side] {
-                Tie::Lies(p) => Tie::Held(course.track(&contact).place(p).at),
-                Tie::Loose(force) => Tie::Hangs(force),
+        if outer && !section.end_conditions[side].has_span() {
+            section.end_conditions[side] = match section.end_conditions[side] {
+                EndCondition::Lies(p) => EndCondition::Fixed(context.contact_path(&contact).place(p).at),
+                EndCondition::Loose(force) => EndCondition::Hangs(force),
                 other => other,
             };
             section.forces.remove(if side == 0 { 0 } else { m + 1 });
             if section.contacts.is_empty() && section.forces.len() > 1 {
                 section.forces.truncate(1);
             }
-            section.resolve_span(course, if side == 0 { 0 } else { m });
+            section.resolve_span(context, if side == 0 { 0 } else { m });
             return Ok(true);
         }
     }
     section.forces.remove(j);
-    section.resolve_span(course, j);
+    section.resolve_span(context, j);
     Ok(true)
 }
 
@@ -101,13 +105,17 @@ fn pass_eye_on_other_side(c: &mut Contact) {
     c.curve ^= 1;
     c.ends.p = [-c.ends.p[0], -c.ends.p[1]];
     let s = 0.5 * (c.ends.s[0] + c.ends.s[1]);
-    let knot = |k: usize| Knot { coordinate: c.ends.p[k], arc_length: s, tension: c.ends.t[k], mobilised: 0.0 };
+    let breakpoint =
+        |k: usize| Breakpoint { coordinate: c.ends.p[k], arc_length: s, tension: c.ends.t[k], mobilised: 0.0 };
     // Its interval is a point: the friction memory keeps the material that is there.
-    let held = c.history.knots().first().map_or(s, |k| k.arc_length);
-    c.history = TensionProfile::new(Knot { arc_length: held, ..knot(0) }, Knot { arc_length: held, ..knot(1) });
-    if let Mode::Slide(m) = c.mode
+    let held = c.history.breakpoints().first().map_or(s, |k| k.arc_length);
+    c.history = TensionProfile::new(
+        Breakpoint { arc_length: held, ..breakpoint(0) },
+        Breakpoint { arc_length: held, ..breakpoint(1) },
+    );
+    if let Mode::Slip(m) = c.mode
         && m != 0.0
     {
-        c.mode = Mode::Hold;
+        c.mode = Mode::Stick;
     }
 }

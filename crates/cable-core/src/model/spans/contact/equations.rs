@@ -13,13 +13,13 @@
 //! have the same tension, so that moving it changes nothing.
 
 use crate::math::larger;
-use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::boundary::curve::Place;
-use crate::model::spans::boundary::friction_memory::{Ends, Front, Held, Mode, TensionProfile};
+use crate::model::spans::boundary::capstan::ContactPath;
+use crate::model::spans::boundary::curve::BoundaryPoint;
+use crate::model::spans::boundary::friction_memory::{Ends, Mode, SlipFront, StickZone, TensionProfile};
 
 /// Residuals and their derivatives by (p₁, s₁, T₁, p₂, s₂, T₂).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in crate::model::spans) struct Rows {
+pub(in crate::model::spans) struct ContactEquations {
     pub residual: [f64; 2],
     pub by: [[f64; 6]; 2],
     /// True if a row is of tensions (N), not of material (m).
@@ -29,35 +29,37 @@ pub(in crate::model::spans) struct Rows {
 /// The rows of a contact in a mode, and where it sticks if it does.
 ///
 /// `pinned`: which ends are held on the boundary, so that their tension is unknown by itself;
-/// `spots`: the places of its ends.
+/// `end_points`: the places of its ends.
 pub(in crate::model::spans) fn rows(
-    track: &Track<'_>,
+    contact_path: &ContactPath<'_>,
     history: &TensionProfile,
     e: &Ends,
-    spots: &[Place; 2],
+    end_points: &[BoundaryPoint; 2],
     mode: Mode,
     pinned: [bool; 2],
-) -> (Rows, Option<Held>) {
+) -> (ContactEquations, Option<StickZone>) {
     // Lifted (Newton looks there): a point without friction.
     let lifted = e.p[1] < e.p[0];
-    match if lifted { Mode::Slide(0.0) } else { mode } {
-        Mode::Slide(m) if track.floored && !lifted => (drawn(track, e, spots, m), None),
-        Mode::Slide(m) => (sliding(track, history, e, spots, m), None),
-        Mode::Hold => {
-            let held = history.hold(track, e);
+    match if lifted { Mode::Slip(0.0) } else { mode } {
+        Mode::Slip(m) if contact_path.floored && !lifted => (drawn(contact_path, e, end_points, m), None),
+        Mode::Slip(m) => (sliding(contact_path, history, e, end_points, m), None),
+        Mode::Stick => {
+            let held = history.hold(contact_path, e);
             let (mut out, fronts) = match held {
                 // Beyond its cone the rows of sticking go on smoothly: the mode is changed, not the
                 // rows.
-                Held::Between(fronts) | Held::Beyond(_, fronts) => (holding(track, e, spots, &fronts), fronts),
-                Held::Meet(fronts) => {
-                    let mut out = holding(track, e, spots, &fronts);
-                    meeting(&mut out, track, history, e, spots, &fronts);
+                StickZone::Between(fronts) | StickZone::Beyond(_, fronts) => {
+                    (holding(contact_path, e, end_points, &fronts), fronts)
+                }
+                StickZone::Meet(fronts) => {
+                    let mut out = holding(contact_path, e, end_points, &fronts);
+                    meeting(&mut out, contact_path, history, e, end_points, &fronts);
                     (out, fronts)
                 }
             };
             for side in 0..2 {
                 if pinned[side] {
-                    pin(&mut out, track, history, e, side, &fronts[side]);
+                    pin(&mut out, contact_path, history, e, side, &fronts[side]);
                 }
             }
             (out, Some(held))
@@ -70,8 +72,15 @@ pub(in crate::model::spans) fn rows(
 /// Near the old tension what a change x of it moves is φ = ∓ k x|x|, k = 1/(2·D·EA·τ), D the
 /// difference of the slopes of tension at the front: flat at x = 0, where Newton starts. Its root
 /// √|φ| is straight. Where the end has not moved the answer is x = 0, with nothing to solve.
-fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, side: usize, front: &Front) {
-    let (old_t, old_s) = history.at(track, e.p[side]);
+fn pin(
+    out: &mut ContactEquations,
+    contact_path: &ContactPath<'_>,
+    history: &TensionProfile,
+    e: &Ends,
+    side: usize,
+    front: &SlipFront,
+) {
+    let (old_t, old_s) = history.at(contact_path, e.p[side]);
     let gap = e.s[side] - old_s;
     let x = e.t[side] - old_t;
     out.of_tension[side] = true;
@@ -82,21 +91,21 @@ fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, si
         return;
     }
     let size = e.s[0].abs() + e.s[1].abs();
-    let law = &track.law;
-    let place = track.place(e.p[side]);
+    let law = &contact_path.law;
+    let place = contact_path.place(e.p[side]);
     let sign = if side == 0 { -1.0 } else { 1.0 };
     let target = -sign * gap;
     // The way the tension will have to go decides the slope of the sliding there.
     let m = front.mobilised.abs() * if (target > 0.0) == (side == 0) { -1.0 } else { 1.0 };
     let inner = e.p[side] + (e.p[1 - side] - e.p[side]) * 1e-9;
-    let drop = (law.slope(&place, old_t, m) - history.slope(track, inner)).abs() / place.stretch;
+    let drop = (law.slope(&place, old_t, m) - history.slope(contact_path, inner)).abs() / place.stretch;
     if drop <= SLOPE_DIFFERENCE_FRACTION * law.load.norm() {
         // It slides on as it slid: the material follows the tension along the whole of the old
         // sliding, evenly, which a tension that has not changed yet does not show.
         out.of_tension[side] = false;
         if x == 0.0 {
             let nudged = old_t + DIFFERENCE_STEP * (old_t.abs() + law.load.norm() * size) * target.signum();
-            let way = history.front(track, e.p[side], nudged, e.p[1 - side]).way;
+            let way = history.front(contact_path, e.p[side], nudged, e.p[1 - side]).way;
             out.by[side][3 * side + 2] = way.material_by_tension;
         }
         return;
@@ -121,33 +130,39 @@ fn pin(out: &mut Rows, track: &Track<'_>, history: &TensionProfile, e: &Ends, si
     }
 }
 
-/// Rows of a contact that slides. A cable that runs away is followed with a drag η: T₂ less what
-/// the law makes of T₁ is η (s_old(p₁) − s₁), the slip.
-fn sliding(track: &Track<'_>, history: &TensionProfile, e: &Ends, [a, b]: &[Place; 2], m: f64) -> Rows {
-    let way = track.slide(e.p[0], e.p[1], e.t[0], m);
-    let slope = track.law.slope(a, e.t[0], m);
+/// Equations of a contact that slides. A cable that runs away is followed with a drag η: T₂ less
+/// what the law makes of T₁ is η (s_old(p₁) − s₁), the slip.
+fn sliding(
+    contact_path: &ContactPath<'_>,
+    history: &TensionProfile,
+    e: &Ends,
+    [a, b]: &[BoundaryPoint; 2],
+    m: f64,
+) -> ContactEquations {
+    let way = contact_path.slide(e.p[0], e.p[1], e.t[0], m);
+    let slope = contact_path.law.slope(a, e.t[0], m);
     let (mut held, mut held_by) = (0.0, 0.0);
-    if track.drag > 0.0 {
-        let (t, s) = history.at(track, e.p[0]);
-        held = track.drag * (s - e.s[0]);
-        held_by = track.drag * a.stretch / track.law.stretch(t);
+    if contact_path.drag > 0.0 {
+        let (t, s) = history.at(contact_path, e.p[0]);
+        held = contact_path.drag * (s - e.s[0]);
+        held_by = contact_path.drag * a.stretch / contact_path.law.stretch(t);
     }
-    Rows {
+    ContactEquations {
         residual: [e.s[1] - e.s[0] - way.material, e.t[1] - way.tension - held],
         by: [
             [
-                a.stretch / track.law.stretch(e.t[0]) + way.material_by_tension * slope,
+                a.stretch / contact_path.law.stretch(e.t[0]) + way.material_by_tension * slope,
                 -1.0,
                 -way.material_by_tension,
-                -b.stretch / track.law.stretch(way.tension),
+                -b.stretch / contact_path.law.stretch(way.tension),
                 1.0,
                 0.0,
             ],
             [
                 way.by_tension * slope - held_by,
-                track.drag,
+                contact_path.drag,
                 -way.by_tension,
-                -track.law.slope(b, way.tension, m),
+                -contact_path.law.slope(b, way.tension, m),
                 0.0,
                 1.0,
             ],
@@ -158,20 +173,20 @@ fn sliding(track: &Track<'_>, history: &TensionProfile, e: &Ends, [a, b]: &[Plac
 
 /// Friction fully mobilised, or none: from the end that is drawn the tension falls by the law, to
 /// nothing at most.
-fn drawn(track: &Track<'_>, e: &Ends, spots: &[Place; 2], m: f64) -> Rows {
+fn drawn(contact_path: &ContactPath<'_>, e: &Ends, end_points: &[BoundaryPoint; 2], m: f64) -> ContactEquations {
     let from = e.drawn_side(m);
     let to = 1 - from;
-    let (way, _) = track.slide_floored(e.p[from], e.p[to], e.t[from], m);
-    let (start, end) = (&spots[from], &spots[to]);
-    let slope = track.law.slope(start, e.t[from], m);
-    let falls = if way.by_tension == 0.0 { 0.0 } else { track.law.slope(end, way.tension, m) };
-    let mut rows = Rows { of_tension: [false, true], ..Rows::default() };
+    let (way, _) = contact_path.slide_floored(e.p[from], e.p[to], e.t[from], m);
+    let (start, end) = (&end_points[from], &end_points[to]);
+    let slope = contact_path.law.slope(start, e.t[from], m);
+    let falls = if way.by_tension == 0.0 { 0.0 } else { contact_path.law.slope(end, way.tension, m) };
+    let mut rows = ContactEquations { of_tension: [false, true], ..ContactEquations::default() };
     rows.residual = [e.s[to] - e.s[from] - way.material, e.t[to] - way.tension];
     let [lengths, tensions] = &mut rows.by;
-    lengths[3 * from] = start.stretch / track.law.stretch(e.t[from]) + way.material_by_tension * slope;
+    lengths[3 * from] = start.stretch / contact_path.law.stretch(e.t[from]) + way.material_by_tension * slope;
     lengths[3 * from + 1] = -1.0;
     lengths[3 * from + 2] = -way.material_by_tension;
-    lengths[3 * to] = -end.stretch / track.law.stretch(way.tension);
+    lengths[3 * to] = -end.stretch / contact_path.law.stretch(way.tension);
     lengths[3 * to + 1] = 1.0;
     tensions[3 * from] = way.by_tension * slope;
     tensions[3 * from + 2] = -way.by_tension;
@@ -180,11 +195,16 @@ fn drawn(track: &Track<'_>, e: &Ends, spots: &[Place; 2], m: f64) -> Rows {
     rows
 }
 
-fn holding(track: &Track<'_>, e: &Ends, spots: &[Place; 2], fronts: &[Front; 2]) -> Rows {
-    let law = &track.law;
-    let mut out = Rows::default();
+fn holding(
+    contact_path: &ContactPath<'_>,
+    e: &Ends,
+    end_points: &[BoundaryPoint; 2],
+    fronts: &[SlipFront; 2],
+) -> ContactEquations {
+    let law = &contact_path.law;
+    let mut out = ContactEquations::default();
     for k in 0..2 {
-        let (f, place) = (&fronts[k], &spots[k]);
+        let (f, place) = (&fronts[k], &end_points[k]);
         out.residual[k] = e.s[k] + f.way.material - f.old;
         let slope = law.slope(place, e.t[k], f.mobilised);
         let by_t = f.way.material_by_tension;
@@ -198,17 +218,17 @@ fn holding(track: &Track<'_>, e: &Ends, spots: &[Place; 2], fronts: &[Front; 2])
 /// Terms added where the fronts meet: the meeting point moves with both tensions, and the old
 /// tension there differs from the new one.
 fn meeting(
-    out: &mut Rows,
-    track: &Track<'_>,
+    out: &mut ContactEquations,
+    contact_path: &ContactPath<'_>,
     history: &TensionProfile,
     e: &Ends,
-    spots: &[Place; 2],
-    fronts: &[Front; 2],
+    end_points: &[BoundaryPoint; 2],
+    fronts: &[SlipFront; 2],
 ) {
-    let law = &track.law;
-    let place = track.place(fronts[0].coordinate);
+    let law = &contact_path.law;
+    let place = contact_path.place(fronts[0].coordinate);
     let t = fronts[0].way.tension;
-    let old = history.at(track, fronts[0].coordinate).0;
+    let old = history.at(contact_path, fronts[0].coordinate).0;
     let gain = place.stretch * (1.0 / law.stretch(t) - 1.0 / law.stretch(old));
     let closing = law.slope(&place, t, fronts[0].mobilised) - law.slope(&place, t, fronts[1].mobilised);
     if closing == 0.0 {
@@ -217,7 +237,7 @@ fn meeting(
     for k in 0..2 {
         let sign = if k == 0 { -1.0 } else { 1.0 };
         let moved = gain * sign * fronts[k].way.by_tension / closing;
-        let slope = law.slope(&spots[k], e.t[k], fronts[k].mobilised);
+        let slope = law.slope(&end_points[k], e.t[k], fronts[k].mobilised);
         for row in &mut out.by {
             row[3 * k + 2] += moved;
             row[3 * k] -= moved * slope;
@@ -231,48 +251,51 @@ fn meeting(
 /// `held`: where it sticks; `patience`: how many times rounding that is; 1 while it costs nothing
 /// to change.
 pub(in crate::model::spans) fn next_mode(
-    track: &Track<'_>,
+    contact_path: &ContactPath<'_>,
     history: &TensionProfile,
     e: &Ends,
-    held: Option<Held>,
+    held: Option<StickZone>,
     mode: Mode,
     pinned: [bool; 2],
     patience: f64,
 ) -> Mode {
-    let friction = track.friction;
+    let friction = contact_path.friction;
     let (cone, stuck) = (CONE_ROUNDING * patience, STICK_ROUNDING * patience);
     if friction <= 0.0 || e.p[1] < e.p[0] {
-        return if friction <= 0.0 { Mode::Slide(0.0) } else { mode };
+        return if friction <= 0.0 { Mode::Slip(0.0) } else { mode };
     }
     match mode {
-        Mode::Hold => match held.unwrap_or_else(|| history.hold(track, e)) {
-            Held::Beyond(m, _) => {
+        Mode::Stick => match held.unwrap_or_else(|| history.hold(contact_path, e)) {
+            StickZone::Beyond(m, _) => {
                 // Rounding at the edge of the cone is not sliding.
-                let reached = track.slide(e.p[0], e.p[1], e.t[0], m).tension;
-                if (e.t[1] - reached).abs() > cone * e.t[1].abs() { Mode::Slide(m) } else { mode }
+                let reached = contact_path.slide(e.p[0], e.p[1], e.t[0], m).tension;
+                if (e.t[1] - reached).abs() > cone * e.t[1].abs() { Mode::Slip(m) } else { mode }
             }
             _ => mode,
         },
-        Mode::Slide(m) => {
+        Mode::Slip(m) => {
             for side in (0..2).filter(|&side| pinned[side]) {
-                let (old_t, old_s) = history.at(track, e.p[side]);
+                let (old_t, old_s) = history.at(contact_path, e.p[side]);
                 if (e.s[side] - old_s).abs() <= END_MOVE_TOLERANCE * (e.s[0].abs() + e.s[1].abs()) {
                     // A point that does not move is drawn the more the more the rest slides away
                     // from it.
                     let drawn = (e.t[side] - old_t) * m * if side == 0 { 1.0 } else { -1.0 };
                     let rounding = cone * friction * larger(e.t[0].abs(), e.t[1].abs());
-                    return if drawn < -rounding { Mode::Hold } else { mode };
+                    return if drawn < -rounding { Mode::Stick } else { mode };
                 }
             }
             // With m = +μ material goes on along p, so there is less of it than was, s < s_old, at
             // every p. The slip is least where the tension is what it was: before it the one
             // stretch is the greater, after it the other.
-            let (old, _) = history.at(track, e.p[0]);
-            let least =
-                if (old - e.t[0]) * m > 0.0 { history.front(track, e.p[0], e.t[0], e.p[1]).coordinate } else { e.p[0] };
-            let s = e.s[0] + track.slide(e.p[0], least, e.t[0], m).material;
-            let slid = s - history.at(track, least).1;
-            if m * slid > 0.0 && slid.abs() > stuck * (s.abs() + e.s[1].abs()) { Mode::Hold } else { mode }
+            let (old, _) = history.at(contact_path, e.p[0]);
+            let least = if (old - e.t[0]) * m > 0.0 {
+                history.front(contact_path, e.p[0], e.t[0], e.p[1]).coordinate
+            } else {
+                e.p[0]
+            };
+            let s = e.s[0] + contact_path.slide(e.p[0], least, e.t[0], m).material;
+            let slid = s - history.at(contact_path, least).1;
+            if m * slid > 0.0 && slid.abs() > stuck * (s.abs() + e.s[1].abs()) { Mode::Stick } else { mode }
         }
     }
 }

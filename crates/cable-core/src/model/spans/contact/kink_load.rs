@@ -6,8 +6,8 @@
 //! rest on either edge, joined to the load.
 
 use crate::math::{Vec2, larger};
-use crate::model::spans::boundary::friction_memory::{Knot, Mode, TensionProfile};
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Kink, RestingLoad};
+use crate::model::spans::boundary::friction_memory::{Breakpoint, Mode, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Contact, Kink, RestingLoad, SolveContext};
 use crate::model::spans::contact::load_balance::{LoadBalance, load_balance};
 use crate::model::spans::failure::Failure;
 
@@ -19,55 +19,62 @@ const CONE_ROUNDING: f64 = 1e-12;
 const GIVE_WAY_FRACTION: f64 = 1e-6;
 
 /// The piece beyond the kink at an end of a contact's chain, and p of the kink.
-fn beyond(course: &Course, c: &Contact, kink: Kink) -> Option<(i64, f64)> {
-    let curve = &course.curves[c.curve];
+fn beyond(context: &SolveContext, c: &Contact, kink: Kink) -> Option<(i64, f64)> {
+    let curve = &context.curves[c.curve];
     let p = if kink == Kink::Back { curve.origin(c.chain_range.first) } else { curve.end(c.chain_range.last) };
     curve.beyond_kink(c.chain_range, kink.side()).map(|i| (i, p))
 }
 
 /// Direction and normal of the other edge where it begins.
-fn other(course: &Course, c: &Contact, kink: Kink) -> Option<(Vec2, Vec2)> {
-    let curve = &course.curves[c.curve];
-    let (i, _) = beyond(course, c, kink)?;
+fn other(context: &SolveContext, c: &Contact, kink: Kink) -> Option<(Vec2, Vec2)> {
+    let curve = &context.curves[c.curve];
+    let (i, _) = beyond(context, c, kink)?;
     let place = curve.place_on(i, if kink == Kink::Ahead { 0.0 } else { curve.piece(i).extent });
     Some((place.tangent, place.normal))
 }
 
 /// The way V pushes the load out of its kink: away along its own edge, or on along the other
 /// (`true`).
-fn leaves(course: &Course, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) -> Option<bool> {
-    let out = |along: f64, press: f64| along > course.friction(c) * larger(press, 0.0) + room * f.size;
+fn leaves(context: &SolveContext, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) -> Option<bool> {
+    let out = |along: f64, press: f64| along > context.friction(c) * larger(press, 0.0) + room * f.size;
     if out(-kink.sign() * f.sum.dot(&f.tangent), -f.sum.dot(&f.normal)) {
         return Some(false);
     }
-    let (tangent, normal) = other(course, c, kink)?;
+    let (tangent, normal) = other(context, c, kink)?;
     out(kink.sign() * f.sum.dot(&tangent), -f.sum.dot(&normal)).then_some(true)
 }
 
 /// N of both edges together.
-pub(in crate::model::spans) fn press(course: &Course, c: &Contact, f: &LoadBalance) -> f64 {
-    match c.kink().and_then(|kink| other(course, c, kink)) {
+pub(in crate::model::spans) fn press(context: &SolveContext, c: &Contact, f: &LoadBalance) -> f64 {
+    match c.kink().and_then(|kink| other(context, c, kink)) {
         Some((_, normal)) => -f.sum.dot(&(f.normal + normal).normalize()),
         None => f.press(),
     }
 }
 
 /// True if the load keeps its kink, to a part of its forces.
-pub(in crate::model::spans) fn holds(course: &Course, c: &Contact, kink: Kink, f: &LoadBalance, room: f64) -> bool {
-    leaves(course, c, kink, f, room).is_none()
+pub(in crate::model::spans) fn holds(
+    context: &SolveContext,
+    c: &Contact,
+    kink: Kink,
+    f: &LoadBalance,
+    room: f64,
+) -> bool {
+    leaves(context, c, kink, f, room).is_none()
 }
 
 /// K: loads that have come into a kink stay there; whether there was one.
-pub(in crate::model::spans) fn enter(section: &mut CableSection, course: &Course) -> bool {
+pub(in crate::model::spans) fn enter(section: &mut CableSection, context: &SolveContext) -> bool {
     for c in section.contacts.iter_mut().filter(|c| c.load.is_some_and(|l| l.kink.is_none())) {
         for kink in [Kink::Back, Kink::Ahead] {
-            let Some((_, p)) = beyond(course, c, kink) else { continue };
+            let Some((_, p)) = beyond(context, c, kink) else { continue };
             if (c.ends.p[0] - p) * kink.sign() > CHAIN_END_ROUNDING {
-                let knot = Knot { coordinate: p, arc_length: c.ends.s[0], tension: c.ends.t[0], mobilised: 0.0 };
+                let breakpoint =
+                    Breakpoint { coordinate: p, arc_length: c.ends.s[0], tension: c.ends.t[0], mobilised: 0.0 };
                 c.ends.p = [p; 2];
-                c.history = TensionProfile::new(knot, knot);
+                c.history = TensionProfile::new(breakpoint, breakpoint);
                 c.load = Some(RestingLoad { kink: Some(kink) });
-                (c.mode, c.smooth) = (Mode::Hold, false);
+                (c.mode, c.smooth) = (Mode::Stick, false);
                 return true;
             }
         }
@@ -78,18 +85,18 @@ pub(in crate::model::spans) fn enter(section: &mut CableSection, course: &Course
 /// Lets the load that is contact j out of its kink; whether it left.
 pub(in crate::model::spans) fn leave_kink(
     section: &mut CableSection,
-    course: &Course,
+    context: &SolveContext,
     j: usize,
 ) -> Result<bool, Failure> {
-    let f = load_balance(section, course, j);
+    let f = load_balance(section, context, j);
     let c = &section.contacts[j];
     let Some(kink) = c.kink() else { return Ok(false) };
-    let Some(on) = leaves(course, c, kink, &f, CONE_ROUNDING) else { return Ok(false) };
-    let (curve, friction) = (&course.curves[c.curve], course.friction(c));
+    let Some(on) = leaves(context, c, kink, &f, CONE_ROUNDING) else { return Ok(false) };
+    let (curve, friction) = (&context.curves[c.curve], context.friction(c));
     let mut chain_range = c.chain_range;
     if on {
-        let found = beyond(course, c, kink).and_then(|(i, _)| curve.chain(i, course.law.load));
-        chain_range = found.ok_or(Failure::LoadLies { s: c.ends.s[0] })?.1;
+        let found = beyond(context, c, kink).and_then(|(i, _)| curve.chain(i, context.law.load));
+        chain_range = found.ok_or(Failure::LoadInContact { s: c.ends.s[0] })?.1;
     }
     let p = match (kink, on) {
         (Kink::Ahead, true) => curve.origin(chain_range.first),
@@ -97,19 +104,19 @@ pub(in crate::model::spans) fn leave_kink(
         _ => c.ends.p[0],
     };
     let c = &mut section.contacts[j];
-    let knot = Knot { coordinate: p, arc_length: c.ends.s[0], tension: c.ends.t[0], mobilised: 0.0 };
-    (c.chain_range, c.ends.p, c.history) = (chain_range, [p; 2], TensionProfile::new(knot, knot));
+    let breakpoint = Breakpoint { coordinate: p, arc_length: c.ends.s[0], tension: c.ends.t[0], mobilised: 0.0 };
+    (c.chain_range, c.ends.p, c.history) = (chain_range, [p; 2], TensionProfile::new(breakpoint, breakpoint));
     c.load = Some(RestingLoad::default());
-    c.mode = Mode::Slide(friction * if on { kink.sign() } else { -kink.sign() });
+    c.mode = Mode::Slip(friction * if on { kink.sign() } else { -kink.sign() });
     for side in 0..2 {
-        part(section, course, j, side);
+        part(section, context, j, side);
     }
     Ok(true)
 }
 
 /// Separates by a span a contact that is joined to the load that is contact j but lies on another
 /// chain.
-fn part(section: &mut CableSection, course: &Course, j: usize, side: usize) {
+fn part(section: &mut CableSection, context: &SolveContext, j: usize, side: usize) {
     if !section.is_joined(j, side) {
         return;
     }
@@ -119,7 +126,7 @@ fn part(section: &mut CableSection, course: &Course, j: usize, side: usize) {
     }
     section.contacts[if side == 0 { i } else { j }].next.part();
     give_way(section, i, 1 - side);
-    section.resolve_span(course, j + side);
+    section.resolve_span(context, j + side);
 }
 
 /// An end of contact i gives way by a little, for a span to begin there.
@@ -133,12 +140,12 @@ pub(in crate::model::spans) fn give_way(section: &mut CableSection, i: usize, en
 }
 
 /// True if contact `c` lies on the chain beyond the kink that a load is in, on that side.
-pub(in crate::model::spans) fn follows(course: &Course, load: &Contact, c: &Contact, side: usize) -> bool {
+pub(in crate::model::spans) fn follows(context: &SolveContext, load: &Contact, c: &Contact, side: usize) -> bool {
     load.kink().is_some_and(|kink| {
         kink.side() == side
             && c.curve == load.curve
-            && beyond(course, load, kink).is_some_and(|(i, p)| {
-                let curve = &course.curves[c.curve];
+            && beyond(context, load, kink).is_some_and(|(i, p)| {
+                let curve = &context.curves[c.curve];
                 let (first, at) = match kink {
                     Kink::Ahead => (c.chain_range.first, curve.origin(c.chain_range.first)),
                     Kink::Back => (c.chain_range.last, curve.end(c.chain_range.last)),

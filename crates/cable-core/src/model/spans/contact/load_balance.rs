@@ -1,7 +1,7 @@
 //! The forces on a dead load that lies on a boundary, see `point_load`.
 
 use crate::math::{Vec2, larger};
-use crate::model::spans::cable_section::{CableSection, Course, Tie};
+use crate::model::spans::cable_section::{CableSection, EndCondition, SolveContext};
 
 /// Forces on a load.
 #[derive(Clone, Copy, Debug)]
@@ -23,13 +23,13 @@ impl LoadBalance {
 }
 
 /// Forces on the load that is contact j.
-pub(in crate::model::spans) fn load_balance(section: &CableSection, course: &Course, j: usize) -> LoadBalance {
+pub(in crate::model::spans) fn load_balance(section: &CableSection, context: &SolveContext, j: usize) -> LoadBalance {
     let c = &section.contacts[j];
-    let place = course.track(c).place(c.ends.p[0]);
-    let own = load(section, course, j);
+    let place = context.contact_path(c).place(c.ends.p[0]);
+    let own = load(section, context, j);
     let (mut fixed, mut along, mut size) = (own, 0.0, own.norm());
     for (side, sign) in [(0, -1.0), (1, 1.0)] {
-        if let Some(force) = section.force_at_contact(course, j, side) {
+        if let Some(force) = section.force_at_contact(context, j, side) {
             fixed += force * sign;
             size = larger(size, force.norm());
         } else if section.is_joined(j, side) {
@@ -38,7 +38,7 @@ pub(in crate::model::spans) fn load_balance(section: &CableSection, course: &Cou
             if beside.chain_range == c.chain_range {
                 along += tension * sign;
             } else {
-                fixed += course.track(beside).place(beside.ends.p[1 - side]).tangent * (tension * sign);
+                fixed += context.contact_path(beside).place(beside.ends.p[1 - side]).tangent * (tension * sign);
             }
         }
     }
@@ -46,12 +46,12 @@ pub(in crate::model::spans) fn load_balance(section: &CableSection, course: &Cou
 }
 
 /// P of the load that is contact j, N.
-fn load(section: &CableSection, course: &Course, j: usize) -> Vec2 {
+fn load(section: &CableSection, context: &SolveContext, j: usize) -> Vec2 {
     let s = section.contacts[j].ends.s[0];
     for (side, end) in [(0, 0), (1, section.contacts.len() - 1)] {
-        if let (true, Tie::Loose(force)) = (j == end, section.ties[side]) {
+        if let (true, EndCondition::Loose(force)) = (j == end, section.end_conditions[side]) {
             return force;
         }
     }
-    course.load_at(s)
+    context.load_at(s)
 }

@@ -3,8 +3,8 @@
 
 use crate::contact::{Gap, World};
 use crate::math::{Vec2, larger, perp};
-use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, RestingLoad, Tie};
+use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, RestingLoad, SolveContext};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::failure::Failure;
 
@@ -24,15 +24,15 @@ pub(in crate::model::spans) struct Landing {
 /// The deepest point of span k inside an obstacle.
 pub(in crate::model::spans) fn find(
     section: &CableSection,
-    course: &Course,
+    context: &SolveContext,
     world: &World,
     k: usize,
     deep: f64,
 ) -> Option<Landing> {
     let hangs = [k == 0, k == section.contacts.len()];
     let (from, to) = section.material(k);
-    let inner = course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to);
-    let tip = |side: usize| hangs[side] && matches!(section.ties[side], Tie::Hangs(_));
+    let inner = context.loads.iter().any(|l| l.arc_length > from && l.arc_length < to);
+    let tip = |side: usize| hangs[side] && matches!(section.end_conditions[side], EndCondition::Hangs(_));
     if !section.has_span(k) || !(inner || tip(0) || tip(1)) {
         return None;
     }
@@ -45,7 +45,7 @@ pub(in crate::model::spans) fn find(
         }
     };
     let mut before: Option<Vec2> = None;
-    section.shapes(course, k, |s0, at, shape| {
+    section.shapes(context, k, |s0, at, shape| {
         let (start, end) = (shape.start_force(), shape.end_force());
         match before.take() {
             Some(force) => look(s0, at, force / force.norm() + start / start.norm(), None, &mut worst),
@@ -63,40 +63,41 @@ pub(in crate::model::spans) fn find(
 /// Lays down what has landed of span k.
 pub(in crate::model::spans) fn touch(
     section: &mut CableSection,
-    course: &Course,
+    context: &SolveContext,
     k: usize,
     l: &Landing,
 ) -> Result<(), Failure> {
     let impossible = Failure::ContactImpossible { s: l.arc_length, at: l.at };
-    let drawn = match l.tip.map(|side| section.ties[side]) {
-        Some(Tie::Hangs(force)) => force,
+    let drawn = match l.tip.map(|side| section.end_conditions[side]) {
+        Some(EndCondition::Hangs(force)) => force,
         _ => Vec2::zeros(),
     };
     let pressed = l.tip.is_none() || drawn.dot(&l.gap.normal) < -LIFT_FRACTION * drawn.norm();
     // An end that nothing presses down slides on with its load as it lies down, or comes to lie in
     // a heap.
-    let load = course.law.load;
+    let load = context.law.load;
     let down = load - l.gap.normal * load.dot(&l.gap.normal);
     let along = if pressed { l.along } else { down * if l.tip == Some(0) { -1.0 } else { 1.0 } };
     let index = 2 * l.body + usize::from(l.gap.normal.dot(&perp(along)) < 0.0);
-    let Some(curve) = course.curves.get(index) else { return Err(impossible) };
+    let Some(curve) = context.curves.get(index) else { return Err(impossible) };
     // In a kink there is nothing but its edges.
     let kink = || [1, 3].into_iter().find_map(|back| curve.piece_of(l.gap.feature.checked_sub(back)?, l.at));
     let found = curve.piece_of(l.gap.feature, l.at).or_else(kink).and_then(|i| curve.chain(i, load));
     let Some((i, chain_range)) = found else { return Err(impossible) };
     let p = curve.project(i, l.at);
-    let tension = section.force(course, k, l.arc_length).norm();
-    let knot = |p: f64, s: f64, tension: f64| Knot { coordinate: p, arc_length: s, tension, mobilised: 0.0 };
+    let tension = section.force(context, k, l.arc_length).norm();
+    let breakpoint =
+        |p: f64, s: f64, tension: f64| Breakpoint { coordinate: p, arc_length: s, tension, mobilised: 0.0 };
     let mut c = Contact {
         curve: index,
         chain_range,
         ends: Ends { p: [p; 2], s: [l.arc_length, l.arc_length.next_up()], t: [tension; 2] },
-        mode: Mode::Slide(0.0),
+        mode: Mode::Slip(0.0),
         held: None,
-        history: TensionProfile::new(knot(p, l.arc_length, tension), knot(p, l.arc_length, tension)),
+        history: TensionProfile::new(breakpoint(p, l.arc_length, tension), breakpoint(p, l.arc_length, tension)),
         wheel: None,
-        flips: 0,
-        next: Next::Span,
+        mode_changes: 0,
+        next: Connection::Span,
         load: Some(RestingLoad::default()),
         smooth: true,
     };
@@ -124,12 +125,12 @@ pub(in crate::model::spans) fn touch(
         c.ends.p[side] += sign * below;
         c.ends.s[inner] -= sign * below;
         (c.ends.t[side], c.ends.t[inner]) = (0.0, tension);
-        c.mode = Mode::Slide(sign * curve.friction);
+        c.mode = Mode::Slip(sign * curve.friction);
         let e = c.ends;
-        c.history = TensionProfile::new(knot(e.p[0], e.s[0], e.t[0]), knot(e.p[1], e.s[1], e.t[1]));
-        section.forces[k] = place.tangent * tension + course.load_between(section.from, e.s[inner]);
+        c.history = TensionProfile::new(breakpoint(e.p[0], e.s[0], e.t[0]), breakpoint(e.p[1], e.s[1], e.t[1]));
+        section.forces[k] = place.tangent * tension + context.load_between(section.from, e.s[inner]);
     }
-    section.ties[side] = Tie::Loose(drawn);
+    section.end_conditions[side] = EndCondition::Loose(drawn);
     section.contacts.insert(k, c);
     section.forces.insert(k + side, Vec2::zeros());
     Ok(())

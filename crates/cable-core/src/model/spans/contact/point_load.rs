@@ -17,9 +17,9 @@
 use crate::catenary::PointForce;
 use crate::error::EquilibriumFault;
 use crate::math::{Vec2, larger, smaller};
-use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, RestingLoad, Tie};
+use crate::model::spans::boundary::capstan::ContactPath;
+use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, RestingLoad, SolveContext};
 use crate::model::spans::contact::kink_load;
 use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::failure::Failure;
@@ -36,41 +36,46 @@ pub(in crate::model::spans) const LIFT_FRACTION: f64 = 1e-9;
 const BALANCE_TOLERANCE: f64 = 1e-7;
 
 /// The mode that the load that is contact j asks for.
-pub(in crate::model::spans) fn next_mode(section: &CableSection, course: &Course, j: usize, patience: f64) -> Mode {
+pub(in crate::model::spans) fn next_mode(
+    section: &CableSection,
+    context: &SolveContext,
+    j: usize,
+    patience: f64,
+) -> Mode {
     let c = &section.contacts[j];
-    let friction = course.friction(c);
+    let friction = context.friction(c);
     if c.kink().is_some() {
-        return Mode::Hold;
+        return Mode::Stick;
     }
     if friction <= 0.0 {
-        return Mode::Slide(0.0);
+        return Mode::Slip(0.0);
     }
-    let load_balance = load_balance(section, course, j);
+    let load_balance = load_balance(section, context, j);
     match c.mode {
-        Mode::Hold => {
+        Mode::Stick => {
             let (along, press) = (load_balance.sum.dot(&load_balance.tangent), larger(load_balance.press(), 0.0));
             let beyond = along.abs() > friction * press + CONE_ROUNDING * patience * load_balance.size;
-            if beyond { Mode::Slide(friction * along.signum()) } else { Mode::Hold }
+            if beyond { Mode::Slip(friction * along.signum()) } else { Mode::Stick }
         }
-        Mode::Slide(m) => {
+        Mode::Slip(m) => {
             let moved = c.ends.p[0] - held_at(c);
             let back = m * moved < 0.0 && moved.abs() > MATERIAL_ROUNDING * patience * c.ends.p[0].abs();
-            if m == 0.0 || back { Mode::Hold } else { c.mode }
+            if m == 0.0 || back { Mode::Stick } else { c.mode }
         }
     }
 }
 
 /// The friction of what came down in a step that is not remembered yet, of the force there: loads
 /// have had none, and cable rubs as if it had come down where it was found.
-pub(in crate::model::spans) fn fresh(section: &CableSection, course: &Course) -> f64 {
+pub(in crate::model::spans) fn unremembered_friction(section: &CableSection, context: &SolveContext) -> f64 {
     let missing = |j: usize| {
         let c = &section.contacts[j];
         if c.is_load() && c.smooth {
-            let f = load_balance(section, course, j);
-            return course.curves[c.curve].friction * larger(f.press(), 0.0) / larger(f.size, f64::MIN_POSITIVE);
+            let f = load_balance(section, context, j);
+            return context.curves[c.curve].friction * larger(f.press(), 0.0) / larger(f.size, f64::MIN_POSITIVE);
         }
         let [t1, t2] = c.ends.t;
-        let new = !c.is_load() && c.wheel.is_none() && c.history.knots().len() == 1 && c.ends.p[1] > c.ends.p[0];
+        let new = !c.is_load() && c.wheel.is_none() && c.history.breakpoints().len() == 1 && c.ends.p[1] > c.ends.p[0];
         if new { (t2 - t1).abs() / larger(larger(t1, t2), f64::MIN_POSITIVE) } else { 0.0 }
     };
     (0..section.contacts.len()).map(missing).fold(0.0, larger)
@@ -78,17 +83,17 @@ pub(in crate::model::spans) fn fresh(section: &CableSection, course: &Course) ->
 
 /// True if all of a section is about to slide `way` (1: towards its end, −1: towards its start): at
 /// each contact the tensions are those of sliding, but for this part of them.
-pub(in crate::model::spans) fn mobilised(section: &CableSection, course: &Course, way: f64, near: f64) -> bool {
+pub(in crate::model::spans) fn mobilised(section: &CableSection, context: &SolveContext, way: f64, near: f64) -> bool {
     let slides = |(j, c): (usize, &Contact)| {
-        let m = way * course.friction(c);
+        let m = way * context.friction(c);
         if c.is_load() {
-            let load_balance = load_balance(section, course, j);
+            let load_balance = load_balance(section, context, j);
             return load_balance.sum.dot(&(load_balance.tangent + load_balance.normal * m)).abs()
                 <= near * load_balance.size;
         }
         let [t1, t2] = c.ends.t;
-        let reached = course.track(c).slide(c.ends.p[0], c.ends.p[1], t1, m).tension;
-        let laid = course.law.load.norm() * (c.ends.s[1] - c.ends.s[0]);
+        let reached = context.contact_path(c).slide(c.ends.p[0], c.ends.p[1], t1, m).tension;
+        let laid = context.law.load.norm() * (c.ends.s[1] - c.ends.s[0]);
         (t2 - reached).abs() <= near * larger(larger(t1.abs(), t2.abs()), laid)
     };
     !section.contacts.is_empty() && section.contacts.iter().enumerate().all(slides)
@@ -96,24 +101,27 @@ pub(in crate::model::spans) fn mobilised(section: &CableSection, course: &Course
 
 /// The place of a load in the state before, p.
 pub(in crate::model::spans) fn held_at(c: &Contact) -> f64 {
-    c.history.knots().first().map_or(c.ends.p[0], |k| k.coordinate)
+    c.history.breakpoints().first().map_or(c.ends.p[0], |k| k.coordinate)
 }
 
 /// Checks the load that is contact j against its laws.
-pub(in crate::model::spans) fn verify(section: &CableSection, course: &Course, j: usize) -> Result<(), Failure> {
+pub(in crate::model::spans) fn verify(section: &CableSection, context: &SolveContext, j: usize) -> Result<(), Failure> {
     let c = &section.contacts[j];
-    let f = load_balance(section, course, j);
-    let unsound =
-        |what: EquilibriumFault| Failure::Unsound { what, s: c.ends.s[0], at: course.track(c).place(c.ends.p[0]).at };
+    let f = load_balance(section, context, j);
+    let unsound = |what: EquilibriumFault| Failure::Unsound {
+        what,
+        s: c.ends.s[0],
+        at: context.contact_path(c).place(c.ends.p[0]).at,
+    };
     let room = BALANCE_TOLERANCE * f.size;
-    if !(kink_load::press(course, c, &f) >= -room) {
+    if !(kink_load::press(context, c, &f) >= -room) {
         return Err(unsound(EquilibriumFault::LoadHeldDown));
     }
     if let Some(kink) = c.kink() {
-        if !kink_load::holds(course, c, kink, &f, BALANCE_TOLERANCE) {
+        if !kink_load::holds(context, c, kink, &f, BALANCE_TOLERANCE) {
             return Err(unsound(EquilibriumFault::LoadOutOfKink));
         }
-    } else if !(f.sum.dot(&f.tangent).abs() <= course.friction(c) * f.press() + room) {
+    } else if !(f.sum.dot(&f.tangent).abs() <= context.friction(c) * f.press() + room) {
         return Err(unsound(EquilibriumFault::LoadSlides));
     }
     for side in (0..2).filter(|&side| section.is_joined(j, side)) {
@@ -127,18 +135,18 @@ pub(in crate::model::spans) fn verify(section: &CableSection, course: &Course, j
 
 /// L: loads that lift are let go, those within a contact are set down there, ends that are pressed
 /// down rub, and what lies on one chain beside a load is joined to it; whether there was any.
-pub(in crate::model::spans) fn settle(section: &mut CableSection, course: &Course) -> Result<bool, Failure> {
+pub(in crate::model::spans) fn settle(section: &mut CableSection, context: &SolveContext) -> Result<bool, Failure> {
     for j in 0..section.contacts.len() {
         if section.contacts[j].is_load() {
-            let f = load_balance(section, course, j);
-            if kink_load::press(course, &section.contacts[j], &f) < -CONE_ROUNDING * f.size {
-                lift(section, course, j);
+            let f = load_balance(section, context, j);
+            if kink_load::press(context, &section.contacts[j], &f) < -CONE_ROUNDING * f.size {
+                lift(section, context, j);
                 return Ok(true);
             }
-            if kink_load::leave_kink(section, course, j)? {
+            if kink_load::leave_kink(section, context, j)? {
                 return Ok(true);
             }
-        } else if set_down(section, course, j) || press_end(section, course, j) {
+        } else if set_down(section, context, j) || press_end(section, context, j) {
             return Ok(true);
         }
     }
@@ -146,7 +154,7 @@ pub(in crate::model::spans) fn settle(section: &mut CableSection, course: &Cours
 }
 
 /// Lets the load that is contact j go.
-fn lift(section: &mut CableSection, course: &Course, j: usize) {
+fn lift(section: &mut CableSection, context: &SolveContext, j: usize) {
     for side in 0..2 {
         if section.is_joined(j, side) {
             kink_load::give_way(section, j + 2 * side - 1, 1 - side);
@@ -154,42 +162,42 @@ fn lift(section: &mut CableSection, course: &Course, j: usize) {
     }
     let last = section.contacts.len() - 1;
     let before = j.checked_sub(1).is_some_and(|i| section.contacts[i].next.part());
-    let after = section.contacts[j].next == Next::Joined;
+    let after = section.contacts[j].next == Connection::Joined;
     for (side, end) in [(0, 0), (1, last)] {
-        if let (true, Tie::Loose(force)) = (j == end, section.ties[side]) {
+        if let (true, EndCondition::Loose(force)) = (j == end, section.end_conditions[side]) {
             let stays = if side == 0 { after } else { before };
             section.contacts.remove(j);
             section.forces.remove(j + usize::from((side == 1) != stays));
             if !stays {
-                section.ties[side] = Tie::Hangs(force);
+                section.end_conditions[side] = EndCondition::Hangs(force);
             }
-            section.resolve_span(course, if side == 0 { 0 } else { section.contacts.len() });
+            section.resolve_span(context, if side == 0 { 0 } else { section.contacts.len() });
             return;
         }
     }
     section.contacts.remove(j);
     section.forces.remove(j + usize::from(!before));
-    section.resolve_span(course, j);
+    section.resolve_span(context, j);
 }
 
 /// Joins loads to what lies on their chains beside them.
-pub(in crate::model::spans) fn join(section: &mut CableSection, course: &Course) -> Result<(), Failure> {
+pub(in crate::model::spans) fn join(section: &mut CableSection, context: &SolveContext) -> Result<(), Failure> {
     let mut j = 0;
     while j < section.contacts.len() {
-        while section.contacts[j].is_load() && join_one(section, course, j)? {}
+        while section.contacts[j].is_load() && join_one(section, context, j)? {}
         j += 1;
     }
     Ok(())
 }
 
 /// Joins one more contact beside the load that is contact j, and says whether there was one.
-fn join_one(section: &mut CableSection, course: &Course, j: usize) -> Result<bool, Failure> {
+fn join_one(section: &mut CableSection, context: &SolveContext, j: usize) -> Result<bool, Failure> {
     let load = section.contacts[j].clone();
     for side in 0..2 {
         let Some(i) = (j + 2 * side).checked_sub(1).filter(|&i| i < section.contacts.len()) else { continue };
         let c = &section.contacts[i];
         let same = c.curve == load.curve && c.chain_range == load.chain_range && c.wheel.is_none();
-        let here = same || kink_load::follows(course, &load, c, side);
+        let here = same || kink_load::follows(context, &load, c, side);
         if !here || section.is_joined(j, side) || section.in_pocket(j, side) {
             continue;
         }
@@ -198,16 +206,20 @@ fn join_one(section: &mut CableSection, course: &Course, j: usize) -> Result<boo
             // Cable between two loads of one chain lies, too.
             let [a, b] = [first, first + 1].map(|k| section.contacts[k].ends);
             if !same || !(b.p[0] > a.p[0]) {
-                return Err(Failure::LoadLies { s: load.ends.s[side] });
+                return Err(Failure::LoadInContact { s: load.ends.s[side] });
             }
-            let tension = section.force(course, k, a.s[1]).norm();
+            let tension = section.force(context, k, a.s[1]).norm();
             let ends = Ends { p: [a.p[0], b.p[0]], s: [a.s[1], b.s[0]], t: [tension; 2] };
-            let knot =
-                |side: usize| Knot { coordinate: ends.p[side], arc_length: ends.s[side], tension, mobilised: 0.0 };
-            let history = TensionProfile::new(knot(0), knot(1));
-            let mode = Mode::Slide(0.0);
-            let between = Contact { ends, history, mode, load: None, smooth: true, next: Next::Joined, ..load };
-            section.contacts[first].next = Next::Joined;
+            let breakpoint = |side: usize| Breakpoint {
+                coordinate: ends.p[side],
+                arc_length: ends.s[side],
+                tension,
+                mobilised: 0.0,
+            };
+            let history = TensionProfile::new(breakpoint(0), breakpoint(1));
+            let mode = Mode::Slip(0.0);
+            let between = Contact { ends, history, mode, load: None, smooth: true, next: Connection::Joined, ..load };
+            section.contacts[first].next = Connection::Joined;
             section.contacts.insert(first + 1, between);
             section.forces[k] = Vec2::new(tension, 0.0);
             section.forces.insert(k, Vec2::new(tension, 0.0));
@@ -217,7 +229,7 @@ fn join_one(section: &mut CableSection, course: &Course, j: usize) -> Result<boo
         let e = &mut section.contacts[i].ends;
         (e.p[1 - side], e.s[1 - side]) = (load.ends.p[0], load.ends.s[side]);
         section.forces[k] = Vec2::new(tension, 0.0);
-        section.contacts[first].next = Next::Joined;
+        section.contacts[first].next = Connection::Joined;
         return Ok(true);
     }
     Ok(false)
@@ -225,7 +237,7 @@ fn join_one(section: &mut CableSection, course: &Course, j: usize) -> Result<boo
 
 /// C: where Newton stalls an end of a contact may have come to a load: it ends there, whatever the
 /// load rests with. The load that is nearest to an end is set down; whether there was one.
-pub(in crate::model::spans) fn catch(section: &mut CableSection, course: &Course) -> bool {
+pub(in crate::model::spans) fn catch(section: &mut CableSection, context: &SolveContext) -> bool {
     let mut best: Option<(f64, usize, usize, f64)> = None;
     let is_contact = |s: f64| section.contacts.iter().any(|c| c.is_load() && c.ends.s[0] == s);
     for (j, c) in section.contacts.iter().enumerate() {
@@ -233,13 +245,13 @@ pub(in crate::model::spans) fn catch(section: &mut CableSection, course: &Course
             let [from, to] = [section.material(j + side).0, section.material(j + side).1];
             let inside = |l: &&PointForce| l.arc_length > section.from && l.arc_length < section.to;
             let near = |l: &&PointForce| l.force.norm() > 0.0 && inside(l) && !is_contact(l.arc_length);
-            for l in course.loads.iter().filter(near) {
+            for l in context.loads.iter().filter(near) {
                 let off = (l.arc_length - c.ends.s[side]).abs();
                 let beside = l.arc_length >= from && l.arc_length <= to;
                 let turned =
                     l.arc_length >= c.ends.s[1].min(c.ends.s[0]) && l.arc_length <= c.ends.s[0].max(c.ends.s[1]);
                 if (beside || turned)
-                    && off <= course.settings.changes.catch_distance_fraction * (section.to - section.from)
+                    && off <= context.settings.changes.catch_distance_fraction * (section.to - section.from)
                     && best.is_none_or(|b| off < b.0)
                 {
                     best = Some((off, j, side, l.arc_length));
@@ -250,7 +262,7 @@ pub(in crate::model::spans) fn catch(section: &mut CableSection, course: &Course
     let Some((_, j, side, s)) = best else { return false };
     let c = &section.contacts[j];
     let e = c.ends;
-    let p = walk(&course.track(c), e.p[side], (s - e.s[side]) * course.law.stretch(e.t[side]));
+    let p = walk(&context.contact_path(c), e.p[side], (s - e.s[side]) * context.law.stretch(e.t[side]));
     let load = lying(c, p, [s, s.next_up()], e.t[side], FrictionPast::None);
     let left = if side == 0 { e.p[1] - p } else { p - e.p[0] };
     if left <= 0.0 {
@@ -262,10 +274,10 @@ pub(in crate::model::spans) fn catch(section: &mut CableSection, course: &Course
     (c.ends.p[side], c.ends.s[side]) = (p, if side == 0 { s.next_up() } else { s });
     let joint = Vec2::new(e.t[side], 0.0);
     if side == 0 {
-        section.contacts.insert(j, Contact { next: Next::Joined, ..load });
+        section.contacts.insert(j, Contact { next: Connection::Joined, ..load });
         section.forces.insert(j + 1, joint);
     } else {
-        c.next = Next::Joined;
+        c.next = Connection::Joined;
         section.contacts.insert(j + 1, load);
         section.forces.insert(j + 1, joint);
     }
@@ -273,13 +285,16 @@ pub(in crate::model::spans) fn catch(section: &mut CableSection, course: &Course
 }
 
 /// So far (m, either way) along a boundary from p, to the end of its chain at most.
-fn walk(track: &Track<'_>, mut p: f64, way: f64) -> f64 {
-    let (first, last) = (track.curve.origin(track.chain_range.first), track.curve.end(track.chain_range.last));
+fn walk(contact_path: &ContactPath<'_>, mut p: f64, way: f64) -> f64 {
+    let (first, last) = (
+        contact_path.curve.origin(contact_path.chain_range.first),
+        contact_path.curve.end(contact_path.chain_range.last),
+    );
     let end = if way > 0.0 { last } else { first };
     let mut left = way.abs();
     while p != end && left > 0.0 {
-        let next = track.next_border(p, end);
-        let stretch = track.place(0.5 * (p + next)).stretch;
+        let next = contact_path.next_border(p, end);
+        let stretch = contact_path.place(0.5 * (p + next)).stretch;
         if !((next - p).abs() * stretch < left) {
             return p + left / stretch * way.signum();
         }
@@ -290,37 +305,38 @@ fn walk(track: &Track<'_>, mut p: f64, way: f64) -> f64 {
 }
 
 /// Sets a load within contact j down where it lies.
-fn set_down(section: &mut CableSection, course: &Course, j: usize) -> bool {
+fn set_down(section: &mut CableSection, context: &SolveContext, j: usize) -> bool {
     let c = &section.contacts[j];
     // A load at an end of the section draws that end.
     let [from, to] = [larger(c.ends.s[0], section.from), smaller(c.ends.s[1], section.to)];
-    let Some(s) = course.loads.iter().find(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0) else {
+    let Some(s) = context.loads.iter().find(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0)
+    else {
         return false;
     };
     let s = s.arc_length;
-    let track = course.track(c);
+    let contact_path = context.contact_path(c);
     let [p0, p1] = c.ends.p;
     let floor = TENSION_ROUNDING * (section.to - section.from);
     let q = crossing(p0, p1, floor, None, |p| {
-        let place = track.place(p);
-        let (tension, laid) = c.history.at(&track, p);
-        (s - laid, -place.stretch / track.law.stretch(tension))
+        let place = contact_path.place(p);
+        let (tension, laid) = c.history.at(&contact_path, p);
+        (s - laid, -place.stretch / contact_path.law.stretch(tension))
     });
-    let tension = c.history.at(&track, q).0;
-    let knots = c.history.knots();
+    let tension = c.history.at(&contact_path, q).0;
+    let breakpoints = c.history.breakpoints();
     // Cable that had been laid before stays; where it is only now coming to lie nothing has rubbed
     // yet.
-    let fresh =
-        c.smooth || !knots.first().zip(knots.last()).is_some_and(|(a, b)| q >= a.coordinate && q <= b.coordinate);
-    let (first, second) = c.history.split(&track, q);
+    let fresh = c.smooth
+        || !breakpoints.first().zip(breakpoints.last()).is_some_and(|(a, b)| q >= a.coordinate && q <= b.coordinate);
+    let (first, second) = c.history.split(&contact_path, q);
     let after = s.next_up();
     let mut load = lying(c, q, [s, after], tension, FrictionPast::of(fresh));
-    (load.next, load.smooth) = (Next::Joined, fresh);
+    (load.next, load.smooth) = (Connection::Joined, fresh);
     let mut rest = c.clone();
     (rest.ends.p[0], rest.ends.s[0], rest.ends.t[0], rest.history) = (q, after, tension, second);
     let c = &mut section.contacts[j];
     (c.ends.p[1], c.ends.s[1], c.ends.t[1], c.history) = (q, s, tension, first);
-    c.next = Next::Joined;
+    c.next = Connection::Joined;
     section.contacts.insert(j + 1, load);
     section.contacts.insert(j + 2, rest);
     for _ in 0..2 {
@@ -330,19 +346,19 @@ fn set_down(section: &mut CableSection, course: &Course, j: usize) -> bool {
 }
 
 /// An end that lies on contact j and is pressed down by what draws it rubs by itself.
-fn press_end(section: &mut CableSection, course: &Course, j: usize) -> bool {
+fn press_end(section: &mut CableSection, context: &SolveContext, j: usize) -> bool {
     for (side, end) in [(0, 0), (1, section.contacts.len() - 1)] {
-        let Tie::Loose(force) = section.ties[side] else { continue };
+        let EndCondition::Loose(force) = section.end_conditions[side] else { continue };
         let c = &section.contacts[j];
-        let normal = course.track(c).place(c.ends.p[side]).normal;
-        if j != end || course.friction(c) <= 0.0 || force.dot(&normal) >= -LIFT_FRACTION * force.norm() {
+        let normal = context.contact_path(c).place(c.ends.p[side]).normal;
+        if j != end || context.friction(c) <= 0.0 || force.dot(&normal) >= -LIFT_FRACTION * force.norm() {
             continue;
         }
         let (p, s, tension) = (c.ends.p[side], c.ends.s[side], c.ends.t[side]);
         let load = lying(c, p, [s; 2], tension, FrictionPast::of(c.smooth));
         let k = j + side;
         section.contacts.insert(k, load);
-        section.contacts[j].next = Next::Joined;
+        section.contacts[j].next = Connection::Joined;
         section.forces.insert(j + 1, Vec2::new(tension, 0.0));
         return true;
     }
@@ -369,14 +385,14 @@ fn lying(on: &Contact, p: f64, s: [f64; 2], tension: f64, past: FrictionPast) ->
     let fresh = past == FrictionPast::None;
     Contact {
         ends: Ends { p: [p; 2], s, t: [tension; 2] },
-        mode: if fresh { Mode::Slide(0.0) } else { Mode::Hold },
+        mode: if fresh { Mode::Slip(0.0) } else { Mode::Stick },
         held: None,
         history: TensionProfile::new(
-            Knot { coordinate: p, arc_length: s[0], tension, mobilised: 0.0 },
-            Knot { coordinate: p, arc_length: s[0], tension, mobilised: 0.0 },
+            Breakpoint { coordinate: p, arc_length: s[0], tension, mobilised: 0.0 },
+            Breakpoint { coordinate: p, arc_length: s[0], tension, mobilised: 0.0 },
         ),
-        flips: 0,
-        next: Next::Span,
+        mode_changes: 0,
+        next: Connection::Span,
         load: Some(RestingLoad::default()),
         smooth: fresh,
         ..on.clone()

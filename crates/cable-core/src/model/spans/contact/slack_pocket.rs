@@ -16,7 +16,7 @@
 //! x/tan(δ/2) long, and so e = x (2 − δ/tan(δ/2)), the tension being w x/tan(δ/2).
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Next};
+use crate::model::spans::cable_section::{CableSection, Connection, Contact, SolveContext};
 
 /// A pocket opens when material is short by this part of the section. Smaller: rounding opens it.
 /// Larger: the cable there is too short by as much.
@@ -28,12 +28,12 @@ const HEAP_CONE_ROUNDING: f64 = 1e-9;
 
 /// The places at which the ends of the contacts before and after span k would lie in a kink: p on
 /// both, the turn, rad.
-fn kink(section: &CableSection, course: &Course, k: usize) -> Option<([f64; 2], f64)> {
+fn kink(section: &CableSection, context: &SolveContext, k: usize) -> Option<([f64; 2], f64)> {
     let (a, b) = (section.contacts.get(k.checked_sub(1)?)?, section.contacts.get(k)?);
     if a.curve != b.curve || a.wheel.is_some() || b.wheel.is_some() || a.is_load() || b.is_load() {
         return None;
     }
-    let curve = &course.curves[a.curve];
+    let curve = &context.curves[a.curve];
     let p = [curve.end(a.chain_range.last), curve.origin(b.chain_range.first)];
     let (u, v) = (curve.place(p[0], a.chain_range), curve.place(p[1], b.chain_range));
     let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
@@ -42,12 +42,12 @@ fn kink(section: &CableSection, course: &Course, k: usize) -> Option<([f64; 2], 
 }
 
 /// Spans that may become pockets, those of the least tension first.
-pub(in crate::model::spans) fn candidates(section: &CableSection, course: &Course, out: &mut Vec<(f64, usize)>) {
+pub(in crate::model::spans) fn candidates(section: &CableSection, context: &SolveContext, out: &mut Vec<(f64, usize)>) {
     out.clear();
-    let most = course.settings.changes.pocket_tension_fraction * course.law.load.norm() * (section.to - section.from);
+    let most = context.settings.changes.pocket_tension_fraction * context.law.load.norm() * (section.to - section.from);
     for k in (0..section.spans()).filter(|&k| section.has_span(k)) {
-        let tension = section.force(course, k, section.material(k).0).norm();
-        if tension < most && kink(section, course, k).is_some() {
+        let tension = section.force(context, k, section.material(k).0).norm();
+        if tension < most && kink(section, context, k).is_some() {
             out.push((tension, k));
         }
     }
@@ -55,22 +55,22 @@ pub(in crate::model::spans) fn candidates(section: &CableSection, course: &Cours
 }
 
 /// Lays span k into its kink.
-pub(in crate::model::spans) fn fill(section: &mut CableSection, course: &Course, k: usize) {
-    let Some((p, _)) = kink(section, course, k) else { return };
-    let stretch = course.law.stretch(0.0);
+pub(in crate::model::spans) fn fill(section: &mut CableSection, context: &SolveContext, k: usize) {
+    let Some((p, _)) = kink(section, context, k) else { return };
+    let stretch = context.law.stretch(0.0);
     for (side, p) in p.into_iter().enumerate() {
         let c = &mut section.contacts[k - 1 + side];
         let end = 1 - side;
         c.ends.s[end] += (p - c.ends.p[end]) / stretch;
         (c.ends.p[end], c.ends.t[end]) = (p, 0.0);
     }
-    section.contacts[k - 1].next = Next::Pocket;
+    section.contacts[k - 1].next = Connection::Pocket;
     section.forces[k] = Vec2::zeros();
 }
 
 /// The force of an edge on the heap in a pocket.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) struct Borne {
+pub(in crate::model::spans) struct BearingContact {
     /// The contact whose edge it is.
     pub contact: usize,
     /// Normal of the edge, and its direction of growing arc length.
@@ -83,18 +83,22 @@ pub(in crate::model::spans) struct Borne {
 
 /// The edges that carry the heap between contacts k − 1 and k; None where nothing does, and it
 /// slides.
-pub(in crate::model::spans) fn heap(section: &CableSection, course: &Course, k: usize) -> Option<[Borne; 2]> {
+pub(in crate::model::spans) fn heap(
+    section: &CableSection,
+    context: &SolveContext,
+    k: usize,
+) -> Option<[BearingContact; 2]> {
     let (a, b) = (&section.contacts[k - 1], &section.contacts[k]);
     let edge = |c: &Contact, contact: usize, end: usize| {
-        let place = course.track(c).place(c.ends.p[end]);
-        Borne { contact, normal: place.normal, tangent: place.tangent, press: 0.0, friction: 0.0 }
+        let place = context.contact_path(c).place(c.ends.p[end]);
+        BearingContact { contact, normal: place.normal, tangent: place.tangent, press: 0.0, friction: 0.0 }
     };
     let mut borne = [edge(a, k - 1, 1), edge(b, k, 0)];
     // Material that rounding alone tells from none weighs nothing.
     if b.ends.s[0] <= a.ends.s[1] {
         return Some(borne);
     }
-    let held = -course.load_between(a.ends.s[1], b.ends.s[0]);
+    let held = -context.load_between(a.ends.s[1], b.ends.s[0]);
     let both = cross(borne[0].normal, borne[1].normal);
     let press = [cross(held, borne[1].normal) / both, cross(borne[0].normal, held) / both];
     if press.iter().all(|n| *n >= 0.0) {
@@ -104,29 +108,29 @@ pub(in crate::model::spans) fn heap(section: &CableSection, course: &Course, k: 
     let side = usize::from(!(press[1] < 0.0));
     let edge = &mut borne[side];
     (edge.press, edge.friction) = (held.dot(&edge.normal), held.dot(&edge.tangent));
-    let most = course.friction([a, b][side]) * edge.press + HEAP_CONE_ROUNDING * held.norm();
+    let most = context.friction([a, b][side]) * edge.press + HEAP_CONE_ROUNDING * held.norm();
     (edge.press >= 0.0 && edge.friction.abs() <= most).then_some(borne)
 }
 
 /// U: draws a span across the kink whose material is shortest.
-pub(in crate::model::spans) fn open(section: &mut CableSection, course: &Course) -> bool {
+pub(in crate::model::spans) fn open(section: &mut CableSection, context: &SolveContext) -> bool {
     let surplus = |k: usize| section.contacts[k].ends.s[0] - section.contacts[k - 1].ends.s[1];
-    let pockets = (1..section.contacts.len()).filter(|&k| section.contacts[k - 1].next == Next::Pocket);
+    let pockets = (1..section.contacts.len()).filter(|&k| section.contacts[k - 1].next == Connection::Pocket);
     let Some(k) = pockets.min_by(|&a, &b| surplus(a).total_cmp(&surplus(b))) else { return false };
     let short = -surplus(k);
     if !(short > POCKET_SHORTAGE_FRACTION * (section.to - section.from)) {
         return false;
     }
-    let Some((_, turn)) = kink(section, course, k) else { return false };
+    let Some((_, turn)) = kink(section, context, k) else { return false };
     let extent = |j: usize| section.contacts[j].ends.p[1] - section.contacts[j].ends.p[0];
     let half = (0.5 * turn).tan();
-    let (mut x, stretch) = (short / (2.0 - turn / half), course.law.stretch(0.0));
+    let (mut x, stretch) = (short / (2.0 - turn / half), context.law.stretch(0.0));
     for j in [k - 1, k] {
-        let most = course.settings.changes.kink_span_fraction * extent(j);
+        let most = context.settings.changes.kink_span_fraction * extent(j);
         x = if x < most { x } else { most };
     }
-    let normal = course.track(&section.contacts[k]).place(section.contacts[k].ends.p[0]).normal;
-    let tension = (course.law.load.dot(&normal)).abs() * x / half;
+    let normal = context.contact_path(&section.contacts[k]).place(section.contacts[k].ends.p[0]).normal;
+    let tension = (context.law.load.dot(&normal)).abs() * x / half;
     for side in 0..2 {
         let c = &mut section.contacts[k - 1 + side];
         let (end, sign) = (1 - side, if side == 0 { -1.0 } else { 1.0 });
@@ -134,8 +138,8 @@ pub(in crate::model::spans) fn open(section: &mut CableSection, course: &Course)
         c.ends.s[end] += sign * x / stretch;
         c.ends.t[end] = tension;
     }
-    section.contacts[k - 1].next = Next::Span;
-    if let Some(g) = section.solve_span(course, k) {
+    section.contacts[k - 1].next = Connection::Span;
+    if let Some(g) = section.solve_span(context, k) {
         section.forces[k] = g;
     }
     true

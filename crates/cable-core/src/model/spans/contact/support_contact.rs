@@ -2,29 +2,29 @@
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
-use crate::model::spans::cable_section::{CableSection, Course, Tie};
+use crate::model::spans::cable_section::{CableSection, EndCondition, SolveContext};
 
 /// Moves an end that is held to `at`, m.
-pub(in crate::model::spans) fn place(section: &mut CableSection, course: &Course, side: usize, at: Vec2) {
+pub(in crate::model::spans) fn place(section: &mut CableSection, context: &SolveContext, side: usize, at: Vec2) {
     let outer = if side == 0 { 0 } else { section.contacts.len().wrapping_sub(1) };
     let on = section.contacts.get(outer).filter(|c| c.wheel.is_none() && !c.is_load()).and_then(|c| {
-        let curve = course.track(c).curve;
+        let curve = context.contact_path(c).curve;
         curve.on_chain(c.chain_range, at, SUPPORT_CONTACT_DISTANCE_M)
     });
-    match (section.ties[side], on) {
-        (Tie::Lies(_), Some(p)) => {
-            section.ties[side] = Tie::Lies(p);
+    match (section.end_conditions[side], on) {
+        (EndCondition::Lies(_), Some(p)) => {
+            section.end_conditions[side] = EndCondition::Lies(p);
             let c = &mut section.contacts[outer];
             let gap = p - c.ends.p[side];
             c.ends.p[side] = p;
             if gap != 0.0 {
                 // The tension starts from what was at its place.
-                c.ends.t[side] = c.history.at(&course.track(c), p).0;
+                c.ends.t[side] = c.history.at(&context.contact_path(c), p).0;
             }
         }
-        (Tie::Lies(_), None) => lift(section, course, side, outer, at),
-        (Tie::Held(_), Some(p)) if beyond(section, outer, side, p) => lay_end_on(section, side, outer, p),
-        (Tie::Held(_), _) => section.ties[side] = Tie::Held(at),
+        (EndCondition::Lies(_), None) => lift(section, context, side, outer, at),
+        (EndCondition::Fixed(_), Some(p)) if beyond(section, outer, side, p) => lay_end_on(section, side, outer, p),
+        (EndCondition::Fixed(_), _) => section.end_conditions[side] = EndCondition::Fixed(at),
         _ => {}
     }
 }
@@ -37,7 +37,7 @@ fn beyond(section: &CableSection, j: usize, side: usize, p: f64) -> bool {
 
 /// Lays an end of the section on the boundary, which takes its span away.
 fn lay_end_on(section: &mut CableSection, side: usize, j: usize, p: f64) {
-    section.ties[side] = Tie::Lies(p);
+    section.end_conditions[side] = EndCondition::Lies(p);
     let s = if side == 0 { section.from } else { section.to };
     let e = &mut section.contacts[j].ends;
     (e.p[side], e.s[side]) = (p, s);
@@ -45,30 +45,30 @@ fn lay_end_on(section: &mut CableSection, side: usize, j: usize, p: f64) {
 
 /// An end that leaves the boundary: a span begins where a parabola of the height h and tension T
 /// there would, x = √(2Th/w_n).
-fn lift(section: &mut CableSection, course: &Course, side: usize, j: usize, at: Vec2) {
+fn lift(section: &mut CableSection, context: &SolveContext, side: usize, j: usize, at: Vec2) {
     let c = &mut section.contacts[j];
-    let track = course.track(c);
-    let curve = track.curve;
+    let contact_path = context.contact_path(c);
+    let curve = contact_path.curve;
     let i = curve.locate(c.ends.p[side], c.chain_range);
     let foot = curve.project(i, at);
-    let place = track.place(foot);
+    let place = contact_path.place(foot);
     let height = (at - place.at).dot(&place.normal).abs();
-    let press = -course.law.load.dot(&place.normal) / course.law.stretch(c.ends.t[side]);
+    let press = -context.law.load.dot(&place.normal) / context.law.stretch(c.ends.t[side]);
     let reach = if press > 0.0 { (2.0 * c.ends.t[side].abs() * height / press).sqrt() } else { 0.0 };
     let other = c.ends.p[1 - side];
     let sign = if side == 0 { 1.0 } else { -1.0 };
-    let least = (foot - other).abs() * (1.0 - course.settings.changes.lying_fraction);
+    let least = (foot - other).abs() * (1.0 - context.settings.changes.lying_fraction);
     let p = foot + sign * if reach < least { reach } else { least };
     let end = if side == 0 { section.from } else { section.to };
     // Of the material there is some must remain for the span.
-    let span = ((at - track.place(p).at).norm()) / course.law.stretch(c.ends.t[side]);
+    let span = ((at - contact_path.place(p).at).norm()) / context.law.stretch(c.ends.t[side]);
     let s = end + sign * span;
     let inner = c.ends.s[1 - side];
     let s = if (s - inner) * sign < 0.0 { s } else { 0.5 * (end + inner) };
     let t = c.ends.t[side];
     (c.ends.p[side], c.ends.s[side]) = (p, s);
-    let force = track.place(p).tangent * t;
+    let force = contact_path.place(p).tangent * t;
     let k = if side == 0 { 0 } else { section.forces.len() - 1 };
-    section.ties[side] = Tie::Held(at);
-    section.forces[k] = force + course.load_between(section.from, s);
+    section.end_conditions[side] = EndCondition::Fixed(at);
+    section.forces[k] = force + context.load_between(section.from, s);
 }

@@ -6,9 +6,9 @@
 //! directions and moves no material.
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::capstan::{Law, Track};
+use crate::model::spans::boundary::capstan::{CableLaw, ContactPath};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::boundary::friction_memory::{Ends, Held, Knot, Mode, TensionProfile};
+use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, StickZone, TensionProfile};
 use crate::model::spans::contact::equations;
 
 /// A wheel is one arc.
@@ -19,7 +19,7 @@ const SLIDING_CONE_TOLERANCE: f64 = 1e-7;
 
 /// Load (N/m), 1 + αΔT and EA (N) of the cable.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model) struct OnWheel {
+pub(in crate::model) struct CableProperties {
     pub load: Vec2,
     pub thermal: f64,
     pub stiffness: f64,
@@ -36,7 +36,7 @@ pub(in crate::model) struct WheelEnds {
 
 /// Two equations and their derivatives by (p₁, s₁, T₁, p₂, s₂, T₂).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in crate::model) struct WheelRows {
+pub(in crate::model) struct WheelEquations {
     pub residual: [f64; 2],
     pub by: [[f64; 6]; 2],
     /// True if a row is of tensions (N), not of material (m).
@@ -49,7 +49,7 @@ pub(in crate::model) struct WheelFriction {
     curve: Curve,
     history: TensionProfile,
     mode: Mode,
-    held: Option<Held>,
+    held: Option<StickZone>,
 }
 
 impl From<&WheelEnds> for Ends {
@@ -62,13 +62,13 @@ impl WheelFriction {
     /// A wheel of a radius (of the centre line, m) that the cable passes clockwise (`facing` +1) or
     /// the other way (−1).
     pub fn new(radius: f64, friction: f64, facing: f64) -> Self {
-        let mode = if friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) };
+        let mode = if friction > 0.0 { Mode::Stick } else { Mode::Slip(0.0) };
         Self { curve: Curve::wheel(radius, friction, facing), history: TensionProfile::default(), mode, held: None }
     }
 
-    fn track(&self, on: &OnWheel) -> Track<'_> {
-        let law = Law::new(on.load, on.thermal, on.stiffness);
-        Track {
+    fn contact_path(&self, on: &CableProperties) -> ContactPath<'_> {
+        let law = CableLaw::new(on.load, on.thermal, on.stiffness);
+        ContactPath {
             curve: &self.curve,
             chain_range: WHEEL_RANGE,
             law,
@@ -76,7 +76,7 @@ impl WheelFriction {
             drag: 0.0,
             floored: false,
             friction_of_loose: 0.0,
-            pivot: None,
+            cached_piece: None,
         }
     }
 
@@ -94,54 +94,55 @@ impl WheelFriction {
 
     /// Begins with what is known of the cable on it: angle, material (m) and tension (N) at points
     /// in order.
-    pub fn begin(&mut self, on: &OnWheel, points: &[[f64; 3]]) {
-        let knots: Vec<Knot> = points
+    pub fn begin(&mut self, on: &CableProperties, points: &[[f64; 3]]) {
+        let breakpoints: Vec<Breakpoint> = points
             .iter()
-            .map(|&[p, s, tension]| Knot { coordinate: p, arc_length: s, tension, mobilised: 0.0 })
+            .map(|&[p, s, tension]| Breakpoint { coordinate: p, arc_length: s, tension, mobilised: 0.0 })
             .collect();
         let friction = self.curve.friction;
-        self.history = TensionProfile::through(&self.track(on), &knots, 1.0);
+        self.history = TensionProfile::through(&self.contact_path(on), &breakpoints, 1.0);
         self.held = None;
-        if let (Some(a), Some(b), true) = (knots.first(), knots.last(), friction > 0.0)
+        if let (Some(a), Some(b), true) = (breakpoints.first(), breakpoints.last(), friction > 0.0)
             && b.coordinate > a.coordinate
         {
-            let reach = |m: f64| self.track(on).slide(a.coordinate, b.coordinate, a.tension, m).tension;
+            let reach = |m: f64| self.contact_path(on).slide(a.coordinate, b.coordinate, a.tension, m).tension;
             let full = |m: f64| {
                 (b.tension - reach(m)).abs() <= SLIDING_CONE_TOLERANCE * (reach(friction) - reach(-friction)).abs()
             };
-            self.mode = [friction, -friction].into_iter().find(|&m| full(m)).map_or(Mode::Hold, Mode::Slide);
+            self.mode = [friction, -friction].into_iter().find(|&m| full(m)).map_or(Mode::Stick, Mode::Slip);
         }
     }
 
     /// The equations at these ends.
-    pub fn rows(&mut self, on: &OnWheel, ends: &WheelEnds) -> WheelRows {
-        let (e, track) = (Ends::from(ends), self.track(on));
-        let spots = e.p.map(|p| track.place(p));
-        let (rows, held) = equations::rows(&track, &self.history, &e, &spots, self.mode, [false; 2]);
+    pub fn rows(&mut self, on: &CableProperties, ends: &WheelEnds) -> WheelEquations {
+        let (e, contact_path) = (Ends::from(ends), self.contact_path(on));
+        let end_points = e.p.map(|p| contact_path.place(p));
+        let (rows, held) = equations::rows(&contact_path, &self.history, &e, &end_points, self.mode, [false; 2]);
         self.held = held;
-        WheelRows { residual: rows.residual, by: rows.by, of_tension: rows.of_tension }
+        WheelEquations { residual: rows.residual, by: rows.by, of_tension: rows.of_tension }
     }
 
     /// Goes over to sliding or holding where the law asks for it at these ends; whether it did.
     /// `patience` is how many times rounding a violation must be.
-    pub fn change_mode(&mut self, on: &OnWheel, ends: &WheelEnds, patience: f64) -> bool {
+    pub fn change_mode(&mut self, on: &CableProperties, ends: &WheelEnds, patience: f64) -> bool {
         let e = Ends::from(ends);
-        let next = equations::next_mode(&self.track(on), &self.history, &e, None, self.mode, [false; 2], patience);
+        let next =
+            equations::next_mode(&self.contact_path(on), &self.history, &e, None, self.mode, [false; 2], patience);
         let changed = next != self.mode;
         self.mode = next;
         changed
     }
 
     /// Takes what came of a step as the new past.
-    pub fn commit(&mut self, on: &OnWheel, ends: &WheelEnds) {
+    pub fn commit(&mut self, on: &CableProperties, ends: &WheelEnds) {
         let e = Ends::from(ends);
         let mut history = std::mem::take(&mut self.history);
-        history.commit(&self.track(on), &e, self.mode, None, &mut TensionProfile::default());
+        history.commit(&self.contact_path(on), &e, self.mode, None, &mut TensionProfile::default());
         self.history = history;
     }
 
     /// Tension (N) and material (m) at an angle as they were last.
-    pub fn at(&self, on: &OnWheel, p: f64) -> (f64, f64) {
-        self.history.at(&self.track(on), p)
+    pub fn at(&self, on: &CableProperties, p: f64) -> (f64, f64) {
+        self.history.at(&self.contact_path(on), p)
     }
 }

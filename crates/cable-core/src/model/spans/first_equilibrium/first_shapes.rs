@@ -16,8 +16,8 @@
 //! - **Posts as polygons.** A cable that nothing but friction holds may pass between the points
 //!   that stand for a post: more points, for it alone ([`posts_seen_nearer`]).
 
-use crate::model::spans::boundary_conditions::Layout;
-use crate::model::spans::initial::shortest_path::{RINGS, Ring};
+use crate::model::spans::boundary_conditions::SectionLayout;
+use crate::model::spans::initial::shortest_path::{POST_POLYGONS, PostPolygon};
 use crate::model::spans::settings::ContinuationSettings;
 
 /// A first shape from which an equilibrium is sought.
@@ -27,7 +27,7 @@ pub(in crate::model::spans) struct FirstShape {
     pub(super) length: FirstLength,
     pub(super) slack: SlackCable,
     /// The points that stand for a post.
-    pub(super) posts: Ring,
+    pub(super) posts: PostPolygon,
 }
 
 /// The friction with which an equilibrium is sought.
@@ -66,7 +66,7 @@ pub(super) const ALONG_ROUTE: FirstShape = FirstShape {
     friction: FirstFriction::FromTheStart,
     length: FirstLength::Whole,
     slack: SlackCable::AlongRoute,
-    posts: RINGS[0],
+    posts: POST_POLYGONS[0],
 };
 
 /// The same cable, drawn taut.
@@ -88,14 +88,14 @@ pub(super) const FIRST_SHAPES: [FirstShape; 6] = [
 ];
 
 /// The first shapes that are tried after [`FIRST_SHAPES`] if nothing but friction holds a section.
-pub(super) fn posts_seen_nearer(layout: &Layout) -> impl Iterator<Item = FirstShape> {
+pub(super) fn posts_seen_nearer(layout: &SectionLayout) -> impl Iterator<Item = FirstShape> {
     shapes_with_friction(layout).into_iter().skip(1)
 }
 
 /// The first shapes with friction that can tell how much of it a cable needs.
-pub(in crate::model::spans) fn shapes_with_friction(layout: &Layout) -> Vec<FirstShape> {
+pub(in crate::model::spans) fn shapes_with_friction(layout: &SectionLayout) -> Vec<FirstShape> {
     let held_by_friction = layout.sections.iter().any(|s| s.supports.iter().all(Option::is_none));
-    let rings = if held_by_friction { &RINGS[..] } else { &RINGS[..1] };
+    let rings = if held_by_friction { &POST_POLYGONS[..] } else { &POST_POLYGONS[..1] };
     let shapes = rings.iter().map(|posts| FirstShape { posts: *posts, ..ALONG_ROUTE });
     shapes.chain(held_by_friction.then_some(TAUT)).collect()
 }

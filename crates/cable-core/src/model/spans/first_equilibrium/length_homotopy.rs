@@ -4,12 +4,12 @@
 use crate::math::Vec2;
 use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::boundary::loose::Loose;
-use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, SectionLayout};
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::first_equilibrium::first_shapes::{ALONG_ROUTE, FirstLength, FirstShape, SlackCable};
 use crate::model::spans::initial::{contacts, tension};
-use crate::model::spans::newton::Work;
+use crate::model::spans::newton::Workspace;
 use crate::model::spans::slack::{self, LooseShapes};
 
 impl CableEquilibrium {
@@ -17,55 +17,55 @@ impl CableEquilibrium {
     /// loose.
     pub(in crate::model::spans) fn lay_in_tension(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         goal: &BoundaryConditions,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
-        self.lay_along_route(layout, goal, FirstShape { slack: SlackCable::Nowhere, ..ALONG_ROUTE }, work)
+        self.lay_along_route(layout, goal, FirstShape { slack: SlackCable::Nowhere, ..ALONG_ROUTE }, workspace)
     }
 
     /// Lays the cable along its route and finds its equilibrium: with all of its length, or shrunk
     /// until it is taut and then let out again.
     pub(in crate::model::spans) fn lay_along_route(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         goal: &BoundaryConditions,
         shape: FirstShape,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
         let tuned = &layout.settings.continuation;
         let taut = shape.length.tension_weights(tuned);
         let mut begin = goal.clone();
-        layout.set_course(&mut self.course, &begin);
+        layout.set_context(&mut self.context, &begin);
         let routes = self.lay_sections(layout, &begin, shape)?;
         if let Some(taut) = taut {
             begin.thermal = self.shrunk_thermal(layout, goal, taut);
             begin.load *= tuned.first_load_fraction;
             begin.forces.iter_mut().for_each(|f| *f *= tuned.first_load_fraction);
-            layout.set_course(&mut self.course, &begin);
+            layout.set_context(&mut self.context, &begin);
             for (section, part) in self.sections.iter_mut().zip(&layout.sections) {
                 if part.supports.iter().all(Option::is_some) {
-                    tension::tighten(section, &self.course);
+                    tension::tighten(section, &self.context);
                 }
             }
         }
         self.instant = begin.clone();
-        let mut taken = self.step_from(layout, &begin, &routes, work)?;
+        let mut taken = self.step_from(layout, &begin, &routes, workspace)?;
         if self.end_smoothness() {
-            taken = taken.and(self.step(layout, &begin, work)?);
+            taken = taken.and(self.step(layout, &begin, workspace)?);
         }
         if taut.is_none() {
             return Ok(taken);
         }
         let heavy = BoundaryConditions { thermal: begin.thermal, ..goal.clone() };
-        taken = taken.and(self.travel(layout, &heavy, tuned.first_step, work)?);
-        Ok(taken.and(self.travel(layout, goal, tuned.first_step, work)?))
+        taken = taken.and(self.advance_load(layout, &heavy, tuned.first_step, workspace)?);
+        Ok(taken.and(self.advance_load(layout, goal, tuned.first_step, workspace)?))
     }
 
     /// Lays each section along its route; returns the routes, none for a section that lies loose.
     fn lay_sections(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         begin: &BoundaryConditions,
         shape: FirstShape,
     ) -> Result<Vec<Vec<Vec2>>, Failure> {
@@ -74,7 +74,7 @@ impl CableEquilibrium {
         let mut routes = Vec::new();
         for k in 0..layout.sections.len() {
             let loose = if may_lie_loose {
-                slack::loose_section(layout, k, &self.course, begin, LooseShapes::NoTension)
+                slack::loose_section(layout, k, &self.context, begin, LooseShapes::NoTension)
             } else {
                 None
             };
@@ -83,7 +83,7 @@ impl CableEquilibrium {
                 routes.push(Vec::new());
                 continue;
             }
-            let laid = contacts::section_along_route(layout, k, &self.course, begin, shape.posts);
+            let laid = contacts::section_along_route(layout, k, &self.context, begin, shape.posts);
             let no_way = Failure::ContactImpossible { s: layout.sections[k].material[0], at: begin.places[0] };
             let (section, route) = laid.ok_or(no_way)?;
             self.sections.push(section);
@@ -99,8 +99,8 @@ impl CableEquilibrium {
         for c in self.sections.iter_mut().flat_map(|s| &mut s.contacts).filter(|c| c.smooth) {
             c.smooth = false;
             met = true;
-            if self.course.friction(c) > 0.0 {
-                c.mode = Mode::Hold;
+            if self.context.friction(c) > 0.0 {
+                c.mode = Mode::Stick;
             }
         }
         met
@@ -108,13 +108,13 @@ impl CableEquilibrium {
 
     /// The factor on lengths with which a tension of so many weights draws the cable along its
     /// route.
-    fn shrunk_thermal(&self, layout: &Layout, goal: &BoundaryConditions, taut: f64) -> f64 {
+    fn shrunk_thermal(&self, layout: &SectionLayout, goal: &BoundaryConditions, taut: f64) -> f64 {
         let p = &layout.problem;
         let drawn: f64 = goal.forces.iter().map(|f| f.norm()).sum();
         let tension = taut * goal.load.norm() * p.length + drawn;
         let mut least = goal.thermal;
         for s in &self.sections {
-            let way = tension::taut_length(s, &self.course);
+            let way = tension::taut_length(s, &self.context);
             let taut = way / ((s.to - s.from) * (1.0 + tension / p.axial_stiffness));
             if taut < least && taut > 0.0 {
                 least = taut;

@@ -13,7 +13,7 @@ pub(super) use first_shapes::{FirstShape, shapes_with_friction};
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, Layout};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, SectionLayout};
 use crate::model::spans::cable_section::CableSection;
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::failure::Failure;
@@ -21,7 +21,7 @@ use crate::model::spans::first_equilibrium::first_shapes::{
     FIRST_SHAPES, FirstFriction, FirstLength, SlackCable, posts_seen_nearer,
 };
 use crate::model::spans::initial::from_solution;
-use crate::model::spans::newton::Work;
+use crate::model::spans::newton::Workspace;
 use crate::model::spans::slack::{self, LooseShapes};
 use crate::solution::Node;
 
@@ -55,25 +55,25 @@ impl CableEquilibrium {
     /// # Errors
     /// The reason why none was found.
     pub fn along_route(
-        layout: &Layout,
+        layout: &SectionLayout,
         instant: &BoundaryConditions,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<(Self, StepStats), NotFound> {
-        Self::along_route_from(layout, instant, SearchStart::AlsoWithoutFriction, work)
+        Self::along_route_from(layout, instant, SearchStart::AlsoWithoutFriction, workspace)
     }
 
     /// The same, with the places where the search may begin.
     pub fn along_route_from(
-        layout: &Layout,
+        layout: &SectionLayout,
         instant: &BoundaryConditions,
         start: SearchStart,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<(Self, StepStats), NotFound> {
         // A cable that is not held at both ends would run to where it needs no friction.
         let is_held = layout.sections.iter().all(|s| s.supports.iter().all(Option::is_some));
         let without_friction = start == SearchStart::AlsoWithoutFriction && is_held;
         let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
-        let course = layout.course(layout.curves(), instant);
+        let context = layout.context(layout.curves(), instant);
         let (mut first, mut stopped, mut pushes) = (None, None, false);
         for shape in FIRST_SHAPES.into_iter().chain(posts_seen_nearer(layout)) {
             let begin = match shape.friction {
@@ -86,48 +86,49 @@ impl CableEquilibrium {
             if shape.slack == SlackCable::WhereTensionEnds && !pushes {
                 continue;
             }
-            let mut network = Self { sections: Vec::new(), course: course.clone(), instant: begin.clone() };
-            network.course.loose_where_tension_ends = shape.slack == SlackCable::WhereTensionEnds;
-            match network.find_from(layout, shape, [begin, instant], work) {
+            let mut cable_equilibrium = Self { sections: Vec::new(), context: context.clone(), instant: begin.clone() };
+            cable_equilibrium.context.loose_where_tension_ends = shape.slack == SlackCable::WhereTensionEnds;
+            match cable_equilibrium.find_from(layout, shape, [begin, instant], workspace) {
                 Ok(taken) => {
-                    network.course.loose_where_tension_ends = false;
-                    return Ok((network, taken));
+                    cable_equilibrium.context.loose_where_tension_ends = false;
+                    return Ok((cable_equilibrium, taken));
                 }
                 Err(failure) => {
                     pushes |= matches!(failure, Failure::Compressed { .. });
                     if shape.length != FirstLength::Whole && stopped.is_none() {
-                        stopped = Some(NotFound { failure: failure.clone(), let_out: Some(Box::new(network)) });
+                        stopped =
+                            Some(NotFound { failure: failure.clone(), let_out: Some(Box::new(cable_equilibrium)) });
                     }
                     first = first.or(Some(failure));
                 }
             }
         }
-        Err(stopped.unwrap_or_else(|| first.unwrap_or(Failure::Restless { s: 0.0 }).into()))
+        Err(stopped.unwrap_or_else(|| first.unwrap_or(Failure::ContactCycling { s: 0.0 }).into()))
     }
 
     /// Seeks an equilibrium from one first shape, with the friction of `begin` and then that of
     /// `goal`.
     fn find_from(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         shape: FirstShape,
         [begin, goal]: [&BoundaryConditions; 2],
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
-        let taken = self.lay_along_route(layout, begin, shape, work)?;
+        let taken = self.lay_along_route(layout, begin, shape, workspace)?;
         if !(begin.friction < goal.friction) {
             return Ok(taken);
         }
-        let more = self.apply_friction(layout, goal, work)?;
+        let more = self.apply_friction(layout, goal, workspace)?;
         Ok(StepStats { found_without_friction: true, ..taken.and(more) })
     }
 
     /// The cable in heaps where it comes down, hanging over crests, without tension where it lies.
-    pub fn in_heaps(layout: &Layout, instant: &BoundaryConditions) -> Option<Self> {
-        let course = layout.course(layout.curves(), instant);
-        let section = |k: usize| slack::loose_section(layout, k, &course, instant, LooseShapes::AnyTension);
+    pub fn in_heaps(layout: &SectionLayout, instant: &BoundaryConditions) -> Option<Self> {
+        let context = layout.context(layout.curves(), instant);
+        let section = |k: usize| slack::loose_section(layout, k, &context, instant, LooseShapes::AnyTension);
         let sections = (0..layout.sections.len()).map(section).collect::<Option<Vec<CableSection>>>()?;
-        Some(Self { sections, course, instant: instant.clone() })
+        Some(Self { sections, context, instant: instant.clone() })
     }
 
     /// The equilibrium next to an answer of another model.
@@ -135,20 +136,20 @@ impl CableEquilibrium {
     /// # Errors
     /// The reason why the cable does not rest there.
     pub fn from_answer(
-        layout: &Layout,
+        layout: &SectionLayout,
         instant: &BoundaryConditions,
         nodes: &[Node],
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<Self, Failure> {
         let mut first = None;
         for unused in layout.settings.continuation.unused_cone_fractions {
-            let course = layout.course(layout.curves(), instant);
-            let Some(sections) = from_solution::sections_of(layout, &course, instant, nodes, 1.0 - unused) else {
+            let context = layout.context(layout.curves(), instant);
+            let Some(sections) = from_solution::sections_of(layout, &context, instant, nodes, 1.0 - unused) else {
                 continue;
             };
-            let mut network = Self { sections, course, instant: instant.clone() };
-            match network.step(layout, instant, work) {
-                Ok(_) => return Ok(network),
+            let mut cable_equilibrium = Self { sections, context, instant: instant.clone() };
+            match cable_equilibrium.step(layout, instant, workspace) {
+                Ok(_) => return Ok(cable_equilibrium),
                 Err(failure) => first = first.or(Some(failure)),
             }
         }
@@ -159,16 +160,16 @@ impl CableEquilibrium {
     /// Lets friction act on a cable that rests without it, and rests with it all the more.
     fn apply_friction(
         &mut self,
-        layout: &Layout,
+        layout: &SectionLayout,
         goal: &BoundaryConditions,
-        work: &mut Work,
+        workspace: &mut Workspace,
     ) -> Result<StepStats, Failure> {
-        layout.set_course(&mut self.course, goal);
+        layout.set_context(&mut self.context, goal);
         for c in self.sections.iter_mut().flat_map(|s| &mut s.contacts) {
-            if self.course.friction(c) > 0.0 {
-                c.mode = Mode::Hold;
+            if self.context.friction(c) > 0.0 {
+                c.mode = Mode::Stick;
             }
         }
-        self.step(layout, goal, work)
+        self.step(layout, goal, workspace)
     }
 }

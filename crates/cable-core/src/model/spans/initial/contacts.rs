@@ -4,14 +4,14 @@
 use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};
 use crate::model::spans::boundary::curve::ChainRange;
-use crate::model::spans::boundary::friction_memory::{Ends, Knot, Mode, TensionProfile};
-use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part, Pulley};
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, Tie};
+use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, TensionProfile};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, Pulley, SectionBounds, SectionLayout};
+use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::initial::material::{measure, spread};
-use crate::model::spans::initial::route::{Way, way};
+use crate::model::spans::initial::route::{RoutePolyline, section_route};
 use crate::model::spans::initial::shortest_path;
-use crate::model::spans::initial::shortest_path::{Bend, Ring};
+use crate::model::spans::initial::shortest_path::{PathCorner, PostPolygon};
 use crate::model::spans::initial::tension;
 
 /// A wrap: something that the cable bends round, in order.
@@ -28,26 +28,26 @@ struct Wrap {
     turn: f64,
 }
 
-/// The section laid along its route, and the points of the route. None where the string of the route
-/// finds no end.
+/// The section laid along its route, and the points of the route. None where the string of the
+/// route finds no end.
 pub(in crate::model::spans) fn section_along_route(
-    layout: &Layout,
+    layout: &SectionLayout,
     index: usize,
-    course: &Course,
+    context: &SolveContext,
     instant: &BoundaryConditions,
-    ring: Ring,
+    ring: PostPolygon,
 ) -> Option<(CableSection, Vec<Vec2>)> {
-    let way = way(layout, layout.sections.get(index)?, instant);
-    Some((along(layout, index, course, instant, &way, ring)?, way.points))
+    let way = section_route(layout, layout.sections.get(index)?, instant);
+    Some((along(layout, index, context, instant, &way, ring)?, way.points))
 }
 
 fn along(
-    layout: &Layout,
+    layout: &SectionLayout,
     index: usize,
-    course: &Course,
+    context: &SolveContext,
     instant: &BoundaryConditions,
-    way: &Way,
-    ring: Ring,
+    way: &RoutePolyline,
+    ring: PostPolygon,
 ) -> Option<CableSection> {
     let tuned = &layout.settings.initial;
     let part = layout.sections.get(index)?;
@@ -56,9 +56,9 @@ fn along(
     if !(total > 0.0) {
         return bare(part, instant);
     }
-    let ties = [0, 1].map(|side| match part.supports[side] {
-        Some(k) => Tie::Held(instant.places[k]),
-        None => Tie::Hangs(layout.end_force(instant, part.material[side])),
+    let end_conditions = [0, 1].map(|side| match part.supports[side] {
+        Some(k) => EndCondition::Fixed(instant.places[k]),
+        None => EndCondition::Hangs(layout.end_force(instant, part.material[side])),
     });
     // Ends that lie: how many points of the route, and the contact. What a load lifts does not.
     let heads = [0, 1].map(|side| {
@@ -68,9 +68,9 @@ fn along(
             [tuned.lying_end_radii, tuned.route_contact_radii]
         };
         let near = near.map(|n| n * layout.problem.radius);
-        lying(course, &layout.problem.world, near, &way.points, side).filter(|h| match ties[side] {
-            Tie::Hangs(force) => {
-                let place = course.curves[h.curve].place(h.coordinates[side], h.chain_range);
+        lying(context, &layout.problem.world, near, &way.points, side).filter(|h| match end_conditions[side] {
+            EndCondition::Hangs(force) => {
+                let place = context.curves[h.curve].place(h.coordinates[side], h.chain_range);
                 force.dot(&place.normal) <= LIFT_FRACTION * force.norm()
             }
             _ => true,
@@ -79,31 +79,31 @@ fn along(
     // Evenly along the route; from the end that is held, strained by what draws the other, where
     // that is not held.
     let loose = |side: usize| part.supports[side].is_none();
-    let drawn = |side: usize| match (&heads[side], ties[side]) {
-        (None, Tie::Hangs(force)) => (force + course.law.load * tail(part, instant, way, side)).norm(),
+    let drawn = |side: usize| match (&heads[side], end_conditions[side]) {
+        (None, EndCondition::Hangs(force)) => (force + context.law.load * tail(part, instant, way, side)).norm(),
         _ => 0.0,
     };
     let drawn = if loose(0) && (!loose(1) || drawn(0) < drawn(1)) { drawn(0) } else { drawn(1) };
-    let stretch = course.law.stretch(drawn);
+    let stretch = context.law.stretch(drawn);
     let at = |w: f64| match (loose(0), loose(1)) {
         (true, false) => to - (total - w) / stretch,
         (false, true) => from + w / stretch,
         _ => from + (to - from) * w / total,
     };
-    let mut section = CableSection { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
-    let slack = total / ((to - from) * course.law.thermal) - 1.0;
+    let mut section = CableSection { from, to, end_conditions, contacts: Vec::new(), forces: Vec::new(), loose: None };
+    let slack = total / ((to - from) * context.law.thermal) - 1.0;
     let tension = if loose(0) || loose(1) {
         drawn
     } else if slack > 0.0 {
-        slack * course.law.stiffness
+        slack * context.law.stiffness
     } else {
         0.0
     };
-    let least = tuned.laid_tension_weights * course.law.load.norm() * (to - from);
+    let least = tuned.laid_tension_weights * context.law.load.norm() * (to - from);
     if let [Some(a), Some(b)] = &heads
         && (a.count + b.count > way.points.len() && a.curve == b.curve && a.chain_range == b.chain_range)
     {
-        return Some(lies_whole(section, course, [a, b], tension));
+        return Some(lies_whole(section, context, [a, b], tension));
     }
     // A span from one lying stretch to the next needs some tension.
     let tension = if tension > least || heads.iter().any(Option::is_none) { tension } else { least };
@@ -115,12 +115,12 @@ fn along(
     let mut contacts = bends(
         layout,
         part,
-        course,
+        context,
         instant,
         &TautString { way, first, last, ring },
         &FirstMaterial { at: &at, tension },
     )?;
-    let join = joint(course, &heads, first == last, tension);
+    let join = joint(context, &heads, first == last, tension);
     for (side, h) in heads.iter().enumerate() {
         let Some(h) = h else { continue };
         let way_at = |k: usize| at(way.along[k]);
@@ -131,17 +131,17 @@ fn along(
         } else {
             [h.coordinates[0] + join, h.coordinates[1]]
         };
-        let c = contact(course, h.curve, h.chain_range, p, s, tension);
+        let c = contact(context, h.curve, h.chain_range, p, s, tension);
         contacts.insert(if side == 0 { 0 } else { contacts.len() }, c);
-        section.ties[side] = end_tie(ties[side], h.coordinates[side]);
+        section.end_conditions[side] = end_tie(end_conditions[side], h.coordinates[side]);
     }
     section.forces = vec![Vec2::zeros(); contacts.len() + 1];
     section.contacts = contacts;
     if join == 0.0 && (loose(0) || loose(1)) {
-        measure(&mut section, course, [loose(0), loose(1)], stretch);
+        measure(&mut section, context, [loose(0), loose(1)], stretch);
     }
-    spread(&mut section, course);
-    solve_spans(&mut section, course)?;
+    spread(&mut section, context);
+    solve_spans(&mut section, context)?;
     // Without a route the way is straight from support to support: round a wheel from tangent to
     // tangent.
     let wheel = |q: &Pulley| layout.problem.supports.get(q.support).is_some_and(|s| s.wheel_radius > 0.0);
@@ -151,26 +151,31 @@ fn along(
         && !loose(0)
         && !loose(1)
     {
-        tension::relay(&mut section, course);
+        tension::equalise_tensions(&mut section, context);
     }
     Some(section)
 }
 
 /// Forces of spans whose ends and material are known.
-pub(in crate::model::spans) fn solve_spans(section: &mut CableSection, course: &Course) -> Option<()> {
+pub(in crate::model::spans) fn solve_spans(section: &mut CableSection, context: &SolveContext) -> Option<()> {
     for k in 0..section.spans() {
         if section.has_span(k) {
-            section.forces[k] = section.solve_span(course, k)?;
+            section.forces[k] = section.solve_span(context, k)?;
         }
     }
-    section.take_tensions(course);
+    section.update_end_tensions(context);
     Some(())
 }
 
 /// A section that lies on one boundary from end to end.
-fn lies_whole(mut section: CableSection, course: &Course, [a, b]: [&Head; 2], tension: f64) -> CableSection {
+fn lies_whole(
+    mut section: CableSection,
+    context: &SolveContext,
+    [a, b]: [&EndContact; 2],
+    tension: f64,
+) -> CableSection {
     let mut c = contact(
-        course,
+        context,
         a.curve,
         a.chain_range,
         [a.coordinates[0], b.coordinates[1]],
@@ -178,16 +183,16 @@ fn lies_whole(mut section: CableSection, course: &Course, [a, b]: [&Head; 2], te
         tension,
     );
     c.wheel = None;
-    section.ties =
-        [0, 1].map(|side| end_tie(section.ties[side], if side == 0 { a.coordinates[0] } else { b.coordinates[1] }));
+    section.end_conditions = [0, 1]
+        .map(|side| end_tie(section.end_conditions[side], if side == 0 { a.coordinates[0] } else { b.coordinates[1] }));
     section.contacts.push(c);
     section.forces = vec![Vec2::zeros(); 2];
-    spread(&mut section, course);
+    spread(&mut section, context);
     for side in 0..2 {
-        if matches!(section.ties[side], Tie::Lies(_)) {
+        if matches!(section.end_conditions[side], EndCondition::Lies(_)) {
             let c = &mut section.contacts[0];
-            let track = course.track(c);
-            c.ends.t[side] = c.history.at(&track, c.ends.p[side]).0;
+            let contact_path = context.contact_path(c);
+            c.ends.t[side] = c.history.at(&contact_path, c.ends.p[side]).0;
         }
     }
     section
@@ -195,15 +200,15 @@ fn lies_whole(mut section: CableSection, course: &Course, [a, b]: [&Head; 2], te
 
 /// Two stretches that meet at a kink of δ are joined by a span of length Tδ/w: half of it, m; 0
 /// where they do not meet.
-fn joint(course: &Course, heads: &[Option<Head>; 2], meet: bool, tension: f64) -> f64 {
+fn joint(context: &SolveContext, heads: &[Option<EndContact>; 2], meet: bool, tension: f64) -> f64 {
     match heads {
         [Some(a), Some(b)] if meet => {
             let (u, v) = (
-                course.curves[a.curve].place(a.coordinates[1], a.chain_range),
-                course.curves[b.curve].place(b.coordinates[0], b.chain_range),
+                context.curves[a.curve].place(a.coordinates[1], a.chain_range),
+                context.curves[b.curve].place(b.coordinates[0], b.chain_range),
             );
             let turn = cross(u.tangent, v.tangent).atan2(u.tangent.dot(&v.tangent)).abs();
-            0.5 * tension * turn / course.law.load.norm()
+            0.5 * tension * turn / context.law.load.norm()
         }
         _ => 0.0,
     }
@@ -212,13 +217,13 @@ fn joint(course: &Course, heads: &[Option<Head>; 2], meet: bool, tension: f64) -
 /// The part of a route along which a string is pulled taut.
 #[derive(Clone, Copy)]
 struct TautString<'a> {
-    way: &'a Way,
+    way: &'a RoutePolyline,
     /// Index of the route's point at which it begins.
     first: usize,
     /// Index of the point at which it ends.
     last: usize,
     /// The outline about the corners.
-    ring: Ring,
+    ring: PostPolygon,
 }
 
 /// The material of the cable in its first shape.
@@ -232,22 +237,22 @@ struct FirstMaterial<'a> {
 
 /// Contacts where the taut string of the route bends.
 fn bends(
-    layout: &Layout,
-    part: &Part,
-    course: &Course,
+    layout: &SectionLayout,
+    part: &SectionBounds,
+    context: &SolveContext,
     instant: &BoundaryConditions,
     string: &TautString<'_>,
     material: &FirstMaterial<'_>,
 ) -> Option<Vec<Contact>> {
     let TautString { way, first, last, .. } = *string;
     let FirstMaterial { at, tension } = *material;
-    let mut wraps = wraps(layout, part, course, instant, string)?;
+    let mut wraps = wraps(layout, part, context, instant, string)?;
     let mut contacts = Vec::with_capacity(wraps.len() + 2);
-    let rounds = stretched(course, &mut wraps, [way.points[first], way.points[last]]);
+    let rounds = stretched(context, &mut wraps, [way.points[first], way.points[last]]);
     for (k, wrap) in wraps.iter().enumerate() {
         let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
         let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
-        let curve = &course.curves[wrap.curve];
+        let curve = &context.curves[wrap.curve];
         let p1 = curve.with_tangent(wrap.pieces[0], arrive);
         let p2 = curve.with_tangent(wrap.pieces[1], leave);
         // The turns counted along the string, brought to where the tangents are.
@@ -256,22 +261,22 @@ fn bends(
         // An eye has no side of its own: it is passed on the one on which the string bends.
         let eye = wrap.wheel.is_some() && curve.place(p1, wrap.chain_range).stretch == 0.0;
         let (index, [p1, p2]) = if eye && p2 < p1 { (wrap.curve ^ 1, [-p1, -p2]) } else { (wrap.curve, [p1, p2]) };
-        let curve = &course.curves[index];
+        let curve = &context.curves[index];
         // One that the string passes without a bend touches in one point, seen from either end.
         let [p1, p2] = if p2 > p1 { [p1, p2] } else { [0.5 * (p1 + p2); 2] };
-        let half = 0.5 * curve.length(p1, p2, wrap.chain_range) / course.law.stretch(tension);
+        let half = 0.5 * curve.length(p1, p2, wrap.chain_range) / context.law.stretch(tension);
         // Round a post the string's points are not those of the cable: where it comes and goes on
         // the route itself.
         let seen = |p: f64, w: f64| {
             let place = curve.place(p, wrap.chain_range);
             if curve.is_round() {
-                way.close(place.at, w, course.settings.initial.post_approach_radii * place.stretch)
+                way.close(place.at, w, context.settings.initial.post_approach_radii * place.stretch)
             } else {
                 w
             }
         };
         let s = at(0.5 * (seen(p1, wrap.way[0]) + seen(p2, wrap.way[1])));
-        let mut c = contact(course, index, wrap.chain_range, [p1, p2], [s - half, s + half], tension);
+        let mut c = contact(context, index, wrap.chain_range, [p1, p2], [s - half, s + half], tension);
         c.wheel = wrap.wheel;
         contacts.push(c);
     }
@@ -279,14 +284,14 @@ fn bends(
 }
 
 /// A section whose ends are in one place: nothing but a span.
-fn bare(part: &Part, instant: &BoundaryConditions) -> Option<CableSection> {
+fn bare(part: &SectionBounds, instant: &BoundaryConditions) -> Option<CableSection> {
     let [a, b] = part.supports;
     let [from, to] = part.material;
-    let ties = [Tie::Held(instant.places[a?]), Tie::Held(instant.places[b?])];
+    let end_conditions = [EndCondition::Fixed(instant.places[a?]), EndCondition::Fixed(instant.places[b?])];
     part.pulleys.is_empty().then(|| CableSection {
         from,
         to,
-        ties,
+        end_conditions,
         contacts: Vec::new(),
         forces: vec![Vec2::zeros()],
         loose: None,
@@ -295,7 +300,7 @@ fn bare(part: &Part, instant: &BoundaryConditions) -> Option<CableSection> {
 
 /// Length of a route from an end that hangs to the highest of its points, about where it is first
 /// held, m.
-fn tail(part: &Part, instant: &BoundaryConditions, way: &Way, side: usize) -> f64 {
+fn tail(part: &SectionBounds, instant: &BoundaryConditions, way: &RoutePolyline, side: usize) -> f64 {
     let up = -instant.load;
     let high = |k: &usize| way.points[*k].dot(&up);
     // Of several the one nearest to that end.
@@ -311,33 +316,40 @@ fn tail(part: &Part, instant: &BoundaryConditions, way: &Way, side: usize) -> f6
 }
 
 /// An end that lies at p.
-fn end_tie(tie: Tie, p: f64) -> Tie {
+fn end_tie(tie: EndCondition, p: f64) -> EndCondition {
     match tie {
-        Tie::Held(_) => Tie::Lies(p),
-        Tie::Hangs(force) => Tie::Loose(force),
+        EndCondition::Fixed(_) => EndCondition::Lies(p),
+        EndCondition::Hangs(force) => EndCondition::Loose(force),
         other => other,
     }
 }
 
-fn contact(course: &Course, curve: usize, chain_range: ChainRange, p: [f64; 2], s: [f64; 2], tension: f64) -> Contact {
-    let knot = |k: usize| Knot { coordinate: p[k], arc_length: s[k], tension, mobilised: 0.0 };
+fn contact(
+    context: &SolveContext,
+    curve: usize,
+    chain_range: ChainRange,
+    p: [f64; 2],
+    s: [f64; 2],
+    tension: f64,
+) -> Contact {
+    let breakpoint = |k: usize| Breakpoint { coordinate: p[k], arc_length: s[k], tension, mobilised: 0.0 };
     Contact {
         curve,
         chain_range,
         ends: Ends { p, s, t: [tension; 2] },
-        mode: if course.curves[curve].friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) },
-        history: TensionProfile::new(knot(0), knot(1)),
+        mode: if context.curves[curve].friction > 0.0 { Mode::Stick } else { Mode::Slip(0.0) },
+        history: TensionProfile::new(breakpoint(0), breakpoint(1)),
         wheel: None,
-        flips: 0,
+        mode_changes: 0,
         held: None,
-        next: Next::Span,
+        next: Connection::Span,
         load: None,
         smooth: false,
     }
 }
 
 /// An end of a route that lies on a boundary.
-struct Head {
+struct EndContact {
     curve: usize,
     chain_range: ChainRange,
     coordinates: [f64; 2],
@@ -347,7 +359,7 @@ struct Head {
 
 /// True if the first points of a route (the last, for side 1) lie on one chain: the end and the
 /// others as `near` as that, m.
-fn lying(course: &Course, world: &World, near: [f64; 2], points: &[Vec2], side: usize) -> Option<Head> {
+fn lying(context: &SolveContext, world: &World, near: [f64; 2], points: &[Vec2], side: usize) -> Option<EndContact> {
     let n = points.len();
     let point = |k: usize| points[if side == 0 { k } else { n - 1 - k }];
     let gap = world.signed_gap(point(0), 2.0 * near[0]).filter(|g| g.gap_m.abs() <= near[0])?;
@@ -356,20 +368,25 @@ fn lying(course: &Course, world: &World, near: [f64; 2], points: &[Vec2], side: 
     // n = σ perp t.
     let back = cross(travel, gap.normal) < 0.0;
     let curve_index = 2 * body + usize::from(back);
-    let curve = course.curves.get(curve_index)?;
+    let curve = context.curves.get(curve_index)?;
     let i = curve.piece_of(gap.feature, point(0))?;
-    let (_, chain_range) = curve.chain(i, course.law.load)?;
+    let (_, chain_range) = curve.chain(i, context.law.load)?;
     let on: Vec<f64> = (0..n).map_while(|k| curve.on_chain(chain_range, point(k), near[k.min(1)])).collect();
     let (first, last) = (*on.first()?, *on.last()?);
     let p = if side == 0 { [first, last] } else { [last, first] };
-    (on.len() > 1 && p[1] > p[0]).then_some(Head { curve: curve_index, chain_range, coordinates: p, count: on.len() })
+    (on.len() > 1 && p[1] > p[0]).then_some(EndContact {
+        curve: curve_index,
+        chain_range,
+        coordinates: p,
+        count: on.len(),
+    })
 }
 
 /// The bodies that the string bends round, pulleys among them; posts are seen as rings of points.
 fn wraps(
-    layout: &Layout,
-    part: &Part,
-    course: &Course,
+    layout: &SectionLayout,
+    part: &SectionBounds,
+    context: &SolveContext,
     instant: &BoundaryConditions,
     string: &TautString<'_>,
 ) -> Option<Vec<Wrap>> {
@@ -394,13 +411,13 @@ fn wraps(
             route.push(way.points[i]);
         }
         route.push(stop);
-        let bends = shortest_path::pull(&route, &corners)?;
+        let bends = shortest_path::taut_string(&route, &corners)?;
         for (j, b) in bends.iter().enumerate() {
             reached = way.nearest(b.corner.at, reached, Some(begin.1 + b.leg));
             let before = j.checked_sub(1).and_then(|i| bends.get(i)).map_or(begin.0, |a| a.corner.at);
             let after = bends.get(j + 1).map_or(stop, |a| a.corner.at);
             let (u, v) = (b.corner.at - before, after - b.corner.at);
-            push(&mut out, course, b, reached, cross(u, v).atan2(u.dot(&v)).abs())?;
+            push(&mut out, context, b, reached, cross(u, v).atan2(u.dot(&v)).abs())?;
         }
         if let Some(q) = pulley {
             let curve = q.curve + usize::from(q.facing < 0.0);
@@ -410,8 +427,8 @@ fn wraps(
             // lies in the middle of that.
             let turn = if q.facing == 0.0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
             // The route may be drawn round it: where it comes and where it goes.
-            let radius = course.curves[curve].place(0.0, chain_range).stretch;
-            let near = way.distance(stop, w) + course.settings.initial.wheel_route_radii * radius;
+            let radius = context.curves[curve].place(0.0, chain_range).stretch;
+            let near = way.distance(stop, w) + context.settings.initial.wheel_route_radii * radius;
             let round = way.beside(stop, w, near);
             out.push(Wrap { curve, chain_range, pieces: [0, 0], wheel: Some(q.support), way: round, turn });
             (begin, reached) = ((stop, leg), w);
@@ -421,11 +438,11 @@ fn wraps(
 }
 
 /// Adds a bend to what there is, or to the last wrap where it goes on there.
-fn push(out: &mut Vec<Wrap>, course: &Course, b: &Bend, w: f64, turn: f64) -> Option<()> {
+fn push(out: &mut Vec<Wrap>, context: &SolveContext, b: &PathCorner, w: f64, turn: f64) -> Option<()> {
     let curve_index = 2 * b.corner.body + usize::from(b.sense < 0.0);
-    let curve = course.curves.get(curve_index)?;
+    let curve = context.curves.get(curve_index)?;
     let i = curve.piece_of(b.corner.feature, b.corner.at)?;
-    let (i, chain_range) = curve.chain(i, course.law.load)?;
+    let (i, chain_range) = curve.chain(i, context.law.load)?;
     if let Some(last) = out.last_mut()
         && last.wheel.is_none()
         && last.curve == curve_index
@@ -444,13 +461,13 @@ fn push(out: &mut Vec<Wrap>, course: &Course, b: &Bend, w: f64, turn: f64) -> Op
 ///
 /// The string of points passes just by such a corner, that of the cable's radius bends round it:
 /// along the edge nothing turns, and Newton's method does not find across it.
-fn stretched(course: &Course, wraps: &mut [Wrap], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
-    let mut found = rounds(course, wraps, ends[0], ends[1]);
+fn stretched(context: &SolveContext, wraps: &mut [Wrap], ends: [Vec2; 2]) -> Vec<[Round; 2]> {
+    let mut found = rounds(context, wraps, ends[0], ends[1]);
     // It ends by itself: every round but the last extends a wrap, within its chain.
     loop {
         let mut changed = false;
         for (k, wrap) in wraps.iter_mut().enumerate() {
-            let curve = &course.curves[wrap.curve];
+            let curve = &context.curves[wrap.curve];
             let arrive = tangent(found[k][1], found[k + 1][0]);
             let leave = tangent(found[k + 1][1], found[k + 2][0]);
             let (first, last) = (wrap.pieces[0] - 2, wrap.pieces[1] + 2);
@@ -466,7 +483,7 @@ fn stretched(course: &Course, wraps: &mut [Wrap], ends: [Vec2; 2]) -> Vec<[Round
         if !changed {
             break;
         }
-        found = rounds(course, wraps, ends[0], ends[1]);
+        found = rounds(context, wraps, ends[0], ends[1]);
     }
     found
 }
@@ -475,10 +492,10 @@ fn stretched(course: &Course, wraps: &mut [Wrap], ends: [Vec2; 2]) -> Vec<[Round
 type Round = (Vec2, f64, f64);
 
 /// The circles on which the string arrives at each wrap and leaves it; points at both ends.
-fn rounds(course: &Course, wraps: &[Wrap], start: Vec2, end: Vec2) -> Vec<[Round; 2]> {
+fn rounds(context: &SolveContext, wraps: &[Wrap], start: Vec2, end: Vec2) -> Vec<[Round; 2]> {
     let mut out = vec![[(start, 0.0, 1.0); 2]];
     for s in wraps {
-        let curve = &course.curves[s.curve];
+        let curve = &context.curves[s.curve];
         out.push(s.pieces.map(|i| {
             let place = curve.place_on(i, 0.0);
             (place.at - place.normal * place.stretch, place.stretch, curve.sense)

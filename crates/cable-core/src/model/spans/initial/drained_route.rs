@@ -11,15 +11,15 @@
 
 use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross, larger, perp, smaller};
-use crate::model::spans::boundary::curve::{Curve, Form};
-use crate::model::spans::cable_section::Course;
+use crate::model::spans::boundary::curve::{Curve, PieceShape};
+use crate::model::spans::cable_section::SolveContext;
 
 /// Lengths that are none, m: rounding of kilometres.
 pub(in crate::model::spans) const NONE_M: f64 = 1e-9;
 /// A boundary that faces the load with less than this part of itself is a wall: the cable hangs
 /// beside it.
 const FACES: f64 = 1e-9;
-/// Roofs that what does not hold slides down over at most.
+/// Upper surfaces that what does not hold slides down over at most.
 const MOST_DOWN: usize = 1000;
 
 /// The directions across the load and against it, unit vectors.
@@ -31,36 +31,36 @@ pub(in crate::model::spans) struct Frame {
 
 /// State of a cable on a part of the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) enum Leg {
+pub(in crate::model::spans) enum RouteLeg {
     /// Hangs plumb, from a height to another.
     Hangs { u: f64, v: [f64; 2] },
-    /// Lies on a roof, from one place across the load to another.
-    Lies { roof: usize, u: [f64; 2] },
+    /// Lies on a surface, from one place across the load to another.
+    Lies { surface: usize, u: [f64; 2] },
 }
 
 /// A piece of boundary that holds what falls on it.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct Roof {
+pub(in crate::model::spans) struct UpperSurface {
     pub body: usize,
     friction: f64,
     /// Piece of the boundary of the body with the solid right of travel, and how far along it the
-    /// roof begins.
+    /// surface begins.
     piece: i64,
     start: f64,
     u: [f64; 2],
-    top: Top,
+    top: SurfaceShape,
 }
 
-/// The form of a roof: v as a function of u.
+/// The form of a surface: v as a function of u.
 #[derive(Clone, Copy, Debug)]
-enum Top {
+enum SurfaceShape {
     Line { from: Vec2, slope: f64 },
     Round { center: Vec2, radius: f64 },
 }
 
 /// A part of a boundary with the direction of travel: (index of the curve, piece, p from where to
 /// where).
-pub(in crate::model::spans) type Along = (usize, i64, [f64; 2]);
+pub(in crate::model::spans) type BoundaryInterval = (usize, i64, [f64; 2]);
 
 impl Frame {
     /// That of a load; None where there is none.
@@ -80,17 +80,17 @@ impl Frame {
     }
 }
 
-impl Leg {
+impl RouteLeg {
     /// The same the other way.
     fn back(&self) -> Self {
         match *self {
             Self::Hangs { u, v: [a, b] } => Self::Hangs { u, v: [b, a] },
-            Self::Lies { roof, u: [a, b] } => Self::Lies { roof, u: [b, a] },
+            Self::Lies { surface, u: [a, b] } => Self::Lies { surface, u: [b, a] },
         }
     }
 }
 
-impl Top {
+impl SurfaceShape {
     fn height(&self, u: f64) -> f64 {
         match *self {
             Self::Line { from, slope } => from.y + slope * (u - from.x),
@@ -124,7 +124,7 @@ impl Top {
     }
 }
 
-impl Roof {
+impl UpperSurface {
     /// Its height at a place.
     pub fn height(&self, u: f64) -> f64 {
         self.top.height(u)
@@ -133,8 +133,8 @@ impl Roof {
     /// Its slope there.
     fn slope(&self, u: f64) -> f64 {
         match self.top {
-            Top::Line { slope, .. } => slope,
-            Top::Round { center, .. } => (center.x - u) / larger(self.height(u) - center.y, f64::MIN_POSITIVE),
+            SurfaceShape::Line { slope, .. } => slope,
+            SurfaceShape::Round { center, .. } => (center.x - u) / larger(self.height(u) - center.y, f64::MIN_POSITIVE),
         }
     }
 
@@ -142,8 +142,8 @@ impl Roof {
     fn along(&self, u: f64) -> f64 {
         self.start
             + match self.top {
-                Top::Line { slope, .. } => (u - self.u[0]) * 1.0f64.hypot(slope),
-                Top::Round { center, radius } => {
+                SurfaceShape::Line { slope, .. } => (u - self.u[0]) * 1.0f64.hypot(slope),
+                SurfaceShape::Round { center, radius } => {
                     // The angle from where it rises plumb.
                     let rounding = 4.0 * f64::EPSILON * (center.x.abs() + radius) / radius;
                     let angle = |u: f64| {
@@ -160,7 +160,7 @@ impl Roof {
 
     /// The stretch of the boundary of its body from one place to another, in the sense in which
     /// that goes on.
-    pub fn stretch(&self, curves: &[Curve], u: [f64; 2]) -> Along {
+    pub fn stretch(&self, curves: &[Curve], u: [f64; 2]) -> BoundaryInterval {
         let forward = &curves[2 * self.body];
         let [a, b] = u.map(|u| self.along(u));
         if b >= a {
@@ -177,19 +177,19 @@ impl Roof {
 
 /// Every boundary that faces the load, in order of where it begins across it.
 #[derive(Debug)]
-pub(in crate::model::spans) struct Roofs {
-    pub all: Vec<Roof>,
-    /// The greatest u that the roofs up to each reach.
+pub(in crate::model::spans) struct UpperSurfaces {
+    pub all: Vec<UpperSurface>,
+    /// The greatest u that the surfaces up to each reach.
     reach: Vec<f64>,
 }
 
-impl Roofs {
-    /// Those of the bodies of a course.
-    pub fn new(course: &Course, bodies: usize, frame: Frame) -> Self {
+impl UpperSurfaces {
+    /// Those of the bodies of a context.
+    pub fn new(context: &SolveContext, bodies: usize, frame: Frame) -> Self {
         let mut all = Vec::new();
         for body in 0..bodies {
-            if let Some(curve) = course.curves.get(2 * body) {
-                curve.pieces().for_each(|piece| roofs_of(curve, body, piece, frame, &mut all));
+            if let Some(curve) = context.curves.get(2 * body) {
+                curve.pieces().for_each(|piece| upper_surfaces_of(curve, body, piece, frame, &mut all));
             }
         }
         all.sort_by(|a, b| a.u[0].total_cmp(&b.u[0]));
@@ -206,24 +206,24 @@ impl Roofs {
     }
 }
 
-fn roofs_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: &mut Vec<Roof>) {
+fn upper_surfaces_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: &mut Vec<UpperSurface>) {
     let (given, friction) = (curve.piece(piece), curve.friction);
     match given.form {
-        Form::Edge { from, tangent } => {
+        PieceShape::Edge { from, tangent } => {
             let (from, along) = (frame.split(from + curve.shift), frame.split(tangent));
             if along.x > FACES && given.extent > 0.0 {
                 let u = [from.x, from.x + along.x * given.extent];
-                out.push(Roof {
+                out.push(UpperSurface {
                     body,
                     friction,
                     piece,
                     start: 0.0,
                     u,
-                    top: Top::Line { from, slope: along.y / along.x },
+                    top: SurfaceShape::Line { from, slope: along.y / along.x },
                 });
             }
         }
-        Form::Arc { center, radius, from } => {
+        PieceShape::Arc { center, radius, from } => {
             let center = frame.split(center + curve.shift);
             // Distance along it at which the cable would rise plumb.
             let rises = -curve.sense * cross(from, frame.up).atan2(from.dot(&frame.up));
@@ -241,7 +241,14 @@ fn roofs_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: &mut Vec<
                 let across = |x: f64| center.x - radius * (x - first).cos();
                 let u = [across(low), across(high)];
                 if u[1] > u[0] {
-                    out.push(Roof { body, friction, piece, start: low, u, top: Top::Round { center, radius } });
+                    out.push(UpperSurface {
+                        body,
+                        friction,
+                        piece,
+                        start: low,
+                        u,
+                        top: SurfaceShape::Round { center, radius },
+                    });
                 }
             }
         }
@@ -249,30 +256,30 @@ fn roofs_of(curve: &Curve, body: usize, piece: i64, frame: Frame, out: &mut Vec<
 }
 
 /// The way that is left of a route.
-pub(in crate::model::spans) struct Drained {
-    pub legs: Vec<Leg>,
+pub(in crate::model::spans) struct DrainedRoute {
+    pub legs: Vec<RouteLeg>,
 }
 
-struct Draining<'a> {
-    roofs: &'a Roofs,
+struct RouteDraining<'a> {
+    surfaces: &'a UpperSurfaces,
     bodies: &'a [Body],
     frame: Frame,
-    legs: Vec<Leg>,
+    legs: Vec<RouteLeg>,
     /// Height of the end of the way so far.
     height: f64,
 }
 
-impl Drained {
+impl DrainedRoute {
     /// The part of a route that stays on obstacles; None where the cable falls off everything.
-    pub fn new(roofs: &Roofs, bodies: &[Body], frame: Frame, route: &[Vec2]) -> Option<Self> {
+    pub fn new(surfaces: &UpperSurfaces, bodies: &[Body], frame: Frame, route: &[Vec2]) -> Option<Self> {
         let points: Vec<Vec2> = route.iter().map(|p| frame.split(*p)).collect();
         let (first, last) = (points.first()?, points.last()?);
-        let mut draining = Draining { roofs, bodies, frame, legs: Vec::new(), height: first.y };
+        let mut draining = RouteDraining { surfaces, bodies, frame, legs: Vec::new(), height: first.y };
         for pair in points.windows(2) {
             draining.fall(pair[0], pair[1])?;
         }
         draining.hang(last.x, last.y);
-        if !draining.legs.iter().any(|leg| matches!(leg, Leg::Lies { .. })) {
+        if !draining.legs.iter().any(|leg| matches!(leg, RouteLeg::Lies { .. })) {
             // Plumb above each other, or in one place: down to what is below both. Down and up
             // again do not cancel: what is over lies there.
             (draining.height, draining.legs) = (first.y, Vec::new());
@@ -280,8 +287,8 @@ impl Drained {
             let down = draining.legs.clone();
             draining.hang(last.x, last.y);
             // Up again over what it came down on.
-            let last_lying = down.iter().rposition(|leg| matches!(leg, Leg::Lies { .. })).unwrap_or(0);
-            let from = down.iter().position(|leg| matches!(leg, Leg::Lies { .. })).unwrap_or(0);
+            let last_lying = down.iter().rposition(|leg| matches!(leg, RouteLeg::Lies { .. })).unwrap_or(0);
+            let from = down.iter().position(|leg| matches!(leg, RouteLeg::Lies { .. })).unwrap_or(0);
             if last_lying > from {
                 draining.legs.truncate(down.len());
                 draining.legs.extend(down[from..last_lying].iter().rev().map(|leg| leg.back()));
@@ -293,44 +300,44 @@ impl Drained {
     }
 
     /// From a point plumb down, or up to it from there.
-    pub fn plumb(roofs: &Roofs, bodies: &[Body], frame: Frame, from: Vec2, up: bool) -> Option<Self> {
+    pub fn plumb(surfaces: &UpperSurfaces, bodies: &[Body], frame: Frame, from: Vec2, up: bool) -> Option<Self> {
         let at = frame.split(from);
-        let mut draining = Draining { roofs, bodies, frame, legs: Vec::new(), height: at.y };
+        let mut draining = RouteDraining { surfaces, bodies, frame, legs: Vec::new(), height: at.y };
         draining.down(at.x, at.y)?;
         let mut legs = draining.legs;
         if up {
-            legs = legs.iter().rev().map(Leg::back).collect();
+            legs = legs.iter().rev().map(RouteLeg::back).collect();
         }
         Some(Self { legs })
     }
 }
 
-impl Draining<'_> {
+impl RouteDraining<'_> {
     /// On to the first that is below a point.
     fn down(&mut self, u: f64, v: f64) -> Option<()> {
-        let here = self.roofs.over(u - NONE_M, u + NONE_M).filter_map(|k| {
-            let roof = self.roofs.all.get(k)?;
-            let u = larger(roof.u[0], smaller(u, roof.u[1]));
-            Some((k, u, roof.height(u))).filter(|f| f.2 <= v + NONE_M)
+        let here = self.surfaces.over(u - NONE_M, u + NONE_M).filter_map(|k| {
+            let surface = self.surfaces.all.get(k)?;
+            let u = larger(surface.u[0], smaller(u, surface.u[1]));
+            Some((k, u, surface.height(u))).filter(|f| f.2 <= v + NONE_M)
         });
-        let (mut roof, on, height) = here.reduce(|a, b| if b.2 > a.2 { b } else { a })?;
+        let (mut surface, on, height) = here.reduce(|a, b| if b.2 > a.2 { b } else { a })?;
         self.hang(u, height);
         self.height = height;
         let mut u = on;
         // Cable that does not hold there slides on down, to the first place that holds it.
         for _ in 0..MOST_DOWN {
-            let here = &self.roofs.all[roof];
+            let here = &self.surfaces.all[surface];
             let slope = here.slope(u);
             if slope.abs() <= here.friction {
                 break;
             }
             let end = here.u[usize::from(slope < 0.0)];
             if (end - u).abs() > NONE_M {
-                self.lie(roof, [u, end]);
+                self.lie(surface, [u, end]);
             }
             let beyond = end + if slope < 0.0 { 2.0 * NONE_M } else { -2.0 * NONE_M };
-            let next = self.roofs.over(beyond - NONE_M, beyond + NONE_M).filter_map(|k| {
-                let other = self.roofs.all.get(k)?;
+            let next = self.surfaces.over(beyond - NONE_M, beyond + NONE_M).filter_map(|k| {
+                let other = self.surfaces.all.get(k)?;
                 let on = larger(other.u[0], smaller(end, other.u[1]));
                 Some((k, on, other.height(on))).filter(|f| f.2 <= self.height + NONE_M)
             });
@@ -338,21 +345,21 @@ impl Draining<'_> {
             self.hang(end, height);
             // In a kink it stays.
             let level = (self.height - height).abs() <= NONE_M;
-            let rises = self.roofs.all[other].slope(on) * slope < 0.0;
-            (roof, u) = (other, on);
+            let rises = self.surfaces.all[other].slope(on) * slope < 0.0;
+            (surface, u) = (other, on);
             if level && rises {
                 break;
             }
         }
-        self.legs.push(Leg::Lies { roof, u: [u; 2] });
+        self.legs.push(RouteLeg::Lies { surface, u: [u; 2] });
         Some(())
     }
 
     /// The height at which a leg begins.
-    fn start_of(&self, leg: &Leg) -> f64 {
+    fn start_of(&self, leg: &RouteLeg) -> f64 {
         match *leg {
-            Leg::Hangs { v, .. } => v[0],
-            Leg::Lies { roof, u } => self.roofs.all[roof].height(u[0]),
+            RouteLeg::Hangs { v, .. } => v[0],
+            RouteLeg::Lies { surface, u } => self.surfaces.all[surface].height(u[0]),
         }
     }
 
@@ -362,11 +369,11 @@ impl Draining<'_> {
         if high - low <= NONE_M {
             return Some(());
         }
-        let route = Top::Line { from, slope: (to.y - from.y) / (to.x - from.x) };
-        let over: Vec<usize> = self.roofs.over(low, high).collect();
+        let route = SurfaceShape::Line { from, slope: (to.y - from.y) / (to.x - from.x) };
+        let over: Vec<usize> = self.surfaces.over(low, high).collect();
         let mut stops = vec![low, high];
         for k in &over {
-            stops.extend(self.roofs.all[*k].u.iter().filter(|u| **u > low && **u < high));
+            stops.extend(self.surfaces.all[*k].u.iter().filter(|u| **u > low && **u < high));
         }
         stops.sort_by(f64::total_cmp);
         let mut fallen: Vec<(usize, [f64; 2])> = Vec::new();
@@ -376,38 +383,38 @@ impl Draining<'_> {
                 continue;
             }
             let middle = 0.5 * (at + stop);
-            while next < over.len() && self.roofs.all[over[next]].u[0] <= middle {
+            while next < over.len() && self.surfaces.all[over[next]].u[0] <= middle {
                 active.push(over[next]);
                 next += 1;
             }
-            active.retain(|k| self.roofs.all[*k].u[1] >= middle);
+            active.retain(|k| self.surfaces.all[*k].u[1] >= middle);
             self.between(at, stop, &active, &route, &mut fallen)?;
             at = stop;
         }
         if to.x < from.x {
             fallen.reverse();
         }
-        for (roof, [a, b]) in fallen {
+        for (surface, [a, b]) in fallen {
             let u = if to.x < from.x { [b, a] } else { [a, b] };
-            self.hang(u[0], self.roofs.all[roof].height(u[0]));
-            self.lie(roof, u);
+            self.hang(u[0], self.surfaces.all[surface].height(u[0]));
+            self.lie(surface, u);
         }
         Some(())
     }
 
-    /// The surface on which it falls where the same roofs are below and above all the way.
+    /// The surface on which it falls where the same surfaces are below and above all the way.
     fn between(
         &self,
         low: f64,
         high: f64,
         active: &[usize],
-        route: &Top,
+        route: &SurfaceShape,
         out: &mut Vec<(usize, [f64; 2])>,
     ) -> Option<()> {
         let mut cuts = vec![low, high];
         for (k, a) in active.iter().enumerate() {
-            let top = &self.roofs.all[*a].top;
-            let others = active[k + 1..].iter().map(|b| &self.roofs.all[*b].top).chain([route]);
+            let top = &self.surfaces.all[*a].top;
+            let others = active[k + 1..].iter().map(|b| &self.surfaces.all[*b].top).chain([route]);
             cuts.extend(others.flat_map(|other| top.crossings(other)).filter(|u| *u > low && *u < high));
         }
         cuts.sort_by(f64::total_cmp);
@@ -419,7 +426,7 @@ impl Draining<'_> {
             }
             let middle = 0.5 * (at + cut);
             let below = active.iter().copied().filter(|k| self.is_below(*k, middle, route.height(middle)));
-            let high = |k: &usize| self.roofs.all[*k].height(middle);
+            let high = |k: &usize| self.surfaces.all[*k].height(middle);
             let first = below.max_by(|a, b| high(a).total_cmp(&high(b)))?;
             out.push((first, [at, *cut]));
             at = *cut;
@@ -427,13 +434,14 @@ impl Draining<'_> {
         Some(())
     }
 
-    /// True if the route passes above a roof: where it cuts into its body, if that is from above.
-    fn is_below(&self, roof: usize, u: f64, v: f64) -> bool {
-        let roof = &self.roofs.all[roof];
-        if roof.height(u) <= v {
+    /// True if the route passes above a surface: where it cuts into its body, if that is from
+    /// above.
+    fn is_below(&self, surface: usize, u: f64, v: f64) -> bool {
+        let surface = &self.surfaces.all[surface];
+        if surface.height(u) <= v {
             return true;
         }
-        let Some(body) = self.bodies.get(roof.body) else { return false };
+        let Some(body) = self.bodies.get(surface.body) else { return false };
         let gap = body.signed_gap(self.frame.point(u, v), f64::INFINITY).filter(|g| g.gap_m < 0.0);
         gap.is_some_and(|g| body.is_ground() || g.normal.dot(&self.frame.up) > 0.0)
     }
@@ -442,7 +450,7 @@ impl Draining<'_> {
     fn rise(&mut self, u: f64, to: f64) {
         let v = [self.height, to];
         if v[1] - v[0] > NONE_M {
-            self.legs.push(Leg::Hangs { u, v });
+            self.legs.push(RouteLeg::Hangs { u, v });
         }
     }
 
@@ -452,27 +460,27 @@ impl Draining<'_> {
             return;
         }
         self.height = to;
-        if let Some(Leg::Hangs { v: before, .. }) = self.legs.last_mut() {
+        if let Some(RouteLeg::Hangs { v: before, .. }) = self.legs.last_mut() {
             before[1] = to;
             if (before[1] - before[0]).abs() <= NONE_M {
                 self.legs.pop();
             }
         } else {
-            self.legs.push(Leg::Hangs { u, v });
+            self.legs.push(RouteLeg::Hangs { u, v });
         }
     }
 
-    fn lie(&mut self, roof: usize, u: [f64; 2]) {
-        self.height = self.roofs.all[roof].height(u[1]);
-        if let Some(Leg::Lies { roof: before, u: known }) = self.legs.last_mut()
-            && *before == roof
+    fn lie(&mut self, surface: usize, u: [f64; 2]) {
+        self.height = self.surfaces.all[surface].height(u[1]);
+        if let Some(RouteLeg::Lies { surface: before, u: known }) = self.legs.last_mut()
+            && *before == surface
         {
             known[1] = u[1];
             if (known[1] - known[0]).abs() <= NONE_M {
                 self.legs.pop();
             }
         } else {
-            self.legs.push(Leg::Lies { roof, u });
+            self.legs.push(RouteLeg::Lies { surface, u });
         }
     }
 }

@@ -10,9 +10,9 @@
 use crate::math::{Vec2, cross, perp};
 use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::boundary::friction_memory::{Ends, Going, Knot, Mode, TensionProfile};
-use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Next, Tie};
+use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, SweepDirection, TensionProfile};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, SectionBounds, SectionLayout};
+use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::solution::Node;
 
@@ -39,20 +39,20 @@ impl Station {
 /// The sections of a cable in the shape of an answer, with at most a part of the cone of friction
 /// called upon; None where the answer does not show them.
 pub(in crate::model::spans) fn sections_of(
-    layout: &Layout,
-    course: &Course,
+    layout: &SectionLayout,
+    context: &SolveContext,
     instant: &BoundaryConditions,
     nodes: &[Node],
     within: f64,
 ) -> Option<Vec<CableSection>> {
-    let section = |part: &Part| {
+    let section = |part: &SectionBounds| {
         let mut stations = stations(nodes, part.material);
         if stations.len() < 2 {
             return None;
         }
-        pulleys(part, course, instant, &mut stations);
-        place_on_boundaries(layout, course, &mut stations);
-        laid(layout, part, course, instant, &stations, within)
+        pulleys(part, context, instant, &mut stations);
+        place_on_boundaries(layout, context, &mut stations);
+        laid(layout, part, context, instant, &stations, within)
     };
     layout.sections.iter().map(section).collect()
 }
@@ -77,7 +77,7 @@ fn stations(nodes: &[Node], [from, to]: [f64; 2]) -> Vec<Station> {
 }
 
 /// Marks the station that each pulley holds, with the boundary of its wheel.
-fn pulleys(part: &Part, course: &Course, instant: &BoundaryConditions, stations: &mut [Station]) {
+fn pulleys(part: &SectionBounds, context: &SolveContext, instant: &BoundaryConditions, stations: &mut [Station]) {
     for q in &part.pulleys {
         let center = instant.places[q.support];
         let far = |k: &usize| (stations[*k].at - center).norm();
@@ -89,14 +89,14 @@ fn pulleys(part: &Part, course: &Course, instant: &BoundaryConditions, stations:
         let curve = q.curve + usize::from(back);
         let chain_range = ChainRange { first: 0, last: 0 };
         let middle = before.normalize() + after.normalize();
-        let p = course.curves.get(curve).map_or(0.0, |c| c.with_tangent(0, middle));
+        let p = context.curves.get(curve).map_or(0.0, |c| c.with_tangent(0, middle));
         stations[k].boundary_point = Some((curve, chain_range, p));
         stations[k].wheel = Some(q.support);
     }
 }
 
 /// Finds the boundary that each station lies on.
-fn place_on_boundaries(layout: &Layout, course: &Course, stations: &mut [Station]) {
+fn place_on_boundaries(layout: &SectionLayout, context: &SolveContext, stations: &mut [Station]) {
     let near = layout.settings.initial.adopted_contact_distance_m;
     let world = &layout.problem.world;
     let n = stations.len();
@@ -112,8 +112,8 @@ fn place_on_boundaries(layout: &Layout, course: &Course, stations: &mut [Station
             let body = world.geometry().bodies().iter().position(|b| b.obstacle == gap.obstacle)?;
             let back = cross(along, gap.normal) < 0.0;
             let index = 2 * body + usize::from(back);
-            let curve = course.curves.get(index)?;
-            let (i, chain_range) = curve.chain(curve.piece_of(gap.feature, station.at)?, course.law.load)?;
+            let curve = context.curves.get(index)?;
+            let (i, chain_range) = curve.chain(curve.piece_of(gap.feature, station.at)?, context.law.load)?;
             let mut p = curve.project(i, station.at);
             if let (true, Some(b)) = (curve.is_round(), before.filter(|b| b.0 == index)) {
                 p += std::f64::consts::TAU * ((b.2 - p) / std::f64::consts::TAU).ceil().max(0.0);
@@ -126,19 +126,19 @@ fn place_on_boundaries(layout: &Layout, course: &Course, stations: &mut [Station
 
 /// A section with contacts where its stations lie.
 fn laid(
-    layout: &Layout,
-    part: &Part,
-    course: &Course,
+    layout: &SectionLayout,
+    part: &SectionBounds,
+    context: &SolveContext,
     instant: &BoundaryConditions,
     stations: &[Station],
     within: f64,
 ) -> Option<CableSection> {
     let [from, to] = part.material;
-    let ties = [0, 1].map(|side| match part.supports[side] {
-        Some(k) => Tie::Held(instant.places[k]),
-        None => Tie::Hangs(layout.end_force(instant, part.material[side])),
+    let end_conditions = [0, 1].map(|side| match part.supports[side] {
+        Some(k) => EndCondition::Fixed(instant.places[k]),
+        None => EndCondition::Hangs(layout.end_force(instant, part.material[side])),
     });
-    let mut section = CableSection { from, to, ties, contacts: Vec::new(), forces: Vec::new(), loose: None };
+    let mut section = CableSection { from, to, end_conditions, contacts: Vec::new(), forces: Vec::new(), loose: None };
     let last = stations.len() - 1;
     let mut k = 0;
     while k <= last {
@@ -154,8 +154,8 @@ fn laid(
         {
             (k, reached) = (k + 1, p);
         }
-        let run = Run { curve: &course.curves[index], index, chain_range, first, last: k, within };
-        if let Some(c) = run.contact(&mut section, course, stations) {
+        let run = Run { curve: &context.curves[index], index, chain_range, first, last: k, within };
+        if let Some(c) = run.contact(&mut section, context, stations) {
             section.contacts.push(c);
         }
         k += 1;
@@ -164,10 +164,10 @@ fn laid(
     section.forces = vec![Vec2::zeros(); section.contacts.len() + 1];
     for k in 0..section.spans() {
         if section.has_span(k) {
-            section.forces[k] = section.solve_span(course, k)?;
+            section.forces[k] = section.solve_span(context, k)?;
         }
     }
-    section.take_tensions(course);
+    section.update_end_tensions(context);
     Some(section)
 }
 
@@ -175,7 +175,7 @@ fn laid(
 fn keep_apart(section: &mut CableSection) -> Option<()> {
     let least = CONTACT_SPACING_FRACTION * (section.to - section.from);
     let mut before = section.from;
-    let mut spanned = section.ties[0].has_span();
+    let mut spanned = section.end_conditions[0].has_span();
     for c in &mut section.contacts {
         if spanned && c.ends.s[0] < before + least {
             c.ends.s[0] = before + least;
@@ -186,7 +186,7 @@ fn keep_apart(section: &mut CableSection) -> Option<()> {
         before = c.ends.s[1];
         spanned = true;
     }
-    (before < section.to - least || !section.ties[1].has_span()).then_some(())
+    (before < section.to - least || !section.end_conditions[1].has_span()).then_some(())
 }
 
 /// Stations, one after the other, that lie on one chain.
@@ -201,42 +201,42 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// The contact; the ties of the section that lie on it do so from now on.
-    fn contact(&self, section: &mut CableSection, course: &Course, stations: &[Station]) -> Option<Contact> {
+    /// The contact; the end conditions of the section that lie on it do so from now on.
+    fn contact(&self, section: &mut CableSection, context: &SolveContext, stations: &[Station]) -> Option<Contact> {
         let mut contact = Contact {
             curve: self.index,
             chain_range: self.chain_range,
             ends: Ends { p: [0.0; 2], s: [0.0; 2], t: [0.0; 2] },
-            mode: if self.curve.friction > 0.0 { Mode::Hold } else { Mode::Slide(0.0) },
+            mode: if self.curve.friction > 0.0 { Mode::Stick } else { Mode::Slip(0.0) },
             history: TensionProfile::default(),
             wheel: stations[self.first].wheel,
-            flips: 0,
+            mode_changes: 0,
             held: None,
             smooth: false,
-            next: Next::Span,
+            next: Connection::Span,
             load: None,
         };
         for side in 0..2 {
-            let (p, s, t) = self.end(section, course, stations, side)?;
+            let (p, s, t) = self.end(section, context, stations, side)?;
             (contact.ends.p[side], contact.ends.s[side], contact.ends.t[side]) = (p, s, t);
         }
         if contact.ends.p[1] < contact.ends.p[0] {
             let middle = 0.5 * (contact.ends.p[0] + contact.ends.p[1]);
             contact.ends.p = [middle; 2];
         }
-        let knot = |side: usize| Knot {
+        let breakpoint = |side: usize| Breakpoint {
             coordinate: contact.ends.p[side],
             arc_length: contact.ends.s[side],
             tension: contact.ends.t[side],
             mobilised: 0.0,
         };
-        let mut knots = vec![knot(0)];
+        let mut breakpoints = vec![breakpoint(0)];
         for pair in stations[self.first..=self.last].windows(2) {
             let [a, b] = [&pair[0], &pair[1]];
             let (Some((_, _, p)), Some((_, _, q))) = (a.boundary_point, b.boundary_point) else { continue };
             if a.jumps() || b.jumps() {
                 let tension = 0.5 * (a.tension[1] + b.tension[0]);
-                knots.push(Knot {
+                breakpoints.push(Breakpoint {
                     coordinate: 0.5 * (p + q),
                     arc_length: 0.5 * (a.arc_length + b.arc_length),
                     tension,
@@ -244,32 +244,37 @@ impl Run<'_> {
                 });
             }
             if !b.jumps() && q < contact.ends.p[1] {
-                knots.push(Knot { coordinate: q, arc_length: b.arc_length, tension: b.tension[0], mobilised: 0.0 });
+                breakpoints.push(Breakpoint {
+                    coordinate: q,
+                    arc_length: b.arc_length,
+                    tension: b.tension[0],
+                    mobilised: 0.0,
+                });
             }
         }
-        knots.push(knot(1));
-        let track = course.track(&contact);
+        breakpoints.push(breakpoint(1));
+        let contact_path = context.contact_path(&contact);
         // A difference beyond the cone goes to where the tension is known without friction: away
         // from an end that lies, to one that is not held.
-        let tied = [0, 1].map(|side| matches!(section.ties[side], Tie::Lies(_)));
+        let tied = [0, 1].map(|side| matches!(section.end_conditions[side], EndCondition::Lies(_)));
         let at_end = [self.first == 0, self.last + 1 == stations.len()];
-        let free = section.ties.map(|t| matches!(t, Tie::Hangs(_) | Tie::Loose(_)));
+        let free = section.end_conditions.map(|t| matches!(t, EndCondition::Hangs(_) | EndCondition::Loose(_)));
         let back = tied[1] && at_end[1] && !(tied[0] && at_end[0]) || free[0] && !free[1];
         contact.history = if back {
-            TensionProfile::through_back(&track, &knots, self.within)
+            TensionProfile::through_back(&contact_path, &breakpoints, self.within)
         } else {
-            TensionProfile::through(&track, &knots, self.within)
+            TensionProfile::through(&contact_path, &breakpoints, self.within)
         };
         // Other models' nodes have their material as their bars have it, not as the tension between
         // them strains it: what that is off goes to the span beyond, where there is one.
         if !at_end[usize::from(!back)] {
-            contact.history.measure(&track, if back { Going::Left } else { Going::Right });
-            if let [first, .., last] = contact.history.knots() {
+            contact.history.measure(&contact_path, if back { SweepDirection::Left } else { SweepDirection::Right });
+            if let [first, .., last] = contact.history.breakpoints() {
                 contact.ends.s = [first.arc_length, last.arc_length];
             }
         }
         // The cone changes only the tension at an end that lies.
-        if let (Some(k), Tie::Lies(_)) = (contact.history.knots().last(), section.ties[1]) {
+        if let (Some(k), EndCondition::Lies(_)) = (contact.history.breakpoints().last(), section.end_conditions[1]) {
             contact.ends.t[1] = k.tension;
         }
         Some(contact)
@@ -279,7 +284,7 @@ impl Run<'_> {
     fn end(
         &self,
         section: &mut CableSection,
-        course: &Course,
+        context: &SolveContext,
         stations: &[Station],
         side: usize,
     ) -> Option<(f64, f64, f64)> {
@@ -290,21 +295,23 @@ impl Run<'_> {
         let tip = if side == 0 { k == 0 } else { k + 1 == stations.len() };
         if tip {
             let s = if side == 0 { section.from } else { section.to };
-            match section.ties[side] {
-                Tie::Held(at) => match self.curve.on_chain(self.chain_range, at, SUPPORT_CONTACT_DISTANCE_M) {
-                    Some(p) => {
-                        section.ties[side] = Tie::Lies(p);
-                        return Some((p, s, tension));
+            match section.end_conditions[side] {
+                EndCondition::Fixed(at) => {
+                    match self.curve.on_chain(self.chain_range, at, SUPPORT_CONTACT_DISTANCE_M) {
+                        Some(p) => {
+                            section.end_conditions[side] = EndCondition::Lies(p);
+                            return Some((p, s, tension));
+                        }
+                        // Held just above: the next node is the first that lies.
+                        None if self.first < self.last => {
+                            let next = &stations[if side == 0 { k + 1 } else { k - 1 }];
+                            return Some((next.boundary_point?.2, next.arc_length, next.tension[side]));
+                        }
+                        None => return None,
                     }
-                    // Held just above: the next node is the first that lies.
-                    None if self.first < self.last => {
-                        let next = &stations[if side == 0 { k + 1 } else { k - 1 }];
-                        return Some((next.boundary_point?.2, next.arc_length, next.tension[side]));
-                    }
-                    None => return None,
-                },
-                Tie::Hangs(force) => {
-                    section.ties[side] = Tie::Loose(force);
+                }
+                EndCondition::Hangs(force) => {
+                    section.end_conditions[side] = EndCondition::Loose(force);
                     let place = self.curve.place(p, self.chain_range);
                     let along = force.dot(&place.tangent);
                     // An end that is pressed down rubs by itself.
@@ -338,7 +345,7 @@ impl Run<'_> {
         if !beyond {
             return Some((p, station.arc_length, tension));
         }
-        let way = self.curve.length(p, q, self.chain_range) / course.law.stretch(tension);
+        let way = self.curve.length(p, q, self.chain_range) / context.law.stretch(tension);
         Some((q, station.arc_length + way, tension))
     }
 

@@ -1,9 +1,9 @@
 //! These functions lay the material of a cable along its taut string.
 
 use crate::math::smaller;
-use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::boundary::friction_memory::{Ends, Knot, TensionProfile};
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Tie};
+use crate::model::spans::boundary::capstan::ContactPath;
+use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, TensionProfile};
+use crate::model::spans::cable_section::{CableSection, Contact, EndCondition, SolveContext};
 
 /// Rounds of moving a free end to where the material ends. What is off is in each the strain times
 /// what it was: six leave 1e-12 of it at a strain of 1 %, which is rounding.
@@ -11,20 +11,25 @@ const END_FIT_ROUNDS: usize = 6;
 
 /// Material as it lies along the taut string, strained by `stretch`, from the end that is held;
 /// from the first contact as the route has it where none is.
-pub(in crate::model::spans) fn measure(section: &mut CableSection, course: &Course, loose: [bool; 2], stretch: f64) {
+pub(in crate::model::spans) fn measure(
+    section: &mut CableSection,
+    context: &SolveContext,
+    loose: [bool; 2],
+    stretch: f64,
+) {
     let n = section.contacts.len();
-    let point = |section: &CableSection, k: usize, side: usize| section.ends_of(course, k)[side];
+    let point = |section: &CableSection, k: usize, side: usize| section.span_ends(context, k)[side];
     let chord = |section: &CableSection, k: usize| match (point(section, k, 0), point(section, k, 1)) {
         (Some(a), Some(b)) => (b - a).norm() / stretch,
         _ => 0.0,
     };
-    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.chain_range) / stretch;
+    let own = |c: &Contact| context.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.chain_range) / stretch;
     if loose[1] {
         let mut s = if loose[0] { section.contacts.first().map_or(0.0, |c| c.ends.s[0]) } else { section.from };
         for j in 0..n {
             s += if loose[0] && j == 0 { 0.0 } else { chord(section, j) };
             let length = own(&section.contacts[j]);
-            let last = j + 1 == n && !section.ties[1].has_span();
+            let last = j + 1 == n && !section.end_conditions[1].has_span();
             section.contacts[j].ends.s = [s, if last { section.to } else { s + length }];
             s += length;
         }
@@ -33,7 +38,7 @@ pub(in crate::model::spans) fn measure(section: &mut CableSection, course: &Cour
         for j in (0..n).rev() {
             s -= chord(section, j + 1);
             let length = own(&section.contacts[j]);
-            let first = j == 0 && !section.ties[0].has_span();
+            let first = j == 0 && !section.end_conditions[0].has_span();
             section.contacts[j].ends.s = [if first { section.from } else { s - length }, s];
             s -= length;
         }
@@ -41,46 +46,46 @@ pub(in crate::model::spans) fn measure(section: &mut CableSection, course: &Cour
 }
 
 /// Keeps material in order, and some of it in each span.
-pub(in crate::model::spans) fn spread(section: &mut CableSection, course: &Course) {
-    let least = course.settings.initial.contact_spacing_fraction * (section.to - section.from);
+pub(in crate::model::spans) fn spread(section: &mut CableSection, context: &SolveContext) {
+    let least = context.settings.initial.contact_spacing_fraction * (section.to - section.from);
     let n = section.contacts.len();
     let mut before = section.from;
     for j in 0..n {
-        let is_end = j == 0 && !section.ties[0].has_span();
+        let is_end = j == 0 && !section.end_conditions[0].has_span();
         let room = section.to - least * (n - j) as f64;
         let e = &mut section.contacts[j].ends;
         if !is_end && e.s[0] < before + least {
             let shift = before + least - e.s[0];
             e.s = [e.s[0] + shift, e.s[1] + shift];
         }
-        let last = j + 1 == n && !section.ties[1].has_span();
+        let last = j + 1 == n && !section.end_conditions[1].has_span();
         if !last && e.s[1] > room {
             let shift = room - e.s[1];
             e.s = [e.s[0] + shift, e.s[1] + shift];
         }
         before = e.s[1];
     }
-    let loose = [0, 1].map(|side| matches!(section.ties[side], Tie::Loose(_)));
-    let tied = [0, 1].map(|side| matches!(section.ties[side], Tie::Lies(_)));
+    let loose = [0, 1].map(|side| matches!(section.end_conditions[side], EndCondition::Loose(_)));
+    let tied = [0, 1].map(|side| matches!(section.end_conditions[side], EndCondition::Lies(_)));
     for (j, c) in section.contacts.iter_mut().enumerate() {
-        let track = course.track(c);
+        let contact_path = context.contact_path(c);
         let free = [loose[0] && j == 0, loose[1] && j + 1 == n];
         let held = [tied[0] && j == 0, tied[1] && j + 1 == n];
         for side in 0..2 {
-            if let Tie::Loose(force) = section.ties[side] {
-                c.ends.t[side] = if free[side] { course.pull(c, side, force) } else { c.ends.t[side] };
+            if let EndCondition::Loose(force) = section.end_conditions[side] {
+                c.ends.t[side] = if free[side] { context.pull(c, side, force) } else { c.ends.t[side] };
             }
         }
-        c.history = lay_down(&track, &c.ends, [free, held]);
+        c.history = lay_down(&contact_path, &c.ends, [free, held]);
         // A free end lies where the material ends.
         for side in (0..2).filter(|&side| free[side]) {
             for _ in 0..END_FIT_ROUNDS {
                 // Laid from a free end it is the other end that does not fit.
                 let other = if free[1 - side] { side } else { 1 - side };
-                let (tension, s) = c.history.at(&track, c.ends.p[other]);
-                let off = (s - c.ends.s[other]) * course.law.stretch(tension);
+                let (tension, s) = c.history.at(&contact_path, c.ends.p[other]);
+                let off = (s - c.ends.s[other]) * context.law.stretch(tension);
                 c.ends.p[side] += if other == side { -off } else { off };
-                c.history = lay_down(&track, &c.ends, [free, held]);
+                c.history = lay_down(&contact_path, &c.ends, [free, held]);
             }
         }
     }
@@ -89,13 +94,14 @@ pub(in crate::model::spans) fn spread(section: &mut CableSection, course: &Cours
 /// A contact as it is laid: from its end that is free, where its tension is known, or held, where
 /// its material is; else from its middle. With two free ends it is laid with the tension of the one
 /// that draws less.
-fn lay_down(track: &Track<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> TensionProfile {
-    let end = |side: usize| Knot { coordinate: e.p[side], arc_length: e.s[side], tension: e.t[side], mobilised: 0.0 };
+fn lay_down(contact_path: &ContactPath<'_>, e: &Ends, [free, held]: [[bool; 2]; 2]) -> TensionProfile {
+    let end =
+        |side: usize| Breakpoint { coordinate: e.p[side], arc_length: e.s[side], tension: e.t[side], mobilised: 0.0 };
     let start = match (free, held) {
         ([true, false], _) | ([false, false], [true, false]) => end(0),
         ([false, true], _) | ([false, false], [false, true]) => end(1),
-        ([true, true], _) => return TensionProfile::laid_from_middle(track, e, smaller(e.t[0], e.t[1])),
-        ([false, false], _) => return TensionProfile::laid_from_middle(track, e, 0.5 * (e.t[0] + e.t[1])),
+        ([true, true], _) => return TensionProfile::laid_from_middle(contact_path, e, smaller(e.t[0], e.t[1])),
+        ([false, false], _) => return TensionProfile::laid_from_middle(contact_path, e, 0.5 * (e.t[0] + e.t[1])),
     };
-    TensionProfile::laid(track, start, e.p)
+    TensionProfile::laid(contact_path, start, e.p)
 }

@@ -3,19 +3,19 @@
 
 use crate::contact::World;
 use crate::math::{Vec2, bounded};
-use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout, Part};
+use crate::model::spans::boundary_conditions::{BoundaryConditions, SectionBounds, SectionLayout};
 
 /// Part of the way from one end to the other by which a route that is led over things keeps clear
 /// of them. Smaller: rounding may let it touch. Larger: it goes round more than it needs to.
 const ROUTE_CLEARANCE_FRACTION: f64 = 1e-4;
 
 /// A route with the length along it.
-pub(in crate::model::spans) struct Way {
+pub(in crate::model::spans) struct RoutePolyline {
     pub points: Vec<Vec2>,
     pub along: Vec<f64>,
 }
 
-impl Way {
+impl RoutePolyline {
     fn new(points: Vec<Vec2>) -> Self {
         let mut along = vec![0.0; points.len()];
         for k in 1..points.len() {
@@ -118,14 +118,18 @@ fn leaves(a: Vec2, d: Vec2, radius: f64) -> f64 {
 }
 
 /// The route of a section, and where its pulleys are on it.
-pub(in crate::model::spans) fn way(layout: &Layout, part: &Part, instant: &BoundaryConditions) -> Way {
+pub(in crate::model::spans) fn section_route(
+    layout: &SectionLayout,
+    part: &SectionBounds,
+    instant: &BoundaryConditions,
+) -> RoutePolyline {
     let p = &layout.problem;
     let place = |k: usize| instant.places[k];
     let ends = part.supports.map(|s| s.map(place));
     let stops: Vec<Vec2> =
         ends[0].into_iter().chain(part.pulleys.iter().map(|q| place(q.support))).chain(ends[1]).collect();
     if p.route.len() > 1 {
-        let whole = Way::new(p.route.clone());
+        let whole = RoutePolyline::new(p.route.clone());
         // The part of the route between the grips.
         let a = ends[0].filter(|_| part.material[0] > 0.0).map_or(0.0, |at| whole.nearest(at, 0.0, None));
         let b = ends[1].filter(|_| part.material[1] < p.length).map_or(whole.total(), |at| whole.nearest(at, a, None));
@@ -137,7 +141,7 @@ pub(in crate::model::spans) fn way(layout: &Layout, part: &Part, instant: &Bound
             }
         }
         points.extend(ends[1].or(whole.points.last().copied()));
-        return Way::new(points);
+        return RoutePolyline::new(points);
     }
     let mut points: Vec<Vec2> = Vec::new();
     let used: f64 = stops.windows(2).map(|w| (w[1] - w[0]).norm()).sum();
@@ -159,7 +163,7 @@ pub(in crate::model::spans) fn way(layout: &Layout, part: &Part, instant: &Bound
     if let (None, Some(last)) = (part.supports[1], stops.last()) {
         points.push(last + tail(1));
     }
-    Way::new(points)
+    RoutePolyline::new(points)
 }
 
 /// A way from `a` to `b` where the straight one is blocked: out from under what either is under,

@@ -8,12 +8,12 @@
 //! not the place.
 
 use crate::contact::World;
-use crate::contact::swept_corners::Corner;
+use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::{Vec2, cross};
 
 /// Points that stand for a post.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) struct Ring {
+pub(in crate::model::spans) struct PostPolygon {
     pub points: usize,
     /// Part of its radius on which they lie: inside it, as routes drawn as polygons cut into a
     /// post.
@@ -23,8 +23,11 @@ pub(in crate::model::spans) struct Ring {
 /// Resolutions of posts: coarse at first, finer where the coarse one shows nothing to lie on and
 /// nothing else holds the cable: a string that hardly bends round a post passes between few points
 /// far inside it. Nearer at once: routes drawn roughly pass on the wrong side.
-pub(in crate::model::spans) const RINGS: [Ring; 3] =
-    [Ring { points: 12, part: 0.5 }, Ring { points: 24, part: 0.9 }, Ring { points: 96, part: 0.99 }];
+pub(in crate::model::spans) const POST_POLYGONS: [PostPolygon; 3] = [
+    PostPolygon { points: 12, part: 0.5 },
+    PostPolygon { points: 24, part: 0.9 },
+    PostPolygon { points: 96, part: 0.99 },
+];
 /// A move of the end smaller than this part of a leg is no move: the corner just left is not met
 /// again by rounding.
 const SAME: f64 = 1e-12;
@@ -33,8 +36,8 @@ const MOST: usize = 8;
 
 /// A corner the string bends round.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) struct Bend {
-    pub corner: Corner,
+pub(in crate::model::spans) struct PathCorner {
+    pub corner: ImpassableCorner,
     index: usize,
     /// +1 where the string turns right round it (it lies on the right), −1 left.
     pub sense: f64,
@@ -43,19 +46,19 @@ pub(in crate::model::spans) struct Bend {
 }
 
 /// Convex corners and posts.
-pub(in crate::model::spans) fn corners(world: &World, ring: Ring) -> Vec<Corner> {
+pub(in crate::model::spans) fn corners(world: &World, ring: PostPolygon) -> Vec<ImpassableCorner> {
     let mut out = Vec::new();
     for (body, b) in world.geometry().bodies().iter().enumerate() {
         if let Some(center) = b.center {
             for k in 0..ring.points {
                 let (sin, cos) = (std::f64::consts::TAU * k as f64 / ring.points as f64).sin_cos();
                 let at = center + Vec2::new(cos, sin) * (ring.part * b.offset);
-                out.push(Corner { at, body, feature: b.first + 1 });
+                out.push(ImpassableCorner { at, body, feature: b.first + 1 });
             }
         }
         for c in (0..=b.edges.len()).filter_map(|k| b.corner(k)) {
-            if b.juts_out(&c) {
-                out.push(Corner { at: c.at, body, feature: c.feature });
+            if b.is_exposed(&c) {
+                out.push(ImpassableCorner { at: c.at, body, feature: c.feature });
             }
         }
     }
@@ -63,9 +66,9 @@ pub(in crate::model::spans) fn corners(world: &World, ring: Ring) -> Vec<Corner>
 }
 
 /// The bodies that the string bends round, in order. None where it finds no end.
-pub(in crate::model::spans) fn pull(route: &[Vec2], corners: &[Corner]) -> Option<Vec<Bend>> {
+pub(in crate::model::spans) fn taut_string(route: &[Vec2], corners: &[ImpassableCorner]) -> Option<Vec<PathCorner>> {
     let start = *route.first()?;
-    let mut bends: Vec<Bend> = Vec::new();
+    let mut bends: Vec<PathCorner> = Vec::new();
     for (leg, w) in route.windows(2).enumerate() {
         let (from, way) = (w[0], w[1] - w[0]);
         if way.norm() == 0.0 {
@@ -87,7 +90,7 @@ pub(in crate::model::spans) fn pull(route: &[Vec2], corners: &[Corner]) -> Optio
                 (_, Some((u, index))) => {
                     // It turns the way the end goes round the corner.
                     let sense = -cross(from + way * u - pivot, way).signum();
-                    bends.push(Bend { corner: corners[index], index, sense, leg });
+                    bends.push(PathCorner { corner: corners[index], index, sense, leg });
                     (done, skip) = (u, None);
                 }
                 _ => break,
@@ -99,7 +102,7 @@ pub(in crate::model::spans) fn pull(route: &[Vec2], corners: &[Corner]) -> Optio
 
 /// Returns when the string leaves its last corner: the end crosses the line from the corner before
 /// through it.
-fn leaves(start: Vec2, bends: &[Bend], from: Vec2, way: Vec2, done: f64) -> Option<f64> {
+fn leaves(start: Vec2, bends: &[PathCorner], from: Vec2, way: Vec2, done: f64) -> Option<f64> {
     let last = bends.last()?;
     let before = bends.len().checked_sub(2).and_then(|k| bends.get(k)).map_or(start, |b| b.corner.at);
     let along = last.corner.at - before;
@@ -116,7 +119,7 @@ fn leaves(start: Vec2, bends: &[Bend], from: Vec2, way: Vec2, done: f64) -> Opti
 
 /// The first corner the string meets: how far along the leg, and which.
 fn meets(
-    corners: &[Corner],
+    corners: &[ImpassableCorner],
     pivot: Vec2,
     own: Option<usize>,
     from: Vec2,

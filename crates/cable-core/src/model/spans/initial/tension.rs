@@ -1,14 +1,14 @@
 //! This module lays a run along its shortest path.
 
 use crate::model::spans::boundary::friction_memory::TensionProfile;
-use crate::model::spans::cable_section::{CableSection, Contact, Course};
+use crate::model::spans::cable_section::{CableSection, Contact, SolveContext};
 use crate::model::spans::initial::material::{measure, spread};
 
 /// Length of the taut string through what it touches, m.
-pub(in crate::model::spans) fn taut_length(section: &CableSection, course: &Course) -> f64 {
-    let own = |c: &Contact| course.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.chain_range);
+pub(in crate::model::spans) fn taut_length(section: &CableSection, context: &SolveContext) -> f64 {
+    let own = |c: &Contact| context.curves[c.curve].length(c.ends.p[0], c.ends.p[1], c.chain_range);
     let spans: f64 = (0..section.spans())
-        .filter_map(|k| match section.ends_of(course, k) {
+        .filter_map(|k| match section.span_ends(context, k) {
             [Some(a), Some(b)] => Some((b - a).norm()),
             _ => None,
         })
@@ -17,28 +17,28 @@ pub(in crate::model::spans) fn taut_length(section: &CableSection, course: &Cour
 }
 
 /// Spreads the material of a section that is held at both ends evenly along its taut string.
-pub(in crate::model::spans) fn tighten(section: &mut CableSection, course: &Course) {
-    let stretch = taut_length(section, course) / (section.to - section.from);
+pub(in crate::model::spans) fn tighten(section: &mut CableSection, context: &SolveContext) {
+    let stretch = taut_length(section, context) / (section.to - section.from);
     if !(stretch > 0.0) {
         return;
     }
-    measure(section, course, [false, true], stretch);
-    spread(section, course);
+    measure(section, context, [false, true], stretch);
+    spread(section, context);
     for k in 0..section.spans() {
         if section.has_span(k)
-            && let Some(g) = section.solve_span(course, k)
+            && let Some(g) = section.solve_span(context, k)
         {
             section.forces[k] = g;
         }
     }
-    section.take_tensions(course);
+    section.update_end_tensions(context);
 }
 
 /// Along its taut string, what touches with the tension of the spans beside it.
-pub(in crate::model::spans) fn relay(section: &mut CableSection, course: &Course) {
-    tighten(section, course);
+pub(in crate::model::spans) fn equalise_tensions(section: &mut CableSection, context: &SolveContext) {
+    tighten(section, context);
     for c in &mut section.contacts {
         let even = 0.5 * (c.ends.t[0] + c.ends.t[1]);
-        c.history = TensionProfile::laid_from_middle(&course.track(c), &c.ends, even);
+        c.history = TensionProfile::laid_from_middle(&context.contact_path(c), &c.ends, even);
     }
 }

@@ -1,11 +1,11 @@
 //! The system of a run has its unknowns, its equations, and their derivatives.
 
 use crate::math::{Vec2, cross, larger};
-use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::boundary::capstan::ContactPath;
+use crate::model::spans::boundary::curve::BoundaryPoint;
 use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::boundary::segment_cursor::Pivot;
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Tie};
+use crate::model::spans::boundary::segment_cursor::CachedPiece;
+use crate::model::spans::cable_section::{CableSection, Contact, EndCondition, SolveContext};
 use crate::model::spans::contact::equations;
 use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::contact::point_load;
@@ -30,7 +30,7 @@ pub(super) fn gather(section: &CableSection, out: &mut Vec<f64>) {
 /// True if the tension of that side of contact j is an unknown of its own.
 pub(super) fn has_tension_unknown(section: &CableSection, j: usize, side: usize) -> bool {
     let outer = if side == 0 { j == 0 } else { j + 1 == section.contacts.len() };
-    outer && matches!(section.ties[side], Tie::Lies(_))
+    outer && matches!(section.end_conditions[side], EndCondition::Lies(_))
 }
 
 /// True for the ends of contact j that are held on the boundary.
@@ -41,7 +41,7 @@ pub(super) fn pinned(section: &CableSection, j: usize) -> [bool; 2] {
 /// True if that side of contact j is an end of the section that lies.
 fn is_end(section: &CableSection, j: usize, side: usize) -> bool {
     let outer = if side == 0 { j == 0 } else { j + 1 == section.contacts.len() };
-    outer && !section.ties[side].has_span()
+    outer && !section.end_conditions[side].has_span()
 }
 
 fn slot(section: &CableSection, j: usize, side: usize) -> f64 {
@@ -49,14 +49,14 @@ fn slot(section: &CableSection, j: usize, side: usize) -> f64 {
     if has_tension_unknown(section, j, side) { e.t[side] } else { e.p[side] }
 }
 
-pub(super) fn scatter(section: &mut CableSection, course: &Course, x: &[f64]) {
+pub(super) fn scatter(section: &mut CableSection, context: &SolveContext, x: &[f64]) {
     for k in 0..section.spans() {
         let x = &x[6 * k..];
         section.forces[k] = Vec2::new(x[0], x[1]);
         if k < section.contacts.len() {
             for side in 0..2 {
                 let (slot, s) = (x[2 + 2 * side], x[3 + 2 * side]);
-                let (own, marked) = (has_tension_unknown(section, k, side), section.is_marked(k, side));
+                let (own, marked) = (has_tension_unknown(section, k, side), section.has_load_material(k, side));
                 let c = &mut section.contacts[k];
                 let e = &mut c.ends;
                 // The material of a load is what it is, to the last digit.
@@ -71,7 +71,7 @@ pub(super) fn scatter(section: &mut CableSection, course: &Course, x: &[f64]) {
             }
         }
     }
-    section.take_tensions(course);
+    section.update_end_tensions(context);
 }
 
 /// The equations of a section at a state.
@@ -81,37 +81,37 @@ pub(super) struct System {
     /// The Jacobian.
     pub band: Band,
     /// The places of both ends of each contact, and the first with its piece.
-    pub spots: Vec<([Place; 2], Pivot)>,
+    pub end_points: Vec<([BoundaryPoint; 2], CachedPiece)>,
 }
 
 /// Works out the equations of a section where it is, and where each of its contacts sticks.
-pub(super) fn assemble(section: &mut CableSection, course: &Course, system: &mut System) {
+pub(super) fn assemble(section: &mut CableSection, context: &SolveContext, system: &mut System) {
     let n = count(section);
     system.residual.clear();
     system.residual.resize(n, 0.0);
     system.band.reset(n);
-    system.spots.clear();
-    let seen = |c: &Contact| Pivot::of_ends(&course.curves[c.curve], c.chain_range, &course.law, c.ends.p);
-    system.spots.extend(section.contacts.iter().map(seen));
+    system.end_points.clear();
+    let seen = |c: &Contact| CachedPiece::of_ends(&context.curves[c.curve], c.chain_range, &context.law, c.ends.p);
+    system.end_points.extend(section.contacts.iter().map(seen));
     for k in 0..section.spans() {
-        span_rows(section, course, k, system);
+        span_rows(section, context, k, system);
         if k < section.contacts.len() {
-            contact_rows(section, course, k, system);
+            contact_rows(section, context, k, system);
         }
     }
 }
 
 /// As [`assemble`], where nothing but the mode of contact j has changed since.
-pub(super) fn renew(section: &mut CableSection, course: &Course, j: usize, system: &mut System) {
+pub(super) fn renew(section: &mut CableSection, context: &SolveContext, j: usize, system: &mut System) {
     if section.contacts[j].is_load() {
         // A contact that is joined to it is held or let go with it.
-        return assemble(section, course, system);
+        return assemble(section, context, system);
     }
     for row in 6 * j + 2..6 * j + 6 {
         system.residual[row] = 0.0;
         system.band.clear(row);
     }
-    contact_rows(section, course, j, system);
+    contact_rows(section, context, j, system);
 }
 
 /// Lengths in hundredths of the section.
@@ -119,7 +119,7 @@ fn scale(section: &CableSection) -> f64 {
     100.0 / (section.to - section.from)
 }
 
-fn span_rows(section: &CableSection, course: &Course, k: usize, system: &mut System) {
+fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut System) {
     let (row, scale) = (6 * k, scale(section));
     let (r, band) = (&mut system.residual, &mut system.band);
     let m = section.contacts.len();
@@ -128,39 +128,39 @@ fn span_rows(section: &CableSection, course: &Course, k: usize, system: &mut Sys
         r[row] = (section.contacts[k - 1].ends.p[1] - section.contacts[k].ends.p[0]) * scale;
         band.add(row, row - 2, scale);
         band.add(row, row + 2, -scale);
-        let size = 1.0 / larger(section.forces[k].x.abs(), 1e-9 * course.law.load.norm());
+        let size = 1.0 / larger(section.forces[k].x.abs(), 1e-9 * context.law.load.norm());
         r[row + 1] = section.forces[k].y * size;
         band.add(row + 1, row + 1, size);
         return;
     }
     let known = if !section.has_span(k) {
         Some(section.forces[k])
-    } else if k == 0 && matches!(section.ties[0], Tie::Hangs(_)) {
-        section.hanging(course, 0)
-    } else if k == m && matches!(section.ties[1], Tie::Hangs(_)) {
-        section.hanging(course, 1)
+    } else if k == 0 && matches!(section.end_conditions[0], EndCondition::Hangs(_)) {
+        section.hanging(context, 0)
+    } else if k == m && matches!(section.end_conditions[1], EndCondition::Hangs(_)) {
+        section.hanging(context, 1)
     } else {
         None
     };
     if let Some(g) = known {
         let d = section.forces[k] - g;
-        let size = 1.0 / (g.norm() + course.law.load.norm() * (section.to - section.from)).max(f64::MIN_POSITIVE);
+        let size = 1.0 / (g.norm() + context.law.load.norm() * (section.to - section.from)).max(f64::MIN_POSITIVE);
         (r[row], r[row + 1]) = (d.x * size, d.y * size);
         band.add(row, row, size);
         band.add(row + 1, row + 1, size);
         return;
     }
-    let before = k.checked_sub(1).map(|j| &system.spots[j].0[1]);
-    let after = system.spots.get(k).map(|s| &s.0[0]);
-    let held = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
+    let before = k.checked_sub(1).map(|j| &system.end_points[j].0[1]);
+    let after = system.end_points.get(k).map(|s| &s.0[0]);
+    let held = |t: &EndCondition| if let EndCondition::Fixed(at) = t { Some(*at) } else { None };
     let ends = (
-        before.map_or_else(|| held(&section.ties[0]), |s| Some(s.at)),
-        after.map_or_else(|| held(&section.ties[1]), |s| Some(s.at)),
+        before.map_or_else(|| held(&section.end_conditions[0]), |s| Some(s.at)),
+        after.map_or_else(|| held(&section.end_conditions[1]), |s| Some(s.at)),
     );
     let (Some(a), Some(b)) = ends else { return };
     let (from, to) = section.material(k);
-    let (start, end) = (section.force(course, k, from), section.force(course, k, to));
-    let (way, compliance) = course.chain(from, to).reach(start);
+    let (start, end) = (section.force(context, k, from), section.force(context, k, to));
+    let (way, compliance) = context.chain(from, to).reach(start);
     let d = (way - (b - a)) * scale;
     (r[row], r[row + 1]) = (d.x, d.y);
     for i in 0..2 {
@@ -176,18 +176,18 @@ fn span_rows(section: &CableSection, course: &Course, k: usize, system: &mut Sys
         if !has_tension_unknown(section, k - 1, 1) {
             add(row - 2, place.tangent * place.stretch);
         }
-        add(row - 1, -course.rate(start));
+        add(row - 1, -context.rate(start));
     }
     if let Some(place) = after {
         add(row + 2, -place.tangent * place.stretch);
-        add(row + 3, course.rate(end));
+        add(row + 3, context.rate(end));
     }
 }
 
 /// The rows of a load that lies, see `point_load`.
-fn load_rows(section: &CableSection, course: &Course, j: usize, system: &mut System) {
+fn load_rows(section: &CableSection, context: &SolveContext, j: usize, system: &mut System) {
     let (r, b, scale) = (&mut system.residual, &mut system.band, scale(section));
-    let (c, place) = (&section.contacts[j], &system.spots[j].0[0]);
+    let (c, place) = (&section.contacts[j], &system.end_points[j].0[0]);
     let (row, p) = (6 * j + 2, c.ends.p[0]);
     // Its material stays as it is, and both of its ends are one.
     b.add(row, row + 1, scale);
@@ -195,13 +195,13 @@ fn load_rows(section: &CableSection, course: &Course, j: usize, system: &mut Sys
     r[row + 2] = (c.ends.p[1] - p) * scale;
     b.add(row + 2, row + 2, scale);
     b.add(row + 2, row, -scale);
-    let Mode::Slide(m) = c.mode else {
+    let Mode::Slip(m) = c.mode else {
         r[row + 1] = (p - point_load::held_at(c)) * scale;
         b.add(row + 1, row, scale);
         return;
     };
-    let load_balance = load_balance(section, course, j);
-    let size = 1.0 / larger(load_balance.size, 1e-9 * course.law.load.norm());
+    let load_balance = load_balance(section, context, j);
+    let size = 1.0 / larger(load_balance.size, 1e-9 * context.law.load.norm());
     let across = load_balance.tangent + load_balance.normal * m;
     r[row + 1] = load_balance.sum.dot(&across) * size;
     if place.turn != 0.0 {
@@ -218,18 +218,19 @@ fn load_rows(section: &CableSection, course: &Course, j: usize, system: &mut Sys
     }
 }
 
-fn contact_rows(section: &mut CableSection, course: &Course, j: usize, system: &mut System) {
+fn contact_rows(section: &mut CableSection, context: &SolveContext, j: usize, system: &mut System) {
     if section.contacts[j].is_load() {
-        return load_rows(section, course, j, system);
+        return load_rows(section, context, j, system);
     }
-    let (r, b, (spots, pivot), scale) = (&mut system.residual, &mut system.band, &system.spots[j], scale(section));
+    let (r, b, (end_points, cached_piece), scale) =
+        (&mut system.residual, &mut system.band, &system.end_points[j], scale(section));
     let c = &section.contacts[j];
-    let track = Track { pivot: Some(*pivot), ..course.track(c) };
+    let contact_path = ContactPath { cached_piece: Some(*cached_piece), ..context.contact_path(c) };
     let row = 6 * j + 2;
-    let (rows, held) = equations::rows(&track, &c.history, &c.ends, spots, c.mode, pinned(section, j));
+    let (rows, held) = equations::rows(&contact_path, &c.history, &c.ends, end_points, c.mode, pinned(section, j));
     section.contacts[j].held = held;
     let c = &section.contacts[j];
-    let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * course.law.load.norm());
+    let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * context.law.load.norm());
     let size = rows.of_tension.map(|of| if of { 1.0 / tension } else { scale });
     for i in 0..2 {
         r[row + 1 + i] = rows.residual[i] * size[i];
@@ -269,15 +270,15 @@ fn contact_rows(section: &mut CableSection, course: &Course, j: usize, system: &
             }
             continue;
         }
-        let Some(force) = section.force_at_contact(course, j, side) else { continue };
-        let place = &spots[side];
+        let Some(force) = section.force_at_contact(context, j, side) else { continue };
+        let place = &end_points[side];
         let t = force.norm();
         r[tangency] = cross(force, place.tangent) / t;
         // Pointing back is not tangent: keep Newton from it.
         if force.dot(&place.tangent) < 0.0 {
             r[tangency] += 2.0 * r[tangency].signum();
         }
-        let (load, u, g) = (course.law.load, force / t, 6 * (j + side));
+        let (load, u, g) = (context.law.load, force / t, 6 * (j + side));
         // d(F × t)/T with F's own size held.
         let across = Vec2::new(place.tangent.y, -place.tangent.x) / t;
         b.add(tangency, g, across.x);

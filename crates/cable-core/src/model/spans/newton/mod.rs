@@ -21,10 +21,10 @@ pub(in crate::model::spans) mod stability;
 mod tests;
 
 use crate::math::{Vec2, larger, smaller};
-use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::boundary::friction_memory::{Held, Mode, TensionProfile};
+use crate::model::spans::boundary::capstan::ContactPath;
+use crate::model::spans::boundary::friction_memory::{Mode, StickZone, TensionProfile};
 use crate::model::spans::boundary_conditions::BoundaryConditions;
-use crate::model::spans::cable_section::{CableSection, Course};
+use crate::model::spans::cable_section::{CableSection, SolveContext};
 use crate::model::spans::contact::equations;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::newton::jacobian::{System, assemble, gather, has_tension_unknown, pinned, renew, scatter};
@@ -43,7 +43,7 @@ const PIECE_END_OVERSHOOT: f64 = 1e-9;
 /// Memory of a solve, kept between steps. A copy has none of its own: what is in it means nothing
 /// between two steps.
 #[derive(Debug, Default)]
-pub(super) struct Work {
+pub(super) struct Workspace {
     system: System,
     rhs: Vec<f64>,
     saved: Vec<f64>,
@@ -64,7 +64,7 @@ pub(super) struct Work {
     pub past: TensionProfile,
 }
 
-impl Clone for Work {
+impl Clone for Workspace {
     fn clone(&self) -> Self {
         Self::default()
     }
@@ -72,7 +72,7 @@ impl Clone for Work {
 
 /// Newton did not converge.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stall {
+pub(super) struct NotConverged {
     pub iterations: usize,
     /// Scaled residual left.
     pub residual: f64,
@@ -82,7 +82,7 @@ pub(super) struct Stall {
 
 /// Cost of a solve.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Solved {
+pub(super) struct Converged {
     pub iterations: usize,
     pub residual: f64,
 }
@@ -106,23 +106,23 @@ fn squares(r: &[f64]) -> f64 {
 
 /// The residual that will do, of a section whose contacts have the tensions of the spans beside
 /// them.
-fn tolerance(section: &CableSection, course: &Course) -> f64 {
-    let (least, wanted) = (least_tension(section, course), course.settings.newton.residual);
-    let stiff = if least.is_finite() && least > 0.0 { STIFF_RESIDUAL * course.law.stiffness / least } else { 0.0 };
+fn tolerance(section: &CableSection, context: &SolveContext) -> f64 {
+    let (least, wanted) = (least_tension(section, context), context.settings.newton.residual);
+    let stiff = if least.is_finite() && least > 0.0 { STIFF_RESIDUAL * context.law.stiffness / least } else { 0.0 };
     larger(wanted, stiff.min(1e3 * wanted))
 }
 
 /// True if a residual that suffices leaves forces with too great an error: a length that is missing
 /// is strain, and that times EA is force.
-fn is_rough(section: &CableSection, course: &Course, residual: f64) -> bool {
-    let least = least_tension(section, course);
+fn is_rough(section: &CableSection, context: &SolveContext, residual: f64) -> bool {
+    let least = least_tension(section, context);
     least.is_finite()
         && residual
-            > larger(RESIDUAL_ROUNDING, course.settings.newton.refined_residual_factor * least / course.law.stiffness)
+            > larger(RESIDUAL_ROUNDING, context.settings.newton.refined_residual_factor * least / context.law.stiffness)
 }
 
 /// The least tension at an end of a span, N; infinite where there is no span.
-fn least_tension(section: &CableSection, course: &Course) -> f64 {
+fn least_tension(section: &CableSection, context: &SolveContext) -> f64 {
     let mut least = f64::INFINITY;
     let mut take = |t: f64| {
         if t < least {
@@ -132,7 +132,7 @@ fn least_tension(section: &CableSection, course: &Course) -> f64 {
     let last = section.contacts.len();
     for (k, s) in [(0, section.from), (last, section.to)] {
         if section.has_span(k) {
-            take(section.force(course, k, s).norm());
+            take(section.force(context, k, s).norm());
         }
     }
     for (j, c) in section.contacts.iter().enumerate() {
@@ -146,8 +146,8 @@ fn least_tension(section: &CableSection, course: &Course) -> f64 {
 }
 
 /// Largest part of a step that keeps spans and does not jump turns.
-fn max_step(section: &CableSection, course: &Course, x: &[f64], d: &[f64]) -> f64 {
-    let tuned = &course.settings.newton;
+fn max_step(section: &CableSection, context: &SolveContext, x: &[f64], d: &[f64]) -> f64 {
+    let tuned = &context.settings.newton;
     let mut alpha = 1.0f64;
     for k in 0..section.spans() {
         if section.has_span(k) {
@@ -160,13 +160,13 @@ fn max_step(section: &CableSection, course: &Course, x: &[f64], d: &[f64]) -> f6
             }
         }
         let Some(c) = section.contacts.get(k) else { continue };
-        let track = course.track(c);
+        let contact_path = context.contact_path(c);
         for side in 0..2 {
             if has_tension_unknown(section, k, side) {
                 continue;
             }
             let (p, dp) = (x[6 * k + 2 + 2 * side], d[6 * k + 2 + 2 * side]);
-            if alpha * dp.abs() > tuned.max_turn && (track.turns(p) || track.turns(p + alpha * dp)) {
+            if alpha * dp.abs() > tuned.max_turn && (contact_path.turns(p) || contact_path.turns(p + alpha * dp)) {
                 alpha = tuned.max_turn / dp.abs();
             }
         }
@@ -179,20 +179,20 @@ fn max_step(section: &CableSection, course: &Course, x: &[f64], d: &[f64]) -> f6
 ///
 /// Round an arc the direction turns by one per rad, along an edge the cable leaves it by w/T per
 /// metre: a step that is right on one of them says nothing of the other, and half of it less.
-fn borders(section: &CableSection, course: &Course, x: &[f64], d: &[f64], mut each: impl FnMut(usize, f64)) {
+fn borders(section: &CableSection, context: &SolveContext, x: &[f64], d: &[f64], mut each: impl FnMut(usize, f64)) {
     for (k, c) in section.contacts.iter().enumerate() {
-        let track = course.track(c);
+        let contact_path = context.contact_path(c);
         for side in 0..2 {
             let index = 6 * k + 2 + 2 * side;
             let (p, dp) = (x[index], d[index]);
             if has_tension_unknown(section, k, side) || dp == 0.0 {
                 continue;
             }
-            let i = track.curve.locate(p, c.chain_range);
+            let i = contact_path.curve.locate(p, c.chain_range);
             let beyond = PIECE_END_OVERSHOOT * (1.0 + p.abs());
             let way = match dp > 0.0 {
-                true if i < c.chain_range.last => track.curve.end(i) - p + beyond,
-                false if i > c.chain_range.first => track.curve.origin(i) - p - beyond,
+                true if i < c.chain_range.last => contact_path.curve.end(i) - p + beyond,
+                false if i > c.chain_range.first => contact_path.curve.origin(i) - p - beyond,
                 _ => continue,
             };
             each(index, way / dp);
@@ -201,52 +201,56 @@ fn borders(section: &CableSection, course: &Course, x: &[f64], d: &[f64], mut ea
 }
 
 /// Solves a section from where it is. On an error it is left wherever the iteration was.
-pub(super) fn solve(section: &mut CableSection, course: &Course, work: &mut Work) -> Result<Solved, Stall> {
-    let tuned = &course.settings.newton;
-    section.take_tensions(course);
+pub(super) fn solve(
+    section: &mut CableSection,
+    context: &SolveContext,
+    workspace: &mut Workspace,
+) -> Result<Converged, NotConverged> {
+    let tuned = &context.settings.newton;
+    section.update_end_tensions(context);
     for c in &mut section.contacts {
-        c.flips = 0;
-        if course.mobilised != 0.0 && c.kink().is_none() {
-            c.mode = Mode::Slide(course.mobilised * course.friction(c));
+        c.mode_changes = 0;
+        if context.mobilised != 0.0 && c.kink().is_none() {
+            c.mode = Mode::Slip(context.mobilised * context.friction(c));
         }
     }
     let (mut best, mut stalled, mut iterations, mut polished) = (f64::INFINITY, 0, 0, f64::INFINITY);
-    assemble(section, course, &mut work.system);
+    assemble(section, context, &mut workspace.system);
     loop {
-        let (mut worst, mut at) = norm(&work.system.residual);
-        let done = worst <= tolerance(section, course);
+        let (mut worst, mut at) = norm(&workspace.system.residual);
+        let done = worst <= tolerance(section, context);
         if worst <= tuned.mode_residual || stalled >= tuned.mode_stalled_iterations {
             let (changed, content) = change_modes(
                 section,
-                course,
+                context,
                 if done { 4 * tuned.max_mode_changes } else { tuned.max_mode_changes },
-                &mut work.system,
+                &mut workspace.system,
             );
             if changed {
-                (worst, at) = norm(&work.system.residual);
+                (worst, at) = norm(&workspace.system.residual);
                 (best, stalled) = (f64::INFINITY, 0);
                 // In rounding at the edge of the cone another mode changes nothing: nothing is left
                 // to solve.
-                if worst <= tolerance(section, course) {
+                if worst <= tolerance(section, context) {
                     continue;
                 }
             } else if done {
                 // For as long as it gains: where a tension vanishes, Newton's method is of the
                 // first order.
-                if content && worst < 0.5 * polished && is_rough(section, course, worst) {
+                if content && worst < 0.5 * polished && is_rough(section, context, worst) {
                     (polished, iterations) = (worst, iterations + 1);
-                    if step(section, course, work) {
+                    if step(section, context, workspace) {
                         continue;
                     }
                 }
-                return if content || modes_agree(section, course, &work.system) {
-                    Ok(Solved { iterations, residual: worst })
+                return if content || modes_agree(section, context, &workspace.system) {
+                    Ok(Converged { iterations, residual: worst })
                 } else {
-                    Err(Stall { iterations, residual: worst, at: at / 6 })
+                    Err(NotConverged { iterations, residual: worst, at: at / 6 })
                 };
             }
         }
-        let stall = move |residual: f64| Stall { iterations, residual, at: at / 6 };
+        let stall = move |residual: f64| NotConverged { iterations, residual, at: at / 6 };
         if worst < 0.5 * best {
             (best, stalled) = (worst, 0);
         } else {
@@ -254,15 +258,15 @@ pub(super) fn solve(section: &mut CableSection, course: &Course, work: &mut Work
         }
         let over = !worst.is_finite() || iterations == tuned.max_iterations || stalled > tuned.max_stalled;
         iterations += usize::from(!over);
-        if over || !step(section, course, work) {
-            if !over && change_modes(section, course, tuned.max_mode_changes, &mut work.system).0 {
+        if over || !step(section, context, workspace) {
+            if !over && change_modes(section, context, tuned.max_mode_changes, &mut workspace.system).0 {
                 continue;
             }
             // Rounding: nothing is gained any more.
-            return if worst <= tuned.stalled_residual_factor * tolerance(section, course)
-                && modes_agree(section, course, &work.system)
+            return if worst <= tuned.stalled_residual_factor * tolerance(section, context)
+                && modes_agree(section, context, &workspace.system)
             {
-                Ok(Solved { iterations, residual: worst })
+                Ok(Converged { iterations, residual: worst })
             } else {
                 Err(stall(worst))
             };
@@ -271,51 +275,54 @@ pub(super) fn solve(section: &mut CableSection, course: &Course, work: &mut Work
 }
 
 /// The mode that the state of contact j asks for.
-fn required_mode(section: &CableSection, course: &Course, system: &System, j: usize, patience: f64) -> Mode {
+fn required_mode(section: &CableSection, context: &SolveContext, system: &System, j: usize, patience: f64) -> Mode {
     let c = &section.contacts[j];
-    if course.mobilised != 0.0 && c.kink().is_none() {
-        return Mode::Slide(course.mobilised * course.friction(c));
+    if context.mobilised != 0.0 && c.kink().is_none() {
+        return Mode::Slip(context.mobilised * context.friction(c));
     }
     if c.is_load() {
-        return point_load::next_mode(section, course, j, patience);
+        return point_load::next_mode(section, context, j, patience);
     }
     // A contact that holds within its cone goes on so, and a smooth one slides.
-    if matches!((c.mode, c.held), (Mode::Hold, Some(Held::Between(_) | Held::Meet(_)))) && course.friction(c) > 0.0 {
+    if matches!((c.mode, c.held), (Mode::Stick, Some(StickZone::Between(_) | StickZone::Meet(_))))
+        && context.friction(c) > 0.0
+    {
         return c.mode;
     }
-    let track = Track { pivot: system.spots.get(j).map(|s| s.1), ..course.track(c) };
-    equations::next_mode(&track, &c.history, &c.ends, c.held, c.mode, pinned(section, j), patience)
+    let contact_path = ContactPath { cached_piece: system.end_points.get(j).map(|s| s.1), ..context.contact_path(c) };
+    equations::next_mode(&contact_path, &c.history, &c.ends, c.held, c.mode, pinned(section, j), patience)
 }
 
 /// True if every contact is in the mode that its state asks for; the system is that of the state.
-fn modes_agree(section: &CableSection, course: &Course, system: &System) -> bool {
-    let tuned = &course.settings.newton;
+fn modes_agree(section: &CableSection, context: &SolveContext, system: &System) -> bool {
+    let tuned = &context.settings.newton;
     // Rounding grows with the stiffness as the residual does.
-    let patience = tuned.cycle_rounding_factor * tolerance(section, course) / tuned.residual;
-    (0..section.contacts.len()).all(|j| required_mode(section, course, system, j, patience) == section.contacts[j].mode)
+    let patience = tuned.cycle_rounding_factor * tolerance(section, context) / tuned.residual;
+    (0..section.contacts.len())
+        .all(|j| required_mode(section, context, system, j, patience) == section.contacts[j].mode)
 }
 
 /// Gives contacts the mode they ask for; whether any was changed, and whether none asked for
 /// another.
-fn change_modes(section: &mut CableSection, course: &Course, most: u32, system: &mut System) -> (bool, bool) {
-    let tuned = &course.settings.newton;
+fn change_modes(section: &mut CableSection, context: &SolveContext, most: u32, system: &mut System) -> (bool, bool) {
+    let tuned = &context.settings.newton;
     let (mut changed, mut content) = (false, true);
     for j in 0..section.contacts.len() {
-        let flips = section.contacts[j].flips;
+        let mode_changes = section.contacts[j].mode_changes;
         let next = required_mode(
             section,
-            course,
+            context,
             system,
             j,
-            if flips < tuned.max_mode_changes { 1.0 } else { tuned.cycle_rounding_factor },
+            if mode_changes < tuned.max_mode_changes { 1.0 } else { tuned.cycle_rounding_factor },
         );
         let c = &mut section.contacts[j];
         content &= next == c.mode;
-        if next != c.mode && c.flips < most {
+        if next != c.mode && c.mode_changes < most {
             c.mode = next;
-            c.flips += 1;
+            c.mode_changes += 1;
             changed = true;
-            renew(section, course, j, system);
+            renew(section, context, j, system);
         }
     }
     (changed, content)
@@ -323,45 +330,45 @@ fn change_modes(section: &mut CableSection, course: &Course, most: u32, system: 
 
 /// One Newton step with a line search on the sum of squares; false where none makes it smaller. The
 /// system is that of where the section then is.
-fn step(section: &mut CableSection, course: &Course, work: &mut Work) -> bool {
-    gather(section, &mut work.saved);
-    let before = squares(&work.system.residual);
-    work.rhs.clear();
-    work.rhs.extend(work.system.residual.iter().map(|v| -v));
-    work.system.band.scale(&mut work.rhs);
-    if work.system.band.solve(&mut work.rhs) && search(section, course, before, work) {
+fn step(section: &mut CableSection, context: &SolveContext, workspace: &mut Workspace) -> bool {
+    gather(section, &mut workspace.saved);
+    let before = squares(&workspace.system.residual);
+    workspace.rhs.clear();
+    workspace.rhs.extend(workspace.system.residual.iter().map(|v| -v));
+    workspace.system.band.scale(&mut workspace.rhs);
+    if workspace.system.band.solve(&mut workspace.rhs) && search(section, context, before, workspace) {
         return true;
     }
-    scatter(section, course, &work.saved);
-    assemble(section, course, &mut work.system);
+    scatter(section, context, &workspace.saved);
+    assemble(section, context, &mut workspace.system);
     false
 }
 
-fn search(section: &mut CableSection, course: &Course, before: f64, work: &mut Work) -> bool {
+fn search(section: &mut CableSection, context: &SolveContext, before: f64, workspace: &mut Workspace) -> bool {
     // Part of the step at which the first contact comes to the end of its piece of boundary.
-    let (mut alpha, mut first) = (max_step(section, course, &work.saved, &work.rhs), None);
-    for round in 0..course.settings.newton.max_halvings {
+    let (mut alpha, mut first) = (max_step(section, context, &workspace.saved, &workspace.rhs), None);
+    for round in 0..context.settings.newton.max_halvings {
         if round > 1 {
             alpha = first.filter(|first| *first < alpha).unwrap_or(0.5 * alpha);
         }
-        work.best.clear();
-        work.best.extend(work.saved.iter().zip(&work.rhs).map(|(x, d)| x + alpha * d));
+        workspace.best.clear();
+        workspace.best.extend(workspace.saved.iter().zip(&workspace.rhs).map(|(x, d)| x + alpha * d));
         if round == 1 {
             // At first only what changes its piece of boundary stops there; after that everything
             // does.
-            borders(section, course, &work.saved, &work.rhs, |index, part| {
+            borders(section, context, &workspace.saved, &workspace.rhs, |index, part| {
                 if part > 0.0 && part < alpha {
                     first = Some(first.map_or(part, |first| smaller(part, first)));
-                    work.best[index] = work.saved[index] + part * work.rhs[index];
+                    workspace.best[index] = workspace.saved[index] + part * workspace.rhs[index];
                 }
             });
             if first.is_none() {
                 continue;
             }
         }
-        scatter(section, course, &work.best);
-        assemble(section, course, &mut work.system);
-        if squares(&work.system.residual) < (1.0 - 1e-4 * alpha) * before {
+        scatter(section, context, &workspace.best);
+        assemble(section, context, &mut workspace.system);
+        if squares(&workspace.system.residual) < (1.0 - 1e-4 * alpha) * before {
             return true;
         }
     }

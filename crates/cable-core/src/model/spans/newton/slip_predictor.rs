@@ -20,11 +20,11 @@
 //! there and judges each contact again.
 
 use crate::math::{Vec2, angle, exp, larger};
-use crate::model::spans::boundary::capstan::Track;
-use crate::model::spans::boundary::curve::Place;
+use crate::model::spans::boundary::capstan::ContactPath;
+use crate::model::spans::boundary::curve::BoundaryPoint;
 use crate::model::spans::boundary::friction_memory::{Ends, Mode};
-use crate::model::spans::boundary::segment_cursor::Pivot;
-use crate::model::spans::cable_section::{CableSection, Contact, Course, Tie};
+use crate::model::spans::boundary::segment_cursor::CachedPiece;
+use crate::model::spans::cable_section::{CableSection, Contact, EndCondition, SolveContext};
 use crate::model::spans::settings::SlipSettings;
 
 /// A span whose force changes by no more than this part in a round is where it was. Larger: the
@@ -66,7 +66,7 @@ struct LinearContact {
 }
 
 /// The places of both ends of a contact, and the piece of the first.
-type ContactPlaces = ([Place; 2], Pivot);
+type ContactPlaces = ([BoundaryPoint; 2], CachedPiece);
 
 /// Memory of a guess.
 #[derive(Clone, Debug, Default)]
@@ -75,31 +75,35 @@ pub(in crate::model::spans) struct SlipPredictor {
     links: Vec<LinearContact>,
     /// Upper diagonal and right-hand side of the elimination.
     swept: Vec<(f64, f64)>,
-    spots: Vec<ContactPlaces>,
+    end_points: Vec<ContactPlaces>,
     tuned: SlipSettings,
 }
 
 /// Gives each contact the mode that the step will ask for, and contacts and spans their place, as
 /// far as that can be predicted.
-pub(in crate::model::spans) fn predict_slip(section: &mut CableSection, course: &Course, memory: &mut SlipPredictor) {
-    if course.drag > 0.0 || section.contacts.is_empty() {
+pub(in crate::model::spans) fn predict_slip(
+    section: &mut CableSection,
+    context: &SolveContext,
+    memory: &mut SlipPredictor,
+) {
+    if context.drag > 0.0 || section.contacts.is_empty() {
         return;
     }
-    section.take_tensions(course);
-    let SlipPredictor { bars, links, spots, tuned, .. } = memory;
-    *tuned = course.settings.newton.slip;
-    let seen = |c: &Contact| Pivot::of_ends(&course.curves[c.curve], c.chain_range, &course.law, c.ends.p);
-    spots.clear();
-    spots.extend(section.contacts.iter().map(seen));
+    section.update_end_tensions(context);
+    let SlipPredictor { bars, links, end_points, tuned, .. } = memory;
+    *tuned = context.settings.newton.slip;
+    let seen = |c: &Contact| CachedPiece::of_ends(&context.curves[c.curve], c.chain_range, &context.law, c.ends.p);
+    end_points.clear();
+    end_points.extend(section.contacts.iter().map(seen));
     bars.clear();
-    bars.extend((0..section.spans()).map(|k| span(section, course, spots, k)));
+    bars.extend((0..section.spans()).map(|k| span(section, context, end_points, k)));
     links.clear();
-    links.extend((0..section.contacts.len()).map(|j| link(section, course, spots, j)));
-    let Some(settled) = memory.rounds(section, course) else { return };
+    links.extend((0..section.contacts.len()).map(|j| link(section, context, end_points, j)));
+    let Some(settled) = memory.rounds(section, context) else { return };
     for (c, l) in section.contacts.iter_mut().zip(&memory.links).filter(|(_, l)| l.reach.is_some()) {
-        let friction = course.friction(c);
+        let friction = context.friction(c);
         if friction > 0.0 {
-            c.mode = if l.side == 0 { Mode::Hold } else { Mode::Slide(friction * f64::from(l.side)) };
+            c.mode = if l.side == 0 { Mode::Stick } else { Mode::Slip(friction * f64::from(l.side)) };
         }
         if settled {
             c.ends = l.ends;
@@ -113,16 +117,18 @@ pub(in crate::model::spans) fn predict_slip(section: &mut CableSection, course: 
 }
 
 /// A span as it is, to begin with.
-fn span(section: &CableSection, course: &Course, spots: &[ContactPlaces], k: usize) -> LinearSpan {
+fn span(section: &CableSection, context: &SolveContext, end_points: &[ContactPlaces], k: usize) -> LinearSpan {
     if !section.has_span(k) {
         return LinearSpan::default();
     }
     let (from, to) = section.material(k);
-    let forces = [section.force(course, k, from), section.force(course, k, to)];
-    let held = |t: &Tie| if let Tie::Held(at) = t { Some(*at) } else { None };
-    let before =
-        k.checked_sub(1).and_then(|j| spots.get(j)).map_or_else(|| held(&section.ties[0]), |s| Some(s.0[1].at));
-    let after = spots.get(k).map_or_else(|| held(&section.ties[1]), |s| Some(s.0[0].at));
+    let forces = [section.force(context, k, from), section.force(context, k, to)];
+    let held = |t: &EndCondition| if let EndCondition::Fixed(at) = t { Some(*at) } else { None };
+    let before = k
+        .checked_sub(1)
+        .and_then(|j| end_points.get(j))
+        .map_or_else(|| held(&section.end_conditions[0]), |s| Some(s.0[1].at));
+    let after = end_points.get(k).map_or_else(|| held(&section.end_conditions[1]), |s| Some(s.0[0].at));
     // A span that hangs keeps its force.
     let ends = before.zip(after).map(|(a, b)| [a, b]);
     let tension = forces.map(|f| f.norm());
@@ -131,27 +137,27 @@ fn span(section: &CableSection, course: &Course, spots: &[ContactPlaces], k: usi
 
 impl LinearSpan {
     /// Force at both ends, N.
-    fn pulls(&self, course: &Course, first: f64) -> [Vec2; 2] {
+    fn pulls(&self, context: &SolveContext, first: f64) -> [Vec2; 2] {
         let [from, to] = self.material;
-        let start = self.force - course.load_between(first, from);
-        [start, start - course.load_between(from, to)]
+        let start = self.force - context.load_between(first, from);
+        [start, start - context.load_between(from, to)]
     }
 
     /// To first order from where it is; false where that cannot be told.
-    fn renew(&mut self, course: &Course, first: f64) -> bool {
+    fn renew(&mut self, context: &SolveContext, first: f64) -> bool {
         let Some([a, b]) = self.ends else { return true };
         if self.still {
             self.change[0] = Vec2::zeros();
             return true;
         }
         let [from, to] = self.material;
-        let [start, end] = self.pulls(course, first);
-        let (way, compliance) = course.chain(from, to).reach(start);
+        let [start, end] = self.pulls(context, first);
+        let (way, compliance) = context.chain(from, to).reach(start);
         let Some(stiffness) = compliance.try_inverse() else { return false };
-        let [rate, rate_end] = [start, end].map(|f| course.rate(f));
+        let [rate, rate_end] = [start, end].map(|f| context.rate(f));
         self.change = [-(stiffness * (way - (b - a))), stiffness * rate, -(stiffness * rate_end)];
         for (i, f) in [start, end].into_iter().enumerate() {
-            let (size, load) = (f.norm(), course.law.load);
+            let (size, load) = (f.norm(), context.law.load);
             let t = f / size;
             self.was[i] = size;
             self.tension[i] = size + t.dot(&self.change[0]);
@@ -162,21 +168,24 @@ impl LinearSpan {
     }
 }
 
-fn link(section: &CableSection, course: &Course, spots: &[ContactPlaces], j: usize) -> LinearContact {
+fn link(section: &CableSection, context: &SolveContext, end_points: &[ContactPlaces], j: usize) -> LinearContact {
     let c = &section.contacts[j];
     let e = &c.ends;
-    let ties = [(j == 0).then(|| section.ties[0]), (j + 1 == section.contacts.len()).then(|| section.ties[1])];
-    let is_tied = ties.iter().flatten().any(|t| matches!(t, Tie::Lies(_) | Tie::Loose(_)));
+    let end_conditions = [
+        (j == 0).then(|| section.end_conditions[0]),
+        (j + 1 == section.contacts.len()).then(|| section.end_conditions[1]),
+    ];
+    let is_tied = end_conditions.iter().flatten().any(|t| matches!(t, EndCondition::Lies(_) | EndCondition::Loose(_)));
     let mut out = LinearContact { ends: c.ends, reach: None, side: 0, sigma: 0.0, slid: 0.0 };
     let beside_slack = section.in_pocket(j, 0) || section.in_pocket(j, 1);
-    let beside_load = section.is_marked(j, 0) || section.is_marked(j, 1);
+    let beside_load = section.has_load_material(j, 0) || section.has_load_material(j, 1);
     if is_tied || beside_slack || beside_load || !(e.p[1] > e.p[0] && e.t[0] > 0.0) {
         return out;
     }
-    let friction = course.friction(c);
-    let track = Track { pivot: spots.get(j).map(|s| s.1), ..course.track(c) };
+    let friction = context.friction(c);
+    let contact_path = ContactPath { cached_piece: end_points.get(j).map(|s| s.1), ..context.contact_path(c) };
     out.reach = Some([-friction, friction].map(|m| {
-        let way = track.slide(e.p[0], e.p[1], e.t[0], m);
+        let way = contact_path.slide(e.p[0], e.p[1], e.t[0], m);
         (way.tension, way.by_tension)
     }));
     // A smooth contact always slides.
@@ -187,14 +196,14 @@ fn link(section: &CableSection, course: &Course, spots: &[ContactPlaces], j: usi
 impl SlipPredictor {
     /// Newton's method for what slides: whether it came to an end, None where not even the modes
     /// can be told.
-    fn rounds(&mut self, section: &CableSection, course: &Course) -> Option<bool> {
+    fn rounds(&mut self, section: &CableSection, context: &SolveContext) -> Option<bool> {
         let mut last = f64::INFINITY;
         for round in 0..self.tuned.newton_rounds {
-            if !self.bars.iter_mut().all(|b| b.renew(course, section.from)) || !self.settle() {
+            if !self.bars.iter_mut().all(|b| b.renew(context, section.from)) || !self.settle() {
                 return (round > 0).then_some(false);
             }
             let Some(change) = self.step() else { return Some(false) };
-            self.turn(section, course);
+            self.turn(section, context);
             if change <= self.tuned.round_tolerance {
                 return Some(true);
             }
@@ -204,17 +213,17 @@ impl SlipPredictor {
     }
 
     /// Lets the ends of contacts on arcs follow the directions of their spans.
-    fn turn(&mut self, section: &CableSection, course: &Course) {
-        let (law, most) = (&course.law, self.tuned.max_followed_angle);
-        let pulls = |bar: &LinearSpan, end: usize| bar.ends.map(|_| bar.pulls(course, section.from)[end]);
+    fn turn(&mut self, section: &CableSection, context: &SolveContext) {
+        let (law, most) = (&context.law, self.tuned.max_followed_angle);
+        let pulls = |bar: &LinearSpan, end: usize| bar.ends.map(|_| bar.pulls(context, section.from)[end]);
         for (j, c) in section.contacts.iter().enumerate() {
-            let (l, (places, pivot)) = (&mut self.links[j], &mut self.spots[j]);
+            let (l, (places, cached_piece)) = (&mut self.links[j], &mut self.end_points[j]);
             if l.reach.is_none() || self.bars[j].still && self.bars[j + 1].still {
                 continue;
             }
             let old = l.ends;
             l.ends.s = l.ends.s.map(|s| s + l.sigma);
-            let track = Track { pivot: Some(*pivot), ..course.track(c) };
+            let contact_path = ContactPath { cached_piece: Some(*cached_piece), ..context.contact_path(c) };
             for side in 0..2 {
                 let bar = &mut self.bars[j + side];
                 let Some(force) = pulls(bar, 1 - side) else { continue };
@@ -227,10 +236,10 @@ impl SlipPredictor {
                 let by = angle / place.turn;
                 let p = l.ends.p[side] + by;
                 let turned = if side == 0 { p < l.ends.p[1] } else { p > l.ends.p[0] };
-                if turned && track.turns(p) {
+                if turned && contact_path.turns(p) {
                     l.ends.p[side] = p;
-                    l.ends.s[side] += by * place.stretch / course.law.stretch(tension);
-                    *place = track.place(p);
+                    l.ends.s[side] += by * place.stretch / context.law.stretch(tension);
+                    *place = contact_path.place(p);
                 }
                 bar.material[1 - side] = l.ends.s[side];
                 if let Some(ends) = &mut bar.ends {
@@ -238,8 +247,10 @@ impl SlipPredictor {
                 }
             }
             // T₂ = T₁ e^{mψ} and the load along it, to first order of what the ends have moved.
-            for (m, (made, by)) in [-track.friction, track.friction].into_iter().zip(l.reach.iter_mut().flatten()) {
-                let load = |place: &Place, t: f64| law.slope(place, t, m) - m * place.turn.abs() * t;
+            for (m, (made, by)) in
+                [-contact_path.friction, contact_path.friction].into_iter().zip(l.reach.iter_mut().flatten())
+            {
+                let load = |place: &BoundaryPoint, t: f64| law.slope(place, t, m) - m * place.turn.abs() * t;
                 let [first, last] = [0, 1].map(|side| l.ends.p[side] - old.p[side]);
                 let grown = exp(m * (last * places[1].turn.abs() - first * places[0].turn.abs()));
                 *made += *by * (l.ends.t[0] - old.t[0] - load(&places[0], old.t[0]) * first);

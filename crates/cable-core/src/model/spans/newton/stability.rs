@@ -1,8 +1,8 @@
 //! This check finds whether an equilibrium is stable.
 
 use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::cable_section::{CableSection, Course, Next, Tie};
-use crate::model::spans::newton::{Work, assemble, has_tension_unknown};
+use crate::model::spans::cable_section::{CableSection, Connection, EndCondition, SolveContext};
+use crate::model::spans::newton::{Workspace, assemble, has_tension_unknown};
 
 /// True if a balance without friction is stable: it returns after a disturbance.
 ///
@@ -14,24 +14,32 @@ use crate::model::spans::newton::{Work, assemble, has_tension_unknown};
 /// Sylvester): each contact that is let go turns the sign once (one that lies to its start does
 /// not: there T₁ takes the place of s₁). Nothing is said of what friction holds: that came there by
 /// its own motion.
-pub(in crate::model::spans) fn stable(section: &CableSection, course: &Course, work: &mut Work) -> bool {
-    let rubs = section.contacts.iter().any(|c| course.friction(c) > 0.0);
-    let pockets = section.contacts.iter().any(|c| c.next == Next::Pocket || c.is_load());
-    if rubs || pockets || section.contacts.is_empty() || section.ties.iter().any(|t| matches!(t, Tie::Loose(_))) {
+pub(in crate::model::spans) fn stable(
+    section: &CableSection,
+    context: &SolveContext,
+    workspace: &mut Workspace,
+) -> bool {
+    let rubs = section.contacts.iter().any(|c| context.friction(c) > 0.0);
+    let pockets = section.contacts.iter().any(|c| c.next == Connection::Pocket || c.is_load());
+    if rubs
+        || pockets
+        || section.contacts.is_empty()
+        || section.end_conditions.iter().any(|t| matches!(t, EndCondition::Loose(_)))
+    {
         return true;
     }
     let mut stuck = section.clone();
     for c in &mut stuck.contacts {
-        let track = course.track(c);
-        c.history.commit(&track, &c.ends, c.mode, c.held, &mut work.past);
-        c.mode = Mode::Hold;
+        let contact_path = context.contact_path(c);
+        c.history.commit(&contact_path, &c.ends, c.mode, c.held, &mut workspace.past);
+        c.mode = Mode::Stick;
     }
     let mut is_negative = |section: &mut CableSection| {
-        assemble(section, course, &mut work.system);
-        work.rhs.clear();
-        work.rhs.resize(work.system.residual.len(), 1.0);
-        work.system.band.scale(&mut work.rhs);
-        work.system.band.solve(&mut work.rhs).then(|| work.system.band.is_negative())
+        assemble(section, context, &mut workspace.system);
+        workspace.rhs.clear();
+        workspace.rhs.resize(workspace.system.residual.len(), 1.0);
+        workspace.system.band.scale(&mut workspace.rhs);
+        workspace.system.band.solve(&mut workspace.rhs).then(|| workspace.system.band.is_negative())
     };
     let Some(mut before) = is_negative(&mut stuck) else { return false };
     (0..section.contacts.len()).all(|j| {

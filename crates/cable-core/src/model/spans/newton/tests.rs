@@ -1,6 +1,6 @@
 use crate::model::spans::boundary_conditions::CableEquilibrium;
-use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, Layout};
-use crate::model::spans::cable_section::Next;
+use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEnd, SectionLayout};
+use crate::model::spans::cable_section::Connection;
 use crate::model::spans::newton::*;
 use crate::problem::problems;
 use crate::scene::obstacle::{Obstacle, Shape};
@@ -16,7 +16,7 @@ fn section(
     length: f64,
     friction: f64,
     moved: Vec2,
-) -> (CableSection, Course) {
+) -> (CableSection, SolveContext) {
     loaded(shapes, route_m, Vec::new(), length, friction, moved)
 }
 
@@ -28,7 +28,7 @@ fn loaded(
     length: f64,
     friction: f64,
     moved: Vec2,
-) -> (CableSection, Course) {
+) -> (CableSection, SolveContext) {
     let mut scene = catalog::hanging_span();
     scene.loads = loads;
     let name = scene.cables[0].name.clone();
@@ -41,14 +41,16 @@ fn loaded(
     (c.length_m, c.friction) = (length, friction);
     c.supports = vec![Support::fixed("A", route_m[0]), Support::fixed("B", *route_m.last().unwrap())];
     c.route_m = route_m;
-    let layout = Layout::new(&problems(&scene).unwrap().remove(0), CableEnd::Start, std::sync::Arc::default()).unwrap();
+    let layout =
+        SectionLayout::new(&problems(&scene).unwrap().remove(0), CableEnd::Start, std::sync::Arc::default()).unwrap();
     let mut instant = BoundaryConditions::default();
     layout.instant(&[None, None], 0.0, &mut instant);
-    let mut work = Work::default();
-    let (mut network, _) = CableEquilibrium::along_route(&layout, &instant, &mut work).map_err(|e| e.failure).unwrap();
+    let mut workspace = Workspace::default();
+    let (mut cable_equilibrium, _) =
+        CableEquilibrium::along_route(&layout, &instant, &mut workspace).map_err(|e| e.failure).unwrap();
     instant.places[1] += moved;
-    network.travel(&layout, &instant, 0.1, &mut work).unwrap();
-    (network.sections.remove(0), network.course)
+    cable_equilibrium.advance_load(&layout, &instant, 0.1, &mut workspace).unwrap();
+    (cable_equilibrium.sections.remove(0), cable_equilibrium.context)
 }
 
 /// Numbers in −1 … 1 that are the same each time.
@@ -58,7 +60,7 @@ fn noise(k: usize) -> f64 {
 
 /// Every entry of the Jacobian beside a difference of residuals, at a state a little off the
 /// answer.
-fn compare(section: &CableSection, course: &Course, seed: usize) {
+fn compare(section: &CableSection, context: &SolveContext, seed: usize) {
     let mut x = Vec::new();
     gather(section, &mut x);
     let force = section.forces.iter().map(|f| f.norm()).fold(0.0, f64::max);
@@ -69,16 +71,16 @@ fn compare(section: &CableSection, course: &Course, seed: usize) {
     }
     let at = |x: &[f64]| {
         let mut moved = section.clone();
-        scatter(&mut moved, course, x);
+        scatter(&mut moved, context, x);
         moved
     };
     let residual = |x: &[f64]| {
         let mut system = System::default();
-        assemble(&mut at(x), course, &mut system);
+        assemble(&mut at(x), context, &mut system);
         system.residual
     };
     let mut system = System::default();
-    assemble(&mut at(&x), course, &mut system);
+    assemble(&mut at(&x), context, &mut system);
     let (r, band) = (system.residual, system.band);
     let n = x.len();
     let largest: Vec<f64> =
@@ -94,7 +96,7 @@ fn compare(section: &CableSection, course: &Course, seed: usize) {
         let (c, of) = (j / 6, j % 6);
         let joint = of == 0 && c > 0 && section.is_joined(c, 0);
         let side = of.saturating_sub(2) / 2;
-        let load = of > 1 && if of % 2 == 1 { section.is_marked(c, side) } else { section.is_pinned(c, side) };
+        let load = of > 1 && if of % 2 == 1 { section.has_load_material(c, side) } else { section.is_pinned(c, side) };
         !joint && (fixed(j) || load)
     };
     for j in (0..n).filter(|&j| !fixed(j)) {
@@ -134,7 +136,7 @@ fn the_jacobian_is_that_of_differences() {
         }
         // With slack in the kink.
         let (s, c) = section(vec![valley()], vec![[0.0, 1.0], [8.0, 1.0]], 8.5, friction, Vec2::new(-0.05, 0.0));
-        assert!(s.contacts.iter().any(|c| c.next == Next::Pocket));
+        assert!(s.contacts.iter().any(|c| c.next == Connection::Pocket));
         compare(&s, &c, seed + 13);
     }
 }

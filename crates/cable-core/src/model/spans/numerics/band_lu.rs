@@ -1,6 +1,6 @@
 //! This file holds the LU factorisation with partial pivoting of a matrix with a narrow band: G. H.
 //! Golub and C. F. Van Loan, *Matrix Computations*, Johns Hopkins, 4th ed. 2013, §4.3. The
-//! network's Jacobian is neither symmetric nor definite.
+//! cable equilibrium's Jacobian is neither symmetric nor definite.
 
 /// Entries left and right of the diagonal.
 pub(in crate::model::spans) const BAND: usize = 4;

@@ -13,9 +13,9 @@
 //! falls plumb it rises beyond all bounds.
 
 use crate::math::{Vec2, larger};
-use crate::model::spans::boundary::loose::{Line, Part};
-use crate::model::spans::slack::drape::{Drape, HALVINGS};
-use crate::model::spans::slack::joint::Profile;
+use crate::model::spans::boundary::loose::{SlackForm, SlackPart};
+use crate::model::spans::slack::drape::{HALVINGS, SlackSolver};
+use crate::model::spans::slack::joint::StretchTensions;
 use crate::numerics::bisect;
 
 /// Greatest distance from its support at which a span may end, of its length and the size of
@@ -26,11 +26,11 @@ const ENDS: f64 = 1e-10;
 const ROUNDS: usize = 8;
 
 /// A span, and where it touches.
-pub(super) struct Bridge {
+pub(super) struct SupportSpan {
     /// Number of the stretch, and p on it.
     pub line: usize,
     pub coordinate: f64,
-    pub part: Part,
+    pub part: SlackPart,
 }
 
 /// A span seen from where it touches.
@@ -45,16 +45,16 @@ struct Seen {
     at: Vec2,
 }
 
-impl Drape<'_> {
+impl SlackSolver<'_> {
     /// The span to a support at the start (side 0) or the end, from tensions that come from the
     /// other one.
-    pub(super) fn bridge(&self, profile: &Profile, support: Vec2, side: usize) -> Option<Bridge> {
-        let (course, other, stretches, tensions) = (self.course, 1 - side, &profile.stretches, &profile.enters);
+    pub(super) fn bridge(&self, profile: &StretchTensions, support: Vec2, side: usize) -> Option<SupportSpan> {
+        let (context, other, stretches, tensions) = (self.context, 1 - side, &profile.stretches, &profile.enters);
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let seen = |k: usize, p: f64| {
             let s = &stretches[k];
-            let t = s.slide(course, s.coordinates[other], p, tensions[k], sign * s.friction(course)).tension;
-            let place = s.place(course, p);
+            let t = s.slide(context, s.coordinates[other], p, tensions[k], sign * s.friction(context)).tension;
+            let place = s.place(context, p);
             self.seen(place.at, -place.tangent * sign, t, support)
         };
         let order: Vec<usize> =
@@ -67,18 +67,18 @@ impl Drape<'_> {
             let [low, _] = bisect([low, high], HALVINGS, |p| !seen(k, p).is_none_or(|s| s.over > 0.0));
             let found =
                 seen(k, low).filter(|s| s.over.abs() <= ENDS * (s.length + support.norm()) && s.tension > 0.0)?;
-            let weight = course.law.load * found.length;
+            let weight = context.law.load * found.length;
             // The force there is what the rest of the cable pulls with, the load of the span on top
             // at the support.
             let (tension, form) = if side == 0 {
                 let force = -found.towards * found.tension + weight;
-                ([force.norm(), found.tension], Line::Spans { from: support, force })
+                ([force.norm(), found.tension], SlackForm::Spans { from: support, force })
             } else {
                 let force = found.towards * found.tension;
-                ([found.tension, (force - weight).norm()], Line::Spans { from: found.at, force })
+                ([found.tension, (force - weight).norm()], SlackForm::Spans { from: found.at, force })
             };
-            let part = Part { arc_lengths: [0.0, found.length], tension, form };
-            return Some(Bridge { line: k, coordinate: low, part });
+            let part = SlackPart { arc_lengths: [0.0, found.length], tension, form };
+            return Some(SupportSpan { line: k, coordinate: low, part });
         }
         None
     }
@@ -86,7 +86,7 @@ impl Drape<'_> {
     /// The span that leaves a point in a direction with a tension, up to the plumb line of the
     /// support; None where it never comes there.
     fn seen(&self, at: Vec2, towards: Vec2, tension: f64, support: Vec2) -> Option<Seen> {
-        let (law, frame) = (&self.course.law, self.frame);
+        let (law, frame) = (&self.context.law, self.frame);
         let b = law.load.norm();
         let away = frame.split(support - at);
         let goes = frame.split(towards);

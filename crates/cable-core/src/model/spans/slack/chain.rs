@@ -2,31 +2,31 @@
 //! both sides as in a cable that slides down there.
 
 use crate::math::{Vec2, larger};
-use crate::model::spans::boundary::capstan::Step;
-use crate::model::spans::boundary::loose::{Line, Part, Stretch};
-use crate::model::spans::slack::drape::{Drape, HALVINGS, plumb};
+use crate::model::spans::boundary::capstan::SlideResult;
+use crate::model::spans::boundary::loose::{LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::slack::drape::{HALVINGS, SlackSolver, plumb};
 use crate::numerics::bisect;
 
-impl Drape<'_> {
+impl SlackSolver<'_> {
     /// The stretches between two points without tension, or from or to a support. Where a support
     /// hangs nearby and the crest draws the cable tight there, a span bridges to it; whether that
     /// was done at the end. Else on which side it is drawn tight, if that is it.
     pub(super) fn chain(
         &self,
-        lines: &[Line],
+        lines: &[SlackForm],
         held: [bool; 2],
         near: [Option<Vec2>; 2],
-        out: &mut Vec<Part>,
+        out: &mut Vec<SlackPart>,
     ) -> Result<bool, Option<usize>> {
-        let weight = self.course.law.load.norm();
-        let hangs = |line: Option<&Line>| match line {
-            Some(Line::Hangs(ends)) => Some((*ends, plumb(self.course, self.rise(*ends).abs()))),
+        let weight = self.context.law.load.norm();
+        let hangs = |line: Option<&SlackForm>| match line {
+            Some(SlackForm::Hangs(ends)) => Some((*ends, plumb(self.context, self.rise(*ends).abs()))),
             _ => None,
         };
         let hung = |(ends, s): ([Vec2; 2], f64)| {
             let t = weight * s;
             let tension = if self.rise(ends) > 0.0 { [0.0, t] } else { [t, 0.0] };
-            Part { arc_lengths: [0.0, s], tension, form: Line::Hangs(ends) }
+            SlackPart { arc_lengths: [0.0, s], tension, form: SlackForm::Hangs(ends) }
         };
         let (first, last) = (hangs(lines.first()), hangs(lines.last()));
         if let ([_], Some(alone)) = (lines, first) {
@@ -40,14 +40,14 @@ impl Drape<'_> {
             return Err(None);
         }
         let ends = [first, last].map(|h| h.map_or(0.0, |(_, s)| weight * s));
-        let (mut stretches, mut walls): (Vec<Stretch>, Vec<Option<f64>>) = (Vec::new(), Vec::new());
+        let (mut stretches, mut walls): (Vec<LyingStretch>, Vec<Option<f64>>) = (Vec::new(), Vec::new());
         for (k, line) in lines.iter().enumerate() {
             match line {
-                Line::Lies(s) => (stretches.push(*s), walls.push(None)).0,
-                Line::Hangs(ends) if k > 0 => {
+                SlackForm::Lies(s) => (stretches.push(*s), walls.push(None)).0,
+                SlackForm::Hangs(ends) if k > 0 => {
                     let rise = self.rise(*ends);
                     if let Some(wall) = walls.last_mut() {
-                        *wall = Some(plumb(self.course, rise.abs()).copysign(rise));
+                        *wall = Some(plumb(self.context, rise.abs()).copysign(rise));
                     }
                 }
                 _ => {}
@@ -124,10 +124,10 @@ impl Drape<'_> {
 
     /// A stretch in its parts: where the tension from its start holds, where there is none, where
     /// that from its end does.
-    fn stretch(&self, s: &Stretch, [forth, back]: [f64; 2], out: &mut Vec<Part>) {
-        let (course, friction, [p0, p1]) = (self.course, s.friction(self.course), s.coordinates);
-        let forth_at = |p: f64| if p == p0 { forth } else { s.slide(course, p0, p, forth, -friction).tension };
-        let back_at = |p: f64| if p == p1 { back } else { s.slide(course, p1, p, back, friction).tension };
+    fn stretch(&self, s: &LyingStretch, [forth, back]: [f64; 2], out: &mut Vec<SlackPart>) {
+        let (context, friction, [p0, p1]) = (self.context, s.friction(self.context), s.coordinates);
+        let forth_at = |p: f64| if p == p0 { forth } else { s.slide(context, p0, p, forth, -friction).tension };
+        let back_at = |p: f64| if p == p1 { back } else { s.slide(context, p1, p, back, friction).tension };
         // Each ends at once or rises and falls again; from where it has fallen to nothing there is
         // none.
         let seek = |has: f64, not: f64, holds: &dyn Fn(f64) -> bool| {
@@ -158,25 +158,30 @@ impl Drape<'_> {
             };
             (ends, begins) = (meet, meet);
         }
-        let mut push = |p: [f64; 2], m: f64, way: Step, tension: [f64; 2]| {
-            let form = Line::Lies(Stretch { coordinates: p, mobilised: m, ..*s });
-            out.push(Part { arc_lengths: [0.0, way.material.abs()], tension, form });
+        let mut push = |p: [f64; 2], m: f64, way: SlideResult, tension: [f64; 2]| {
+            let form = SlackForm::Lies(LyingStretch { coordinates: p, mobilised: m, ..*s });
+            out.push(SlackPart { arc_lengths: [0.0, way.material.abs()], tension, form });
         };
         if ends > p0 {
-            let way = s.slide(course, p0, ends, forth, -friction);
+            let way = s.slide(context, p0, ends, forth, -friction);
             push([p0, ends], -friction, way, [forth, larger(way.tension, 0.0)]);
         }
         if begins > ends || p0 == p1 {
-            push([ends, begins], 0.0, Step { material: self.rest_of(s, begins - ends), ..Step::none(0.0) }, [0.0; 2]);
+            push(
+                [ends, begins],
+                0.0,
+                SlideResult { material: self.rest_of(s, begins - ends), ..SlideResult::none(0.0) },
+                [0.0; 2],
+            );
         }
         if p1 > begins {
-            let way = s.slide(course, p1, begins, back, friction);
+            let way = s.slide(context, p1, begins, back, friction);
             push([begins, p1], friction, way, [larger(way.tension, 0.0), back]);
         }
     }
 
     /// Material without tension on a stretch of p, m.
-    fn rest_of(&self, s: &Stretch, p: f64) -> f64 {
-        p * s.place(self.course, s.coordinates[0]).stretch / self.course.law.stretch(0.0)
+    fn rest_of(&self, s: &LyingStretch, p: f64) -> f64 {
+        p * s.place(self.context, s.coordinates[0]).stretch / self.context.law.stretch(0.0)
     }
 }

@@ -5,28 +5,28 @@
 //! else the edge it rests on carries it within its friction cone.
 
 use crate::math::{Vec2, cross};
-use crate::model::spans::boundary::curve::Place;
-use crate::model::spans::boundary::loose::{Borne, Heap, Line, Part, Stretch};
-use crate::model::spans::cable_section::Course;
+use crate::model::spans::boundary::curve::BoundaryPoint;
+use crate::model::spans::boundary::loose::{BearingEdge, Heap, LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::cable_section::SolveContext;
 use crate::model::spans::initial::drained_route::Frame;
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.
 pub(super) const CREST_CONE_ROUNDING: f64 = 1e-9;
 
 /// The lowest place that holds a heap drawn by a force (N), and before which part that is.
-pub(super) fn heap(parts: &[Part], course: &Course, frame: Frame, force: Vec2) -> Option<(usize, Heap)> {
-    let side = |part: Option<&Part>, end: usize| match part.map(|p| (p.form, p.tension[end])) {
-        Some((Line::Lies(s), 0.0)) => Some((s, s.place(course, s.coordinates[end]))),
+pub(super) fn heap(parts: &[SlackPart], context: &SolveContext, frame: Frame, force: Vec2) -> Option<(usize, Heap)> {
+    let side = |part: Option<&SlackPart>, end: usize| match part.map(|p| (p.form, p.tension[end])) {
+        Some((SlackForm::Lies(s), 0.0)) => Some((s, s.place(context, s.coordinates[end]))),
         _ => None,
     };
-    let slack = |part: Option<&Part>, end: usize| part.is_none_or(|p| p.tension[end] == 0.0);
+    let slack = |part: Option<&SlackPart>, end: usize| part.is_none_or(|p| p.tension[end] == 0.0);
     let mut best: Option<(f64, usize, Heap)> = None;
     for k in 0..=parts.len() {
         let [before, after] = [k.checked_sub(1).and_then(|j| parts.get(j)), parts.get(k)];
         if !(slack(before, 1) && slack(after, 0)) {
             continue;
         }
-        let Some(found) = carried(course, [side(before, 1), side(after, 0)], -force) else { continue };
+        let Some(found) = carried(context, [side(before, 1), side(after, 0)], -force) else { continue };
         let height = found.at.dot(&frame.up);
         if best.is_none_or(|b| height < b.0) {
             best = Some((height, k, found));
@@ -35,18 +35,18 @@ pub(super) fn heap(parts: &[Part], course: &Course, frame: Frame, force: Vec2) -
     best.map(|(_, k, found)| (k, found))
 }
 
-fn carried(course: &Course, sides: [Option<(Stretch, Place)>; 2], held: Vec2) -> Option<Heap> {
+fn carried(context: &SolveContext, sides: [Option<(LyingStretch, BoundaryPoint)>; 2], held: Vec2) -> Option<Heap> {
     let at = sides.iter().flatten().next()?.1.at;
-    let borne = |(s, place): (Stretch, Place)| Borne {
+    let borne = |(s, place): (LyingStretch, BoundaryPoint)| BearingEdge {
         curve: s.curve,
         normal: place.normal,
         tangent: place.tangent,
         press: held.dot(&place.normal),
         friction: held.dot(&place.tangent),
     };
-    let holds = |side: &(Stretch, Place)| {
+    let holds = |side: &(LyingStretch, BoundaryPoint)| {
         let b = borne(*side);
-        b.press >= 0.0 && b.friction.abs() <= side.0.friction(course) * b.press + CREST_CONE_ROUNDING * held.norm()
+        b.press >= 0.0 && b.friction.abs() <= side.0.friction(context) * b.press + CREST_CONE_ROUNDING * held.norm()
     };
     if let Some(one) = sides.iter().flatten().find(|s| holds(s)) {
         return Some(Heap { at, edges: [Some(borne(*one)), None] });
@@ -54,6 +54,7 @@ fn carried(course: &Course, sides: [Option<(Stretch, Place)>; 2], held: Vec2) ->
     let [Some(a), Some(b)] = sides else { return None };
     let both = cross(a.1.normal, b.1.normal);
     let press = [cross(held, b.1.normal) / both, cross(a.1.normal, held) / both];
-    let pressed = |side: (Stretch, Place), press: f64| Some(Borne { press, friction: 0.0, ..borne(side) });
+    let pressed =
+        |side: (LyingStretch, BoundaryPoint), press: f64| Some(BearingEdge { press, friction: 0.0, ..borne(side) });
     press.iter().all(|n| *n >= 0.0).then(|| Heap { at, edges: [pressed(a, press[0]), pressed(b, press[1])] })
 }

@@ -18,8 +18,8 @@
 //! is as far from the centre of the round as its radius, where it is nearest.
 
 use crate::math::{Vec2, cross, larger};
-use crate::model::spans::boundary::loose::{Line, Part, Stretch};
-use crate::model::spans::slack::drape::{Drape, HALVINGS, LooseShapes, STRAIGHT_TURN};
+use crate::model::spans::boundary::loose::{LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::slack::drape::{HALVINGS, LooseShapes, STRAIGHT_TURN, SlackSolver};
 use crate::numerics::bisect;
 
 /// Doublings of the force across the load in the search for one that is too large.
@@ -32,7 +32,7 @@ const TANGENCY_FRACTION: f64 = 1e-3;
 
 /// A span from one stretch to the next, seen from where its tension comes.
 #[derive(Clone, Copy, Debug)]
-struct Over {
+struct KinkSpan {
     /// Places at which it leaves the one and meets the other.
     coordinates: [f64; 2],
     /// Tensions where it leaves and where it meets, N.
@@ -41,31 +41,35 @@ struct Over {
 }
 
 /// The tensions along stretches as they come from one end.
-pub(super) struct Profile {
+pub(super) struct StretchTensions {
     /// Stretches as the spans over kinks leave them.
-    pub stretches: Vec<Stretch>,
+    pub stretches: Vec<LyingStretch>,
     /// Tension where each is entered, N.
     pub enters: Vec<f64>,
     /// The span that begins behind each, as the cable goes, and the stretch at which it ends.
-    pub spans: Vec<Option<(Part, usize)>>,
+    pub spans: Vec<Option<(SlackPart, usize)>>,
     /// Tension where the last one is left, N.
     pub leaves: f64,
 }
 
-impl Drape<'_> {
+impl SlackSolver<'_> {
     /// Tensions along stretches from their start (side 0) or end, as little as friction lets them
     /// have, from a tension there (N); `walls`: material up what hangs behind each, as the cable
     /// goes, m. None where a kink cannot be bridged.
     pub(super) fn profile(
         &self,
-        stretches: &[Stretch],
+        stretches: &[LyingStretch],
         walls: &[Option<f64>],
         side: usize,
         begins: f64,
-    ) -> Option<Profile> {
+    ) -> Option<StretchTensions> {
         let n = stretches.len();
-        let mut out =
-            Profile { stretches: stretches.to_vec(), enters: vec![0.0; n], spans: vec![None; n], leaves: begins };
+        let mut out = StretchTensions {
+            stretches: stretches.to_vec(),
+            enters: vec![0.0; n],
+            spans: vec![None; n],
+            leaves: begins,
+        };
         for i in 0..n {
             let k = if side == 0 { i } else { n - 1 - i };
             let (s, enters) = (out.stretches[k], out.leaves);
@@ -84,7 +88,7 @@ impl Drape<'_> {
             let mut left = k;
             let over = match walls.get(first).copied().flatten() {
                 Some(height) if out.leaves > self.most && height * way > 0.0 => loop {
-                    let from = Stretch {
+                    let from = LyingStretch {
                         coordinates: bounds(
                             side,
                             out.stretches[left].coordinates[side],
@@ -107,7 +111,7 @@ impl Drape<'_> {
                 Some(height) => {
                     // It hangs plumb from the round, and draws at the foot by what it draws at the
                     // round less its weight.
-                    out.leaves = larger(out.leaves + self.course.law.load.norm() * height * way, 0.0);
+                    out.leaves = larger(out.leaves + self.context.law.load.norm() * height * way, 0.0);
                     if out.leaves > self.most {
                         return None;
                     }
@@ -121,9 +125,9 @@ impl Drape<'_> {
             let (before, after) = if side == 0 { (left, first + 1) } else { (first, left) };
             let [p, ends] = [over.coordinates, over.tension].map(|[x, y]| if side == 0 { [x, y] } else { [y, x] });
             (out.stretches[before].coordinates[1], out.stretches[after].coordinates[0]) = (p[0], p[1]);
-            let place = out.stretches[before].place(self.course, p[0]);
-            let form = Line::Spans { from: place.at, force: place.tangent * ends[0] };
-            out.spans[before] = Some((Part { arc_lengths: [0.0, over.material], tension: ends, form }, after));
+            let place = out.stretches[before].place(self.context, p[0]);
+            let form = SlackForm::Spans { from: place.at, force: place.tangent * ends[0] };
+            out.spans[before] = Some((SlackPart { arc_lengths: [0.0, over.material], tension: ends, form }, after));
             out.leaves = over.tension[1];
         }
         Some(out)
@@ -131,29 +135,29 @@ impl Drape<'_> {
 
     /// Tension at p of a stretch that is entered on a side with another: as little as friction lets
     /// it have, N.
-    fn least(&self, s: &Stretch, side: usize, enters: f64, p: f64) -> f64 {
-        let friction = s.friction(self.course);
+    fn least(&self, s: &LyingStretch, side: usize, enters: f64, p: f64) -> f64 {
+        let friction = s.friction(self.context);
         let against = if side == 0 { -friction } else { friction };
-        larger(s.slide(self.course, s.coordinates[side], p, enters, against).tension, 0.0)
+        larger(s.slide(self.context, s.coordinates[side], p, enters, against).tension, 0.0)
     }
 
     /// True if a cable under tension would bridge the gap between two stretches.
-    pub(super) fn bends_in(&self, a: &Stretch, b: &Stretch) -> bool {
-        let [before, after] = [a.place(self.course, a.coordinates[1]), b.place(self.course, b.coordinates[0])];
-        cross(before.tangent, after.tangent) * self.course.curves[a.curve].sense > STRAIGHT_TURN
+    pub(super) fn bends_in(&self, a: &LyingStretch, b: &LyingStretch) -> bool {
+        let [before, after] = [a.place(self.context, a.coordinates[1]), b.place(self.context, b.coordinates[0])];
+        cross(before.tangent, after.tangent) * self.context.curves[a.curve].sense > STRAIGHT_TURN
     }
 
     /// The span from one edge to the next, `way` being 1 where that is along the cable and −1 where
     /// it is against it; from the tension at each p of the first. None where it does not leave and
     /// meet them.
-    fn over(&self, [from, to]: [&Stretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<Over> {
+    fn over(&self, [from, to]: [&LyingStretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<KinkSpan> {
         let end = usize::from(way > 0.0);
         let (kink, next) =
-            (from.place(self.course, from.coordinates[end]), to.place(self.course, to.coordinates[1 - end]));
+            (from.place(self.context, from.coordinates[end]), to.place(self.context, to.coordinates[1 - end]));
         if kink.turn != 0.0 || next.turn != 0.0 {
             return None;
         }
-        let sight = Sight::new(self, kink.tangent * way)?;
+        let sight = SpanFrame::new(self, kink.tangent * way)?;
         let t = [kink.tangent, next.tangent].map(|t| sight.seen(t * way));
         let det = cross(t[0], t[1]);
         if !(t[1].x > 0.0 && det > 0.0) {
@@ -164,7 +168,7 @@ impl Drape<'_> {
             let (material, d) = sight.catenary(h, m1, m2);
             ([(d.x * t[1].y - d.y * t[1].x) / det, (t[0].x * d.y - t[0].y * d.x) / det], material)
         };
-        let room = |s: &Stretch| s.coordinates[1] - s.coordinates[0];
+        let room = |s: &LyingStretch| s.coordinates[1] - s.coordinates[0];
         // Beyond the edge the tension is what it is at its start.
         let comes = |x: f64| tension(from.coordinates[end] - way * if x < room(from) { x } else { room(from) });
         let lacks = |h: f64| h * 1.0f64.hypot(m1) < comes(aside(h).0[0]);
@@ -180,25 +184,30 @@ impl Drape<'_> {
         let ([x1, x2], material) = aside(h);
         let p = [from.coordinates[end] - way * x1, to.coordinates[1 - end] + way * x2];
         let tension = [m1, m2].map(|m| h * 1.0f64.hypot(m));
-        (x1 < room(from) && x2 < room(to)).then_some(Over { coordinates: p, tension, material })
+        (x1 < room(from) && x2 < room(to)).then_some(KinkSpan { coordinates: p, tension, material })
     }
 
     /// The span from a stretch at the foot of a wall up to the round above it; from the tension at
     /// each p of the first. Some(None) where it leaves from before that.
-    fn climb(&self, [from, to]: [&Stretch; 2], way: f64, tension: &dyn Fn(f64) -> f64) -> Option<Option<Over>> {
+    fn climb(
+        &self,
+        [from, to]: [&LyingStretch; 2],
+        way: f64,
+        tension: &dyn Fn(f64) -> f64,
+    ) -> Option<Option<KinkSpan>> {
         let end = usize::from(way > 0.0);
-        let above = to.place(self.course, to.coordinates[1 - end]);
+        let above = to.place(self.context, to.coordinates[1 - end]);
         if above.turn == 0.0 {
             return None;
         }
         let radius = above.stretch;
-        let foot = from.place(self.course, from.coordinates[end]);
-        let sight = Sight::new(self, foot.tangent * way)?;
+        let foot = from.place(self.context, from.coordinates[end]);
+        let sight = SpanFrame::new(self, foot.tangent * way)?;
         let center = sight.seen(above.at - above.normal * radius);
         // The catenary from p: its tension across the load, its slopes at both ends, the material,
         // and how far it is from the round.
         let seen = |p: f64| {
-            let place = from.place(self.course, p);
+            let place = from.place(self.context, p);
             let t = sight.seen(place.tangent * way);
             let begins = sight.seen(place.at);
             let (h, m1) = (tension(p) * t.x, t.y / t.x);
@@ -228,7 +237,7 @@ impl Drape<'_> {
         let turned = cross(above.tangent, meets).atan2(above.tangent.dot(&meets));
         let p = to.coordinates[1 - end] + turned / above.turn;
         let inside = p >= to.coordinates[0] && p <= to.coordinates[1];
-        inside.then_some(Some(Over {
+        inside.then_some(Some(KinkSpan {
             coordinates: [near, p],
             tension: [m1, m2].map(|m| h * 1.0f64.hypot(m)),
             material,
@@ -242,15 +251,15 @@ fn bounds(side: usize, enters: f64, leaves: f64) -> [f64; 2] {
 }
 
 /// The plane as a span sees it that goes to the right against the load.
-struct Sight<'a> {
-    drape: &'a Drape<'a>,
+struct SpanFrame<'a> {
+    drape: &'a SlackSolver<'a>,
     /// 1 or −1.
     right: f64,
 }
 
-impl<'a> Sight<'a> {
+impl<'a> SpanFrame<'a> {
     /// That of a span that leaves in a direction; None where that is plumb.
-    fn new(drape: &'a Drape<'a>, leaves: Vec2) -> Option<Self> {
+    fn new(drape: &'a SlackSolver<'a>, leaves: Vec2) -> Option<Self> {
         let across = drape.frame.split(leaves).x;
         (across != 0.0).then(|| Self { drape, right: across.signum() })
     }
@@ -267,7 +276,7 @@ impl<'a> Sight<'a> {
     /// Material of a catenary with h across the load from one slope to another, m, and the way from
     /// its start to its end.
     fn catenary(&self, h: f64, m1: f64, m2: f64) -> (f64, Vec2) {
-        let law = &self.drape.course.law;
+        let law = &self.drape.context.law;
         let b = law.load.norm();
         let (material, [t1, t2]) = (h * (m2 - m1) / b, [m1, m2].map(|m| h * 1.0f64.hypot(m)));
         let u = law.thermal * (h * material * law.compliance + h * (m2.asinh() - m1.asinh()) / b);

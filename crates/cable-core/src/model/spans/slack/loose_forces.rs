@@ -1,27 +1,27 @@
 //! A loose cable pulls at its ends and presses on what carries it; some of it hangs, and some lies.
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::loose::{Line, Loose, Part};
-use crate::model::spans::cable_section::Course;
+use crate::model::spans::boundary::loose::{Loose, SlackForm, SlackPart};
+use crate::model::spans::cable_section::SolveContext;
 use crate::model::spans::initial::drained_route::NONE_M;
 
 impl Loose {
     /// Force in the cable at a support, N.
-    pub fn end_force(&self, course: &Course, side: usize) -> Vec2 {
+    pub fn end_force(&self, context: &SolveContext, side: usize) -> Vec2 {
         let part = if side == 0 { self.parts.first() } else { self.parts.last() };
-        part.map_or_else(Vec2::zeros, |part| part.force(course, side))
+        part.map_or_else(Vec2::zeros, |part| part.force(context, side))
     }
 
     /// Force with which obstacles carry it, N.
-    pub fn held(&self, course: &Course) -> Vec2 {
-        let ends = [0, 1].map(|side| self.end_force(course, side));
+    pub fn held(&self, context: &SolveContext) -> Vec2 {
+        let ends = [0, 1].map(|side| self.end_force(context, side));
         let s = self.parts.first().zip(self.parts.last()).map_or(0.0, |(a, b)| b.arc_lengths[1] - a.arc_lengths[0]);
-        ends[0] - ends[1] - course.law.load * s - self.drawn
+        ends[0] - ends[1] - context.law.load * s - self.drawn
     }
 
     /// The most that friction can hold of what lies, N.
-    pub fn friction(&self, course: &Course) -> f64 {
-        let press = |p: &Part| p.held(course).norm() * p.form.friction(course);
+    pub fn friction(&self, context: &SolveContext) -> f64 {
+        let press = |p: &SlackPart| p.held(context).norm() * p.form.friction(context);
         self.parts.iter().map(press).sum()
     }
 
@@ -29,7 +29,7 @@ impl Loose {
     /// over is a heap in a kink, a section under hardly any tension is much the same, and can be
     /// followed as it moves.
     pub fn spreads(&self) -> bool {
-        let is_slack = |p: &Part| matches!(p.form, Line::Hangs(_)) || p.is_loose();
+        let is_slack = |p: &SlackPart| matches!(p.form, SlackForm::Hangs(_)) || p.is_loose();
         self.parts.iter().all(is_slack)
             && self.parts.iter().any(|p| p.is_loose() && p.arc_lengths[1] - p.arc_lengths[0] > NONE_M)
     }
@@ -38,17 +38,17 @@ impl Loose {
     pub(super) fn hangs(&self) -> f64 {
         self.parts
             .iter()
-            .filter(|p| matches!(p.form, Line::Hangs(_)))
+            .filter(|p| matches!(p.form, SlackForm::Hangs(_)))
             .map(|p| p.arc_lengths[1] - p.arc_lengths[0])
             .sum()
     }
 
     /// Material that lies, and the length of ground it lies on, m.
-    pub fn lying_lengths(&self, course: &Course) -> [f64; 2] {
-        let lying = self.parts.iter().filter(|p| p.is_loose() || matches!(p.form, Line::Heap(_)));
+    pub fn lying_lengths(&self, context: &SolveContext) -> [f64; 2] {
+        let lying = self.parts.iter().filter(|p| p.is_loose() || matches!(p.form, SlackForm::Heap(_)));
         lying.fold([0.0; 2], |[material, ground], p| {
-            let way = if let Line::Lies(s) = &p.form {
-                (s.coordinates[1] - s.coordinates[0]) * s.place(course, s.coordinates[0]).stretch
+            let way = if let SlackForm::Lies(s) = &p.form {
+                (s.coordinates[1] - s.coordinates[0]) * s.place(context, s.coordinates[0]).stretch
             } else {
                 0.0
             };

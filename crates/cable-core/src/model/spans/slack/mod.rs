@@ -43,11 +43,11 @@ mod report;
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::loose::Loose;
-use crate::model::spans::boundary_conditions::{BoundaryConditions, Layout};
-use crate::model::spans::cable_section::{CableSection, Course, Tie};
-use crate::model::spans::initial::drained_route::{Drained, Frame, Roofs};
-use crate::model::spans::initial::route::way;
-use crate::model::spans::slack::drape::Drape;
+use crate::model::spans::boundary_conditions::{BoundaryConditions, SectionLayout};
+use crate::model::spans::cable_section::{CableSection, EndCondition, SolveContext};
+use crate::model::spans::initial::drained_route::{DrainedRoute, Frame, UpperSurfaces};
+use crate::model::spans::initial::route::section_route;
+use crate::model::spans::slack::drape::SlackSolver;
 use crate::model::spans::slack::heap::CREST_CONE_ROUNDING;
 use crate::model::spans::slack::pay_out::pay_out;
 
@@ -55,18 +55,18 @@ pub(in crate::model::spans) use crate::model::spans::slack::drape::LooseShapes;
 
 /// The section where it lies loose at an instant; None where it cannot.
 pub(in crate::model::spans) fn loose_section(
-    layout: &Layout,
+    layout: &SectionLayout,
     index: usize,
-    course: &Course,
+    context: &SolveContext,
     instant: &BoundaryConditions,
     sought: LooseShapes,
 ) -> Option<CableSection> {
     let part = layout.sections.get(index)?;
-    let (load, [from, to]) = (course.law.load, part.material);
-    let loaded = course.loads.iter().any(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0);
+    let (load, [from, to]) = (context.law.load, part.material);
+    let loaded = context.loads.iter().any(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0);
     let frame = Frame::of(load).filter(|_| !loaded && part.pulleys.is_empty())?;
     let bodies = layout.problem.world.geometry().bodies();
-    let roofs = Roofs::new(course, bodies.len(), frame);
+    let surfaces = UpperSurfaces::new(context, bodies.len(), frame);
     let held = part.supports.map(|s| s.and_then(|k| instant.places.get(k).copied()));
     let ends = held.map(|h| h.is_some());
     let drawn = [0, 1].map(|side| match part.supports[side] {
@@ -74,16 +74,16 @@ pub(in crate::model::spans) fn loose_section(
         Some(_) => Vec2::zeros(),
     });
     let drawn = drawn[0] + drawn[1];
-    let drape = Drape { course, frame, most: CREST_CONE_ROUNDING * load.norm() * (to - from), sought };
-    let section = |drained: Drained| {
-        let lines = drape.lines(&roofs, &drained.legs);
+    let drape = SlackSolver { context, frame, most: CREST_CONE_ROUNDING * load.norm() * (to - from), sought };
+    let section = |drained: DrainedRoute| {
+        let lines = drape.lines(&surfaces, &drained.legs);
         let parts = drape.parts(&lines, ends)?;
         let parts = pay_out(parts, &drape, part.material, drawn, ends)?;
-        let ties = [0, 1].map(|k| held[k].map_or(Tie::Loose(drawn), Tie::Held));
+        let end_conditions = [0, 1].map(|k| held[k].map_or(EndCondition::Loose(drawn), EndCondition::Fixed));
         let loose = Some(Loose { parts, drawn });
-        Some(CableSection { from, to, ties, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
+        Some(CableSection { from, to, end_conditions, contacts: Vec::new(), forces: vec![Vec2::zeros()], loose })
     };
-    let along_route = || Drained::new(&roofs, bodies, frame, &way(layout, part, instant).points);
+    let along_route = || DrainedRoute::new(&surfaces, bodies, frame, &section_route(layout, part, instant).points);
     match held {
         [Some(_), Some(_)] => section(along_route()?),
         [Some(at), None] | [None, Some(at)] => {
@@ -94,7 +94,7 @@ pub(in crate::model::spans) fn loose_section(
             laid.filter(|s| {
                 s.loose.as_ref().is_some_and(|l| l.spreads() && l.hangs() <= layout.problem.cable.diameter_m)
             })
-            .or_else(|| section(Drained::plumb(&roofs, bodies, frame, at, held[0].is_none())?))
+            .or_else(|| section(DrainedRoute::plumb(&surfaces, bodies, frame, at, held[0].is_none())?))
         }
         [None, None] => None,
     }
@@ -118,13 +118,13 @@ mod tests {
                 let mut scene = scene.clone();
                 scene.cables.iter_mut().for_each(|c| c.length_m *= longer);
                 for problem in problems(&scene).unwrap_or_default() {
-                    let Ok(layout) = Layout::new(&problem, CableEnd::Start, Arc::default()) else { continue };
+                    let Ok(layout) = SectionLayout::new(&problem, CableEnd::Start, Arc::default()) else { continue };
                     let mut instant = BoundaryConditions::default();
                     layout.instant(&vec![None; problem.supports.len()], 0.0, &mut instant);
-                    let course = layout.course(layout.curves(), &instant);
+                    let context = layout.context(layout.curves(), &instant);
                     for k in 0..layout.sections.len() {
                         let laid = |sought| {
-                            loose_section(&layout, k, &course, &instant, sought)
+                            loose_section(&layout, k, &context, &instant, sought)
                                 .filter(|s| s.loose.as_ref().is_some_and(Loose::spreads))
                         };
                         let [any, none] = [LooseShapes::AnyTension, LooseShapes::NoTension].map(laid);

@@ -2,18 +2,18 @@
 //! or into a heap.
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::loose::{Line, Part};
+use crate::model::spans::boundary::loose::{SlackForm, SlackPart};
 use crate::model::spans::initial::drained_route::NONE_M;
-use crate::model::spans::slack::drape::Drape;
+use crate::model::spans::slack::drape::SlackSolver;
 use crate::model::spans::slack::heap::heap;
 
 /// Part of the cable that there must be too much of: what is as long as its way lies along it, and
 /// remembers what friction does.
 const EXCESS_CABLE_FRACTION: f64 = 1e-9;
-impl Part {
+impl SlackPart {
     /// True if it lies without tension, so that there may be more of it.
     pub(super) fn is_loose(&self) -> bool {
-        matches!(self.form, Line::Lies(_)) && self.tension == [0.0; 2]
+        matches!(self.form, SlackForm::Lies(_)) && self.tension == [0.0; 2]
     }
 }
 
@@ -21,13 +21,13 @@ impl Part {
 /// nothing is over or nothing holds it. A free end lies where the cable ends if that is before the
 /// route does.
 pub(super) fn pay_out(
-    mut parts: Vec<Part>,
-    drape: &Drape<'_>,
+    mut parts: Vec<SlackPart>,
+    drape: &SlackSolver<'_>,
     [from, to]: [f64; 2],
     drawn: Vec2,
     held: [bool; 2],
-) -> Option<Vec<Part>> {
-    let own = |p: &Part| p.arc_lengths[1] - p.arc_lengths[0];
+) -> Option<Vec<SlackPart>> {
+    let own = |p: &SlackPart| p.arc_lengths[1] - p.arc_lengths[0];
     let mut over = to - from - parts.iter().map(own).sum::<f64>();
     if !(over > EXCESS_CABLE_FRACTION * (to - from)) {
         cut(&mut parts, held.iter().position(|h| !h)?, -over)?;
@@ -35,10 +35,10 @@ pub(super) fn pay_out(
     }
     let free: f64 = parts.iter().filter(|p| p.is_loose()).map(own).sum();
     if over > 0.0 && (free <= NONE_M || drawn.norm() > 0.0) {
-        let (at, found) = heap(&parts, drape.course, drape.frame, drape.course.law.load * over + drawn)?;
-        parts.insert(at, Part { arc_lengths: [0.0, over], tension: [0.0; 2], form: Line::Heap(found) });
+        let (at, found) = heap(&parts, drape.context, drape.frame, drape.context.law.load * over + drawn)?;
+        parts.insert(at, SlackPart { arc_lengths: [0.0, over], tension: [0.0; 2], form: SlackForm::Heap(found) });
     }
-    let heaped = over == 0.0 || parts.iter().any(|p| matches!(p.form, Line::Heap(_)));
+    let heaped = over == 0.0 || parts.iter().any(|p| matches!(p.form, SlackForm::Heap(_)));
     let spread = if heaped { 0.0 } else { over / free };
     let mut s = from;
     for part in &mut parts {
@@ -51,11 +51,11 @@ pub(super) fn pay_out(
 
 /// Takes so much material (m) off a free end (0: the start) that lies without tension; None where
 /// it does not.
-fn cut(parts: &mut Vec<Part>, end: usize, mut off: f64) -> Option<()> {
+fn cut(parts: &mut Vec<SlackPart>, end: usize, mut off: f64) -> Option<()> {
     loop {
         let at = if end == 0 { 0 } else { parts.len().checked_sub(1)? };
         let part = parts.get_mut(at)?;
-        let Line::Lies(stretch) = &mut part.form else { return None };
+        let SlackForm::Lies(stretch) = &mut part.form else { return None };
         if part.tension != [0.0; 2] {
             return None;
         }

@@ -3,8 +3,8 @@
 use crate::math::Vec2;
 use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point};
-use crate::model::spans::boundary::loose::{Heap, Line, Loose, Part, Stretch};
-use crate::model::spans::cable_section::Course;
+use crate::model::spans::boundary::loose::{Heap, Loose, LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::cable_section::SolveContext;
 use crate::model::spans::initial::drained_route::NONE_M;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
@@ -28,39 +28,44 @@ struct Run {
 
 impl Loose {
     /// Adds its nodes; what it lies on, by the index of the obstacle.
-    pub fn report(&self, course: &Course, nodes: &mut Nodes<'_>, cable_radius: f64) -> Vec<(usize, ContactReport)> {
+    pub fn report(
+        &self,
+        context: &SolveContext,
+        nodes: &mut Nodes<'_>,
+        cable_radius: f64,
+    ) -> Vec<(usize, ContactReport)> {
         let mut runs: Vec<Run> = Vec::new();
         let mut goes_on = false;
         for part in &self.parts {
             match &part.form {
-                Line::Hangs(ends) => hang(course, part, *ends, nodes),
-                Line::Spans { from, force } => {
-                    let chain = course.chain(part.arc_lengths[0], part.arc_lengths[1]);
+                SlackForm::Hangs(ends) => hang(context, part, *ends, nodes),
+                SlackForm::Spans { from, force } => {
+                    let chain = context.chain(part.arc_lengths[0], part.arc_lengths[1]);
                     chain.spans(*force, *from).for_each(|(s, at, shape)| nodes.catenary(s, at, &shape));
                 }
-                Line::Lies(s) => {
+                SlackForm::Lies(s) => {
                     if !goes_on || runs.last().is_none_or(|r| r.curve / 2 != s.curve / 2) {
                         runs.push(Run::new(s.curve, part));
                     }
                     if let Some(run) = runs.last_mut() {
-                        run.lie(course, part, s, nodes, cable_radius);
+                        run.lie(context, part, s, nodes, cable_radius);
                     }
                 }
-                Line::Heap(heap) => {
+                SlackForm::Heap(heap) => {
                     for s in part.arc_lengths {
                         nodes.push(Point { arc_length: s, at: heap.at, force: Vec2::zeros(), curvature: 0.0 });
                     }
                     runs.extend(Run::of_heap(part, heap));
                 }
             }
-            goes_on = matches!(part.form, Line::Lies(_));
+            goes_on = matches!(part.form, SlackForm::Lies(_));
         }
-        runs.into_iter().filter_map(|run| run.report(course)).collect()
+        runs.into_iter().filter_map(|run| run.report(context)).collect()
     }
 }
 
-fn hang(course: &Course, part: &Part, [from, to]: [Vec2; 2], nodes: &mut Nodes<'_>) {
-    let (law, whole) = (&course.law, part.arc_lengths[1] - part.arc_lengths[0]);
+fn hang(context: &SolveContext, part: &SlackPart, [from, to]: [Vec2; 2], nodes: &mut Nodes<'_>) {
+    let (law, whole) = (&context.law, part.arc_lengths[1] - part.arc_lengths[0]);
     let weight = law.load.norm();
     let along = (to - from).normalize();
     // u counts from the foot up: h = λ (s + b s²/2EA).
@@ -74,53 +79,53 @@ fn hang(course: &Course, part: &Part, [from, to]: [Vec2; 2], nodes: &mut Nodes<'
     }
 }
 
-impl Part {
+impl SlackPart {
     /// Force in the cable at an end of it, N.
-    pub(super) fn force(&self, course: &Course, end: usize) -> Vec2 {
+    pub(super) fn force(&self, context: &SolveContext, end: usize) -> Vec2 {
         match &self.form {
-            Line::Hangs([from, to]) => (to - from).normalize() * self.tension[end],
-            Line::Lies(s) => s.place(course, s.coordinates[end]).tangent * self.tension[end],
-            Line::Heap(_) => Vec2::zeros(),
-            Line::Spans { force, .. } => {
-                force - course.law.load * if end == 0 { 0.0 } else { self.arc_lengths[1] - self.arc_lengths[0] }
+            SlackForm::Hangs([from, to]) => (to - from).normalize() * self.tension[end],
+            SlackForm::Lies(s) => s.place(context, s.coordinates[end]).tangent * self.tension[end],
+            SlackForm::Heap(_) => Vec2::zeros(),
+            SlackForm::Spans { force, .. } => {
+                force - context.law.load * if end == 0 { 0.0 } else { self.arc_lengths[1] - self.arc_lengths[0] }
             }
         }
     }
 
     /// The force of what carries it, N.
-    pub(super) fn held(&self, course: &Course) -> Vec2 {
+    pub(super) fn held(&self, context: &SolveContext) -> Vec2 {
         match &self.form {
-            Line::Hangs(_) | Line::Spans { .. } => Vec2::zeros(),
-            Line::Lies(_) => {
-                self.force(course, 0)
-                    - self.force(course, 1)
-                    - course.law.load * (self.arc_lengths[1] - self.arc_lengths[0])
+            SlackForm::Hangs(_) | SlackForm::Spans { .. } => Vec2::zeros(),
+            SlackForm::Lies(_) => {
+                self.force(context, 0)
+                    - self.force(context, 1)
+                    - context.law.load * (self.arc_lengths[1] - self.arc_lengths[0])
             }
-            Line::Heap(heap) => {
-                heap.edges.iter().flatten().map(crate::model::spans::boundary::loose::Borne::force).sum()
+            SlackForm::Heap(heap) => {
+                heap.edges.iter().flatten().map(crate::model::spans::boundary::loose::BearingEdge::force).sum()
             }
         }
     }
 }
 
-impl Line {
-    pub(super) fn friction(&self, course: &Course) -> f64 {
+impl SlackForm {
+    pub(super) fn friction(&self, context: &SolveContext) -> f64 {
         match self {
             Self::Hangs(_) | Self::Spans { .. } => 0.0,
-            Self::Lies(s) => s.friction(course),
+            Self::Lies(s) => s.friction(context),
             Self::Heap(heap) => {
-                heap.edges.iter().flatten().map(|b| course.curves[b.curve].friction).fold(0.0, f64::max)
+                heap.edges.iter().flatten().map(|b| context.curves[b.curve].friction).fold(0.0, f64::max)
             }
         }
     }
 }
 
 impl Run {
-    fn new(curve: usize, part: &Part) -> Self {
+    fn new(curve: usize, part: &SlackPart) -> Self {
         Self { curve, ends: part.arc_lengths, tension: part.tension, ..Self::default() }
     }
 
-    fn of_heap<'a>(part: &'a Part, heap: &'a Heap) -> impl Iterator<Item = Self> + 'a {
+    fn of_heap<'a>(part: &'a SlackPart, heap: &'a Heap) -> impl Iterator<Item = Self> + 'a {
         heap.edges.iter().flatten().map(|b| {
             let middle = 0.5 * (part.arc_lengths[0] + part.arc_lengths[1]);
             Self {
@@ -134,10 +139,17 @@ impl Run {
         })
     }
 
-    fn lie(&mut self, course: &Course, part: &Part, s: &Stretch, nodes: &mut Nodes<'_>, cable_radius: f64) {
-        let law = &course.law;
+    fn lie(
+        &mut self,
+        context: &SolveContext,
+        part: &SlackPart,
+        s: &LyingStretch,
+        nodes: &mut Nodes<'_>,
+        cable_radius: f64,
+    ) {
+        let law = &context.law;
         let [p0, p1] = s.coordinates;
-        let start = s.place(course, p0);
+        let start = s.place(context, p0);
         let turns = start.turn != 0.0;
         let count = match turns {
             true => arc_nodes::parts(start.stretch, p1 - p0, cable_radius),
@@ -149,11 +161,11 @@ impl Run {
         let material = part.arc_lengths[1] - part.arc_lengths[0];
         let at = |k: usize| {
             let f = k as f64 / count as f64;
-            let place = s.place(course, p0 + (p1 - p0) * f);
+            let place = s.place(context, p0 + (p1 - p0) * f);
             if part.is_loose() {
                 return (place, part.arc_lengths[0] + material * f, 0.0);
             }
-            let way = s.slide(course, p0, p0 + (p1 - p0) * f, part.tension[0], s.mobilised);
+            let way = s.slide(context, p0, p0 + (p1 - p0) * f, part.tension[0], s.mobilised);
             match k {
                 0 => (place, part.arc_lengths[0], part.tension[0]),
                 k if k == count => (place, part.arc_lengths[1], part.tension[1]),
@@ -170,7 +182,7 @@ impl Run {
                 let own = law.load * (arc_length - before.1);
                 let held = before.0.tangent * before.2 - place.tangent * tension - own;
                 let f = (k as f64 - 0.5) / count as f64;
-                let middle = s.place(course, p0 + (p1 - p0) * f);
+                let middle = s.place(context, p0 + (p1 - p0) * f);
                 let press = held.dot(&middle.normal);
                 self.normal += press;
                 self.push += middle.normal * press;
@@ -183,8 +195,8 @@ impl Run {
         }
     }
 
-    fn report(self, course: &Course) -> Option<(usize, ContactReport)> {
-        let curve = &course.curves[self.curve];
+    fn report(self, context: &SolveContext) -> Option<(usize, ContactReport)> {
+        let curve = &context.curves[self.curve];
         let middle = 0.5 * (self.ends[0] + self.ends[1]);
         let nearest = self.at.iter().min_by(|a, b| (a.0 - middle).abs().total_cmp(&(b.0 - middle).abs()));
         let (_, at) = nearest.filter(|_| self.ends[1] - self.ends[0] > NONE_M * 1e-3)?;

@@ -46,7 +46,7 @@ impl ChainContact {
 impl Chain<'_> {
     /// Passes all pairs of chain and obstacles within `reach` (m) to `out`, with the bar of each.
     fn for_each_pair(&self, x: &[Vec2], reach: f64, mut out: impl FnMut(usize, Pair)) {
-        let geometry = self.setting.problem.world.geometry();
+        let geometry = self.chain_input.problem.world.geometry();
         for k in 0..x.len() {
             if !self.held[k] {
                 let before = k.checked_sub(1).and_then(|k| x.get(k)).copied();
@@ -65,7 +65,7 @@ impl Chain<'_> {
     /// Greatest depth of the cable's surface in an obstacle, m.
     fn greatest_depth(&self, x: &[Vec2]) -> f64 {
         let mut deepest: f64 = 0.0;
-        let world = &self.setting.problem.world;
+        let world = &self.chain_input.problem.world;
         let mut measure = |p: Vec2| {
             if let Some(g) = world.signed_gap(p, self.bar) {
                 deepest = larger(deepest, -g.gap_m);
@@ -82,7 +82,7 @@ impl Chain<'_> {
     /// True if nodes at positions `x` (m) are in no obstacle, or so little that Newton's method
     /// brings them out.
     pub(super) fn is_clear_enough(&self, x: &[Vec2]) -> bool {
-        self.greatest_depth(x) < OVERLAP_LIMIT * self.setting.problem.radius
+        self.greatest_depth(x) < OVERLAP_LIMIT * self.chain_input.problem.radius
     }
 
     /// Finds the contacts of the present positions. One that was known keeps its force, friction
@@ -100,10 +100,10 @@ impl Chain<'_> {
                 known[from..].iter().take_while(|t| t.node <= node + 1).filter(|t| t.gap.feature == p.gap.feature);
             let old = old.min_by(|a, b| (a.arc - s).abs().total_cmp(&(b.arc - s).abs()));
             let old = old.filter(|t| (t.arc - s).abs() < SAME_CONTACT_BARS * self.bar);
-            let mobilised = match (old, self.setting.friction_source) {
+            let mobilised = match (old, self.chain_input.friction_source) {
                 (Some(t), _) => t.mobilised,
                 (None, Some(answer)) if p.gap.friction > 0.0 => {
-                    mobilised_friction(self.setting.problem, answer, p.gap.obstacle, s).coefficient
+                    mobilised_friction(self.chain_input.problem, answer, p.gap.obstacle, s).coefficient
                 }
                 _ => 0.0,
             };

@@ -1,8 +1,8 @@
 //! A chain is laid along a curve, with a node at each support and load.
 
 use crate::math::{Vec2, larger};
-use crate::model::fem::elastica::chain::{Chain, Clamp, ClampedSide, Setting};
-use crate::model::fem::elastica::flexible_answer::Curve;
+use crate::model::fem::elastica::chain::{Chain, ChainInput, Clamp, ClampedSide};
+use crate::model::fem::elastica::flexible_answer::ReferenceCurve;
 use crate::model::fem::free::stations::place as support_place;
 use crate::model::fem::newton::initial_guess::push_chain_out;
 use crate::scene::SupportKind;
@@ -40,8 +40,8 @@ struct Station {
 }
 
 /// All stations in order along the cable; None if one is a pulley.
-fn stations(setting: Setting<'_>) -> Option<Vec<Station>> {
-    let Setting { problem, time_s, dragged, .. } = setting;
+fn stations(chain_input: ChainInput<'_>) -> Option<Vec<Station>> {
+    let ChainInput { problem, time_s, dragged, .. } = chain_input;
     let gravity = if problem.linear_density > 0.0 { problem.weight / problem.linear_density } else { Vec2::zeros() };
     let last = problem.supports.len().checked_sub(1)?;
     let mut stations = Vec::new();
@@ -76,17 +76,21 @@ impl<'a> Chain<'a> {
     /// The chain along a curve, pushed out of obstacles. None where the scene has things that a
     /// chain does not model (pulleys, a robot, a rough floor, self-contact), or where the curve
     /// runs through an obstacle.
-    pub(super) fn along_curve(setting: Setting<'a>, curve: &Curve<'_>, refinement: f64) -> Option<Self> {
-        let Setting { problem, time_s, .. } = setting;
+    pub(super) fn along_curve(
+        chain_input: ChainInput<'a>,
+        curve: &ReferenceCurve<'_>,
+        refinement: f64,
+    ) -> Option<Self> {
+        let ChainInput { problem, time_s, .. } = chain_input;
         if problem.outline.is_some() || problem.floor_friction.is_some() || problem.cable.self_contact {
             return None;
         }
-        let stations = stations(setting)?;
+        let stations = stations(chain_input)?;
         let scale = problem.force_scale();
         let bend = (problem.bending_stiffness / larger(scale / 3.0, 1e-300)).sqrt();
         let count = (BARS_IN_BEND * problem.length / bend).clamp(LEAST_BARS, MOST_BARS) * refinement;
         let mut chain = Self {
-            setting,
+            chain_input,
             body: problem.body_force(time_s),
             arc: vec![0.0],
             positions: Vec::new(),
@@ -116,10 +120,10 @@ impl<'a> Chain<'a> {
     }
 
     /// Divides the cable between stations into even bars.
-    fn place_nodes(&mut self, stations: &[Station], curve: &Curve<'_>) {
+    fn place_nodes(&mut self, stations: &[Station], curve: &ReferenceCurve<'_>) {
         for pair in stations.windows(2) {
             let (from, to) = (pair[0].arc, pair[1].arc);
-            if to - from > SAME_PLACE_FRACTION * self.setting.problem.length {
+            if to - from > SAME_PLACE_FRACTION * self.chain_input.problem.length {
                 let n = ((to - from) / self.bar).ceil().max(2.0);
                 self.arc.extend((1..=n as usize).map(|i| from + (to - from) * i as f64 / n));
             }
@@ -133,7 +137,7 @@ impl<'a> Chain<'a> {
     fn apply_stations(&mut self, stations: Vec<Station>) {
         let n = self.arc.len();
         for station in stations {
-            let same = SAME_PLACE_FRACTION * self.setting.problem.length;
+            let same = SAME_PLACE_FRACTION * self.chain_input.problem.length;
             let k = self.arc.partition_point(|a| *a < station.arc - same).min(n - 1);
             if let Some(at) = station.position {
                 self.positions[k] = at;
@@ -154,8 +158,8 @@ impl<'a> Chain<'a> {
 
     /// Adds the bars with their tension and weight. A bar for whose material the curve has no room
     /// begins as short as the curve.
-    fn add_bars(&mut self, curve: &Curve<'_>) {
-        let problem = self.setting.problem;
+    fn add_bars(&mut self, curve: &ReferenceCurve<'_>) {
+        let problem = self.chain_input.problem;
         for e in 0..self.arc.len() - 1 {
             let ds = self.arc[e + 1] - self.arc[e];
             let chord = (self.positions[e + 1] - self.positions[e]).norm();

@@ -20,7 +20,7 @@ mod solution;
 
 use crate::energy::bending::turn;
 use crate::math::Vec2;
-use crate::model::fem::elastica::flexible_answer::Curve;
+use crate::model::fem::elastica::flexible_answer::ReferenceCurve;
 use crate::model::fem::newton::initial_guess::leaning_way;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Node};
@@ -43,7 +43,7 @@ const REDUCED_RESISTANCE_FACTOR: f64 = 1e-2;
 
 /// The scene at one instant, as every chain of a search is laid in it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Setting<'a> {
+pub(super) struct ChainInput<'a> {
     pub(super) problem: &'a Problem,
     pub(super) time_s: f64,
     /// The places to which supports are dragged, m.
@@ -80,7 +80,7 @@ impl Clamp {
 /// A chain of bars.
 #[derive(Clone, Debug)]
 pub(super) struct Chain<'a> {
-    pub(super) setting: Setting<'a>,
+    pub(super) chain_input: ChainInput<'a>,
     /// Weight and wind, N per metre of arc length.
     body: Vec2,
     /// Arc length of each node, m.
@@ -110,7 +110,7 @@ pub(super) struct Chain<'a> {
 }
 
 /// The outcome of letting a chain go from an answer.
-pub(super) enum LetGo<'a> {
+pub(super) enum StabilityOutcome<'a> {
     /// The chain stays: the answer is stable.
     Stays,
     /// The chain runs away and rests elsewhere.
@@ -138,54 +138,54 @@ fn is_folded(problem: &Problem, answer: &CableSolution) -> bool {
 
 /// A chain at stable rest, let go from the answer for a flexible cable, or from its route where
 /// that is no shape of a stiff one; None where it finds none.
-pub(super) fn rest_of_flexible(setting: Setting<'_>) -> Option<Chain<'_>> {
-    let problem = setting.problem;
+pub(super) fn rest_of_flexible(chain_input: ChainInput<'_>) -> Option<Chain<'_>> {
+    let problem = chain_input.problem;
     let usable = |l: &&CableSolution| l.nodes.len() > 1 && l.breaks.is_empty() && !is_folded(problem, l);
-    let flexible = setting.friction_source.filter(usable);
+    let flexible = chain_input.friction_source.filter(usable);
     let route = nodes_along_route(problem);
     if route.len() < 2 {
         return None;
     }
     let of_flexible =
-        flexible.and_then(|l| Chain::along(Setting { friction_source: flexible, ..setting }, &l.nodes, 1.0));
-    let of_route = || Chain::along(Setting { friction_source: None, ..setting }, &route, 1.0);
+        flexible.and_then(|l| Chain::along(ChainInput { friction_source: flexible, ..chain_input }, &l.nodes, 1.0));
+    let of_route = || Chain::along(ChainInput { friction_source: None, ..chain_input }, &route, 1.0);
     let mut chain = of_flexible.or_else(of_route)?;
     (chain.relax(1.0) == RestState::Stable).then_some(chain)
 }
 
 /// Lets a chain go from an answer for the stiff cable, whose friction it keeps.
-pub(super) fn let_go<'a>(setting: Setting<'a>, answer: &'a CableSolution) -> LetGo<'a> {
-    let setting = Setting { friction_source: Some(answer), ..setting };
-    let Some(mut chain) = Chain::along(setting, &answer.nodes, 1.0) else { return LetGo::Unknown };
+pub(super) fn test_stability<'a>(chain_input: ChainInput<'a>, answer: &'a CableSolution) -> StabilityOutcome<'a> {
+    let chain_input = ChainInput { friction_source: Some(answer), ..chain_input };
+    let Some(mut chain) = Chain::along(chain_input, &answer.nodes, 1.0) else { return StabilityOutcome::Unknown };
     let from = chain.positions.clone();
     let state = chain.relax(REDUCED_RESISTANCE_FACTOR);
     let near = STABILITY_DISTANCE_BARS * chain.bar;
     let stays = from.iter().zip(&chain.positions).all(|(a, b)| (a - b).norm() <= near);
     match state {
-        RestState::Stable if stays => LetGo::Stays,
-        RestState::Stable => LetGo::Leaves(Box::new(chain)),
-        RestState::Unstable => LetGo::Unstable,
-        RestState::NotFound => LetGo::Unknown,
+        RestState::Stable if stays => StabilityOutcome::Stays,
+        RestState::Stable => StabilityOutcome::Leaves(Box::new(chain)),
+        RestState::Unstable => StabilityOutcome::Unstable,
+        RestState::NotFound => StabilityOutcome::Unknown,
     }
 }
 
 impl<'a> Chain<'a> {
     /// The same cable with bars of half the length, let go from this shape, and how it rests.
     pub(super) fn halved(&self) -> Option<(Self, RestState)> {
-        let mut fine = Self::along(self.setting, &self.nodes(), 2.0 * self.refinement)?;
+        let mut fine = Self::along(self.chain_input, &self.nodes(), 2.0 * self.refinement)?;
         let state = fine.relax(REDUCED_RESISTANCE_FACTOR);
         Some((fine, state))
     }
 
     /// A chain at stable rest, let go from a shape; None where it finds none.
-    pub(super) fn rest_near(setting: Setting<'a>, shape: &[Node]) -> Option<Self> {
-        let mut chain = Self::along(Setting { friction_source: None, ..setting }, shape, 1.0)?;
+    pub(super) fn rest_near(chain_input: ChainInput<'a>, shape: &[Node]) -> Option<Self> {
+        let mut chain = Self::along(ChainInput { friction_source: None, ..chain_input }, shape, 1.0)?;
         (chain.relax(REDUCED_RESISTANCE_FACTOR) == RestState::Stable).then_some(chain)
     }
 
     /// The chain along nodes; see [`Chain::along_curve`].
-    fn along(setting: Setting<'a>, nodes: &[Node], refinement: f64) -> Option<Self> {
-        Self::along_curve(setting, &Curve::new(nodes), refinement)
+    fn along(chain_input: ChainInput<'a>, nodes: &[Node], refinement: f64) -> Option<Self> {
+        Self::along_curve(chain_input, &ReferenceCurve::new(nodes), refinement)
     }
 
     /// Unit vector along a bar.

@@ -74,7 +74,7 @@ fn add_force(right: &mut [f64], node: usize, f: Vec2) {
 impl Chain<'_> {
     /// Stiffness of contacts, N/m.
     fn contact_stiffness(&self) -> f64 {
-        self.scale / (PENALTY_DEPTH_FRACTION * self.setting.problem.radius)
+        self.scale / (PENALTY_DEPTH_FRACTION * self.chain_input.problem.radius)
     }
 
     /// One Newton step with a resistance to motion, N/m²; None where its matrix is not positive
@@ -138,7 +138,7 @@ impl Chain<'_> {
     }
 
     fn add_bars_to(&self, matrix: &mut BandMatrix, right: &mut [f64], hessian: Hessian) {
-        let ea = self.setting.problem.axial_stiffness;
+        let ea = self.chain_input.problem.axial_stiffness;
         for e in 0..self.positions.len() - 1 {
             let d = self.positions[e + 1] - self.positions[e];
             let l = d.norm();
@@ -161,7 +161,7 @@ impl Chain<'_> {
             Hessian::Exact => Curvature::Exact,
             Hessian::Convex => Curvature::Clipped,
         };
-        let ei = self.setting.problem.bending_stiffness;
+        let ei = self.chain_input.problem.bending_stiffness;
         for k in 1..self.positions.len() - 1 {
             if self.clamps.iter().any(|c| c.node == k) {
                 continue;
@@ -246,7 +246,7 @@ impl Chain<'_> {
 
     /// Distance of the centre line from a round's centre in contact, m.
     fn offset(&self, gap: &Gap) -> f64 {
-        let problem = self.setting.problem;
+        let problem = self.chain_input.problem;
         problem.world.geometry().body_of(gap.feature).map_or(problem.radius, |b| b.offset)
     }
 

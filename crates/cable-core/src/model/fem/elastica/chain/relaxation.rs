@@ -110,7 +110,7 @@ impl Chain<'_> {
     /// begins with.
     pub(super) fn relax(&mut self, resistance: f64) -> RestState {
         let Some(mut system) = LinearSystem::new(self.positions.len()) else { return RestState::NotFound };
-        let problem = self.setting.problem;
+        let problem = self.chain_input.problem;
         let first = self.scale / problem.length / self.bar;
         let mut resistance = Resistance { now: resistance * first, first, near_rest: false, perturbations: 0 };
         for round in 0..MAX_STEPS {
@@ -206,7 +206,7 @@ impl Chain<'_> {
             let d = self.positions[e + 1] - self.positions[e];
             let l = d.norm();
             let longer = (moves[e + 1] * part - moves[e] * part).dot(&d) / (l * part);
-            let pull = self.setting.problem.axial_stiffness * ((l + longer) / self.rest[e] - 1.0);
+            let pull = self.chain_input.problem.axial_stiffness * ((l + longer) / self.rest[e] - 1.0);
             self.tension[e] += part * (pull - self.tension[e]);
         }
         self.positions.copy_from_slice(positions);
@@ -219,7 +219,7 @@ impl Chain<'_> {
         for k in (1..n - 1).filter(|&k| !self.held[k]) {
             let phase = std::f64::consts::PI * (waves * k) as f64 / n as f64;
             let along = from[k + 1] - from[k - 1];
-            let size = PERTURBATION_FRACTION * self.setting.problem.radius * phase.sin();
+            let size = PERTURBATION_FRACTION * self.chain_input.problem.radius * phase.sin();
             self.positions[k] += perp(along) * (size / larger(along.norm(), 1e-300));
         }
     }
@@ -241,7 +241,7 @@ impl Chain<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::fem::elastica::chain::Setting;
+    use crate::model::fem::elastica::chain::ChainInput;
     use crate::problem::Problem;
     use crate::scene::Scene;
     use crate::solution::{CableSolution, Node};
@@ -273,9 +273,9 @@ mod tests {
     fn a_strut_buckles_at_its_critical_force() -> Result<(), Box<dyn std::error::Error>> {
         for (part, stays) in [(0.5, true), (0.98, true), (1.02, false), (2.0, false)] {
             let (problem, straight) = strut(part)?;
-            let setting =
-                Setting { problem: &problem, time_s: 0.0, dragged: &[None, None], friction_source: Some(&straight) };
-            let mut chain = Chain::along(setting, &straight.nodes, 1.0).ok_or("no chain")?;
+            let chain_input =
+                ChainInput { problem: &problem, time_s: 0.0, dragged: &[None, None], friction_source: Some(&straight) };
+            let mut chain = Chain::along(chain_input, &straight.nodes, 1.0).ok_or("no chain")?;
             assert_eq!(chain.relax(REDUCED_RESISTANCE_FACTOR), RestState::Stable, "{part}");
             let off = chain.positions.iter().map(|x| (x.y - 1.0).abs()).fold(0.0, larger);
             assert_eq!(off < 1e-9, stays, "{part} of the critical force: {off} m aside");

@@ -22,7 +22,7 @@ impl Chain<'_> {
     fn moments(&self) -> Vec<f64> {
         self.curvatures()
             .iter()
-            .map(|b| self.setting.problem.bending_stiffness * b / self.setting.problem.thermal_stretch)
+            .map(|b| self.chain_input.problem.bending_stiffness * b / self.chain_input.problem.thermal_stretch)
             .collect()
     }
 
@@ -44,12 +44,12 @@ impl Chain<'_> {
         let pushes = self.pushing_contacts();
         let nodes = self.answer_nodes(&moments, &forces, &pushes);
         CableSolution {
-            name: self.setting.problem.cable.name.clone(),
+            name: self.chain_input.problem.cable.name.clone(),
             supports: self.supports(&forces, &nodes),
             contacts: self.reports(&pushes),
             nodes,
             assumptions: Assumptions {
-                bending_stiffness_n_m2: self.setting.problem.bending_stiffness,
+                bending_stiffness_n_m2: self.chain_input.problem.bending_stiffness,
                 ..Assumptions::default()
             },
             ..CableSolution::default()
@@ -57,7 +57,7 @@ impl Chain<'_> {
     }
 
     fn answer_nodes(&self, moments: &[f64], forces: &[Vec2], pushes: &[ChainContact]) -> Vec<Node> {
-        let p = self.setting.problem;
+        let p = self.chain_input.problem;
         let area = p.cable.area_m2();
         let last = self.positions.len() - 1;
         let mut out = Vec::with_capacity(self.positions.len() + pushes.len());
@@ -107,7 +107,7 @@ impl Chain<'_> {
     }
 
     fn supports(&self, forces: &[Vec2], nodes: &[Node]) -> Vec<SupportReaction> {
-        let p = self.setting.problem;
+        let p = self.chain_input.problem;
         let last = self.positions.len() - 1;
         let ends = p.supports.len().saturating_sub(1);
         let reaction = |(k, s): (usize, &crate::problem::SupportPoint)| {
@@ -120,7 +120,7 @@ impl Chain<'_> {
             let near = self.contacts.iter().filter(|t| t.active);
             let led = near.flat_map(|t| t.shares().map(|(k, a)| (k, self.force_of(t) * a)));
             let led = led.filter(|(k, _)| *k == i).fold(Vec2::zeros(), |sum, (_, f)| sum + f);
-            let f = if loaded { -p.hung_on(k, self.setting.time_s) } else { after - before + self.load[i] + led };
+            let f = if loaded { -p.hung_on(k, self.chain_input.time_s) } else { after - before + self.load[i] + led };
             SupportReaction {
                 name: s.name.clone(),
                 reaction_x_n: f.x,
@@ -157,7 +157,7 @@ impl Chain<'_> {
             let normal_n: f64 = group.iter().map(|t| t.push).sum();
             let friction_n: f64 = group.iter().map(|t| t.mobilised * t.push).sum();
             let mut r = ContactReport {
-                obstacle: self.setting.problem.world.obstacle_name(first.gap.obstacle).to_owned(),
+                obstacle: self.chain_input.problem.world.obstacle_name(first.gap.obstacle).to_owned(),
                 x_m: x.x,
                 y_m: x.y,
                 arc_length_m: 0.5 * (a.arc + b.arc),

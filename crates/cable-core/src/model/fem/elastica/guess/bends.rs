@@ -3,7 +3,7 @@
 
 use crate::math::{cross, perp};
 use crate::model::fem::elastica::boundary_value::{ANGLE, ARC, End, Joint, MOMENT, Piece, STATES, force, tangent};
-use crate::model::fem::elastica::guess::Guess;
+use crate::model::fem::elastica::guess::ElasticaGuess;
 use crate::model::fem::free::beam::equilibrium::nearest_turn;
 
 /// The end of a piece.
@@ -21,7 +21,7 @@ fn state_at(piece: &Piece, end: PieceEnd) -> Option<[f64; STATES]> {
     .copied()
 }
 
-impl Guess<'_> {
+impl ElasticaGuess<'_> {
     /// Gives all nodes the bends of the answer, and the shear that follows from them.
     pub(super) fn bend_as_nodes(&mut self) -> Option<()> {
         self.count_on_angles()?;

@@ -6,7 +6,7 @@ use crate::math::{Vec2, perp};
 use crate::model::fem::elastica::boundary_value::{Contact, Joint, Owner};
 use crate::model::fem::elastica::chain::ChainContact;
 use crate::model::fem::elastica::flexible_answer::{MobilisedFriction, mobilised_friction};
-use crate::model::fem::elastica::guess::{Attachment, Guess, SAME_PLACE_FRACTION};
+use crate::model::fem::elastica::guess::{Attachment, ElasticaGuess, SAME_PLACE_FRACTION};
 use crate::model::fem::free::stations::place as support_place;
 use crate::model::fem::mesh::sliding_node::round_of;
 use crate::problem::Problem;
@@ -56,7 +56,7 @@ fn same_surface(a: &Contact, b: &Contact) -> bool {
         && (a.radius.is_some() && a.at == b.at || a.radius.is_none() && (a.normal - b.normal).norm() < 1e-9)
 }
 
-impl Guess<'_> {
+impl ElasticaGuess<'_> {
     /// Attaches a contact, in one point where `from` and `to` (m) are one. `middle` is where its
     /// friction is read.
     fn attach_contact(&mut self, mut contact: Contact, [from, to]: [f64; 2], middle: f64) {

@@ -12,7 +12,7 @@ mod pieces;
 use crate::math::Vec2;
 use crate::model::fem::elastica::boundary_value::{Elastica, End, Joint};
 use crate::model::fem::elastica::chain::{Chain, ChainContact};
-use crate::model::fem::elastica::flexible_answer::Curve;
+use crate::model::fem::elastica::flexible_answer::ReferenceCurve;
 use crate::model::fem::free::stations::place as support_place;
 use crate::problem::Problem;
 use crate::scene::SupportKind;
@@ -40,13 +40,13 @@ enum ContactSource<'a> {
 }
 
 /// An elastica in the making.
-struct Guess<'a> {
+struct ElasticaGuess<'a> {
     problem: &'a Problem,
     time_s: f64,
     dragged: &'a [Option<Vec2>],
     answer: &'a CableSolution,
     /// The nodes of the answer.
-    curve: Curve<'a>,
+    curve: ReferenceCurve<'a>,
     elastica: Elastica,
     attachments: Vec<Attachment>,
 }
@@ -60,7 +60,7 @@ impl Elastica {
         dragged: &[Option<Vec2>],
         answer: &CableSolution,
     ) -> Option<Self> {
-        Guess::new(problem, time_s, dragged, answer)?.elastica_of(&ContactSource::Nodes)
+        ElasticaGuess::new(problem, time_s, dragged, answer)?.elastica_of(&ContactSource::Nodes)
     }
 
     /// The same from the answer of a mesh for the cable as stiff as it is. `bar` is the length of
@@ -72,20 +72,20 @@ impl Elastica {
         answer: &CableSolution,
         bar: f64,
     ) -> Option<Self> {
-        Guess::new(problem, time_s, dragged, answer)?.elastica_of(&ContactSource::Reports { bar })
+        ElasticaGuess::new(problem, time_s, dragged, answer)?.elastica_of(&ContactSource::Reports { bar })
     }
 
     /// The same from a chain of bars at rest.
     pub(super) fn from_chain(chain: &Chain<'_>) -> Option<Self> {
-        let setting = chain.setting;
-        let contacts = setting.friction_source.map_or_else(Vec::new, |answer| answer.contacts.clone());
+        let chain_input = chain.chain_input;
+        let contacts = chain_input.friction_source.map_or_else(Vec::new, |answer| answer.contacts.clone());
         let answer = CableSolution { nodes: chain.nodes(), contacts, ..CableSolution::default() };
         let source = ContactSource::Chain { bar: chain.bar, contacts: &chain.pushing_contacts() };
-        Guess::new(setting.problem, setting.time_s, setting.dragged, &answer)?.elastica_of(&source)
+        ElasticaGuess::new(chain_input.problem, chain_input.time_s, chain_input.dragged, &answer)?.elastica_of(&source)
     }
 }
 
-impl<'a> Guess<'a> {
+impl<'a> ElasticaGuess<'a> {
     /// The cable with its holds and loads; None where the scene or the answer has things that an
     /// elastica does not model.
     fn new(problem: &'a Problem, time_s: f64, dragged: &'a [Option<Vec2>], answer: &'a CableSolution) -> Option<Self> {
@@ -110,7 +110,7 @@ impl<'a> Guess<'a> {
             residual: 0.0,
             shrinking: None,
         };
-        let curve = Curve::new(&answer.nodes);
+        let curve = ReferenceCurve::new(&answer.nodes);
         let mut guess = Self { problem, time_s, dragged, answer, curve, elastica, attachments: Vec::new() };
         guess.attach_supports()?;
         guess.attach_loads();

@@ -2,8 +2,8 @@
 
 use crate::math::Vec2;
 use crate::model::fem::elastica::boundary_value::{Elastica, Joint, Piece};
-use crate::model::fem::elastica::flexible_answer::Curve;
-use crate::model::fem::elastica::guess::{Attachment, Guess, SAME_PLACE_FRACTION};
+use crate::model::fem::elastica::flexible_answer::ReferenceCurve;
+use crate::model::fem::elastica::guess::{Attachment, ElasticaGuess, SAME_PLACE_FRACTION};
 use crate::model::fem::free::beam::mesh::places;
 
 /// Elements of a free piece to begin with, and of one that lies on a contact. Fewer: Newton starts
@@ -26,11 +26,11 @@ const POINT_LAYERS: f64 = 4.0;
 const SURRENDERED_ARC_FRACTION: f64 = 0.25;
 
 /// Turn of the curve (rad) from just before an attachment to just after it.
-fn turn_over(curve: &Curve<'_>, a: &Attachment, length: f64) -> f64 {
+fn turn_over(curve: &ReferenceCurve<'_>, a: &Attachment, length: f64) -> f64 {
     (curve.angle_at(a.from, [0.0, a.from]) - curve.angle_at(a.to, [a.to, length])).abs()
 }
 
-impl Guess<'_> {
+impl ElasticaGuess<'_> {
     /// Reduces the bending stiffness to the one with which the continuation begins.
     pub(super) fn reduce_stiffness(&mut self) {
         let elastica = &mut self.elastica;
@@ -156,7 +156,7 @@ impl Guess<'_> {
 
 /// A piece with its nodes along a curve between two arc lengths, m; `contact` is the one it lies
 /// on.
-fn piece_along(elastica: &Elastica, curve: &Curve<'_>, contact: Option<usize>, [from, to]: [f64; 2]) -> Piece {
+fn piece_along(elastica: &Elastica, curve: &ReferenceCurve<'_>, contact: Option<usize>, [from, to]: [f64; 2]) -> Piece {
     let l = to - from;
     let count = if contact.is_some() { LYING_ELEMENTS } else { FREE_ELEMENTS };
     let layers = [from, to].map(|s| elastica.layer_thickness(curve.tension_at(s)));

@@ -25,8 +25,8 @@ use crate::linalg::{BandFactor, BandMatrix};
 use crate::math::{GAUSS_3, Vec2, larger, perp};
 use crate::model::fem::free::beam::mesh::places;
 use crate::model::fem::free::element::Material;
-use crate::model::fem::free::pulley_balance::Network;
-use crate::model::fem::free::stations::{Layout, SpanEnds, Stop};
+use crate::model::fem::free::pulley_balance::PulleyNetwork;
+use crate::model::fem::free::stations::{SpanEnds, Station, StationLayout};
 
 /// Newton steps at one bending stiffness. Measured: 4 to 12.
 const MAX_STEPS: usize = 40;
@@ -47,14 +47,14 @@ pub(in crate::model::fem) struct Bar {
     /// Arc length of its first node and its own, m.
     pub(in crate::model::fem) start: f64,
     pub(in crate::model::fem) ds: f64,
-    /// The stretch between stops it lies in.
+    /// The stretch between stations it lies in.
     pub(in crate::model::fem) stretch: usize,
 }
 
 /// A cable with bending stiffness.
 #[derive(Clone, Debug)]
 pub struct Beam {
-    pub(in crate::model::fem) layout: Layout,
+    pub(in crate::model::fem) layout: StationLayout,
     pub(in crate::model::fem) material: Material,
     pub(in crate::model::fem) bending: f64,
     pub(super) ends: Vec<SpanEnds>,
@@ -104,7 +104,7 @@ impl Beam {
     /// The bars and angles of a solved flexible cable: `network.layout` says how many bars each
     /// stretch has. `body` is its weight and wind, N/m.
     #[must_use]
-    pub fn new(network: &Network, bending: f64, body: Vec2) -> Self {
+    pub fn new(network: &PulleyNetwork, bending: f64, body: Vec2) -> Self {
         let layout = network.layout.clone();
         let mut beam = Self {
             bars: Vec::new(),
@@ -119,15 +119,15 @@ impl Beam {
             residual: 0.0,
         };
         let weight = network.material.body.norm();
-        for k in 0..beam.layout.stops.len().saturating_sub(1) {
-            let (stop, next) = (&beam.layout.stops[k], &beam.layout.stops[k + 1]);
-            let (start, length) = (stop.arc_length, next.arc_length - stop.arc_length);
+        for k in 0..beam.layout.stations.len().saturating_sub(1) {
+            let (station, next) = (&beam.layout.stations[k], &beam.layout.stations[k + 1]);
+            let (start, length) = (station.arc_length, next.arc_length - station.arc_length);
             // λ = √(EI/T); where T goes to zero its own weight takes over, λ³ = EI/w; never longer
             // than the stretch.
             let least = (bending / (length * length)).max((bending * weight * weight).cbrt());
             let layer = |force: Vec2| (bending / force.norm().max(least)).sqrt();
             let layers = [layer(network.forces[k][1]), layer(network.forces[k + 1][0])];
-            let nodes = places(layers, length, stop.cells);
+            let nodes = places(layers, length, station.element_count);
             beam.bars.extend(nodes.windows(2).map(|p| Bar { start: start + p[0], ds: p[1] - p[0], stretch: k }));
         }
         beam.lie_as_flexible();
@@ -157,8 +157,8 @@ impl Beam {
     pub(super) fn turn_to_clamps(&mut self) {
         let n = self.bars.len();
         self.clamps.clear();
-        for (k, stop) in self.layout.stops.iter().enumerate() {
-            if let Some(angle) = stop.clamp {
+        for (k, station) in self.layout.stations.iter().enumerate() {
+            if let Some(angle) = station.clamp {
                 let v = self.bars.iter().position(|b| b.stretch == k).unwrap_or(n);
                 let beside = (2 * v + 1).min(2 * n - 1);
                 let angle = nearest_turn(angle, self.angles[beside]);
@@ -215,8 +215,8 @@ impl Beam {
         for (place, _) in &mut fine.clamps {
             *place *= 2;
         }
-        for stop in &mut fine.layout.stops {
-            stop.cells *= 2;
+        for station in &mut fine.layout.stations {
+            station.element_count *= 2;
         }
         fine
     }
@@ -238,38 +238,38 @@ impl Beam {
         dot(&shapes(x), &self.angles[2 * e..2 * e + 3])
     }
 
-    /// Tension forces just before and just after every stop, N.
+    /// Tension forces just before and just after every station, N.
     #[must_use]
-    pub fn stop_forces(&self) -> Vec<[Vec2; 2]> {
-        let stops = &self.layout.stops;
-        let mut out = vec![[Vec2::zeros(); 2]; stops.len()];
+    pub fn station_forces(&self) -> Vec<[Vec2; 2]> {
+        let stations = &self.layout.stations;
+        let mut out = vec![[Vec2::zeros(); 2]; stations.len()];
         let starts = self.stretch_starts();
-        for k in 0..stops.len().saturating_sub(1) {
+        for k in 0..stations.len().saturating_sub(1) {
             out[k][1] = starts[k];
-            out[k + 1][0] = starts[k] - self.material.body * (stops[k + 1].arc_length - stops[k].arc_length);
+            out[k + 1][0] = starts[k] - self.material.body * (stations[k + 1].arc_length - stations[k].arc_length);
         }
         out
     }
 
-    /// Tension force just after each stop, N: known in hanging ends, from F₀ in spans.
+    /// Tension force just after each station, N: known in hanging ends, from F₀ in spans.
     pub(in crate::model::fem) fn stretch_starts(&self) -> Vec<Vec2> {
-        let stops = &self.layout.stops;
+        let stations = &self.layout.stations;
         let body = self.material.body;
-        let last_anchor = stops.iter().rposition(Stop::anchors).unwrap_or(0);
-        let mut out = vec![Vec2::zeros(); stops.len()];
+        let last_anchor = stations.iter().rposition(Station::anchors).unwrap_or(0);
+        let mut out = vec![Vec2::zeros(); stations.len()];
         let mut force = Vec2::zeros();
-        for k in 0..stops.len() {
+        for k in 0..stations.len() {
             if let Some(i) = self.ends.iter().position(|e| e.first == k) {
                 force = self.forces[i];
             } else if k == last_anchor {
-                let loads: Vec2 = stops[k + 1..].iter().map(|s| s.load).sum();
-                force = loads + body * (self.layout.length - stops[k].arc_length);
+                let loads: Vec2 = stations[k + 1..].iter().map(|s| s.load).sum();
+                force = loads + body * (self.layout.length - stations[k].arc_length);
             } else {
-                force -= stops[k].load;
+                force -= stations[k].load;
             }
             out[k] = force;
-            if let Some(next) = stops.get(k + 1) {
-                force -= body * (next.arc_length - stops[k].arc_length);
+            if let Some(next) = stations.get(k + 1) {
+                force -= body * (next.arc_length - stations[k].arc_length);
             }
         }
         out
@@ -277,7 +277,8 @@ impl Beam {
 
     /// The force in a bar at `x` from 0 to 1, N.
     pub(in crate::model::fem) fn force(&self, bar: &Bar, x: f64, starts: &[Vec2]) -> Vec2 {
-        starts[bar.stretch] - self.material.body * (bar.start + x * bar.ds - self.layout.stops[bar.stretch].arc_length)
+        starts[bar.stretch]
+            - self.material.body * (bar.start + x * bar.ds - self.layout.stations[bar.stretch].arc_length)
     }
 
     pub(in crate::model::fem) fn rest(&self, e: usize) -> f64 {
@@ -396,7 +397,7 @@ impl Beam {
         let mut gap = vec![0.0; m];
         h.clear();
         for (i, &SpanEnds { first, last }) in self.ends.iter().enumerate() {
-            let points = (self.layout.stops[first].point(1), self.layout.stops[last].point(0));
+            let points = (self.layout.stations[first].point(1), self.layout.stations[last].point(0));
             if let (Some(a), Some(z)) = points {
                 gap[2 * i] -= z.x - a.x;
                 gap[2 * i + 1] -= z.y - a.y;
@@ -444,9 +445,9 @@ impl Beam {
         (g, b, c, gap)
     }
 
-    /// The stops.
+    /// The stations.
     #[must_use]
-    pub fn layout(&self) -> &Layout {
+    pub fn layout(&self) -> &StationLayout {
         &self.layout
     }
 }

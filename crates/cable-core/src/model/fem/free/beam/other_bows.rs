@@ -9,7 +9,7 @@
 use crate::math::{Vec2, larger};
 use crate::model::fem::free::beam::equilibrium::{Beam, Outcome, nearest_turn};
 use crate::model::fem::free::dual_weighted_residual::apart;
-use crate::model::fem::free::stations::Stop;
+use crate::model::fem::free::stations::Station;
 
 /// Least buckling load of a straight cable in parts of EI/L²: held at one end, free at the other,
 /// π²/4.
@@ -30,7 +30,7 @@ impl Beam {
         if !(self.compression() > LEAST_BUCKLING_LOAD * self.bending_force()) {
             return Vec::new();
         }
-        let parts = self.layout.stops.iter().filter(|s| Stop::anchors(s)).count() + 1;
+        let parts = self.layout.stations.iter().filter(|s| Station::anchors(s)).count() + 1;
         let alone = (parts > 1).then_some(0..parts).into_iter().flatten().take(MAX_SPANS).map(Some);
         let mut found: Vec<Self> = Vec::new();
         for part in alone.chain([None]) {
@@ -54,14 +54,14 @@ impl Beam {
     /// The part of the cable in which a stretch lies: between two supports, or beside the first or
     /// the last of them.
     fn part(&self, stretch: usize) -> usize {
-        self.layout.stops[..=stretch].iter().filter(|s| Stop::anchors(s)).count()
+        self.layout.stations[..=stretch].iter().filter(|s| Station::anchors(s)).count()
     }
 
     /// Direction of the chord of each part, and of the weight in one that hangs free; None where
     /// there is neither.
     fn axes(&self) -> Vec<Option<Vec2>> {
         let anchors: Vec<[Vec2; 2]> =
-            self.layout.stops.iter().filter_map(|s| Some([s.point(0)?, s.point(1)?])).collect();
+            self.layout.stations.iter().filter_map(|s| Some([s.point(0)?, s.point(1)?])).collect();
         let weight = self.material.body.try_normalize(0.0);
         let chord = |w: &[[Vec2; 2]]| (w[1][0] - w[0][1]).try_normalize(SAME_SHAPE_FRACTION * self.layout.length);
         let between = anchors.windows(2).map(|w| chord(w).or(weight));

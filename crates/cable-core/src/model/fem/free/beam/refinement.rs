@@ -4,7 +4,7 @@ use crate::model::fem::free::beam::equilibrium::{Beam, Outcome};
 use crate::model::fem::free::dual_weighted_residual;
 
 /// A stiff cable on the mesh that suffices.
-pub(in crate::model::fem) struct Refined {
+pub(in crate::model::fem) struct RefinedBeam {
     /// The cable.
     pub(in crate::model::fem) beam: Beam,
     /// Whether it rests.
@@ -14,16 +14,16 @@ pub(in crate::model::fem) struct Refined {
     /// Estimated error of its tension, in parts of the greatest.
     pub(in crate::model::fem) estimate: Option<f64>,
     /// Estimated error of its shape, m.
-    pub(in crate::model::fem) moved: Option<f64>,
+    pub(in crate::model::fem) shape_error: Option<f64>,
 }
 
 /// Solves a cable on a mesh and on that of half the bars, whose difference tells the error (fourth
 /// order: a fifteenth of it is left), until that is `wanted` or there are `most_bars`; None: on the
 /// mesh that is given.
-pub(in crate::model::fem) fn refine(mut coarse: Beam, wanted: Option<f64>, most_bars: usize) -> Refined {
+pub(in crate::model::fem) fn refine(mut coarse: Beam, wanted: Option<f64>, most_bars: usize) -> RefinedBeam {
     let mut outcome = coarse.solve();
     let mut steps = coarse.steps;
-    let (mut estimate, mut moved) = (None, None);
+    let (mut estimate, mut shape_error) = (None, None);
     while let Some(wanted) = wanted
         && outcome == Outcome::Stable
         && coarse.bars() < most_bars
@@ -33,7 +33,7 @@ pub(in crate::model::fem) fn refine(mut coarse: Beam, wanted: Option<f64>, most_
         steps += fine.steps - coarse.steps;
         let found = dual_weighted_residual::halving_error(&coarse, &fine);
         estimate = Some(found);
-        moved = Some(2.0 / 15.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
+        shape_error = Some(2.0 / 15.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
         coarse = fine;
         if found <= wanted {
             break;
@@ -45,8 +45,8 @@ pub(in crate::model::fem) fn refine(mut coarse: Beam, wanted: Option<f64>, most_
         let mut fine = coarse.halved();
         if fine.solve() == Outcome::Stable {
             estimate = Some(16.0 * dual_weighted_residual::halving_error(&coarse, &fine));
-            moved = Some(2.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
+            shape_error = Some(2.0 * dual_weighted_residual::apart(&coarse.points(false), &fine.points(false)));
         }
     }
-    Refined { beam: coarse, outcome, steps, estimate, moved }
+    RefinedBeam { beam: coarse, outcome, steps, estimate, shape_error }
 }

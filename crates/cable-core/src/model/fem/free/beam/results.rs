@@ -3,7 +3,7 @@
 use crate::math::{GAUSS_3, Vec2, larger, perp};
 use crate::model::fem::free::beam::equilibrium::{BEND_STIFFNESS_INTEGRALS, Beam, dot};
 use crate::model::fem::free::results::Point;
-use crate::model::fem::free::stations::Stop;
+use crate::model::fem::free::stations::Station;
 use crate::numerics::bisect;
 
 /// Between two points the cable leaves a straight line by no more than this part of its length.
@@ -33,9 +33,9 @@ impl Beam {
         [-pull[0], pull[1]]
     }
 
-    /// Curvature at node `v`, 1/m: at a stop from the moment that balances the bar beside it (the
-    /// greater at a clamp between two), else the slope of the curve of fourth degree through the
-    /// angles of both bars.
+    /// Curvature at node `v`, 1/m: at a station from the moment that balances the bar beside it
+    /// (the greater at a clamp between two), else the slope of the curve of fourth degree through
+    /// the angles of both bars.
     fn curvature(&self, v: usize, starts: &[Vec2]) -> f64 {
         let (before, after) = (v.checked_sub(1).and_then(|e| self.bars.get(e)), self.bars.get(v));
         if let (Some(a), Some(b)) = (before, after)
@@ -61,21 +61,21 @@ impl Beam {
     #[must_use]
     pub fn points(&self, smooth: bool) -> Vec<Point> {
         let n = self.bars.len();
-        let (starts, forces) = (self.stretch_starts(), self.stop_forces());
+        let (starts, forces) = (self.stretch_starts(), self.station_forces());
         let curvatures: Vec<f64> = (0..=n).map(|v| self.curvature(v, &starts)).collect();
         let chord = |e: usize| self.samples(e, &starts).iter().map(|p| p.t * (p.length * (1.0 + p.tau))).sum::<Vec2>();
-        let first = self.layout.stops.iter().position(Stop::anchors).unwrap_or(0);
-        let anchor = self.layout.stops[first].point(0).unwrap_or_default();
+        let first = self.layout.stations.iter().position(Station::anchors).unwrap_or(0);
+        let anchor = self.layout.stations[first].point(0).unwrap_or_default();
         let mut at = (0..n).filter(|&e| self.bars[e].stretch < first).fold(anchor, |p, e| p - chord(e));
         let mut out = Vec::with_capacity(n + 1);
         for v in 0..=n {
             let t = self.tangent(self.angles[2 * v]);
-            let stretch = self.bars.get(v).map_or(self.layout.stops.len() - 1, |b| b.stretch);
+            let stretch = self.bars.get(v).map_or(self.layout.stations.len() - 1, |b| b.stretch);
             let at_stop = v == n || v == 0 || self.bars[v - 1].stretch != stretch;
             let inside = self.bars.get(v).map_or(Vec2::zeros(), |b| self.force(b, 0.0, &starts));
             let [before, after] = if at_stop { forces[stretch] } else { [inside; 2] };
             let arc_length = self.bars.get(v).map_or(self.layout.length, |b| b.start);
-            if at_stop && let Some(p) = self.layout.stops[stretch].point(0) {
+            if at_stop && let Some(p) = self.layout.stations[stretch].point(0) {
                 at = p;
             }
             // Nothing pulls beyond an end.

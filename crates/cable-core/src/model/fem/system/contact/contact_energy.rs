@@ -34,7 +34,7 @@ pub fn add_pair(s: &mut System, mesh: &Mesh, touch: &ContactPair, gradient: Vec2
 /// node:     ∇²d = (I − n nᵀ)/d  at a corner, 0 at an edge
 /// segment:  ∇²d = −(θ qᵀ + q θᵀ) − d θ θᵀ,   q = u·δc,   θ = n·(δb − δa)/l
 /// ```
-pub fn add_touch(
+pub fn add_barrier(
     s: &mut System,
     mesh: &Mesh,
     touch: &ContactPair,
@@ -114,7 +114,7 @@ pub fn add_floor(s: &mut System, mesh: &Mesh, input: &StepInput, contacts: &Cont
         let scale = node_scale(input, i);
         if let Some(sliding) = &mesh.sliding[i] {
             let (d, slope, bend) = friction::at(
-                contacts.floor_slid[i].x + unknowns.slides[i],
+                contacts.floor_slip[i].x + unknowns.slides[i],
                 limit * sliding.floor_factor,
                 contacts.slip,
             );
@@ -122,7 +122,7 @@ pub fn add_floor(s: &mut System, mesh: &Mesh, input: &StepInput, contacts: &Cont
             s.gradient[2 * i] += slope * scale;
             s.hessian.add(2 * i, 2 * i, bend * scale);
         } else {
-            let slid = contacts.floor_slid[i] + (unknowns.positions[i] - input.start[i]);
+            let slid = contacts.floor_slip[i] + (unknowns.positions[i] - input.start[i]);
             let (d, slope, bend) = friction::at_plane(slid, limit, contacts.slip);
             value += d * scale;
             s.add_gradient(i, slope * scale);

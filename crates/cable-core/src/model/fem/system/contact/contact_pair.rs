@@ -25,7 +25,7 @@ impl ContactPair {
 
     /// The part of its force that acts on nodes that move with their material, as `moves` tells.
     #[must_use]
-    pub fn felt(&self, moves: impl Fn(usize) -> bool) -> f64 {
+    pub fn material_share(&self, moves: impl Fn(usize) -> bool) -> f64 {
         let [a, b] = self.shares();
         (if moves(self.node) { a } else { 0.0 }) + (if b != 0.0 && moves(self.node + 1) { b } else { 0.0 })
     }

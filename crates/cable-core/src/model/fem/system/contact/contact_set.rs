@@ -34,7 +34,7 @@ pub struct ContactSet {
     /// The search for contacts.
     pub search: ContactSearch,
     /// Plan view: sliding of each node remembered, m.
-    pub floor_slid: Vec<Vec2>,
+    pub floor_slip: Vec<Vec2>,
     /// Contacts of the cable with itself.
     pub self_contacts: SelfContacts,
     /// Motion of the robot's outline in this step.
@@ -54,7 +54,7 @@ impl ContactSet {
             memory: FrictionMemory::with_room_for(nodes),
             scratch: Vec::with_capacity(nodes),
             search: ContactSearch::default(),
-            floor_slid: vec![Vec2::zeros(); nodes],
+            floor_slip: vec![Vec2::zeros(); nodes],
             self_contacts: SelfContacts::default(),
             outline_motion: None,
         }
@@ -62,7 +62,7 @@ impl ContactSet {
 
     /// Copies another set; asks for no memory where there is room.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { barrier, slip, friction_contacts, memory, floor_slid, self_contacts, outline_motion, .. } = other;
+        let Self { barrier, slip, friction_contacts, memory, floor_slip, self_contacts, outline_motion, .. } = other;
         (self.barrier, self.slip) = (*barrier, *slip);
         // With room for as many, so that a front of contact that runs on asks for none; and no
         // more, or each copy would double it.
@@ -70,7 +70,7 @@ impl ContactSet {
         self.friction_contacts.reserve_exact(friction_contacts.capacity());
         self.friction_contacts.extend_from_slice(friction_contacts);
         self.memory.copy_from(memory);
-        self.floor_slid.clone_from(floor_slid);
+        self.floor_slip.clone_from(floor_slip);
         self.self_contacts.copy_from(self_contacts);
         self.outline_motion = *outline_motion;
     }
@@ -83,7 +83,7 @@ impl ContactSet {
         }
         self.memory.scale(part);
         self.friction_contacts.iter_mut().for_each(|r| r.slid *= part);
-        self.floor_slid.iter_mut().for_each(|s| *s *= part);
+        self.floor_slip.iter_mut().for_each(|s| *s *= part);
         self.slip = slip;
     }
 
@@ -91,7 +91,7 @@ impl ContactSet {
     pub fn forget(&mut self) {
         self.memory.clear();
         self.friction_contacts.clear();
-        self.floor_slid.fill(Vec2::zeros());
+        self.floor_slip.fill(Vec2::zeros());
         self.self_contacts.forget();
     }
 
@@ -246,7 +246,7 @@ impl ContactSet {
         self.self_contacts.commit(end, self.tuning.slip_m);
         self.memory.commit(&mut self.friction_contacts, end, self.slip, self.tuning.remembered_steps);
         if problem.floor_friction.is_some() {
-            for (k, (slid, (e, s))) in self.floor_slid.iter_mut().zip(end.iter().zip(start)).enumerate() {
+            for (k, (slid, (e, s))) in self.floor_slip.iter_mut().zip(end.iter().zip(start)).enumerate() {
                 let by = if mesh.sliding[k].is_some() { Vec2::new(slide[k], 0.0) } else { e - s };
                 *slid = friction::return_map_plane(*slid + by, self.slip);
             }

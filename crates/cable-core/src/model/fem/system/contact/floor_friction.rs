@@ -55,7 +55,7 @@ pub(in crate::model::fem) fn factor([before, on, after]: [f64; 3], ratio: f64) -
 
 /// Tension over a round of a cable that rubs on it and on the floor.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::fem) struct OverRound {
+pub(in crate::model::fem) struct RoundFloorFriction {
     /// Tension where it leaves the round, N.
     leaves: f64,
     /// The floor's friction on the round, N.
@@ -64,7 +64,7 @@ pub(in crate::model::fem) struct OverRound {
     exponent: f64,
 }
 
-impl OverRound {
+impl RoundFloorFriction {
     /// Between two tensions, N; None where friction cannot make one of the other: the cable is
     /// slack.
     pub fn between([comes, leaves]: [f64; 2], floor: f64) -> Option<Self> {
@@ -152,7 +152,7 @@ mod tests {
         for (comes, leaves, floor) in
             [(120.0, 100.0, 3.0), (90.0, 100.0, -4.0), (103.0, 100.0, 3.0), (5.0, 4.0, -2.5), (2.0, 40.0, 1.0)]
         {
-            let over = OverRound::between([comes, leaves], floor).unwrap();
+            let over = RoundFloorFriction::between([comes, leaves], floor).unwrap();
             let turn = 0.7;
             assert!((over.at(0.0) - comes).abs() < 1e-10 * comes && (over.at(1.0) - leaves).abs() < 1e-10 * leaves);
             let n = 2000;
@@ -167,7 +167,10 @@ mod tests {
             }
             assert!((over.normal(turn) - sum).abs() < 1e-6 * sum, "{} {sum}", over.normal(turn));
         }
-        assert!(OverRound::between([0.0, 3.0], 0.0).is_none() && OverRound::between([f64::NAN, 3.0], 0.0).is_none());
+        assert!(
+            RoundFloorFriction::between([0.0, 3.0], 0.0).is_none()
+                && RoundFloorFriction::between([f64::NAN, 3.0], 0.0).is_none()
+        );
     }
 
     #[test]

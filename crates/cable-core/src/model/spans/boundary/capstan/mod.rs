@@ -26,13 +26,13 @@
 //! Material is c ∫ dψ/λ. Both in `arc`.
 
 use crate::math::{Vec2, bounded, exp, perp};
-use crate::model::spans::boundary::arc::{MOST_TURN, Way};
-use crate::model::spans::boundary::curve::{ChainRange, Curve, Place};
-use crate::model::spans::boundary::segment_cursor::{Pivot, SegmentCursor};
+use crate::model::spans::boundary::arc::{ArcPath, MOST_TURN};
+use crate::model::spans::boundary::curve::{BoundaryPoint, ChainRange, Curve};
+use crate::model::spans::boundary::segment_cursor::{CachedPiece, SegmentCursor};
 
 /// Load and stiffness of a cable at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) struct Law {
+pub(in crate::model::spans) struct CableLaw {
     /// Load per unstretched metre, N/m.
     pub load: Vec2,
     /// τ = 1 + αΔT.
@@ -56,7 +56,7 @@ pub(in crate::model::spans) struct LocalLoad {
 
 /// Result of an integration along the boundary.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::model::spans) struct Step {
+pub(in crate::model::spans) struct SlideResult {
     /// Tension at its end, N.
     pub tension: f64,
     /// Unstretched material on it, m (negative for a way back).
@@ -67,7 +67,7 @@ pub(in crate::model::spans) struct Step {
     pub material_by_tension: f64,
 }
 
-impl Law {
+impl CableLaw {
     /// With a load per metre (N/m), τ and EA (N).
     pub fn new(load: Vec2, thermal: f64, stiffness: f64) -> Self {
         Self { load, thermal, stiffness, compliance: 1.0 / stiffness }
@@ -90,58 +90,58 @@ impl Law {
     }
 
     /// A place as the law sees it.
-    pub fn spot(&self, place: &Place) -> LocalLoad {
+    pub fn local_load(&self, place: &BoundaryPoint) -> LocalLoad {
         let load = [self.load.dot(&place.tangent), self.load.dot(&place.normal)];
         LocalLoad { stretch: place.stretch, turns: place.turn != 0.0, load }
     }
 
     /// dT/dp at a place where it slides with m.
-    pub fn slope(&self, place: &Place, t: f64, m: f64) -> f64 {
-        self.slope_at(&self.spot(place), t, m)
+    pub fn slope(&self, place: &BoundaryPoint, t: f64, m: f64) -> f64 {
+        self.slope_at(&self.local_load(place), t, m)
     }
 
     /// As [`Self::slope`].
-    pub fn slope_at(&self, spot: &LocalLoad, t: f64, m: f64) -> f64 {
-        let turned = if spot.turns { m * t } else { 0.0 };
-        turned - spot.stretch * (spot.load[0] + m * spot.load[1]) / self.stretch(t)
+    pub fn slope_at(&self, local_load: &LocalLoad, t: f64, m: f64) -> f64 {
+        let turned = if local_load.turns { m * t } else { 0.0 };
+        turned - local_load.stretch * (local_load.load[0] + m * local_load.load[1]) / self.stretch(t)
     }
 
     /// dΘ/dp on an edge.
-    pub fn edge_rate(&self, spot: &LocalLoad, m: f64) -> f64 {
-        -(spot.load[0] + m * spot.load[1]) / self.thermal
+    pub fn edge_rate(&self, local_load: &LocalLoad, m: f64) -> f64 {
+        -(local_load.load[0] + m * local_load.load[1]) / self.thermal
     }
 
     /// Normal force per unstretched metre times its stretch, per dp: N ds/dp, N (per metre of an
     /// edge, per radian of an arc).
-    pub fn press(&self, place: &Place, t: f64) -> f64 {
+    pub fn press(&self, place: &BoundaryPoint, t: f64) -> f64 {
         let turned = if place.turn == 0.0 { 0.0 } else { t };
         turned - self.load.dot(&place.normal) * place.stretch / self.stretch(t)
     }
 
     /// From a place, with tension `t`, so far (`way`) along the piece it lies on.
-    pub fn along(&self, from: &LocalLoad, way: f64, t: f64, m: f64) -> Step {
+    pub fn along(&self, from: &LocalLoad, way: f64, t: f64, m: f64) -> SlideResult {
         if !from.turns {
             return self.on_edge(self.edge_rate(from, m), way, t);
         }
         if from.stretch == 0.0 {
             let grown = exp(m * way);
-            return Step { tension: t * grown, material: 0.0, by_tension: grown, material_by_tension: 0.0 };
+            return SlideResult { tension: t * grown, material: 0.0, by_tension: grown, material_by_tension: 0.0 };
         }
-        Way::new(from, way).slide(self, t, m).0
+        ArcPath::new(from, way).slide(self, t, m).0
     }
 
-    fn on_edge(&self, rate: f64, x: f64, t: f64) -> Step {
+    fn on_edge(&self, rate: f64, x: f64, t: f64) -> SlideResult {
         let tension = self.tension(self.theta(t) + rate * x);
         let (a, b) = (1.0 + t * self.compliance, 1.0 + tension * self.compliance);
         let by_tension = a / b;
         let mean = 0.5 * (a + b);
         let material = x / (self.thermal * mean);
         let material_by_tension = -material / mean * (1.0 + by_tension) * (0.5 * self.compliance);
-        Step { tension, material, by_tension, material_by_tension }
+        SlideResult { tension, material, by_tension, material_by_tension }
     }
 }
 
-impl Step {
+impl SlideResult {
     /// This way and then another that started from where it ended.
     pub fn then(self, next: Self) -> Self {
         Self {
@@ -161,7 +161,7 @@ impl Step {
 /// The border between cable that is drawn and cable that lies loose: its place, the material (m) to
 /// it from the end that is drawn, and the tension there (N).
 #[derive(Clone, Copy, Debug)]
-pub(in crate::model::spans) struct LooseEnd {
+pub(in crate::model::spans) struct SlackEnd {
     pub coordinate: f64,
     pub material: f64,
     pub tension: f64,
@@ -169,13 +169,13 @@ pub(in crate::model::spans) struct LooseEnd {
 
 /// A chain of a boundary and what the cable on it obeys.
 #[derive(Clone, Copy)]
-pub(in crate::model::spans) struct Track<'a> {
+pub(in crate::model::spans) struct ContactPath<'a> {
     pub curve: &'a Curve,
     pub chain_range: ChainRange,
-    pub law: Law,
+    pub law: CableLaw,
     /// μ.
     pub friction: f64,
-    /// See [`Course`](crate::model::spans::cable_section::Course).
+    /// See [`SolveContext`](crate::model::spans::cable_section::SolveContext).
     pub drag: f64,
     /// True if all of it slides away from the end that is drawn, as far as there is tension, and
     /// lies loose beyond that.
@@ -183,56 +183,56 @@ pub(in crate::model::spans) struct Track<'a> {
     /// The μ that holds what lies loose.
     pub friction_of_loose: f64,
     /// A point of it from which what lies on the same piece is seen.
-    pub pivot: Option<Pivot>,
+    pub cached_piece: Option<CachedPiece>,
 }
 
-impl Track<'_> {
+impl ContactPath<'_> {
     /// The same, seen from p.
-    pub fn seen_from(self, p: f64) -> Self {
-        Self { pivot: Some(Pivot::new(self.curve, self.chain_range, &self.law, p)), ..self }
+    pub fn with_cached_piece(self, p: f64) -> Self {
+        Self { cached_piece: Some(CachedPiece::new(self.curve, self.chain_range, &self.law, p)), ..self }
     }
 
     /// The point at p.
-    pub fn place(&self, p: f64) -> Place {
-        match &self.pivot {
-            Some(pivot) if pivot.holds(p) => pivot.place(p),
+    pub fn place(&self, p: f64) -> BoundaryPoint {
+        match &self.cached_piece {
+            Some(cached_piece) if cached_piece.holds(p) => cached_piece.place(p),
             _ => self.curve.place(p, self.chain_range),
         }
     }
 
     /// True if p is on an arc.
     pub fn turns(&self, p: f64) -> bool {
-        match &self.pivot {
-            Some(pivot) if pivot.holds(p) => pivot.turns(),
+        match &self.cached_piece {
+            Some(cached_piece) if cached_piece.holds(p) => cached_piece.turns(),
             _ => self.curve.is_arc(self.curve.locate(p, self.chain_range)),
         }
     }
 
     /// The piece between p₀ and p₁, which lie on one.
     pub fn on(&self, p0: f64, p1: f64) -> SegmentCursor<'_> {
-        let from = match &self.pivot {
-            Some(pivot) if pivot.reaches(p0) && pivot.reaches(p1) => pivot.spot(p0),
+        let from = match &self.cached_piece {
+            Some(cached_piece) if cached_piece.reaches(p0) && cached_piece.reaches(p1) => cached_piece.local_load(p0),
             _ => {
                 let i = self.curve.locate(0.5 * (p0 + p1), self.chain_range);
-                self.law.spot(&self.curve.place_on(i, p0 - self.curve.origin(i)))
+                self.law.local_load(&self.curve.place_on(i, p0 - self.curve.origin(i)))
             }
         };
         SegmentCursor { law: &self.law, from, p0 }
     }
 
     /// Slides with m from p₀, where the tension is `t`, to p₁ (either way).
-    pub fn slide(&self, p0: f64, p1: f64, t: f64, m: f64) -> Step {
+    pub fn slide(&self, p0: f64, p1: f64, t: f64, m: f64) -> SlideResult {
         if p0 == p1 {
-            return Step::none(t);
+            return SlideResult::none(t);
         }
-        if let Some(pivot) = &self.pivot
-            && pivot.reaches(p0)
-            && pivot.reaches(p1)
+        if let Some(cached_piece) = &self.cached_piece
+            && cached_piece.reaches(p0)
+            && cached_piece.reaches(p1)
         {
-            return self.law.along(&pivot.spot(p0), p1 - p0, t, m);
+            return self.law.along(&cached_piece.local_load(p0), p1 - p0, t, m);
         }
         let (mut i, last) = (self.curve.locate(p0, self.chain_range), self.curve.locate(p1, self.chain_range));
-        let (mut at, mut sum) = (p0, Step::none(t));
+        let (mut at, mut sum) = (p0, SlideResult::none(t));
         loop {
             let origin = self.curve.origin(i);
             let to = match i.cmp(&last) {
@@ -240,7 +240,7 @@ impl Track<'_> {
                 std::cmp::Ordering::Less => self.curve.origin(i + 1),
                 std::cmp::Ordering::Greater => origin,
             };
-            let from = self.law.spot(&self.curve.place_on(i, at - origin));
+            let from = self.law.local_load(&self.curve.place_on(i, at - origin));
             sum = sum.then(self.law.along(&from, to - at, sum.tension, m));
             if i == last {
                 return sum;
@@ -253,10 +253,10 @@ impl Track<'_> {
     /// Slides with m from p₀, the end that is drawn, to p₁; from where on an edge the tension is no
     /// more than that of cable that lies there loose, the cable lies so to p₁. Returns where that
     /// begins, too.
-    pub fn slide_floored(&self, p0: f64, p1: f64, t: f64, m: f64) -> (Step, Option<LooseEnd>) {
+    pub fn slide_floored(&self, p0: f64, p1: f64, t: f64, m: f64) -> (SlideResult, Option<SlackEnd>) {
         let bed = Self { friction: self.friction_of_loose, ..*self };
         let lying = bed.lying(p1, p0);
-        let (mut sum, mut loose) = (Step::none(t), None);
+        let (mut sum, mut loose) = (SlideResult::none(t), None);
         for ends in lying.windows(2).rev() {
             let [(next, under), (at, under_here)] = [ends[0], ends[1]];
             let edge = !self.turns(0.5 * (at + next));
@@ -273,9 +273,9 @@ impl Track<'_> {
                 sum = sum.then(self.slide(at, q, sum.tension, m));
                 let even = bed.even(0.5 * (q + next));
                 let tension = bed.slide(next, q, under, even).tension;
-                loose = loose.or(Some(LooseEnd { coordinate: q, material: sum.material, tension }));
+                loose = loose.or(Some(SlackEnd { coordinate: q, material: sum.material, tension }));
                 let material = bed.slide(q, next, tension, even).material;
-                sum = sum.then(Step { material, by_tension: 0.0, ..Step::none(under) });
+                sum = sum.then(SlideResult { material, by_tension: 0.0, ..SlideResult::none(under) });
             }
         }
         (sum, loose)
@@ -316,8 +316,8 @@ impl Track<'_> {
 
     /// From p₀ to p₁ (either way) with the tension as even as friction can keep it: as cable is
     /// laid down.
-    pub fn lay(&self, p0: f64, p1: f64, t: f64) -> Step {
-        let (mut at, mut sum) = (p0, Step::none(t));
+    pub fn lay(&self, p0: f64, p1: f64, t: f64) -> SlideResult {
+        let (mut at, mut sum) = (p0, SlideResult::none(t));
         while at != p1 {
             let next = self.next_border(at, p1);
             sum = sum.then(self.slide(at, next, sum.tension, self.even(0.5 * (at + next))));
@@ -329,11 +329,11 @@ impl Track<'_> {
     /// Calls back with the places inside an arc from p to q at which tension or pressure may be
     /// least while it slides with m.
     ///
-    /// With P the [`Law::press`] of a place, P' = mP − 2(c/λ) b·t and T' = mT − (c/λ)(b·t + m b·n),
-    /// both but for the change of λ: P e^{−mψ} is least where b·t = 0 with the load out of the arc,
-    /// below it, T e^{−mψ} where b·t + m b·n = 0. If neither is below nothing there and at the
-    /// ends, it is nowhere.
-    pub fn loosest(&self, p: f64, q: f64, m: f64, mut each: impl FnMut(f64)) {
+    /// With P the [`CableLaw::press`] of a place, P' = mP − 2(c/λ) b·t and T' = mT − (c/λ)(b·t + m
+    /// b·n), both but for the change of λ: P e^{−mψ} is least where b·t = 0 with the load out of
+    /// the arc, below it, T e^{−mψ} where b·t + m b·n = 0. If neither is below nothing there and at
+    /// the ends, it is nowhere.
+    pub fn minimum_candidates(&self, p: f64, q: f64, m: f64, mut each: impl FnMut(f64)) {
         let middle = self.curve.locate(0.5 * (p + q), self.chain_range);
         if !self.curve.is_arc(middle) {
             return;
@@ -378,7 +378,7 @@ impl Track<'_> {
     /// The next place from p towards `to` where the boundary changes from edge to arc or back; `to`
     /// if none lies between.
     pub fn next_border(&self, p: f64, to: f64) -> f64 {
-        if self.pivot.as_ref().is_some_and(|v| v.reaches(p) && v.reaches(to)) {
+        if self.cached_piece.as_ref().is_some_and(|v| v.reaches(p) && v.reaches(to)) {
             return to;
         }
         let mut i = self.curve.locate(p, self.chain_range);
