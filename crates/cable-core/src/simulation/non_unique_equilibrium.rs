@@ -37,7 +37,11 @@ impl Simulation {
             };
             // A cable that leaves a wheel is laid over posts in their place.
             let posts = || problem.wheels_as_posts.as_ref().and_then(|posts| laid(&posts.problem));
-            let seek = || laid(&Arc::new(problem.clone())).or_else(posts);
+            // What `spans` refused before another model was asked it would refuse again; of a stiff
+            // cable it was not asked.
+            let refused = cable.refusal().is_some() && !(problem.bending_stiffness > 0.0);
+            let whole = || if refused { None } else { laid(&Arc::new(problem.clone())) };
+            let seek = || whole().or_else(posts);
             let known = self.warnings.iter().position(|w| of_cable(w) && w.cause.histories().is_some());
             if known.is_none() && self.warnings.iter().any(of_cable) {
                 continue;

@@ -18,6 +18,7 @@ use std::sync::Arc;
 
 use crate::math::Vec2;
 use crate::model::fem::dynamics::Dynamics;
+use crate::model::fem::system::step_input::WorkBudget;
 use crate::model::initial_equilibrium::InitialEquilibrium;
 use crate::model::spans::SpansModel;
 use crate::model::{Inertia, Mechanics, Settings};
@@ -30,6 +31,9 @@ const LEAST_BARS: usize = 8;
 /// Part of what the coarser two of three meshes differ by that the error of the finest is at least:
 /// that of the first order.
 const FIRST_ORDER_ERROR_FRACTION: f64 = 0.5;
+/// Estimates that may take as much work together as one search for the equilibrium: each begins at
+/// the answer.
+const ESTIMATES_PER_SEARCH: usize = 4;
 
 /// The model beside which the errors of the cable are estimated, and the estimate.
 #[derive(Clone, Debug, Default)]
@@ -197,7 +201,10 @@ fn at_rest_with_bars(
     other.cable.meshing.slides = like.cable.meshing.slides;
     other.warm_start(answer, like.cable.time(), dragged).ok()?;
     if !other.rested {
-        other.settle(dragged).ok()?;
+        other.solver.work_left = WorkBudget::Left(like.cable.mesh.tuning.equilibrium.max_work / ESTIMATES_PER_SEARCH);
+        let found = other.settle(dragged);
+        other.solver.work_left = WorkBudget::Unlimited;
+        found.ok()?;
     }
     Some(other)
 }
