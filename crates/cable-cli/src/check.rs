@@ -5,17 +5,17 @@ use std::path::Path;
 
 use cable_core::files;
 
-use crate::Done;
+use crate::CommandResult;
 use crate::failure::Failure;
 use crate::input::read_scene;
 use crate::output::Printer;
 
 /// Largest table of a run that is checked, bytes. More would not fit into the memory of a small
 /// machine.
-const MOST_TABLE_BYTES: u64 = 2 << 30;
+const MAX_TABLE_BYTES: u64 = 2 << 30;
 
 /// Says whether a scene can be solved, or how far a run came.
-pub fn check(path: &Path) -> Done {
+pub fn check(path: &Path) -> CommandResult {
     if files::is_run(path) {
         return check_run(path);
     }
@@ -37,8 +37,8 @@ pub fn check(path: &Path) -> Done {
 }
 
 /// Says how far the run in a folder came, and what of its tables was left out.
-fn check_run(path: &Path) -> Done {
-    let run = files::load_run(path, MOST_TABLE_BYTES).map_err(Failure::File)?;
+fn check_run(path: &Path) -> CommandResult {
+    let run = files::load_run(path, MAX_TABLE_BYTES).map_err(Failure::File)?;
     let kind = match run.is_complete() {
         Some(true) => "a complete run",
         Some(false) => "a partial run",

@@ -31,7 +31,7 @@ pub enum Failure {
     /// A signal ended a run; where what was reached lies, if it was still written.
     Interrupted(Signal, Option<PathBuf>),
     /// The run has ended already, and who ended it says why.
-    Ended,
+    AlreadyEnded,
     /// Signals cannot be waited for.
     Signals(io::Error),
     /// No thread can be begun.
@@ -47,7 +47,7 @@ impl Failure {
             Self::Table(_, WriteError::Io { .. }) | Self::Stdout(_) => 74,
             Self::File(_) => 2,
             Self::Table(..) | Self::Solve(_) | Self::NonFinite(_) | Self::Run { .. } => 1,
-            Self::Ended | Self::Signals(_) | Self::Thread(_) => 1,
+            Self::AlreadyEnded | Self::Signals(_) | Self::Thread(_) => 1,
             Self::Interrupted(signal, _) => signal.exit_code(),
         }
     }
@@ -79,7 +79,7 @@ impl std::fmt::Display for Failure {
                 write!(f, "interrupted by {}; what was reached is in {}", signal.name(), out.display())
             }
             Self::Interrupted(signal, None) => write!(f, "interrupted by {} after the run had ended", signal.name()),
-            Self::Ended => f.write_str("the run has ended"),
+            Self::AlreadyEnded => f.write_str("the run has ended"),
             Self::Signals(e) => write!(f, "cannot wait for signals: {e}"),
             Self::Thread(e) => write!(f, "cannot begin a thread: {e}"),
         }

@@ -14,7 +14,7 @@ pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
 }
 
 /// The scene, with what arguments say of it.
-pub fn asked_scene(a: &Common) -> Result<Scene, Failure> {
+pub fn scene_with_arguments(a: &Common) -> Result<Scene, Failure> {
     let mut scene = read_scene(&a.scene)?;
     if let Some(mobilised) = a.mobilised {
         scene.cables.iter_mut().for_each(|cable| cable.friction_mobilised = mobilised);

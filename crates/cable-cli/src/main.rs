@@ -43,4 +43,4 @@ fn main() -> ExitCode {
 }
 
 /// The result of every command.
-type Done = Result<(), Failure>;
+type CommandResult = Result<(), Failure>;

@@ -56,7 +56,7 @@ pub struct Progress {
 }
 
 /// Time between two progress lines, s: shorter floods a slow terminal, longer looks stuck.
-const PROGRESS_EVERY_S: f64 = 0.1;
+const PROGRESS_INTERVAL_S: f64 = 0.1;
 
 impl Progress {
     /// Shown where standard error is a terminal.
@@ -66,7 +66,7 @@ impl Progress {
 
     /// Says how far a run is.
     pub fn at(&mut self, time_s: f64, duration_s: f64, tension_n: f64) {
-        if !self.shown || self.last.is_some_and(|t| t.elapsed().as_secs_f64() < PROGRESS_EVERY_S) {
+        if !self.shown || self.last.is_some_and(|t| t.elapsed().as_secs_f64() < PROGRESS_INTERVAL_S) {
             return;
         }
         self.last = Some(std::time::Instant::now());

@@ -18,11 +18,11 @@ use cable_core::summary::summaries;
 use cable_core::timeline::{Instant as Moment, RunPeaks, Timeline};
 use cable_core::{Scene, Settings, Simulation, SolveError};
 
-use crate::Done;
+use crate::CommandResult;
 use crate::answer::{Figures, NoAnswer, RunPeaksEntry, answer};
 use crate::args::RunArguments;
 use crate::failure::Failure;
-use crate::input::{asked_scene, settings};
+use crate::input::{scene_with_arguments, settings};
 use crate::output::{Printer, Progress};
 use crate::signals::Signals;
 use crate::table::table;
@@ -32,18 +32,22 @@ const MAX_OUTPUTS: f64 = 1e7;
 
 /// A run folder until the run has ended, by itself or by a signal.
 #[derive(Clone)]
-struct Shared(Arc<Mutex<Option<RunFolder>>>);
+struct SharedRunFolder(Arc<Mutex<Option<RunFolder>>>);
 
-impl Shared {
+impl SharedRunFolder {
     fn lock(&self) -> MutexGuard<'_, Option<RunFolder>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Writes something, unless the run has ended.
-    fn write(&self, out: &std::path::Path, write: impl FnOnce(&mut RunFolder) -> Result<(), WriteError>) -> Done {
+    fn write(
+        &self,
+        out: &std::path::Path,
+        write: impl FnOnce(&mut RunFolder) -> Result<(), WriteError>,
+    ) -> CommandResult {
         match &mut *self.lock() {
             Some(folder) => write(folder).map_err(|e| Failure::Table(out.to_owned(), e)),
-            None => Err(Failure::Ended),
+            None => Err(Failure::AlreadyEnded),
         }
     }
 
@@ -63,27 +67,27 @@ impl Shared {
 struct Outputs {
     arguments: RunArguments,
     scene: Scene,
-    folder: Shared,
-    printing: Arc<Mutex<()>>,
+    folder: SharedRunFolder,
+    print_lock: Arc<Mutex<()>>,
     printer: Printer,
     progress: Progress,
     /// The greatest tensions of each cable since the last answer.
-    since: Vec<Option<TensionPeaks>>,
-    begun: Begun,
+    peaks_since_output: Vec<Option<TensionPeaks>>,
+    warning_log: WarningLog,
     last: Option<Solution>,
-    reached: Option<Reached>,
+    totals: Option<RunTotals>,
     /// The greatest tensions of each cable in the run so far.
     run_peaks: Vec<RunPeaksEntry>,
 }
 
 /// Totals of a whole run.
-struct Reached {
+struct RunTotals {
     /// Of the cable that is pulled hardest.
     peaks: RunPeaks,
     relative_error: Option<f64>,
 }
 
-impl Reached {
+impl RunTotals {
     fn of(timeline: &Timeline) -> Option<Self> {
         let top = |run: &RunPeaks| run.peaks.greatest.tension_n;
         let peaks = timeline.monitor().peaks().iter().copied().reduce(|a, b| if top(&b) > top(&a) { b } else { a })?;
@@ -122,8 +126,8 @@ impl Reached {
 }
 
 impl Outputs {
-    fn push(&mut self, mut solution: Solution, wall_time_s: f64, is_last: bool) -> Done {
-        for (cable, since) in solution.cables.iter_mut().zip(self.since.drain(..)) {
+    fn push(&mut self, mut solution: Solution, wall_time_s: f64, is_last: bool) -> CommandResult {
+        for (cable, since) in solution.cables.iter_mut().zip(self.peaks_since_output.drain(..)) {
             cable.peaks = since.into_iter().chain(cable.peaks).reduce(TensionPeaks::with);
         }
         let cables = if self.arguments.common.json { summaries(&self.scene, &solution) } else { Vec::new() };
@@ -132,7 +136,7 @@ impl Outputs {
         let push = if is_last { RunFolder::push_last } else { RunFolder::push };
         self.folder.write(&self.arguments.out, |folder| push(folder, &solution))?;
         if self.arguments.common.json {
-            let _whole_line = self.printing.lock().unwrap_or_else(PoisonError::into_inner);
+            let _whole_line = self.print_lock.lock().unwrap_or_else(PoisonError::into_inner);
             self.printer.json(&printable)?;
             self.printer.flush()?;
         }
@@ -142,48 +146,48 @@ impl Outputs {
     }
 
     /// Notes what is known of the run so far.
-    fn note(&mut self, timeline: &Timeline) {
-        self.reached = Reached::of(timeline);
+    fn update_totals(&mut self, timeline: &Timeline) {
+        self.totals = RunTotals::of(timeline);
         self.run_peaks = timeline.monitor().peaks().iter().map(RunPeaksEntry::of).collect();
     }
 
     /// Looks at a step, whether it is written or not.
-    fn watch(&mut self, simulation: &Simulation) {
+    fn observe_step(&mut self, simulation: &Simulation) {
         let time_s = simulation.time_s();
-        self.begun.look(simulation.warnings(), time_s);
-        self.since.resize(simulation.answers().len(), None);
-        for (answer, since) in simulation.answers().iter().zip(&mut self.since) {
+        self.warning_log.update(simulation.warnings(), time_s);
+        self.peaks_since_output.resize(simulation.answers().len(), None);
+        for (answer, since) in simulation.answers().iter().zip(&mut self.peaks_since_output) {
             *since = since.take().into_iter().chain(answer.peaks).reduce(TensionPeaks::with);
         }
     }
 }
 
 /// Most warnings of a run that are printed: all of them are in its `events.csv`.
-const MOST_PRINTED: usize = 20;
+const MAX_PRINTED_WARNINGS: usize = 20;
 
 /// The warnings that began in a run.
 #[derive(Default)]
-struct Begun {
+struct WarningLog {
     count: usize,
     lines: Vec<String>,
-    standing: Vec<(WarningKind, String)>,
+    active: Vec<(WarningKind, String)>,
 }
 
-impl Begun {
-    fn look<'w>(&mut self, warnings: impl Iterator<Item = &'w Warning>, now_s: f64) {
-        let mut standing = Vec::new();
+impl WarningLog {
+    fn update<'w>(&mut self, warnings: impl Iterator<Item = &'w Warning>, now_s: f64) {
+        let mut active = Vec::new();
         for w in warnings {
-            standing.push((w.kind, w.cable.clone()));
-            if self.standing.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable) {
+            active.push((w.kind, w.cable.clone()));
+            if self.active.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable) {
                 continue;
             }
             self.count += 1;
-            if self.lines.len() < MOST_PRINTED {
+            if self.lines.len() < MAX_PRINTED_WARNINGS {
                 let time_s = w.since_s.unwrap_or(now_s);
                 self.lines.push(format!("  {time_s:9.4} s  {:17}  {}", w.kind.name(), w));
             }
         }
-        self.standing = standing;
+        self.active = active;
     }
 
     /// A title and a line a warning.
@@ -201,13 +205,13 @@ impl Begun {
 
 /// Time between two looks for a signal, s. Longer is felt by who waits for the end; shorter wakes
 /// the processor for nothing.
-const LOOK_EVERY_S: f64 = 0.02;
+const SIGNAL_POLL_INTERVAL_S: f64 = 0.02;
 
 /// Stack of the thread that solves, bytes: that of a first thread, 2 MiB is what others get.
 const STACK_BYTES: usize = 8 << 20;
 
 /// Follows a scene over time.
-pub fn run(a: RunArguments) -> Done {
+pub fn run(a: RunArguments) -> CommandResult {
     let every = a.every_s();
     if a.duration_s / every > MAX_OUTPUTS {
         return Err(Failure::Argument(format!(
@@ -216,7 +220,7 @@ pub fn run(a: RunArguments) -> Done {
         )));
     }
     let choice = a.node_choice().map_err(Failure::Argument)?;
-    let scene = asked_scene(&a.common)?;
+    let scene = scene_with_arguments(&a.common)?;
     let inertia = if a.quasi_static { Inertia::QuasiStatic } else { Inertia::Dynamic };
     let began = Instant::now();
     let settings = Settings { stepping: a.stepping, ..settings(&a.common) };
@@ -236,30 +240,30 @@ pub fn run(a: RunArguments) -> Done {
     // So that a run which is ended before its first instant has tables.
     let robot = RobotColumns::of(&simulation.solution());
     folder.begin(&scene, robot).map_err(|e| Failure::Table(a.out.clone(), e))?;
-    let shared = Shared(Arc::new(Mutex::new(Some(folder))));
-    let printing = Arc::new(Mutex::new(()));
+    let shared = SharedRunFolder(Arc::new(Mutex::new(Some(folder))));
+    let print_lock = Arc::new(Mutex::new(()));
     let outputs = Outputs {
         arguments: a,
         scene,
         folder: shared.clone(),
-        printing: printing.clone(),
+        print_lock: print_lock.clone(),
         printer: Printer::new(),
         progress: Progress::new(),
-        reached: None,
+        totals: None,
         run_peaks: Vec::new(),
-        since: Vec::new(),
-        begun: Begun::default(),
+        peaks_since_output: Vec::new(),
+        warning_log: WarningLog::default(),
         last: None,
     };
     let (done, ended) = sync_channel(1);
     let solver = std::thread::Builder::new().name("solver".to_owned()).stack_size(STACK_BYTES);
     let solver = solver.spawn(move || {
         // Nobody listens where a signal has ended the run.
-        let _ = done.send(follow(simulation, inertia, outputs, began));
+        let _ = done.send(run_to_end(simulation, inertia, outputs, began));
     });
     let solver = solver.map_err(Failure::Thread)?;
     loop {
-        match ended.recv_timeout(Duration::from_secs_f64(LOOK_EVERY_S)) {
+        match ended.recv_timeout(Duration::from_secs_f64(SIGNAL_POLL_INTERVAL_S)) {
             Ok(done) => return done,
             Err(RecvTimeoutError::Timeout) => {
                 if let Some(signal) = signals.arrived() {
@@ -267,7 +271,7 @@ pub fn run(a: RunArguments) -> Done {
                     // The tables are readable and marked as partial already, whether this can be
                     // noted or not.
                     let _ = shared.finish(RunEnd::Partial(RunStop::Interrupted { signal: signal.name().to_owned() }));
-                    wait_for_line(&printing);
+                    wait_for_line(&print_lock);
                     return Err(Failure::Interrupted(signal, place));
                 }
             }
@@ -276,16 +280,16 @@ pub fn run(a: RunArguments) -> Done {
                     let _ = shared.finish(RunEnd::Partial(RunStop::Panicked));
                     std::panic::resume_unwind(panic)
                 }
-                Ok(()) => return Err(Failure::Ended),
+                Ok(()) => return Err(Failure::AlreadyEnded),
             },
         }
     }
 }
 
 /// Lets a line that is being printed end, unless its reader has stopped reading.
-fn wait_for_line(printing: &Mutex<()>) {
+fn wait_for_line(print_lock: &Mutex<()>) {
     let began = Instant::now();
-    while let Err(TryLockError::WouldBlock) = printing.try_lock() {
+    while let Err(TryLockError::WouldBlock) = print_lock.try_lock() {
         if began.elapsed() > Duration::from_millis(200) {
             break;
         }
@@ -294,8 +298,8 @@ fn wait_for_line(printing: &Mutex<()>) {
 }
 
 /// Solves, writes, and ends the run.
-fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began: Instant) -> Done {
-    let walked = walk(simulation, inertia, &mut outputs, began);
+fn run_to_end(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began: Instant) -> CommandResult {
+    let walked = run_steps(simulation, inertia, &mut outputs, began);
     outputs.progress.end();
     let end = match &walked {
         Ok(()) => RunEnd::Complete,
@@ -304,15 +308,15 @@ fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began:
     let finished = outputs.folder.finish(end);
     // Why the run stopped matters more than a folder that could not be closed after it.
     walked?;
-    let place = finished.ok_or(Failure::Ended)??;
+    let place = finished.ok_or(Failure::AlreadyEnded)??;
     let Outputs { arguments, scene, mut printer, last, .. } = outputs;
     if let (false, Some(last)) = (arguments.common.json, last) {
         let figures = Figures { cables: summaries(&scene, &last), ..Figures::default() };
         printer.line(table(&last, &figures).trim_end())?;
-        for line in outputs.reached.iter().flat_map(|reached| reached.lines(arguments.common.tolerance)) {
+        for line in outputs.totals.iter().flat_map(|reached| reached.lines(arguments.common.tolerance)) {
             printer.line(&line)?;
         }
-        for line in outputs.begun.lines() {
+        for line in outputs.warning_log.lines() {
             printer.line(&line)?;
         }
         printer.line(&format!("Written to {}", place.display()))?;
@@ -323,7 +327,7 @@ fn follow(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, began:
 
 /// A run without outputs for every time it is to be finer, until errors are as asked: the
 /// simulation to begin with, settled, and its step.
-fn refined(
+fn refine_until_accurate(
     mut simulation: Simulation,
     inertia: Inertia,
     arguments: &RunArguments,
@@ -344,40 +348,40 @@ fn refined(
 }
 
 /// Output k lies at k·every, the last one exactly at the end.
-fn walk(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs, mut began: Instant) -> Done {
+fn run_steps(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs, mut began: Instant) -> CommandResult {
     if let Err(e) = simulation.settle() {
-        return Err(stopped(outputs, &simulation, e));
+        return Err(end_with_error(outputs, &simulation, e));
     }
-    let (simulation, step) = match refined(simulation.clone(), inertia, &outputs.arguments) {
+    let (simulation, step) = match refine_until_accurate(simulation.clone(), inertia, &outputs.arguments) {
         Ok(found) => found,
-        Err(e) => return Err(stopped(outputs, &simulation, e)),
+        Err(e) => return Err(end_with_error(outputs, &simulation, e)),
     };
     let first = simulation.solution();
     // A last interval shorter than a billionth of the others is round-off, not an interval.
     let (duration_s, every) = (outputs.arguments.duration_s, outputs.arguments.every_s());
     let count = (duration_s / every - 1e-9).ceil() as usize;
-    outputs.watch(&simulation);
+    outputs.observe_step(&simulation);
     outputs.push(first, began.elapsed().as_secs_f64(), count == 0)?;
     let interval = Moment::nearest(every);
     let mut timeline = Timeline::new(simulation, inertia, step);
     if !outputs.arguments.no_errors {
         timeline = timeline.with_errors();
     }
-    outputs.note(&timeline);
+    outputs.update_totals(&timeline);
     for k in 1..=count {
         let moment = if k == count { Moment::nearest(duration_s) } else { interval.times(k as u64) };
         began = Instant::now();
-        let answer = timeline.at(moment, |simulation| outputs.watch(simulation));
-        outputs.note(&timeline);
+        let answer = timeline.at(moment, |simulation| outputs.observe_step(simulation));
+        outputs.update_totals(&timeline);
         match answer {
             Ok(solution) => outputs.push(solution, began.elapsed().as_secs_f64(), k == count)?,
-            Err(e) => return Err(stopped(outputs, timeline.simulation(), e)),
+            Err(e) => return Err(end_with_error(outputs, timeline.simulation(), e)),
         }
     }
     Ok(())
 }
 
-fn stopped(outputs: &mut Outputs, simulation: &Simulation, error: SolveError) -> Failure {
+fn end_with_error(outputs: &mut Outputs, simulation: &Simulation, error: SolveError) -> Failure {
     let reached_s = simulation.time_s();
     if outputs.arguments.common.json {
         let answer = NoAnswer::new(simulation.model(), Some(simulation.reason()), Some(reached_s), &error);

@@ -2,11 +2,11 @@
 
 use cable_core::Scene;
 
-use crate::Done;
+use crate::CommandResult;
 use crate::output::Printer;
 
 /// Prints the JSON Schema of a scene file.
-pub fn schema() -> Done {
+pub fn schema() -> CommandResult {
     let mut out = Printer::new();
     out.line(&format!("{:#}", Scene::json_schema()))?;
     out.flush()

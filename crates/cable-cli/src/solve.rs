@@ -5,22 +5,22 @@ use std::time::Instant;
 use cable_core::summary::{Setting, answer_with, end_stiffness, neglected_bending, settle_with_bending, summaries};
 use cable_core::{Scene, Solution};
 
-use crate::Done;
+use crate::CommandResult;
 use crate::answer::{ComparedEntry, Figures, NoAnswer, answer};
 use crate::args::{Common, SolveArguments};
 use crate::failure::Failure;
-use crate::input::{asked_scene, settings};
+use crate::input::{scene_with_arguments, settings};
 use crate::output::Printer;
 use crate::table::table;
-use crate::waiting::Waiting;
+use crate::waiting::WaitingNotice;
 
 /// Finds where everything rests.
-pub fn solve(arguments: &SolveArguments) -> Done {
+pub fn solve(arguments: &SolveArguments) -> CommandResult {
     let a = &arguments.common;
-    let scene = asked_scene(a)?;
+    let scene = scene_with_arguments(a)?;
     let mut out = Printer::new();
     let began = Instant::now();
-    let waiting = Waiting::begin();
+    let waiting = WaitingNotice::begin();
     let solved = settle_with_bending(&scene, a.model, settings(a), arguments.bending);
     drop(waiting);
     let wall_time_s = began.elapsed().as_secs_f64();

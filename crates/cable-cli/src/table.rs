@@ -11,7 +11,7 @@ use crate::answer::{ComparedEntry, Figures};
 use crate::summary;
 
 /// Greatest length of a reason why a setting has no answer.
-const REASON_LETTERS: usize = 90;
+const MAX_REASON_CHARS: usize = 90;
 
 /// Other models and meshes, the quickest first; those without an answer last.
 fn compared(t: &mut String, entries: &[ComparedEntry]) {
@@ -36,8 +36,8 @@ fn compared(t: &mut String, entries: &[ComparedEntry]) {
                 let said = a.stated_error.map_or_else(|| "nothing".to_owned(), |s| format!("{s:.1e}"));
                 writeln!(t, "{:>16.1e}  {:>12.1e}  {said:>14}", a.force_difference, a.shape_difference_m)
             }
-            (None, Some(why)) if why.chars().count() > REASON_LETTERS => {
-                writeln!(t, "{}…", why.chars().take(REASON_LETTERS).collect::<String>())
+            (None, Some(why)) if why.chars().count() > MAX_REASON_CHARS => {
+                writeln!(t, "{}…", why.chars().take(MAX_REASON_CHARS).collect::<String>())
             }
             (None, why) => writeln!(t, "{}", why.as_deref().unwrap_or("no answer")),
         };

@@ -5,14 +5,14 @@ use std::sync::mpsc::{RecvTimeoutError, Sender};
 use std::time::{Duration, Instant};
 
 /// Says on a terminal, every few seconds, that there is no answer yet.
-pub struct Waiting {
+pub struct WaitingNotice {
     /// Dropped at the end, which ends the thread that listens.
     _end: Option<Sender<()>>,
 }
 
-impl Waiting {
+impl WaitingNotice {
     /// Between two lines: shorter bothers, longer leaves a user alone.
-    const EVERY: Duration = Duration::from_secs(3);
+    const NOTICE_INTERVAL: Duration = Duration::from_secs(3);
 
     /// Begins to wait, until this is dropped.
     pub fn begin() -> Self {
@@ -22,7 +22,7 @@ impl Waiting {
         let (end, ended) = std::sync::mpsc::channel();
         let began = Instant::now();
         let tell = move || {
-            while ended.recv_timeout(Self::EVERY) == Err(RecvTimeoutError::Timeout) {
+            while ended.recv_timeout(Self::NOTICE_INTERVAL) == Err(RecvTimeoutError::Timeout) {
                 eprintln!("cable: no resting place yet after {:.0} s (Ctrl+C ends)", began.elapsed().as_secs_f64());
             }
         };

@@ -317,7 +317,7 @@ impl Simulation {
     /// before.
     pub fn settle(&mut self) -> Result<Solution, SolveError> {
         let before = self.cables.clone();
-        let found = self.settle_until_sound();
+        let found = self.settle_until_verified();
         if found.is_err() {
             self.cables = before;
             self.refresh(RunPhase::AtRest);
@@ -375,11 +375,11 @@ impl Simulation {
             }
             return Ok(());
         }
-        let Err(error) = self.check_sound() else { return Ok(()) };
+        let Err(error) = self.verify_answers() else { return Ok(()) };
         if !self.switch_model(&error) {
             return Err(error);
         }
-        self.settle_until_sound()
+        self.settle_until_verified()
     }
 
     /// The largest tension of some cables now, N (NaN propagates).

@@ -9,7 +9,7 @@ use cable_viewer::ViewerApp;
 use cable_viewer::app::{gallery, screenshot};
 use cable_viewer::command::Command;
 use cable_viewer::io::{autosave, scene_file};
-use cable_viewer::render::software_adapter_shader::Software;
+use cable_viewer::render::software_adapter_shader::SoftwarePainter;
 use clap::Parser;
 
 /// The cable simulator's window.
@@ -97,13 +97,13 @@ fn run(arguments: Arguments) -> Result<(), String> {
         ..eframe::NativeOptions::default()
     };
     let create = Box::new(|cc: &eframe::CreationContext<'_>| {
-        if let Some(software) = cc.wgpu_render_state.as_ref().and_then(Software::of) {
+        if let Some(software) = cc.wgpu_render_state.as_ref().and_then(SoftwarePainter::of) {
             cc.egui_ctx.add_plugin(software);
         }
         let mut app = ViewerApp::new(&cc.egui_ctx, scene, path);
         app.state.view.theme = theme;
         if let Some(path) = autosave::default_path() {
-            app.keep_changes_in(path);
+            app.enable_autosave(path);
         }
         app.apply(&cc.egui_ctx, vec![Command::SetModel(arguments.model)]);
         Ok(Box::new(app) as Box<dyn eframe::App>)

@@ -45,7 +45,7 @@ pub(super) fn lift_route(problem: &mut Problem) {
         let Some(worst) = stretches.iter().copied().reduce(|a, b| if b.depth > a.depth { b } else { a }) else {
             continue;
         };
-        problem.route = led_along(&problem.route, &stretches, body);
+        problem.route = reroute_along_surface(&problem.route, &stretches, body);
         let cause = WarningCause::RouteBuried { obstacle: body.name.clone() };
         let warning = Warning::new(cause, &problem.cable.name, 0.0, [worst.depth, 0.0]);
         problem.notes.push(warning.at(worst.deepest.into()));
@@ -58,7 +58,7 @@ pub(crate) fn above_ground(problem: &Problem, way: Vec<Vec2>) -> Vec<Vec2> {
     let geometry = problem.world.geometry();
     geometry.bodies().iter().filter(|b| b.is_ground()).take(MAX_GROUNDS).fold(way, |way, body| {
         let stretches = buried(&way, body);
-        if stretches.is_empty() { way } else { led_along(&way, &stretches, body) }
+        if stretches.is_empty() { way } else { reroute_along_surface(&way, &stretches, body) }
     })
 }
 
@@ -131,7 +131,7 @@ fn nearest(body: &Body, p: Vec2) -> f64 {
 }
 
 /// The route with its buried stretches led along the surface, the centre line's distance off it.
-fn led_along(route: &[Vec2], stretches: &[BuriedStretch], body: &Body) -> Vec<Vec2> {
+fn reroute_along_surface(route: &[Vec2], stretches: &[BuriedStretch], body: &Body) -> Vec<Vec2> {
     let mut out: Vec<Vec2> = Vec::with_capacity(route.len());
     let mut put = |p: Vec2| {
         if out.last() != Some(&p) {

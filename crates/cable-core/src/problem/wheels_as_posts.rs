@@ -36,7 +36,7 @@ pub struct WheelPost {
 }
 
 /// Returns whether a support is a wheel that stands where it is.
-fn stands(cable: &Cable, k: usize) -> bool {
+fn is_fixed_wheel(cable: &Cable, k: usize) -> bool {
     let s = &cable.supports[k];
     let inner = k > 0 && k + 1 < cable.supports.len();
     let wheel = s.kind == SupportKind::Pulley && s.radius_m.is_some_and(|r| r > 0.0);
@@ -46,7 +46,7 @@ fn stands(cable: &Cable, k: usize) -> bool {
 /// Returns the scene with posts in place of the wheels of a cable that stand still; None where it
 /// has none.
 pub(super) fn with_posts(scene: &Scene, cable: &Cable) -> Option<WithPosts> {
-    let replaced: Vec<bool> = (0..cable.supports.len()).map(|k| stands(cable, k)).collect();
+    let replaced: Vec<bool> = (0..cable.supports.len()).map(|k| is_fixed_wheel(cable, k)).collect();
     if !replaced.contains(&true) {
         return None;
     }

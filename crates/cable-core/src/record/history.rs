@@ -29,7 +29,7 @@ impl History {
         self.bytes += size_of_solution(&solution);
         self.entries.push(solution);
         while self.bytes > self.budget_bytes && self.entries.len() > 2 {
-            self.thin();
+            self.decimate();
         }
     }
 
@@ -42,7 +42,7 @@ impl History {
 
     /// Halves the rate where it is highest among the older three quarters: the far past becomes
     /// evenly coarser.
-    fn thin(&mut self) {
+    fn decimate(&mut self) {
         let older = (self.entries.len() * 3 / 4).max(2);
         let gaps = self.entries.windows(2).take(older - 1).filter_map(|w| Some(w.last()?.time_s - w.first()?.time_s));
         let least = gaps.fold(f64::INFINITY, |a, b| if b < a { b } else { a });

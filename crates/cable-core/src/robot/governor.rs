@@ -37,7 +37,7 @@ pub(super) const MAX_JERK: f64 = 2.0;
 
 /// A speed this near to the planned one is that one, m/s. If it is larger, a pull that slows the
 /// vehicle down counts as braking; if it is smaller, rounding does.
-const KEPT_M_PER_S: f64 = 1e-6;
+const PLAN_TOLERANCE_M_PER_S: f64 = 1e-6;
 
 /// A difference of speeds that is due to rounding, m/s.
 const ROUNDING_M_PER_S: f64 = 1e-12;
@@ -82,7 +82,7 @@ impl PlannedMotion {
     /// acceleration.
     pub fn held_up(self, h: f64, [from, to]: [f64; 2]) -> Self {
         let planned = self.acceleration;
-        let acceleration = if (to - self.speed).abs() < KEPT_M_PER_S {
+        let acceleration = if (to - self.speed).abs() < PLAN_TOLERANCE_M_PER_S {
             planned
         } else {
             bounded((to - from) / h, smaller(planned, 0.0), larger(planned, 0.0))

@@ -101,7 +101,7 @@ pub struct Vehicle {
     /// Motion that the governor asked for in the last step.
     set: PlannedMotion,
     /// Tipping speed, rad/s.
-    tipping: f64,
+    tipping_speed: f64,
     report: RobotReport,
 }
 
@@ -132,7 +132,7 @@ impl Vehicle {
             pulls: Pulls::default(),
             rate: Vec2::zeros(),
             set: PlannedMotion::default(),
-            tipping: 0.0,
+            tipping_speed: 0.0,
             report: RobotReport::default(),
         };
         let (sin, cos) = pose.pitch.sin_cos();
@@ -182,7 +182,7 @@ impl Vehicle {
     /// it cannot stand.
     pub fn put(&mut self, x_m: f64) -> Option<Vec2> {
         self.pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
-        (self.speed, self.tipping, self.rate) = (0.0, 0.0, Vec2::zeros());
+        (self.speed, self.tipping_speed, self.rate) = (0.0, 0.0, Vec2::zeros());
         self.set = PlannedMotion::default();
         (self.report.x_m, self.report.y_m) = (self.pose.at_m[0], self.pose.at_m[1]);
         self.report.pitch_deg = self.pose.pitch.to_degrees();
@@ -218,7 +218,7 @@ impl Vehicle {
     pub(crate) fn hold_back(&mut self, placement: RigidPose) {
         self.pose = Pose { at_m: [placement.at.x, placement.at.y], pitch: placement.angle, ..self.pose };
         self.report.work.impact_j -= self.kinetic_j();
-        (self.speed, self.tipping, self.set) = (0.0, 0.0, PlannedMotion::default());
+        (self.speed, self.tipping_speed, self.set) = (0.0, 0.0, PlannedMotion::default());
         (self.report.x_m, self.report.y_m) = (placement.at.x, placement.at.y);
         self.report.pitch_deg = placement.angle.to_degrees();
         (self.report.speed_m_per_s, self.report.governor_m_per_s2) = (0.0, 0.0);
@@ -235,7 +235,7 @@ impl Vehicle {
     pub fn begin(&mut self, h: f64, pulls: Pulls) -> Drive {
         self.pulls = pulls;
         let order = self.order(h);
-        Drive { wanted: order.speed, asked: self.planned().next(order, h), h }
+        Drive { wanted: order.speed, asked: self.governed_motion().next(order, h), h }
     }
 
     /// The speed that it would have at the end of a step if the pull on its hitch went on changing
@@ -249,18 +249,18 @@ impl Vehicle {
     /// Returns its pose at the end of a step in which it comes to this speed (m/s); None where it
     /// cannot stand there.
     #[must_use]
-    pub(crate) fn come_to(&self, drive: Drive, speed: f64) -> Option<Pose> {
+    pub(crate) fn pose_at_speed(&self, drive: Drive, speed: f64) -> Option<Pose> {
         let way = 0.5 * drive.h * (self.speed + speed);
         if way == 0.0 && self.speed == 0.0 {
-            return self.tipped(self.pose.at_m[0], drive.h);
+            return self.tipped_pose(self.pose.at_m[0], drive.h);
         }
         let x_m = self.pose.at_m[0] + way * self.pose.pitch.cos();
         let ground = self.robot.pose_on(&self.ground, self.preset, x_m)?;
-        if ground.pitch * way.signum() <= MAX_SLOPE { self.tipped(x_m, drive.h) } else { None }
+        if ground.pitch * way.signum() <= MAX_SLOPE { self.tipped_pose(x_m, drive.h) } else { None }
     }
 
     /// Its pose at a place, tipped towards the ground as far as it can in a step of `h` (s).
-    fn tipped(&self, x_m: f64, h: f64) -> Option<Pose> {
+    fn tipped_pose(&self, x_m: f64, h: f64) -> Option<Pose> {
         let pose = self.robot.pose_on(&self.ground, self.preset, x_m)?;
         let left = pose.pitch - self.pose.pitch;
         // It comes to rest on the ground: no faster than it can still be slowed down, and than it
@@ -269,8 +269,8 @@ impl Vehicle {
             .into_iter()
             .fold(MAX_TIP_RAD_PER_S, smaller);
         let change = MAX_TIP_RAD_PER_S2 * h;
-        let tipping = bounded(most.copysign(left), self.tipping - change, self.tipping + change);
-        Some(Pose { pitch: self.pose.pitch + tipping * h, ..pose })
+        let tipping_speed = bounded(most.copysign(left), self.tipping_speed - change, self.tipping_speed + change);
+        Some(Pose { pitch: self.pose.pitch + tipping_speed * h, ..pose })
     }
 
     /// Returns the balance of a step that ends with these forces of the cable.
@@ -312,7 +312,7 @@ impl Vehicle {
         work.ground_j += (weight + pull) * way - lifted - cable;
         // The energy of a stop is none of those.
         work.impact_j += self.preset.mass_kg.value * (speed - balance.speed) / drive.h * way;
-        self.tipping = (to.pitch - self.pose.pitch) / drive.h;
+        self.tipping_speed = (to.pitch - self.pose.pitch) / drive.h;
         self.set = drive.asked.held_up(drive.h, [self.speed, speed]);
         (self.pose, self.speed) = (to, speed);
         self.rate = (pulls.hitch - self.pulls.hitch) / drive.h;
@@ -364,7 +364,7 @@ impl Vehicle {
 
     /// Returns the motion from which the governor goes on: the one that it has given. A vehicle
     /// that its cable drags has none of it.
-    fn planned(&self) -> PlannedMotion {
+    fn governed_motion(&self) -> PlannedMotion {
         let v = self.speed;
         if self.set.speed * v > 0.0 {
             PlannedMotion { speed: v.signum() * smaller(self.set.speed.abs(), v.abs()), ..self.set }

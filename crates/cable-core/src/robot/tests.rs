@@ -24,7 +24,7 @@ fn step(v: &mut Vehicle, hitch: Vec2) {
     let pulls = Pulls { hitch, ..Pulls::default() };
     let drive = v.begin(STEP_S, pulls);
     let speed = v.foreseen(drive);
-    match v.come_to(drive, speed) {
+    match v.pose_at_speed(drive, speed) {
         Some(to) => {
             let balance = v.balance(drive, pulls);
             v.arrive(drive, to, speed, balance, balance.speed, pulls);
@@ -244,7 +244,7 @@ fn a_spring_throws_it_back_with_what_it_brought() {
         let drive = v.begin(STEP_S, Pulls { hitch: Vec2::new(-stiffness * v.pose.at_m[0], 0.0), ..Pulls::default() });
         let mut speed = v.foreseen(drive);
         for _ in 0..50 {
-            let to = v.come_to(drive, speed).unwrap();
+            let to = v.pose_at_speed(drive, speed).unwrap();
             let pulls = Pulls { hitch: Vec2::new(-stiffness * to.at_m[0], 0.0), ..Pulls::default() };
             let balance = v.balance(drive, pulls);
             if (balance.speed - speed).abs() < 1e-13 {

@@ -116,7 +116,7 @@ impl Simulation {
         speed: f64,
         search: &mut SpeedSearch,
     ) -> TrialOutcome {
-        let Some(to) = start.come_to(drive, speed) else { return TrialOutcome::Stuck(Going::Blocked) };
+        let Some(to) = start.pose_at_speed(drive, speed) else { return TrialOutcome::Stuck(Going::Blocked) };
         self.lead(start.hitch_at(to), to.placement(), step.hitches);
         let breaks = self.breaks();
         if self.for_each_cable(|c| c.advance(step.h, step.inertia)).is_err() {

@@ -34,7 +34,7 @@ const MOVE_TIME_S: f64 = 1e-6;
 
 /// The same cable at rest as the most capable model has it, on a mesh of few elements, to be
 /// drawn to and fro; None where that finds no rest.
-pub(super) fn explorable(cable: &BreakableCable) -> Option<BreakableCable> {
+pub(super) fn exploration_copy(cable: &BreakableCable) -> Option<BreakableCable> {
     let elements = cable.answer().nodes.len().saturating_sub(1);
     if cable.model().capabilities().explores_histories && elements <= MAX_ELEMENTS {
         return Some(cable.clone());

@@ -10,12 +10,12 @@ use crate::solution::ModelReason;
 
 impl Simulation {
     /// Settles by one model after the other until the answer obeys every law.
-    pub(super) fn settle_until_sound(&mut self) -> Result<(), SolveError> {
+    pub(super) fn settle_until_verified(&mut self) -> Result<(), SolveError> {
         let mut first: Option<SolveError> = None;
         loop {
             let found = self.for_each_cable(BreakableCable::settle).and_then(|()| {
                 self.refresh(RunPhase::AtRest);
-                self.check_sound()
+                self.verify_answers()
             });
             let Err(error) = found else { return Ok(()) };
             let error = match self.cables.iter().find_map(BreakableCable::refusal) {
@@ -38,7 +38,7 @@ impl Simulation {
     }
 
     /// Verifies the present answers.
-    pub(super) fn check_sound(&self) -> Result<(), SolveError> {
+    pub(super) fn verify_answers(&self) -> Result<(), SolveError> {
         // The answer of a model that is a second opinion, asked for by name, is reported with the
         // laws that it breaks, and not refused. A cable that broke at rest is where it was when it
         // broke.

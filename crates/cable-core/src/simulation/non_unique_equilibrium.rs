@@ -78,7 +78,7 @@ impl Simulation {
     /// Other histories of a cable for which `spans` has no answer; None where they cannot be
     /// sought.
     fn other_histories(&self, k: usize) -> Option<Histories> {
-        let explored = loading_histories::explorable(self.cables.get(k)?)?;
+        let explored = loading_histories::exploration_copy(self.cables.get(k)?)?;
         Some(loading_histories::other_histories(&explored, |other| {
             let mut answers = self.answers.clone();
             answers[k].clone_from(other);

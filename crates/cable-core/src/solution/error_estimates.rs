@@ -62,7 +62,7 @@ impl ErrorEstimates {
 
     /// Each the larger of two; what one of them does not know is not known.
     #[must_use]
-    pub(crate) fn or_larger(&self, other: &Self) -> Self {
+    pub(crate) fn componentwise_max(&self, other: &Self) -> Self {
         self.with(other, larger)
     }
 
@@ -224,7 +224,7 @@ mod tests {
             (off.max_tension_n, off.position_m, off.contact_force_n),
             (Some(0.5 * READING_FACTOR), Some(0.5 * READING_FACTOR), None)
         );
-        assert_eq!(off.or_larger(&off.times(3.0)).max_tension_n, Some(1.5 * READING_FACTOR));
-        assert_eq!(off.or_larger(&ErrorEstimates::default()).max_tension_n, None);
+        assert_eq!(off.componentwise_max(&off.times(3.0)).max_tension_n, Some(1.5 * READING_FACTOR));
+        assert_eq!(off.componentwise_max(&ErrorEstimates::default()).max_tension_n, None);
     }
 }

@@ -25,7 +25,7 @@ const TENSION_ROUNDING: f64 = 1e-9;
 /// counts. With one time it is 0.25 s, and where 95 figures in 100 are covered 78 instead of 80 are
 /// within ten times the error. Shorter: errors vanish wherever two runs cross; longer: what once
 /// struck is uncertain long after it lies still.
-const MEMORIES_S: [f64; 2] = [0.1, 0.4];
+const DECAY_TIMES_S: [f64; 2] = [0.1, 0.4];
 
 /// Greatest tensions are compared of one to two times so much time, s: a jerk comes later in one
 /// run than in another. Less: jerks of two runs are apart; more: one that all runs have hides
@@ -71,16 +71,16 @@ pub(super) struct CoarseRuns {
 struct RecentPeaks([[f64; 2]; 2]);
 
 impl RecentPeaks {
-    fn begin(tops: [f64; 2]) -> Self {
-        Self([tops; 2])
+    fn begin(max_tensions: [f64; 2]) -> Self {
+        Self([max_tensions; 2])
     }
 
-    fn note(&mut self, tops: [f64; 2]) {
-        self.0[1] = [larger(self.0[1][0], tops[0]), larger(self.0[1][1], tops[1])];
+    fn note(&mut self, max_tensions: [f64; 2]) {
+        self.0[1] = [larger(self.0[1][0], max_tensions[0]), larger(self.0[1][1], max_tensions[1])];
     }
 
-    fn turn(&mut self, tops: [f64; 2]) {
-        self.0 = [self.0[1], tops];
+    fn turn(&mut self, max_tensions: [f64; 2]) {
+        self.0 = [self.0[1], max_tensions];
     }
 
     /// The greatest tension (0) or mean (1).
@@ -94,7 +94,7 @@ struct CoarseRun {
     simulation: Simulation,
     /// Number of steps of the fine run that make one of it.
     times: u64,
-    /// Difference of each cable from the fine run, as each of [`MEMORIES_S`] remembers it.
+    /// Difference of each cable from the fine run, as each of [`DECAY_TIMES_S`] remembers it.
     differences: Vec<[ErrorEstimates; 2]>,
     recent: Vec<RecentPeaks>,
 }
@@ -113,10 +113,10 @@ impl CoarseRuns {
             simulation.settle().ok()?;
             let cables = fine.answers().iter().zip(simulation.answers());
             let differences = cables.map(|(a, b)| [ErrorEstimates::between(b, a); 2]).collect();
-            let recent = tops(&simulation).map(RecentPeaks::begin).collect();
+            let recent = max_tensions(&simulation).map(RecentPeaks::begin).collect();
             runs.push(CoarseRun { simulation, times, differences, recent });
         }
-        let own: Vec<RecentPeaks> = tops(fine).map(RecentPeaks::begin).collect();
+        let own: Vec<RecentPeaks> = max_tensions(fine).map(RecentPeaks::begin).collect();
         let before = vec![TensionRanges::default(); own.len()];
         Some(Self { runs, inertia, count: 0, window_began_s: fine.time_s(), own, before })
     }
@@ -130,7 +130,7 @@ impl CoarseRuns {
     /// cannot.
     pub fn follow(mut self, fine: &Simulation) -> Option<Self> {
         self.count += 1;
-        self.own.iter_mut().zip(tops(fine)).for_each(|(own, tops)| own.note(tops));
+        self.own.iter_mut().zip(max_tensions(fine)).for_each(|(own, max_tensions)| own.note(max_tensions));
         for run in self.runs.iter_mut().filter(|run| self.count.is_multiple_of(run.times)) {
             run.follow(fine, self.inertia)?;
         }
@@ -140,9 +140,12 @@ impl CoarseRuns {
         {
             self.window_began_s = fine.time_s();
             self.before = (0..self.own.len()).map(|cable| self.ranges(cable)).collect();
-            self.own.iter_mut().zip(tops(fine)).for_each(|(own, tops)| own.turn(tops));
+            self.own.iter_mut().zip(max_tensions(fine)).for_each(|(own, max_tensions)| own.turn(max_tensions));
             for run in &mut self.runs {
-                run.recent.iter_mut().zip(tops(&run.simulation)).for_each(|(own, tops)| own.turn(tops));
+                run.recent
+                    .iter_mut()
+                    .zip(max_tensions(&run.simulation))
+                    .for_each(|(own, max_tensions)| own.turn(max_tensions));
             }
         }
         Some(self)
@@ -188,7 +191,7 @@ impl CoarseRuns {
 }
 
 /// Greatest tension and mean of each cable in the last step, N.
-fn tops(simulation: &Simulation) -> impl Iterator<Item = [f64; 2]> {
+fn max_tensions(simulation: &Simulation) -> impl Iterator<Item = [f64; 2]> {
     let peaks = simulation.answers().iter().map(|answer| answer.peaks_at(simulation.time_s()));
     peaks.map(|p| [p.greatest.tension_n, p.held.tension_n])
 }
@@ -206,13 +209,16 @@ impl CoarseRun {
     fn follow(&mut self, fine: &Simulation, inertia: Inertia) -> Option<()> {
         let before_s = self.simulation.time_s();
         advance(&mut self.simulation, fine.time_s(), inertia).ok()?;
-        self.recent.iter_mut().zip(tops(&self.simulation)).for_each(|(own, tops)| own.note(tops));
-        let kept = MEMORIES_S.map(|memory_s| ((before_s - fine.time_s()) / memory_s).exp());
+        self.recent
+            .iter_mut()
+            .zip(max_tensions(&self.simulation))
+            .for_each(|(own, max_tensions)| own.note(max_tensions));
+        let kept = DECAY_TIMES_S.map(|memory_s| ((before_s - fine.time_s()) / memory_s).exp());
         let cables = fine.answers().iter().zip(self.simulation.answers());
         for (remembered, (a, b)) in self.differences.iter_mut().zip(cables) {
             let now = ErrorEstimates::between(b, a);
             for (difference, kept) in remembered.iter_mut().zip(kept) {
-                *difference = now.or_larger(&difference.times(kept));
+                *difference = now.componentwise_max(&difference.times(kept));
             }
         }
         Some(())

@@ -105,9 +105,9 @@ struct Snapshot {
     /// the cable, m².
     moment: Vec2,
     /// Size of what the robot's outline pushes with, N.
-    pushed: f64,
+    outline_force: f64,
     /// Greatest speed of a node, m/s.
-    fastest: f64,
+    max_speed: f64,
 }
 
 impl EnergyGrowth {
@@ -201,16 +201,16 @@ impl Snapshot {
                 moment += (a.at() + b.at()) * (0.5 * (b.arc_length_m - a.arc_length_m));
             }
         }
-        let (mut pushed, mut fastest) = (0.0, 0.0);
+        let (mut outline_force, mut max_speed) = (0.0, 0.0);
         if let Some(outline) = &problem.outline {
             let by = answer.contacts.iter().filter(|c| c.obstacle == outline.name);
-            pushed = by.map(|c| c.normal_n.abs() + c.friction_n.abs()).sum();
-            fastest = answer.nodes.iter().map(|n| n.vx_m_per_s.hypot(n.vy_m_per_s)).fold(0.0, larger);
+            outline_force = by.map(|c| c.normal_n.abs() + c.friction_n.abs()).sum();
+            max_speed = answer.nodes.iter().map(|n| n.vx_m_per_s.hypot(n.vy_m_per_s)).fold(0.0, larger);
         }
         let forms = [kinetic_j, gravity_j, stretch_j, bending_j];
         let energy_j = forms.iter().sum();
         let breaks = breaks.len();
-        (Self { time_s, energy_j, breaks, supports, loads, moment, pushed, fastest }, forms)
+        (Self { time_s, energy_j, breaks, supports, loads, moment, outline_force, max_speed }, forms)
     }
 }
 
@@ -246,17 +246,18 @@ fn work(observed: &Observed<'_>, before: &Snapshot, now: &Snapshot) -> f64 {
     let free = problem.supports.iter().zip(&now.supports).filter(|(_, s)| !s.holds()).map(|(s, _)| &s.force);
     let forces = free.chain(problem.loads.iter().map(|l| &l.force));
     for (force, (a, b)) in forces.zip(before.loads.iter().zip(&now.loads)) {
-        sum += given([force.at(from), force.at(to)], b - a);
+        sum += max_work_of_force([force.at(from), force.at(to)], b - a);
     }
-    sum += given([problem.wind.at(from), problem.wind.at(to)], now.moment - before.moment);
-    if before.pushed > 0.0 || now.pushed > 0.0 {
+    sum += max_work_of_force([problem.wind.at(from), problem.wind.at(to)], now.moment - before.moment);
+    if before.outline_force > 0.0 || now.outline_force > 0.0 {
         let impulse = answer.momentum.map_or(0.0, |m| m.contacts_n_s[0].hypot(m.contacts_n_s[1]));
-        sum += (larger(before.pushed, now.pushed) * dt + impulse) * larger(before.fastest, now.fastest);
+        sum +=
+            (larger(before.outline_force, now.outline_force) * dt + impulse) * larger(before.max_speed, now.max_speed);
     }
     sum
 }
 
 /// Work (J) of a force (N) that was one and became another over a way (m), at most.
-fn given([first, last]: [Vec2; 2], way: Vec2) -> f64 {
+fn max_work_of_force([first, last]: [Vec2; 2], way: Vec2) -> f64 {
     0.5 * ((first + last).dot(&way) + (last - first).norm() * way.norm())
 }

@@ -78,7 +78,7 @@ fn at(nodes: &[Node], s: f64) -> Vec2 {
 pub(super) fn slack(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     match folds(problem, answer) {
         Some(warning) => out.push(warning),
-        None => loose(problem, answer, out),
+        None => warn_slack_part(problem, answer, out),
     }
 }
 
@@ -110,7 +110,7 @@ fn folds(problem: &Problem, answer: &CableSolution) -> Option<Warning> {
 }
 
 /// Appends the longest part without tension.
-fn loose(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
+fn warn_slack_part(problem: &Problem, answer: &CableSolution, out: &mut Vec<Warning>) {
     let limit_n = SLACK_TENSION * problem.force_scale();
     let mut longest: Option<(f64, &[Node])> = None;
     for piece in answer.pieces() {

@@ -38,7 +38,7 @@ pub fn save(state: &mut AppState, theme: Theme, path: &Path) -> Result<(), Strin
     // A picture is of the scene: what is picked and where the pointer is are of the hand.
     let (view, beside, selection) = (state.view.clone(), state.ui.legend_beside, state.selection.clone());
     (state.selection.selected, state.selection.hovered) = (None, None);
-    state.selection.also.clear();
+    state.selection.also_selected.clear();
     (state.view.camera.fitted_to, state.view.camera.follows) = (None, false);
     state.ui.legend_beside = true;
     let frame = draw(state, theme);

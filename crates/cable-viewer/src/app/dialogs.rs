@@ -48,7 +48,7 @@ pub fn ui(ctx: &Context, state: &mut AppState, commands: &mut Vec<Command>) {
                 let title = if *hold { "Pin a recorded run to compare with" } else { "Open a run" };
                 let note = "A folder with scene.toml, history.csv, nodes.csv and events.csv, as this window and cable run write them";
                 if let Some(path) = ask(ui, (title, "Open"), ("A folder", note), path, commands) {
-                    let command = if *hold { FileCommand::HoldRun(path) } else { FileCommand::OpenRun(path) };
+                    let command = if *hold { FileCommand::AddReferenceRun(path) } else { FileCommand::OpenRun(path) };
                     commands.push(Command::File(command));
                 }
             }
@@ -182,10 +182,10 @@ fn import_map(ui: &mut Ui, [path, text, unit_m]: [&mut String; 3], commands: &mu
 }
 
 /// Lets contents that may be taller than the window scroll; heading and buttons stay in sight.
-fn tall(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+fn scrollable(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
     /// Of heading, buttons and margins, points.
-    const REST: f32 = 130.0;
-    let most = (ui.ctx().content_rect().height() - REST).max(60.0);
+    const DIALOG_CHROME_HEIGHT: f32 = 130.0;
+    let most = (ui.ctx().content_rect().height() - DIALOG_CHROME_HEIGHT).max(60.0);
     ui.scope(|ui| {
         ui.spacing_mut().scroll = egui::style::ScrollStyle::solid();
         // Else it grows by a line a frame.
@@ -197,7 +197,7 @@ fn tall(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
 fn about(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.heading("About the cable simulator");
     ui.weak(format!("Version {}; MIT or Apache-2.0", env!("CARGO_PKG_VERSION")));
-    tall(ui, |ui| {
+    scrollable(ui, |ui| {
         for (title, lines) in ABOUT {
             ui.add_space(8.0);
             ui.strong(*title);
@@ -346,7 +346,7 @@ const CONTROLS: [(&str, &str); 28] = [
 fn help(ui: &mut Ui, commands: &mut Vec<Command>) {
     ui.heading("Pointer and keys");
     ui.add_space(6.0);
-    tall(ui, |ui| {
+    scrollable(ui, |ui| {
         egui::Grid::new("keys").num_columns(2).spacing([24.0, 4.0]).show(ui, |ui| {
             for (what, does) in CONTROLS {
                 ui.strong(what);

@@ -3,9 +3,9 @@
 use egui::{TextEdit, Ui};
 
 use crate::command::{Command, FileCommand};
-use crate::io::feedback::{Answers, MAX_MARK, MIN_GOOD_MARK, QUESTIONS};
+use crate::io::feedback::{Answers, MAX_RATING, MIN_GOOD_RATING, QUESTIONS};
 use crate::widgets::field;
-use crate::widgets::tick::ring;
+use crate::widgets::tick::radio_button;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut Vec<Command>) {
@@ -16,8 +16,8 @@ pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut 
         for ((_, question), mark) in QUESTIONS.iter().zip(&mut answers.marks) {
             ui.label(*question);
             ui.horizontal(|ui| {
-                for k in 1..=MAX_MARK {
-                    let button = ring(ui, *mark == Some(k), k.to_string());
+                for k in 1..=MAX_RATING {
+                    let button = radio_button(ui, *mark == Some(k), k.to_string());
                     field::name(&button, &format!("{question}: {k}"));
                     if button.clicked() {
                         *mark = Some(k);
@@ -29,8 +29,8 @@ pub fn ui(ui: &mut Ui, answers: &mut Answers, path: &mut String, commands: &mut 
     });
     let label = ui.label("What was confusing or should change?");
     ui.add(TextEdit::multiline(&mut answers.words).desired_rows(3).desired_width(f32::INFINITY)).labelled_by(label.id);
-    if answers.wants_words() {
-        ui.colored_label(ui.visuals().warn_fg_color, format!("Below {MIN_GOOD_MARK}: please say what was confusing"));
+    if answers.needs_comment() {
+        ui.colored_label(ui.visuals().warn_fg_color, format!("Below {MIN_GOOD_RATING}: please say what was confusing"));
     }
     ui.horizontal(|ui| {
         let label = ui.label("Table");

@@ -15,12 +15,12 @@ const HEIGHT: f32 = 22.0;
 /// Half the width of the buttons beside the hints, points: both together stand in the middle.
 const BUTTONS: f32 = 62.0;
 /// Narrower canvases (points) have no room for a line of hints.
-const LEAST_WIDTH: f32 = 420.0;
+const MIN_WIDTH: f32 = 420.0;
 
 /// Draws those that are still open over the canvas.
 pub fn ui(ui: &Ui, canvas: Rect, state: &AppState, commands: &mut Vec<Command>) {
     let open = state.ui.first_steps.open();
-    if open.is_empty() || canvas.width() < LEAST_WIDTH || state.ui.tutorial.is_some() {
+    if open.is_empty() || canvas.width() < MIN_WIDTH || state.ui.tutorial.is_some() {
         return;
     }
     // The words let the pointer through to what lies below them; only the buttons take it.

@@ -11,7 +11,7 @@ use image::RgbaImage;
 use crate::ViewerApp;
 use crate::app::screenshot;
 use crate::command::{Command, PlaybackCommand, SceneCommand, ViewCommand};
-use crate::jobs::safe_reach::Choice;
+use crate::jobs::safe_reach::SafeReachOptions;
 use crate::state::{FirstSteps, Item, TensionMarker};
 use crate::units::system::System;
 
@@ -99,7 +99,7 @@ fn selection(app: &mut ViewerApp, ctx: &Context) {
 fn tension_budget(app: &mut ViewerApp, ctx: &Context) {
     theme(app, ctx, ThemePreference::Dark);
     let marker = TensionMarker { cable: 0, arc_length_m: 6.0, from: StartEnd::Slacker };
-    view(app, ctx, ViewCommand::MarkTension(Some(marker)));
+    view(app, ctx, ViewCommand::SetTensionMarker(Some(marker)));
 }
 
 fn motion(app: &mut ViewerApp, ctx: &Context) {
@@ -124,20 +124,20 @@ fn weak() -> Scene {
 
 fn safe_reach(app: &mut ViewerApp, ctx: &Context) {
     theme(app, ctx, ThemePreference::Light);
-    let choice = Choice { across: 20, ..Choice::default() };
-    view(app, ctx, ViewCommand::SetReach(choice));
+    let choice = SafeReachOptions { across: 20, ..SafeReachOptions::default() };
+    view(app, ctx, ViewCommand::SetSafeReachOptions(choice));
     // What is in view is what is looked at: as much as the cable reaches.
     let camera = &mut app.state.view.camera;
     (camera.centre_m, camera.points_per_m, camera.fit_wanted) = ([5.0, 4.0], 46.0, false);
     app.state.view.visible_m = [[-3.0, -1.0], [13.0, 9.0]];
-    view(app, ctx, ViewCommand::Reach(true));
+    view(app, ctx, ViewCommand::SearchSafeReach(true));
 }
 
 fn compare(app: &mut ViewerApp, ctx: &Context) {
     theme(app, ctx, ThemePreference::Dark);
     app.apply(ctx, vec![Command::SetModel(Model::Fem), Command::View(ViewCommand::SetUnits(System::Us))]);
-    app.take_answers(ctx);
-    view(app, ctx, ViewCommand::Hold);
+    app.receive_reports(ctx);
+    view(app, ctx, ViewCommand::AddReference);
     let Some(mut cable) = app.state.document.scene.cables.first().cloned() else { return };
     cable.length_m *= 1.1;
     app.apply(ctx, vec![Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) })]);

@@ -106,7 +106,7 @@ pub fn read(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         commands.push(Command::File(FileCommand::SetDialog(Some(Dialog::Help))));
     }
     if (plain(Key::Delete) || plain(Key::Backspace)) && state.selection.selected.is_some() {
-        commands.push(Command::Scene(SceneCommand::RemoveAll(state.selection.picks())));
+        commands.push(Command::Scene(SceneCommand::RemoveAll(state.selection.selected_items())));
     }
     // An open menu or list closes first, and only it.
     if !egui::Popup::is_any_open(ctx) && plain(Key::Escape) {
@@ -180,7 +180,7 @@ fn pick_and_move(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         }
     }
     if ctx.input_mut(|i| i.consume_key(Modifiers::NONE, Key::M)) {
-        let mut picks = state.selection.picks();
+        let mut picks = state.selection.selected_items();
         let after = picks.last().and_then(|s| all.iter().position(|i| i == s)).map_or(0, |k| k + 1);
         let next = all.iter().cycle().skip(after).take(all.len()).find(|i| !picks.contains(i));
         picks.extend(next);
@@ -219,7 +219,7 @@ fn drive(ctx: &Context, state: &AppState, commands: &mut Vec<Command>) {
         _ if released => Some(0.0),
         _ => return,
     };
-    if order != state.live.robot_order {
+    if order != state.live.robot_speed_command {
         commands.push(Command::Playback(PlaybackCommand::DriveRobot(order)));
     }
 }

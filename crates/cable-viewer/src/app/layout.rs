@@ -14,17 +14,17 @@ type PanelUi = fn(&mut Ui, &AppState, &mut Vec<Command>);
 type Section = (&'static str, PanelUi);
 
 /// The outline of the scene, and in a small window the form of the selected thing.
-const EDIT: &[Section] = &[("Outline", panels::scene::outline::ui), (SELECTED, panels::selected::ui)];
+const EDIT_SECTIONS: &[Section] = &[("Outline", panels::scene::outline::ui), (SELECTED, panels::selected::ui)];
 /// Warnings but the worst, the form of the selected thing, then the readouts. Where a place on the
 /// cable is marked its tension stands above the readouts, else at the end.
-const READ: &[Section] = &[
+const RESULT_SECTIONS: &[Section] = &[
     (WARNINGS, panels::warnings::ui),
     (SELECTED, panels::selected::ui),
-    (MARKED, panels::analysis::tension_budget::ui),
+    (MARKED_PLACE_TITLE, panels::analysis::tension_budget::ui),
     (READOUTS, panels::readouts::ui),
     (SAFE_REACH, panels::analysis::safe_reach::ui),
     (COMPARE, panels::analysis::compare::ui),
-    (UNMARKED, panels::analysis::tension_budget::ui),
+    (UNMARKED_PLACE_TITLE, panels::analysis::tension_budget::ui),
     ("Friction range", panels::analysis::friction_range::ui),
 ];
 
@@ -35,17 +35,17 @@ const WARNINGS: &str = "Warnings";
 const SAFE_REACH: &str = "Safe reach";
 const COMPARE: &str = "Compare";
 const SELECTED: &str = "Selected";
-const MARKED: &str = "Tension at the marked place";
-const UNMARKED: &str = "Tension at a place";
+const MARKED_PLACE_TITLE: &str = "Tension at the marked place";
+const UNMARKED_PLACE_TITLE: &str = "Tension at a place";
 
 /// Room for the bar beside what scrolls, points.
-const BAR: f32 = 6.0;
+const SCROLL_BAR_WIDTH: f32 = 6.0;
 /// Narrower windows (points) have one side panel instead of two: the canvas would be smaller than
 /// its labels.
-const WIDE: f32 = 1000.0;
+const MIN_TWO_PANELS_WIDTH: f32 = 1000.0;
 /// Lower windows (points) have one side panel, and the graphs in it: nothing would be left of the
 /// canvas above them.
-const LEAST_FOR_GRAPHS: f32 = 520.0;
+const MIN_GRAPHS_WINDOW_HEIGHT: f32 = 520.0;
 /// Width of the outline as a part of the window's, and the least and greatest, points: what is in
 /// the panels never moves the canvas. Wider: the canvas has less than 60 % of 1280×800; narrower:
 /// the kind of a thing does not fit beside its name.
@@ -64,11 +64,11 @@ fn part((fraction, [least, most]): (f32, [f32; 2]), of: f32) -> f32 {
 /// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its
 /// own size.
 pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
-    highlight::seek(ui.ctx(), tutorial_bar::points_at(state));
+    highlight::set_target(ui.ctx(), tutorial_bar::points_at(state));
     let [width, height] = ui.ctx().content_rect().size().into();
-    let graphs = height >= LEAST_FOR_GRAPHS;
+    let graphs = height >= MIN_GRAPHS_WINDOW_HEIGHT;
     let open = state.ui.panels;
-    let wide = width >= WIDE && graphs;
+    let wide = width >= MIN_TWO_PANELS_WIDTH && graphs;
     // The worst warning stands above what scrolls in a panel, or else in the strip at the top.
     let told_in_panel = if wide { open.results } else { open.edit || open.results };
     Panel::top("menu").show(ui, |ui| menu::ui(ui, !told_in_panel, state, commands));
@@ -84,7 +84,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
             panels::readouts::head(ui, state, commands);
             panels::warnings::worst(ui, state, commands);
             ui.separator();
-            scroll(ui, "read", READ, state, commands);
+            scroll(ui, "read", RESULT_SECTIONS, state, commands);
         });
     }
     if !wide && (open.edit || open.results) {
@@ -107,7 +107,9 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         Panel::bottom("timeline").show(ui, |ui| panels::timeline::ui(ui, state, commands));
     }
     if wide && open.edit {
-        side(ui, Panel::left("edit"), part(OUTLINE_WIDTH, width), |ui| scroll(ui, "edit", EDIT, state, commands));
+        side(ui, Panel::left("edit"), part(OUTLINE_WIDTH, width), |ui| {
+            scroll(ui, "edit", EDIT_SECTIONS, state, commands)
+        });
     }
     let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
     canvas::offer_to_follow(ui, canvas.response.rect, state, commands);
@@ -156,8 +158,8 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
         ui.separator();
         match tab {
             Tab::Graphs if graphs => panels::plots::ui(ui, state, commands),
-            Tab::Read => scroll(ui, "read", READ, state, commands),
-            Tab::Edit | Tab::Graphs => scroll(ui, "edit", EDIT, state, commands),
+            Tab::Read => scroll(ui, "read", RESULT_SECTIONS, state, commands),
+            Tab::Edit | Tab::Graphs => scroll(ui, "edit", EDIT_SECTIONS, state, commands),
         }
     });
 }
@@ -171,8 +173,8 @@ fn newly_wanted(ui: &Ui, (id, sections): (&str, &[Section]), state: &AppState) -
     let holds = |title: &str| sections.iter().any(|(t, _)| *t == title);
     // A thing that is changed within the panel stays under the pointer.
     let from_elsewhere = !ui.ctx().pointer_latest_pos().is_some_and(|at| ui.max_rect().contains(at));
-    if marked && from_elsewhere && holds(MARKED) {
-        return Some(MARKED);
+    if marked && from_elsewhere && holds(MARKED_PLACE_TITLE) {
+        return Some(MARKED_PLACE_TITLE);
     }
     let searches = is_new(ui, (id, "searches"), state.analysis.safe_reach.began);
     if searches && state.analysis.safe_reach.began.is_some() && from_elsewhere && holds(SAFE_REACH) {
@@ -204,7 +206,7 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
     let shown = newly_wanted(ui, (id, sections), state);
     // The bar stands beside figures, not over their last letters.
     let bar = &mut ui.spacing_mut().scroll;
-    (bar.floating_allocated_width, bar.bar_width) = (BAR, BAR);
+    (bar.floating_allocated_width, bar.bar_width) = (SCROLL_BAR_WIDTH, SCROLL_BAR_WIDTH);
     // Contents that are too wide scroll: they must not push the canvas aside.
     ScrollArea::both().id_salt(id).auto_shrink(false).show(ui, |ui| {
         let width = ui.available_width();
@@ -212,14 +214,14 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
             let hidden = match *title {
                 // On the right where there is such a panel, else below the outline.
                 SELECTED => state.selection.selected.is_none() || (id == "read") != state.ui.legend_beside,
-                MARKED => state.analysis.tension_marker.is_none(),
-                UNMARKED => state.analysis.tension_marker.is_some(),
+                MARKED_PLACE_TITLE => state.analysis.tension_marker.is_none(),
+                UNMARKED_PLACE_TITLE => state.analysis.tension_marker.is_some(),
                 WARNINGS => !panels::warnings::has_more(state),
                 _ => false,
             };
             if hidden {
                 if *title == WARNINGS && id == "read" {
-                    hold_still(ui, ui.cursor().top());
+                    compensate_scroll(ui, ui.cursor().top());
                 }
                 continue;
             }
@@ -237,19 +239,19 @@ fn scroll(ui: &mut Ui, id: &str, sections: &[Section], state: &AppState, command
             });
             let section = section.inner;
             if *title == WARNINGS && id == "read" {
-                hold_still(ui, top);
+                compensate_scroll(ui, top);
             }
             if shown == Some(*title) {
                 section.header_response.scroll_to_me(Some(egui::Align::TOP));
             }
-            highlight::offer(&section.header_response, &format!("{title} section"));
+            highlight::register(&section.header_response, &format!("{title} section"));
         }
     });
 }
 
 /// Warnings that come and go do not move what the pointer is at below them: the panel scrolls by
 /// what they take more or less than in the frame before. `top`: where they begin.
-fn hold_still(ui: &Ui, top: f32) {
+fn compensate_scroll(ui: &Ui, top: f32) {
     let id = Id::unique("height of the warnings");
     let height = ui.cursor().top() - top;
     let before = ui.data(|d| d.get_temp::<f32>(id)).unwrap_or(height);

@@ -8,7 +8,7 @@ use crate::app::keys;
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels;
 use crate::panels::readouts::DIMMED;
-use crate::render::colour::{ColourMap, Quantity};
+use crate::render::colour::{CableQuantity, ColourMap};
 use crate::render::theme;
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Freshness, WorkerStatus};
@@ -16,7 +16,7 @@ use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::units::system::System;
 use crate::widgets::highlight;
-use crate::widgets::tick::{choose, tick};
+use crate::widgets::tick::{checkbox, radio_value};
 
 /// Width of the worst warning in the strip as a part of what is left, and the most, points: the
 /// name of the scene stands beside it.
@@ -27,7 +27,7 @@ pub fn ui(ui: &mut Ui, with_warning: bool, state: &AppState, commands: &mut Vec<
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| file(ui, state, commands));
         let edit = ui.menu_button("Edit", |ui| edit(ui, state, commands));
-        highlight::offer(&edit.response, "Edit menu");
+        highlight::register(&edit.response, "Edit menu");
         ui.menu_button("View", |ui| view(ui, state, commands));
         ui.menu_button("Scenes", |ui| scenes(ui, commands));
         ui.menu_button("Learn", |ui| crate::app::tutorial_bar::menu(ui, commands));
@@ -70,7 +70,7 @@ fn results(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let most = answer.max_tension();
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     if let Some(verification) = answer.verification.as_ref().filter(|_| current) {
-        light(ui, verification);
+        verdict_light(ui, verification);
         ui.separator();
     }
     if let Some(cable) = scene.cables.get(most.cable).filter(|_| current) {
@@ -200,7 +200,7 @@ pub fn import_map() -> FileCommand {
 }
 
 fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
-    let (undo, redo) = state.document.undo.available();
+    let (undo, redo) = state.document.undo.can_undo_and_redo();
     for (text, shortcut, enabled, command) in
         [("Undo", &keys::UNDO, undo, SceneCommand::Undo), ("Redo", &keys::REDO, redo, SceneCommand::Redo)]
     {
@@ -219,7 +219,7 @@ fn edit(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ("Copy", Some(&keys::COPY), picked, SceneCommand::Copy),
         ("Cut", Some(&keys::CUT), picked, SceneCommand::Cut),
         ("Paste", Some(&keys::PASTE), !state.selection.clipboard.is_empty(), SceneCommand::Paste { at_m: None }),
-        ("Remove selected", None, picked, SceneCommand::RemoveAll(state.selection.picks())),
+        ("Remove selected", None, picked, SceneCommand::RemoveAll(state.selection.selected_items())),
         ("Add a cable", None, !state.document.scene.cables.is_empty(), SceneCommand::AddCable),
     ] {
         ui.add_enabled_ui(enabled, |ui| {
@@ -245,24 +245,25 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     }
     ui.separator();
     let mut panels = state.ui.panels;
-    tick(ui, &mut panels.edit, "Edit panel ([)").on_hover_text("Outline, scene, robot, cable, environment, solver");
-    tick(ui, &mut panels.results, "Results panel (])").on_hover_text("Warnings, readouts, safe reach, compare");
-    tick(ui, &mut panels.graphs, "Graphs and timeline (G)").on_hover_text("The drawer below the canvas");
+    checkbox(ui, &mut panels.edit, "Edit panel ([)").on_hover_text("Outline, scene, robot, cable, environment, solver");
+    checkbox(ui, &mut panels.results, "Results panel (])").on_hover_text("Warnings, readouts, safe reach, compare");
+    checkbox(ui, &mut panels.graphs, "Graphs and timeline (G)").on_hover_text("The drawer below the canvas");
     if panels != state.ui.panels {
         commands.push(Command::View(ViewCommand::ShowPanels(panels)));
     }
     ui.separator();
     let mut layers = state.view.layers;
-    tick(ui, &mut layers.grid, "Grid").on_hover_text("Lines and numbered axes");
-    tick(ui, &mut layers.labels, "Labels").on_hover_text("Names, coordinates and figures");
-    tick(ui, &mut layers.contacts, "Contacts").on_hover_text(
+    checkbox(ui, &mut layers.grid, "Grid").on_hover_text("Lines and numbered axes");
+    checkbox(ui, &mut layers.labels, "Labels").on_hover_text("Names, coordinates and figures");
+    checkbox(ui, &mut layers.contacts, "Contacts").on_hover_text(
         "Where the cable touches: normal force and friction; filled and blue where it holds, hollow and orange where it slides",
     );
-    tick(ui, &mut layers.forces, "Forces").on_hover_text("Loads, and what the cable does to its supports");
-    tick(ui, &mut layers.components, "Force components").on_hover_text("Horizontal and vertical part of each force");
-    tick(ui, &mut layers.nodes, "Nodes").on_hover_text("The points the model works with");
+    checkbox(ui, &mut layers.forces, "Forces").on_hover_text("Loads, and what the cable does to its supports");
+    checkbox(ui, &mut layers.components, "Force components")
+        .on_hover_text("Horizontal and vertical part of each force");
+    checkbox(ui, &mut layers.nodes, "Nodes").on_hover_text("The points the model works with");
     ui.separator();
-    tick(ui, &mut layers.snap, "Snap to grid").on_hover_text("Dragged points land on the finest grid lines shown");
+    checkbox(ui, &mut layers.snap, "Snap to grid").on_hover_text("Dragged points land on the finest grid lines shown");
     if layers != state.view.layers {
         commands.push(Command::View(ViewCommand::SetLayers(layers)));
     }
@@ -270,17 +271,17 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     colours(ui, state, commands);
     ui.separator();
     let mut units = state.view.units;
-    choose(ui, &mut units, System::Si, "SI units").on_hover_text("Metres, newtons, kilograms");
-    choose(ui, &mut units, System::Us, "US units").on_hover_text("Feet, pounds-force, pounds; files stay SI");
+    radio_value(ui, &mut units, System::Si, "SI units").on_hover_text("Metres, newtons, kilograms");
+    radio_value(ui, &mut units, System::Us, "US units").on_hover_text("Feet, pounds-force, pounds; files stay SI");
     if units != state.view.units {
         commands.push(Command::View(ViewCommand::SetUnits(units)));
     }
     ui.separator();
     let mut theme = state.view.theme;
-    choose(ui, &mut theme, egui::ThemePreference::System, "Match system theme")
+    radio_value(ui, &mut theme, egui::ThemePreference::System, "Match system theme")
         .on_hover_text("Dark where it does not say");
-    choose(ui, &mut theme, egui::ThemePreference::Light, "Light theme").on_hover_text("Dark on light");
-    choose(ui, &mut theme, egui::ThemePreference::Dark, "Dark theme").on_hover_text("Light on dark");
+    radio_value(ui, &mut theme, egui::ThemePreference::Light, "Light theme").on_hover_text("Dark on light");
+    radio_value(ui, &mut theme, egui::ThemePreference::Dark, "Dark theme").on_hover_text("Light on dark");
     if theme != state.view.theme {
         commands.push(Command::View(ViewCommand::SetTheme(theme)));
     }
@@ -289,9 +290,9 @@ fn view(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 /// Offers what the cable's colours show, and between which values.
 fn colours(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut colour = state.view.colour;
-    for quantity in Quantity::ALL {
+    for quantity in CableQuantity::ALL {
         let text = format!("Colour by {}", quantity.name().to_lowercase());
-        if choose(ui, &mut colour.quantity, quantity, text)
+        if radio_value(ui, &mut colour.quantity, quantity, text)
             .on_hover_text("What the colours of the cable show")
             .changed()
         {
@@ -302,13 +303,13 @@ fn colours(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.menu_button("Colours", |ui| {
         for map in ColourMap::ALL {
             let help = "Even steps to every eye, also in grey and to colour-blind eyes";
-            choose(ui, &mut colour.map, map, map.name()).on_hover_text(help);
+            radio_value(ui, &mut colour.map, map, map.name()).on_hover_text(help);
         }
         let mut fixed = colour.fixed.is_some();
         let help =
             "On: the colours keep the values they have now; off: they follow the least and greatest of each answer";
         let present = state.live.snapshot.solution.as_deref().map(|s| state.view.colour.range(s));
-        if tick(ui, &mut fixed, "Lock colour range").on_hover_text(help).changed() {
+        if checkbox(ui, &mut fixed, "Lock colour range").on_hover_text(help).changed() {
             colour.fixed = present.filter(|_| fixed);
         }
     });
@@ -338,7 +339,7 @@ pub fn verdict(verification: &Verification) -> &'static str {
 const LIGHT_SIZE: f32 = 9.0;
 /// Whether the answer obeys the laws of mechanics, as they were checked independently of the model
 /// that gave it.
-fn light(ui: &mut Ui, verification: &Verification) {
+fn verdict_light(ui: &mut Ui, verification: &Verification) {
     let visuals = ui.visuals();
     let text = verdict(verification);
     let (lamp, colour) = match (verification.is_sound(), verification.not_checked.is_empty()) {

@@ -45,7 +45,7 @@ use crate::worker::Worker;
 use crate::worker::engine::Report;
 
 /// Most unanswered edits whose delay is measured; of more, those in between are not.
-const MAX_ASKED: usize = 64;
+const MAX_PENDING_EDITS: usize = 64;
 
 /// Between two frames while an answer is sought. Longer: the seconds jump, and a solve that nobody
 /// waits for is given up late.
@@ -62,8 +62,8 @@ pub struct ViewerApp {
     /// Keeps unsaved changes on disk, in a window.
     autosave: Option<Autosave>,
     /// Numbers of the edits not yet answered and when they were sent, oldest first; at most
-    /// [`MAX_ASKED`].
-    asked: VecDeque<(u64, Instant)>,
+    /// [`MAX_PENDING_EDITS`].
+    pending_edits: VecDeque<(u64, Instant)>,
     /// The file in which recent files are listed, and what stands there.
     recent_list: Option<(PathBuf, Vec<PathBuf>)>,
     /// The file in which it is noted that the first steps are done, until that is.
@@ -71,15 +71,15 @@ pub struct ViewerApp {
     /// Since when an answer has been sought.
     solving_since: Option<Instant>,
     /// The map of where the robot can go, while it is computed.
-    reach: Option<safe_reach::Job>,
+    safe_reach_job: Option<safe_reach::Job>,
     /// Every model being asked.
-    models: Option<model_comparison::Job>,
+    model_comparison_job: Option<model_comparison::Job>,
     /// Every model and mesh being compared.
-    precision: Option<work_precision::Job>,
+    work_precision_job: Option<work_precision::Job>,
     /// The effect of neglecting bending stiffness, computed or being computed.
-    bending: Option<neglected_bending::Job>,
+    neglected_bending_job: Option<neglected_bending::Job>,
     /// The ribbon of less and more friction, computed or being computed.
-    spread: Option<friction_range::Job>,
+    friction_range_job: Option<friction_range::Job>,
 }
 
 impl ViewerApp {
@@ -107,25 +107,25 @@ impl ViewerApp {
             threaded,
             title: String::new(),
             autosave: None,
-            asked: VecDeque::new(),
+            pending_edits: VecDeque::new(),
             solving_since: None,
             recent_list: None,
             first_steps_mark: None,
-            reach: None,
-            models: None,
-            precision: None,
-            bending: None,
-            spread: None,
+            safe_reach_job: None,
+            model_comparison_job: None,
+            work_precision_job: None,
+            neglected_bending_job: None,
+            friction_range_job: None,
         };
         let mut effects = Effects::default();
         submit_new_scene(&mut app.state, &mut effects);
-        app.carry_out(ctx, effects);
+        app.perform_effects(ctx, effects);
         app
     }
 
     /// From now on unsaved changes are kept in a file; if there are some from a window that died,
     /// they are offered.
-    pub fn keep_changes_in(&mut self, path: PathBuf) {
+    pub fn enable_autosave(&mut self, path: PathBuf) {
         let list = path.with_file_name("recent.txt");
         for path in recent_files::load(&list).into_iter().rev() {
             self.state.ui.add_recent(path);
@@ -156,7 +156,7 @@ impl ViewerApp {
     fn update_autosave(&mut self, ctx: &egui::Context) {
         let Some(autosave) = &mut self.autosave else { return };
         let state = &mut self.state;
-        let wait = autosave.look(
+        let wait = autosave.update(
             &state.document.scene,
             [state.document.unsaved(), state.document.fault.is_none()],
             Instant::now(),
@@ -173,16 +173,16 @@ impl ViewerApp {
         for command in commands {
             command::apply(&mut self.state, command, &mut effects);
         }
-        self.carry_out(ctx, effects);
+        self.perform_effects(ctx, effects);
     }
 
     /// The worker has answered every edit.
     #[must_use]
     pub fn settled(&self) -> bool {
-        self.asked.is_empty()
+        self.pending_edits.is_empty()
     }
 
-    fn carry_out(&mut self, ctx: &egui::Context, effects: Effects) {
+    fn perform_effects(&mut self, ctx: &egui::Context, effects: Effects) {
         if let (true, Some(autosave)) = (effects.forget_recovery, &mut self.autosave) {
             autosave.forget();
         }
@@ -195,26 +195,28 @@ impl ViewerApp {
         }
         if let Some(order) = effects.reach {
             let shown = ctx.clone();
-            self.reach = order.map(|o| safe_reach::start(*o, move || shown.request_repaint()));
+            self.safe_reach_job = order.map(|o| safe_reach::start(*o, move || shown.request_repaint()));
         }
         if let Some(scene) = effects.models {
             let (shown, settings) = (ctx.clone(), self.state.solver.settings);
-            self.models = scene.map(|s| model_comparison::start(*s, settings, move || shown.request_repaint()));
+            self.model_comparison_job =
+                scene.map(|s| model_comparison::start(*s, settings, move || shown.request_repaint()));
         }
         if let Some(scene) = effects.work_precision {
             let (shown, solver) = (ctx.clone(), &self.state.solver);
             let (model, settings) = (solver.model, solver.settings);
-            self.precision = scene.map(|s| work_precision::start(*s, model, settings, move || shown.request_repaint()));
+            self.work_precision_job =
+                scene.map(|s| work_precision::start(*s, model, settings, move || shown.request_repaint()));
         }
         if effects.restart_worker {
             self.worker = new_worker(ctx, self.threaded);
         }
         if !effects.request.is_empty() {
             if effects.request.number > 0 {
-                if self.asked.len() == MAX_ASKED {
-                    self.asked.pop_back();
+                if self.pending_edits.len() == MAX_PENDING_EDITS {
+                    self.pending_edits.pop_back();
                 }
-                self.asked.push_back((effects.request.number, Instant::now()));
+                self.pending_edits.push_back((effects.request.number, Instant::now()));
             }
             self.worker.submit(effects.request);
             ctx.request_repaint();
@@ -225,29 +227,29 @@ impl ViewerApp {
     }
 
     /// Takes in what the worker has done since the last frame.
-    fn take_answers(&mut self, ctx: &egui::Context) {
+    fn receive_reports(&mut self, ctx: &egui::Context) {
         if let Some(report) = self.worker.poll() {
             self.show(report);
         }
-        if let Some(job) = &self.reach {
+        if let Some(job) = &self.safe_reach_job {
             self.state.analysis.safe_reach.progress = job.progress();
             if !matches!(self.state.analysis.safe_reach.progress, safe_reach::Progress::Running(..)) {
-                self.reach = None;
+                self.safe_reach_job = None;
             }
         }
-        if let Some(job) = &self.models {
+        if let Some(job) = &self.model_comparison_job {
             self.state.analysis.models = job.progress();
             if let model_comparison::Progress::Done(found) = self.state.analysis.models.clone() {
                 hold(&mut self.state.analysis.references, &found);
             }
             if !matches!(self.state.analysis.models, model_comparison::Progress::Running(..)) {
-                self.models = None;
+                self.model_comparison_job = None;
             }
         }
-        if let Some(job) = &self.precision {
+        if let Some(job) = &self.work_precision_job {
             self.state.analysis.work_precision = job.progress();
             if !matches!(self.state.analysis.work_precision, work_precision::Progress::Running(..)) {
-                self.precision = None;
+                self.work_precision_job = None;
             }
         }
         self.update_neglected_bending(ctx);
@@ -260,13 +262,13 @@ impl ViewerApp {
         if matches!(self.state.solver.status, WorkerStatus::Dead(_)) {
             self.state.live.latest.stale = true;
             self.state.live.snapshot.stale = true;
-            self.asked.clear();
+            self.pending_edits.clear();
         }
     }
 
     /// How long an answer has been sought; the window counts the seconds.
     fn time_solve(&mut self, ctx: &egui::Context) {
-        let waits = !self.asked.is_empty() || self.state.live.latest.draft;
+        let waits = !self.pending_edits.is_empty() || self.state.live.latest.draft;
         let dead = matches!(self.state.solver.status, WorkerStatus::Dead(_));
         // A draft that only follows the hand while time runs is not waited for.
         let coarse = self.state.live.latest.draft && !self.state.live.playback.paused;
@@ -288,11 +290,12 @@ impl ViewerApp {
         let Some(ask) = self.state.analysis.neglected_bending.query.clone() else { return };
         let runs = |job: &neglected_bending::Job| matches!(job.progress(), neglected_bending::Progress::Running(..));
         // One that still runs cannot be stopped within its solve: the next waits for it.
-        if self.bending.as_ref().is_none_or(|job| !job.is_of(&ask) && !runs(job)) {
+        if self.neglected_bending_job.as_ref().is_none_or(|job| !job.is_of(&ask) && !runs(job)) {
             let shown = ctx.clone();
-            self.bending = Some(neglected_bending::Job::start(ask.clone(), move || shown.request_repaint()));
+            self.neglected_bending_job =
+                Some(neglected_bending::Job::start(ask.clone(), move || shown.request_repaint()));
         }
-        let own = self.bending.as_ref().filter(|job| job.is_of(&ask));
+        let own = self.neglected_bending_job.as_ref().filter(|job| job.is_of(&ask));
         self.state.analysis.neglected_bending.progress =
             own.map_or(neglected_bending::Progress::Running(0.0, None), neglected_bending::Job::progress);
     }
@@ -302,20 +305,20 @@ impl ViewerApp {
     fn update_friction_range(&mut self, ctx: &egui::Context) {
         let state = &mut self.state;
         if self
-            .spread
+            .friction_range_job
             .as_ref()
-            .is_some_and(|job| !state.analysis.friction_range.on || !friction_query_fits(state, job.ask()))
+            .is_some_and(|job| !state.analysis.friction_range.on || !friction_query_fits(state, job.query()))
         {
-            self.spread = None;
+            self.friction_range_job = None;
         }
-        if self.spread.is_none()
+        if self.friction_range_job.is_none()
             && let Some(ask) = friction_query(state)
         {
             let shown = ctx.clone();
-            self.spread = Some(friction_range::Job::start(ask, move || shown.request_repaint()));
+            self.friction_range_job = Some(friction_range::Job::start(ask, move || shown.request_repaint()));
         }
         state.analysis.friction_range.progress =
-            self.spread.as_ref().map_or(friction_range::Progress::None, friction_range::Job::progress);
+            self.friction_range_job.as_ref().map_or(friction_range::Progress::None, friction_range::Job::progress);
     }
 
     /// Lets what was recorded go on while it is replayed.
@@ -330,7 +333,7 @@ impl ViewerApp {
         if ended {
             let mut effects = Effects::default();
             command::playback::send(state, &mut effects);
-            self.carry_out(ctx, effects);
+            self.perform_effects(ctx, effects);
         }
     }
 
@@ -338,7 +341,7 @@ impl ViewerApp {
     pub fn frame(&mut self, ui: &mut egui::Ui) {
         let ctx = ui.ctx().clone();
         system::set_current(self.state.view.units);
-        self.take_answers(&ctx);
+        self.receive_reports(&ctx);
         self.replay(&ctx);
         ctx.set_theme(self.state.view.theme);
         let mut commands = Vec::new();
@@ -411,8 +414,8 @@ impl ViewerApp {
         }
         // Several edits may be answered at once: the delay shown is that of the one that waited
         // longest.
-        let answered = self.asked.iter().take_while(|(number, _)| *number <= state.live.snapshot.edit).count();
-        if let Some((_, began)) = self.asked.drain(..answered).next() {
+        let answered = self.pending_edits.iter().take_while(|(number, _)| *number <= state.live.snapshot.edit).count();
+        if let Some((_, began)) = self.pending_edits.drain(..answered).next() {
             // Without a thread a frame waits for its answer: that time says nothing of the
             // window's.
             state.solver.edit_latency_s = self.threaded.then(|| began.elapsed().as_secs_f64());
@@ -438,7 +441,7 @@ impl eframe::App for ViewerApp {
         // The user closed the window on purpose, so unsaved changes are not wanted. Those that
         // another window left stay until they are decided on.
         if let Some(autosave) = &mut self.autosave {
-            autosave.look(&self.state.document.saved, [false, true], Instant::now());
+            autosave.update(&self.state.document.saved, [false, true], Instant::now());
         }
     }
 

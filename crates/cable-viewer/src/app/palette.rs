@@ -8,7 +8,7 @@ use crate::app::tutorials::{self, TUTORIALS};
 use crate::command::{Command, FileCommand, PlaybackCommand, SceneCommand, ViewCommand};
 use crate::panels::scene::{loads, obstacles, supports};
 use crate::plot::{along, time};
-use crate::render::colour::{ColourScale, Quantity};
+use crate::render::colour::{CableQuantity, ColourScale};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Item, OpenPanels};
 use crate::units::system::System;
@@ -73,30 +73,30 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
         ("Step", Command::Playback(PlaybackCommand::Step)),
         ("Step back", Command::Playback(PlaybackCommand::StepBack)),
         ("Reset to the start", Command::Playback(PlaybackCommand::Reset)),
-        ("Show the latest", Command::Playback(PlaybackCommand::Show(None))),
+        ("Show the latest", Command::Playback(PlaybackCommand::ShowTime(None))),
         ("Real-time speed", Command::Playback(PlaybackCommand::SetSpeed(1.0))),
         ("Slow motion 0.1×", Command::Playback(PlaybackCommand::SetSpeed(0.1))),
         ("Robot: follow path", Command::Playback(PlaybackCommand::DriveRobot(None))),
         ("Robot: stop", Command::Playback(PlaybackCommand::DriveRobot(Some(0.0)))),
         ("Fit scene", Command::View(ViewCommand::Fit)),
         ("Recentre on the cable", Command::View(ViewCommand::Recentre)),
-        ("Pin this result", Command::View(ViewCommand::Hold)),
-        ("Compare all models", Command::View(ViewCommand::HoldModels(true))),
-        ("Unpin all", Command::View(ViewCommand::LetGo(None))),
-        ("Chart error over cost of every model", Command::View(ViewCommand::ChartPrecision(true))),
+        ("Pin this result", Command::View(ViewCommand::AddReference)),
+        ("Compare all models", Command::View(ViewCommand::CompareModels(true))),
+        ("Unpin all", Command::View(ViewCommand::RemoveReferences(None))),
+        ("Chart error over cost of every model", Command::View(ViewCommand::ChartWorkPrecision(true))),
         ("Edit the scene: name, map, robot", select(Item::Scene)),
         ("Edit the cable", select(Item::Cable(0))),
         ("Edit the environment", select(Item::Environment)),
         ("Edit the solver: model, mesh, accuracy", select(Item::Solver)),
-        ("Find safe reach", Command::View(ViewCommand::Reach(true))),
-        ("Cancel or clear the safe reach", Command::View(ViewCommand::Reach(false))),
+        ("Find safe reach", Command::View(ViewCommand::SearchSafeReach(true))),
+        ("Cancel or clear the safe reach", Command::View(ViewCommand::SearchSafeReach(false))),
         ("Light theme", theme(egui::ThemePreference::Light)),
         ("Dark theme", theme(egui::ThemePreference::Dark)),
         ("Match system theme", theme(egui::ThemePreference::System)),
         ("SI units", Command::View(ViewCommand::SetUnits(System::Si))),
         ("US units", Command::View(ViewCommand::SetUnits(System::Us))),
         ("Add a cable", Command::Scene(SceneCommand::AddCable)),
-        ("Resume from the time shown", Command::Playback(PlaybackCommand::GoOn)),
+        ("Resume from the time shown", Command::Playback(PlaybackCommand::ResumeFromShown)),
         ("Restart the solver", Command::File(FileCommand::RestartWorker)),
         ("Start here…", file(Dialog::StartHere)),
         ("Help: pointer and keys", file(Dialog::Help)),
@@ -126,7 +126,7 @@ fn entries(state: &AppState) -> Vec<(String, Command)> {
     all.extend(obstacles);
     let models = [Model::Auto].into_iter().chain(Model::SOLVERS);
     all.extend(models.map(|m| (format!("Solve with {m}"), Command::SetModel(m))));
-    all.extend(Quantity::ALL.map(|q| (format!("Colour by {}", q.name().to_lowercase()), colour(q))));
+    all.extend(CableQuantity::ALL.map(|q| (format!("Colour by {}", q.name().to_lowercase()), colour(q))));
     all.extend(
         TUTORIALS.iter().enumerate().map(|(k, t)| (format!("Guide: {}", t.title), Command::File(tutorials::open(k)))),
     );

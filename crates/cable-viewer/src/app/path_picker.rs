@@ -12,9 +12,9 @@ use crate::widgets::field;
 const HEIGHT: f32 = 170.0;
 /// How long a listing is shown before the folder is read again. Shorter: a slow disk is read every
 /// frame; longer: a file that was just written is missed.
-const FRESH: Duration = Duration::from_secs(2);
+const MAX_LISTING_AGE: Duration = Duration::from_secs(2);
 /// No hand cancels a dialog within this time: there was none.
-const NO_DIALOG: Duration = Duration::from_millis(300);
+const MIN_DIALOG_TIME: Duration = Duration::from_millis(300);
 
 /// The purpose of the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,14 +26,14 @@ pub enum Purpose {
 }
 
 /// The list of a folder, and when it was read.
-type Read = (Result<Listing, String>, Instant);
+type CachedListing = (Result<Listing, String>, Instant);
 
 /// Lists the folder of the typed path; a click enters a folder or puts a file into the path.
 /// Returns whether a file was double-clicked.
 pub fn list(ui: &mut Ui, path: &mut String, endings: &[&str], purpose: Purpose) -> bool {
     let folder = folder::of(path);
     let id = Id::unique("path picker").with((&folder, endings));
-    let known = ui.data(|d| d.get_temp::<Read>(id)).filter(|(_, read)| read.elapsed() < FRESH);
+    let known = ui.data(|d| d.get_temp::<CachedListing>(id)).filter(|(_, read)| read.elapsed() < MAX_LISTING_AGE);
     let (listing, read) = known.unwrap_or_else(|| (folder::list(&folder, endings), Instant::now()));
     ui.data_mut(|d| d.insert_temp(id, (listing.clone(), read)));
     ui.add_space(4.0);
@@ -94,7 +94,7 @@ pub fn system(ui: &mut Ui, path: &mut String, purpose: Purpose) {
             Purpose::Open => dialog.pick_file(),
             Purpose::Save => dialog.set_file_name("scene.toml").save_file(),
         };
-        ui.data_mut(|d| d.insert_temp(id, picked.is_none() && began.elapsed() < NO_DIALOG));
+        ui.data_mut(|d| d.insert_temp(id, picked.is_none() && began.elapsed() < MIN_DIALOG_TIME));
         if let Some(picked) = picked {
             *path = picked.display().to_string();
         }

@@ -14,7 +14,7 @@ use crate::render::offscreen::Offscreen;
 /// others settle scroll bars.
 const FRAMES: usize = 6;
 /// Longest time that a job beside the window is waited for.
-const LONGEST_WAIT: Duration = Duration::from_secs(300);
+const MAX_WAIT: Duration = Duration::from_secs(300);
 
 /// Draws a scene at a size in points and writes a PNG; `prepare` sets what is to be shown.
 ///
@@ -64,7 +64,7 @@ pub fn draw_after(
     }
     let began = Instant::now();
     while matches!(app.state.analysis.safe_reach.progress, Progress::Running(..)) {
-        if began.elapsed() > LONGEST_WAIT {
+        if began.elapsed() > MAX_WAIT {
             return Err("the map of the safe reach takes too long on this machine".to_owned());
         }
         std::thread::sleep(Duration::from_millis(50));

@@ -35,7 +35,7 @@ pub fn menu(ui: &mut Ui, commands: &mut Vec<Command>) {
 pub fn strip(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let Some(place) = state.ui.tutorial else { return };
     let (Some(guide), Some(step)) = (TUTORIALS.get(place.tutorial), tutorials::step(place)) else { return };
-    let go = |to: Option<TutorialPlace>| Command::View(ViewCommand::Guide(to));
+    let go = |to: Option<TutorialPlace>| Command::View(ViewCommand::SetTutorialPlace(to));
     let at = |step| Some(TutorialPlace { step, ..place });
     let done = step.done.is_some_and(|done| done(state));
     let last = place.step + 1 == guide.steps.len();

@@ -27,7 +27,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
         }
         let response = ui.interact(spot.intersect(canvas), ui.scope_id().with(id), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::GraphicsSymbol, true, &text));
-        highlight::offer(&response, &text);
+        highlight::register(&response, &text);
     };
     let scene = &state.document.scene;
     for (cable, c) in scene.cables.iter().enumerate() {
@@ -52,7 +52,7 @@ pub fn ui(ui: &Ui, canvas: Rect, state: &AppState) {
         if let Some((at, _)) = load_at(state, k) {
             name(at, ("load", k, 0), format!("Load {}", k + 1));
         }
-        if let Some(at) = handles::of(state, Item::Head(k)) {
+        if let Some(at) = handles::of(state, Item::LoadHead(k)) {
             name(at, ("head", k, 0), format!("Force of load {}", k + 1));
         }
     }
@@ -125,10 +125,10 @@ pub fn summary(state: &AppState) -> String {
         }
     }
     if let Some((maps, _)) = state.analysis.safe_reach.found() {
-        let shown = if state.analysis.safe_reach.choice.back { "there and back" } else { "there" };
+        let shown = if state.analysis.safe_reach.choice.round_trip { "there and back" } else { "there" };
         out.push(format!(
             "safe reach, {shown}: {}",
-            crate::panels::analysis::safe_reach::describe(maps, state.analysis.safe_reach.choice.back).join(", ")
+            crate::panels::analysis::safe_reach::describe(maps, state.analysis.safe_reach.choice.round_trip).join(", ")
         ));
     }
     if let Some(error) = &state.live.snapshot.error {

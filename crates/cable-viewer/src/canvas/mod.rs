@@ -58,7 +58,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         camera: state.view.camera,
         painter: &painter,
         palette: theme::palette(ui.visuals()),
-        taken: Vec::new(),
+        occupied: Vec::new(),
         avoided: Vec::new(),
     };
     draw(&mut view, state);
@@ -67,7 +67,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
 
 /// A view that was not moved by hand goes with a cable that is torn off and falls, and back to the
 /// scene once the cable is whole again.
-fn follow(state: &mut AppState, rect: Rect, border: [f32; 4], torn: Option<torn_cable::Torn>) {
+fn follow(state: &mut AppState, rect: Rect, border: [f32; 4], torn: Option<torn_cable::TornCable>) {
     let camera = &mut state.view.camera;
     match torn {
         Some(torn) if camera.follows || (camera.fitted_to.is_some() && !camera.fit_wanted && torn.falls) => {

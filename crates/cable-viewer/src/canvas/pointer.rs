@@ -32,10 +32,14 @@ pub fn read(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<C
             && let Some((cable, arc_length_m, _)) = hit_test::cable_at(state, canvas, p, WAYPOINT_REACH)
         {
             let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
-            commands.push(Command::View(ViewCommand::MarkTension(Some(TensionMarker { cable, arc_length_m, from }))));
+            commands.push(Command::View(ViewCommand::SetTensionMarker(Some(TensionMarker {
+                cable,
+                arc_length_m,
+                from,
+            }))));
         }
         commands.push(Command::View(match item {
-            Some(item) if adds(ui) => ViewCommand::Toggle(item),
+            Some(item) if adds(ui) => ViewCommand::ToggleSelected(item),
             item => ViewCommand::Select(item),
         }));
     }
@@ -102,7 +106,7 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
         let Some(item) = hit_test::item_at(state, canvas, p) else {
             if adds(ui) {
                 let at = state.view.camera.to_world(canvas, p);
-                commands.push(Command::View(ViewCommand::Frame(Some([at, at]))));
+                commands.push(Command::View(ViewCommand::SetMarquee(Some([at, at]))));
             }
             return;
         };
@@ -132,7 +136,7 @@ fn drag(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Comma
                 commands.push(Command::Scene(SceneCommand::EditDone));
             }
         }
-        None if state.selection.frame_m.is_some() => frame_to(ui, response, state, commands),
+        None if state.selection.marquee_m.is_some() => drag_marquee(ui, response, state, commands),
         None => {
             let delta = response.drag_delta();
             if response.dragged() && delta != egui::Vec2::ZERO {
@@ -161,8 +165,8 @@ fn move_to(state: &AppState, grab: &Grab, canvas: egui::Rect, p: Pos2, commands:
         to_m = to_m.map(|v| (v / step).round() * step);
     }
     let item = grab.item;
-    let from_m =
-        handles::of(state, item).filter(|_| state.selection.contains(item) && !state.selection.also.is_empty());
+    let from_m = handles::of(state, item)
+        .filter(|_| state.selection.contains(item) && !state.selection.also_selected.is_empty());
     commands.push(Command::Scene(match from_m {
         Some(from) => SceneCommand::MoveAll(handles::moved(state, item, [to_m[0] - from[0], to_m[1] - from[1]])),
         None => SceneCommand::Move { item, to_m },
@@ -170,20 +174,20 @@ fn move_to(state: &AppState, grab: &Grab, canvas: egui::Rect, p: Pos2, commands:
 }
 
 /// Draws the frame on, and picks what is in it when it is let go.
-fn frame_to(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
-    let Some([from, to]) = state.selection.frame_m else { return };
+fn drag_marquee(ui: &Ui, response: &Response, state: &AppState, commands: &mut Vec<Command>) {
+    let Some([from, to]) = state.selection.marquee_m else { return };
     let to = response.interact_pointer_pos().map_or(to, |p| state.view.camera.to_world(response.rect, p));
     if response.drag_stopped() || !ui.input(|i| i.pointer.primary_down()) {
         commands.push(Command::View(ViewCommand::SelectAll(handles::within(state, [from, to]))));
-        commands.push(Command::View(ViewCommand::Frame(None)));
+        commands.push(Command::View(ViewCommand::SetMarquee(None)));
     } else {
-        commands.push(Command::View(ViewCommand::Frame(Some([from, to]))));
+        commands.push(Command::View(ViewCommand::SetMarquee(Some([from, to]))));
     }
 }
 
 /// The frame being drawn round things to pick.
 pub fn frame(view: &CanvasView<'_>, state: &AppState) {
-    let Some([a, b]) = state.selection.frame_m else { return };
+    let Some([a, b]) = state.selection.marquee_m else { return };
     let rect = Rect::from_two_pos(view.at(a), view.at(b));
     let line = Stroke::new(1.2, view.palette.accent);
     view.painter.rect(rect, 0.0, view.palette.accent.gamma_multiply(0.12), line, StrokeKind::Middle);

@@ -28,21 +28,21 @@ pub struct CanvasView<'a> {
     /// Colours of the theme.
     pub palette: &'a Palette,
     /// Rectangles that labels must not cover.
-    pub taken: Vec<Rect>,
+    pub occupied: Vec<Rect>,
     /// What labels should not cover if there is room elsewhere: the cable, arrows.
     pub avoided: Vec<Rect>,
 }
 
 /// Points between two squares along a line that labels keep off.
-const SPACING: f32 = 7.0;
+const AVOIDED_SQUARE_SPACING: f32 = 7.0;
 
 /// Whether a label may cover the cable or an arrow where there is no other room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum LabelPriority {
     /// It may.
-    Must,
+    Required,
     /// It is left out instead.
-    IfRoom,
+    Optional,
 }
 
 impl CanvasView<'_> {
@@ -79,7 +79,7 @@ impl CanvasView<'_> {
         if !area.is_positive() {
             return;
         }
-        let rows = (area.height() / SPACING).ceil().clamp(1.0, 100.0);
+        let rows = (area.height() / AVOIDED_SQUARE_SPACING).ceil().clamp(1.0, 100.0);
         for k in 0..=rows as usize {
             let y = area.min.y + area.height() * (k as f32 / rows);
             self.avoid_line(pos2(area.min.x, y), pos2(area.max.x, y));
@@ -91,14 +91,14 @@ impl CanvasView<'_> {
         if !self.rect.intersects(Rect::from_two_pos(a, b)) {
             return;
         }
-        let parts = ((b - a).length() / SPACING).ceil().clamp(1.0, 400.0);
+        let parts = ((b - a).length() / AVOIDED_SQUARE_SPACING).ceil().clamp(1.0, 400.0);
         for k in 0..=parts as usize {
             self.avoided.push(Rect::from_center_size(a + (b - a) * (k as f32 / parts), vec2(6.0, 6.0)));
         }
     }
 
     /// A label on a plate near a point, where it covers nothing placed before.
-    pub fn label(&mut self, near: Pos2, text: &str, colour: egui::Color32, place: Place) {
+    pub fn label(&mut self, near: Pos2, text: &str, colour: egui::Color32, place: LabelPriority) {
         const SIZE: f32 = 11.5;
         if !self.rect.expand(40.0).contains(near) {
             return;
@@ -126,18 +126,18 @@ impl CanvasView<'_> {
         ];
         let rects = spots.map(|spot| Rect::from_min_size(near + spot, plate)).into_iter();
         let open: Vec<Rect> =
-            rects.filter(|r| self.rect.contains_rect(*r) && !self.taken.iter().any(|t| t.intersects(*r))).collect();
+            rects.filter(|r| self.rect.contains_rect(*r) && !self.occupied.iter().any(|t| t.intersects(*r))).collect();
         let covered = |r: &Rect| self.avoided.iter().filter(|t| t.intersects(*r)).count();
         let Some((hidden, &rect)) = open.iter().map(|r| (covered(r), r)).min_by_key(|(hidden, _)| *hidden) else {
             return;
         };
-        if hidden > 0 && place == Place::IfRoom {
+        if hidden > 0 && place == LabelPriority::Optional {
             return;
         }
         let line = Stroke::new(1.0, self.palette.plate_line);
         self.painter.rect(rect, 3.0, self.palette.plate, line, egui::StrokeKind::Inside);
         self.painter.galley(rect.min + vec2(4.0, 2.0), galley, colour);
-        self.taken.push(rect.expand(1.0));
+        self.occupied.push(rect.expand(1.0));
     }
 
     /// Plain text; returns where it is.

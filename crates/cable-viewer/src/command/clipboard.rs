@@ -25,7 +25,7 @@ const PASTE_OFFSET_M: Point = [0.5, 0.5];
 /// Keeps what is picked; as text it is a table of points.
 pub fn copy(state: &mut AppState, effects: &mut Effects) {
     let (mut things, mut points, mut text) = (Vec::new(), Vec::new(), String::new());
-    for item in state.selection.picks() {
+    for item in state.selection.selected_items() {
         let Some((thing, of)) = thing(state, item) else { continue };
         for p in &of {
             let _ = writeln!(text, "{:?}\t{:?}", p[0], p[1]);
@@ -66,11 +66,11 @@ fn thing(state: &AppState, item: Item) -> Option<(Thing, Vec<Point>)> {
             };
             (Thing::Obstacle(value.clone()), points)
         }
-        Item::Load(k) | Item::Head(k) => {
+        Item::Load(k) | Item::LoadHead(k) => {
             let (at_m, _) = crate::geometry::arrows::load_at(state, k)?;
             (Thing::Load(scene.loads.get(k)?.clone()), vec![at_m])
         }
-        Item::Robot | Item::Leg(_) | Item::Scene | Item::Environment | Item::Solver => return None,
+        Item::Robot | Item::PathLeg(_) | Item::Scene | Item::Environment | Item::Solver => return None,
     })
 }
 
@@ -96,7 +96,7 @@ pub fn paste(state: &mut AppState, at_m: Option<Point>) {
         });
     }
     let mut new = new.into_iter();
-    (state.selection.selected, state.selection.also) = (new.next(), new.collect());
+    (state.selection.selected, state.selection.also_selected) = (new.next(), new.collect());
 }
 
 /// Another cable like the current one, a little above it.
@@ -104,7 +104,7 @@ pub fn add_cable(state: &mut AppState) {
     let Some(cable) = state.document.scene.cables.get(state.current_cable()).cloned() else { return };
     let up = |p: Point| [p[0], p[1] + PASTE_OFFSET_M[1]];
     let item = put_cable(state, &cable, &up);
-    (state.selection.selected, state.selection.also) = (Some(item), Vec::new());
+    (state.selection.selected, state.selection.also_selected) = (Some(item), Vec::new());
 }
 
 fn put_cable(state: &mut AppState, cable: &Cable, shift: &impl Fn(Point) -> Point) -> Item {

@@ -46,11 +46,11 @@ pub fn submit_new_scene(state: &mut AppState, effects: &mut Effects) {
     submit(state, [true, true], effects);
 }
 
-fn submit(state: &mut AppState, [fresh, as_laid]: [bool; 2], effects: &mut Effects) {
+fn submit(state: &mut AppState, [is_new_scene, starts_from_scene]: [bool; 2], effects: &mut Effects) {
     // An edit is of the present.
     state.live.show_time(None);
     let (scene, model, settings) = (state.document.scene.clone(), state.solver.model, state.solver.settings);
-    let edit = Edit { scene, model, settings, fresh, as_laid };
+    let edit = Edit { scene, model, settings, is_new_scene, starts_from_scene };
     effects.request.merge(Request {
         edit: Some(edit),
         playback: Some(state.live.playback),

@@ -68,7 +68,7 @@ pub enum FileCommand {
     /// Opens the folder of a run: its scene, and all it recorded.
     OpenRun(PathBuf),
     /// Holds the run of a folder to compare with.
-    HoldRun(PathBuf),
+    AddReferenceRun(PathBuf),
     /// Shows a dialog, or closes it.
     SetDialog(Option<Dialog>),
     /// Takes over what a window that died had kept.
@@ -89,7 +89,7 @@ pub fn apply(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
         state.ui.dialog = Some(Dialog::Unsaved { then });
         return;
     }
-    carry_out(state, command, effects);
+    execute(state, command, effects);
 }
 
 /// Closes the dialog and says what was written.
@@ -104,20 +104,20 @@ pub fn exported(state: &mut AppState, path: PathBuf, result: Result<(), String>)
         Err(text) => {
             // The path that was typed is not lost: it is asked again.
             let asked = state.ui.dialog.take();
-            complain(state, &format!("“{}” was not written", path.display()), text);
+            show_error(state, &format!("“{}” was not written", path.display()), text);
             state.ui.after_message = asked;
         }
     }
 }
 
-fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
+fn execute(state: &mut AppState, command: FileCommand, effects: &mut Effects) {
     match command {
         FileCommand::New => open(state, new_scene(), None, effects),
         FileCommand::AskOpen => state.ui.dialog = Some(Dialog::Open { path: path_text(state) }),
         FileCommand::AskSaveAs => state.ui.dialog = Some(Dialog::SaveAs { path: path_text(state) }),
         FileCommand::Open(path) => match scene_file::load(&path) {
             Ok(scene) => open(state, scene, Some(path), effects),
-            Err(text) => complain(state, &format!("“{}” was not opened", path.display()), text),
+            Err(text) => show_error(state, &format!("“{}” was not opened", path.display()), text),
         },
         FileCommand::OpenCatalogue(id) => {
             if let Some((_, scene)) = catalog::all().into_iter().find(|(k, _)| *k == id) {
@@ -125,7 +125,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
             }
         }
         FileCommand::OpenTutorial { tutorial, scene } => {
-            carry_out(state, FileCommand::OpenCatalogue(scene.to_owned()), effects);
+            execute(state, FileCommand::OpenCatalogue(scene.to_owned()), effects);
             state.ui.tutorial = Some(TutorialPlace { tutorial, step: 0 });
         }
         FileCommand::Save => match state.document.path.clone() {
@@ -139,7 +139,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
         }
         FileCommand::AskExportPicture => {
             let path = Path::new(&path_text(state)).with_extension("png").display().to_string();
-            carry_out(state, FileCommand::SetDialog(Some(Dialog::ExportPicture { path })), effects);
+            execute(state, FileCommand::SetDialog(Some(Dialog::ExportPicture { path })), effects);
         }
         FileCommand::ExportPicture(path) => effects.picture = Some(path),
         FileCommand::ImportMap { path, text, unit_m } => {
@@ -149,16 +149,16 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
                     state.view.camera.fit_wanted = true;
                     state.ui.dialog = Some(Dialog::Message { title: "Imported".to_owned(), text: report });
                 }
-                Err(text) => complain(state, "The map was not imported", text),
+                Err(text) => show_error(state, "The map was not imported", text),
             }
         }
         FileCommand::SaveFeedback(path, answers) => match feedback::save(&path, &answers, &feedback_context(state)) {
             Ok(()) => state.ui.dialog = None,
-            Err(text) => complain(state, &format!("“{}” was not written", path.display()), text),
+            Err(text) => show_error(state, &format!("“{}” was not written", path.display()), text),
         },
         FileCommand::SaveRun(path) => match save_run(state, &path) {
             Ok(()) => written(state, path),
-            Err(text) => complain(state, &format!("The run was not written to “{}”", path.display()), text),
+            Err(text) => show_error(state, &format!("The run was not written to “{}”", path.display()), text),
         },
         FileCommand::OpenRun(path) => match read_run(&path) {
             Ok(opened) => {
@@ -166,11 +166,11 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
                 state.live.reopened_run = opened.answers;
                 remark(state, &path, &opened.remarks);
             }
-            Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
+            Err(text) => show_error(state, &format!("The run “{}” was not opened", path.display()), text),
         },
-        FileCommand::HoldRun(path) => match read_run(&path) {
+        FileCommand::AddReferenceRun(path) => match read_run(&path) {
             Ok(opened) => hold(state, &path, opened),
-            Err(text) => complain(state, &format!("The run “{}” was not opened", path.display()), text),
+            Err(text) => show_error(state, &format!("The run “{}” was not opened", path.display()), text),
         },
         FileCommand::SetDialog(dialog) => {
             if dialog.is_some() {
@@ -190,7 +190,7 @@ fn carry_out(state: &mut AppState, command: FileCommand, effects: &mut Effects) 
         }
         FileCommand::Discard(then) => {
             state.ui.dialog = None;
-            carry_out(state, then.into(), effects);
+            execute(state, then.into(), effects);
         }
         FileCommand::RestartWorker => {
             effects.restart_worker = true;
@@ -243,12 +243,12 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
         state.ui.add_recent(path.clone());
     }
     state.document = Document::new(scene, path);
-    (state.selection.selected, state.selection.also) = (None, Vec::new());
+    (state.selection.selected, state.selection.also_selected) = (None, Vec::new());
     (state.selection.hovered, state.analysis.tension_marker) = (None, None);
     state.live.playback.paused = true;
-    state.live.robot_order = None;
+    state.live.robot_speed_command = None;
     state.live.reopened_run = Vec::new();
-    (state.live.earlier_run, state.live.reset_is_last, state.live.resets) = (None, false, false);
+    (state.live.earlier_run, state.live.reset_is_last, state.live.restart_is_reset) = (None, false, false);
     state.ui.tutorial = None;
     state.analysis.safe_reach = crate::jobs::safe_reach::SafeReachState::default();
     effects.reach = Some(None);
@@ -263,7 +263,7 @@ fn open(state: &mut AppState, scene: Scene, path: Option<PathBuf>, effects: &mut
 /// Says what a user should know about a run that was opened.
 fn remark(state: &mut AppState, path: &Path, remarks: &[String]) {
     if !remarks.is_empty() {
-        complain(state, &format!("About the run “{}”", path.display()), remarks.join(" "));
+        show_error(state, &format!("About the run “{}”", path.display()), remarks.join(" "));
     }
 }
 
@@ -292,7 +292,7 @@ fn save(state: &mut AppState, path: &Path) {
             state.ui.dialog = None;
         }
         Err(text) => {
-            complain(state, &format!("“{}” was not saved", path.display()), text);
+            show_error(state, &format!("“{}” was not saved", path.display()), text);
             // The path that was typed is not lost: it is asked again.
             state.ui.after_message = Some(Dialog::SaveAs { path: path.display().to_string() });
         }
@@ -316,7 +316,7 @@ fn save_run(state: &AppState, path: &Path) -> Result<(), String> {
     folder.finish(RunEnd::Complete).map(|_| ()).map_err(|e| e.to_string())
 }
 
-fn complain(state: &mut AppState, title: &str, text: String) {
+fn show_error(state: &mut AppState, title: &str, text: String) {
     state.ui.dialog = Some(Dialog::Message { title: title.to_owned(), text });
 }
 

@@ -53,7 +53,7 @@ pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
                 robot.at_m = [to_m[0], y];
             }
         }
-        Item::Head(index) => {
+        Item::LoadHead(index) => {
             let Some((tail, _)) = crate::geometry::arrows::load_at(state, index) else { return };
             let force =
                 crate::geometry::arrows::force_of_arrow([to_m[0] - tail[0], to_m[1] - tail[1]], &state.view.camera);
@@ -61,7 +61,7 @@ pub fn move_item(state: &mut AppState, item: Item, to_m: Point) {
                 load.force_n = Some(force);
             }
         }
-        Item::Leg(index) => {
+        Item::PathLeg(index) => {
             let legs = scene.robot.iter_mut().flat_map(|r| r.path.get_mut(index));
             for task in legs {
                 if let RobotTask::Drive { to_x_m, .. } = task {

@@ -1,7 +1,7 @@
 //! Playback commands concern time and the robot that moves in it.
 
 use crate::command::effects::{Effects, next_number, submit_edit};
-use crate::command::resume::{go_on, undo_restart};
+use crate::command::resume::{resume_from_shown, undo_restart};
 use crate::state::{AppState, Playback};
 use crate::worker::request::Request;
 
@@ -19,9 +19,9 @@ pub enum PlaybackCommand {
     /// The picture before; pauses first.
     StepBack,
     /// Shows an earlier time (s), or the present; pauses.
-    Show(Option<f64>),
+    ShowTime(Option<f64>),
     /// Goes on from the earlier time shown: what came after it is forgotten.
-    GoOn,
+    ResumeFromShown,
     /// A replay begins anew at its end, or ends there.
     SetLoop(bool),
     /// Back to the start, bit for bit; pauses, and the robot's task starts again.
@@ -68,16 +68,16 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
                 state.live.show_time(Some(before));
             }
         }
-        PlaybackCommand::Show(time_s) => {
+        PlaybackCommand::ShowTime(time_s) => {
             state.live.playback.paused = true;
             state.live.show_time(time_s.filter(|t| t.is_finite()));
         }
-        PlaybackCommand::GoOn => go_on(state, effects),
+        PlaybackCommand::ResumeFromShown => resume_from_shown(state, effects),
         PlaybackCommand::SetLoop(looped) => state.live.recording.looped = looped,
         PlaybackCommand::Reset => {
             state.live.playback.paused = true;
             state.live.show_time(None);
-            (state.live.resets, state.live.robot_order) = (true, None);
+            (state.live.restart_is_reset, state.live.robot_speed_command) = (true, None);
             let number = next_number(state);
             effects.request.merge(Request { reset: true, robot: Some(None), number, ..Request::default() });
         }
@@ -93,19 +93,19 @@ pub fn apply(state: &mut AppState, command: PlaybackCommand, effects: &mut Effec
                 state.live.show_time(None);
                 state.live.playback.paused = false;
             }
-            if state.live.robot_order != order {
-                state.live.robot_order = order;
+            if state.live.robot_speed_command != order {
+                state.live.robot_speed_command = order;
                 effects.request.merge(Request { robot: Some(order), ..Request::default() });
             }
         }
         PlaybackCommand::PullPastLength(pulls) => state.solver.pulls_past_length = pulls,
         PlaybackCommand::SetRobotSpeed(speed) => {
             if speed.is_finite() && speed > 0.0 {
-                state.live.robot_speed = Some(speed);
+                state.live.manual_robot_speed = Some(speed);
                 // What is being driven goes on at the new speed.
-                if let Some(order) = state.live.robot_order.filter(|v| *v != 0.0) {
+                if let Some(order) = state.live.robot_speed_command.filter(|v| *v != 0.0) {
                     let order = Some(speed.copysign(order));
-                    state.live.robot_order = order;
+                    state.live.robot_speed_command = order;
                     effects.request.merge(Request { robot: Some(order), ..Request::default() });
                 }
             }

@@ -13,8 +13,8 @@ pub fn remove_all(state: &mut AppState, mut items: Vec<Item>) {
     let rank = |item: &Item| match *item {
         Item::Corner { obstacle, corner } => (0, obstacle, corner),
         Item::Support { cable, support } => (1, cable, support),
-        Item::Load(k) | Item::Head(k) => (2, k, 0),
-        Item::Leg(k) => (3, k, 0),
+        Item::Load(k) | Item::LoadHead(k) => (2, k, 0),
+        Item::PathLeg(k) => (3, k, 0),
         Item::Obstacle(k) => (4, k, 0),
         Item::Cable(k) => (5, k, 0),
         Item::Robot => (6, 0, 0),
@@ -26,7 +26,7 @@ pub fn remove_all(state: &mut AppState, mut items: Vec<Item>) {
     for item in items {
         remove(&mut state.document.scene, item);
     }
-    (state.selection.selected, state.selection.also) = (None, Vec::new());
+    (state.selection.selected, state.selection.also_selected) = (None, Vec::new());
 }
 
 fn remove(scene: &mut Scene, item: Item) {
@@ -64,12 +64,12 @@ fn remove(scene: &mut Scene, item: Item) {
                 points.remove(corner);
             }
         }
-        Item::Leg(k) => {
+        Item::PathLeg(k) => {
             if let Some(robot) = scene.robot.as_mut().filter(|r| k < r.path.len()) {
                 robot.path.remove(k);
             }
         }
-        Item::Load(k) | Item::Head(k) => {
+        Item::Load(k) | Item::LoadHead(k) => {
             if k < scene.loads.len() {
                 scene.loads.remove(k);
             }
@@ -82,9 +82,9 @@ pub fn drop_lost_selection(state: &mut AppState) {
     if state.selection.selected.is_some_and(|item| !exists(state, item)) {
         state.selection.selected = None;
     }
-    let mut also = std::mem::take(&mut state.selection.also);
+    let mut also = std::mem::take(&mut state.selection.also_selected);
     also.retain(|item| exists(state, *item));
-    state.selection.also = also;
+    state.selection.also_selected = also;
 }
 
 fn exists(state: &AppState, item: Item) -> bool {
@@ -99,9 +99,9 @@ fn exists(state: &AppState, item: Item) -> bool {
             }
             Shape::Circle { .. } => false,
         }),
-        Item::Load(k) | Item::Head(k) => k < scene.loads.len(),
+        Item::Load(k) | Item::LoadHead(k) => k < scene.loads.len(),
         Item::Robot => scene.robot.is_some(),
-        Item::Leg(k) => scene.robot.as_ref().is_some_and(|r| k < r.path.len()),
+        Item::PathLeg(k) => scene.robot.as_ref().is_some_and(|r| k < r.path.len()),
         Item::Scene | Item::Environment | Item::Solver => true,
     }
 }

@@ -19,12 +19,12 @@ pub(super) fn undo_restart(state: &mut AppState, effects: &mut Effects) {
         submit_undone(state, effects);
     }
     if state.live.undo_restart() {
-        go_on(state, effects);
+        resume_from_shown(state, effects);
     }
 }
 
 /// Takes the answer shown as the present one: supports stand where they stood then.
-pub(super) fn go_on(state: &mut AppState, effects: &mut Effects) {
+pub(super) fn resume_from_shown(state: &mut AppState, effects: &mut Effects) {
     let Some(answer) = state.live.recording.displayed() else { return };
     state.live.playback.paused = true;
     if answer.cables.iter().any(|c| !c.breaks.is_empty()) {
@@ -53,8 +53,8 @@ pub(super) fn go_on(state: &mut AppState, effects: &mut Effects) {
         scene: state.document.scene.clone(),
         model: state.solver.model,
         settings: state.solver.settings,
-        fresh: false,
-        as_laid: false,
+        is_new_scene: false,
+        starts_from_scene: false,
     };
     let resume = Some(Box::new(Resume { edit, answer }));
     effects.request.merge(Request { resume, number: next_number(state), ..Request::default() });

@@ -5,7 +5,7 @@ use cable_core::scene::{Support, SupportKind};
 use cable_core::{Robot, Scene};
 
 /// The support that hangs on the robot, and where.
-pub fn hitched(scene: &Scene) -> Option<(usize, usize, Point)> {
+pub fn hitched_support(scene: &Scene) -> Option<(usize, usize, Point)> {
     let hitch = scene.hitch_m()?;
     scene.cables.iter().enumerate().find_map(|(cable, c)| {
         let support = c.supports.iter().position(|s| s.kind == SupportKind::Robot)?;
@@ -16,7 +16,7 @@ pub fn hitched(scene: &Scene) -> Option<(usize, usize, Point)> {
 /// Another robot, or none: what hung on it is then fixed where it hung.
 pub fn set_robot(scene: &mut Scene, robot: Option<Robot>) {
     if robot.is_none()
-        && let Some((cable, support, hitch)) = hitched(scene)
+        && let Some((cable, support, hitch)) = hitched_support(scene)
         && let Some(s) = scene.cables.get_mut(cable).and_then(|c| c.supports.get_mut(support))
     {
         *s = Support::fixed(s.name.clone(), hitch);

@@ -9,7 +9,7 @@ use crate::command::move_item::{move_item, set};
 use crate::command::name::unique;
 use crate::command::playback::{self, PlaybackCommand};
 use crate::command::remove_item::{drop_lost_selection, remove_all};
-use crate::command::robot_hitch::{hitched, set_robot};
+use crate::command::robot_hitch::{hitched_support, set_robot};
 use crate::command::waypoint::add_waypoint;
 use crate::command::{clipboard, route};
 use crate::state::undo::EditKind;
@@ -143,8 +143,8 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         }
         SceneCommand::Undo | SceneCommand::Redo => {
             let other = match command {
-                SceneCommand::Undo => state.document.undo.back(&state.document.scene),
-                _ => state.document.undo.forward(&state.document.scene),
+                SceneCommand::Undo => state.document.undo.undo(&state.document.scene),
+                _ => state.document.undo.redo(&state.document.scene),
             };
             let Some(other) = other else { return };
             state.document.scene = other;
@@ -166,9 +166,9 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         matches!(command, SceneCommand::SetScene(_) | SceneCommand::AddObstacle(_) | SceneCommand::Paste { .. });
     change(state, command);
     if new_obstacles && state.document.scene.obstacles != before.obstacles {
-        route::forget_buried(&mut state.document.scene);
+        route::remove_penetrating_routes(&mut state.document.scene);
     }
-    let dragged = if robot_moves { hitched(&state.document.scene) } else { dragged };
+    let dragged = if robot_moves { hitched_support(&state.document.scene) } else { dragged };
     if state.document.scene == before {
         return;
     }
@@ -187,7 +187,7 @@ pub fn apply(state: &mut AppState, command: SceneCommand, effects: &mut Effects)
         pull_past_length(state, before, cable, support, to_m, effects);
         return;
     }
-    after_edit(state, dragged, effects);
+    submit_edited_scene(state, dragged, effects);
 }
 
 /// Returns whether an undo or redo leads to the scene of the run that an edit ended, with nothing
@@ -222,11 +222,11 @@ fn pull_past_length(
     state.document.validate();
     state.live.show_time(None);
     state.selection.spring_support = Some((cable, support));
-    draw_support(state, cable, support, to_m, effects);
+    drag_support(state, cable, support, to_m, effects);
 }
 
 /// Sends the edited scene: as a drag while time runs, else to be solved.
-fn after_edit(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effects: &mut Effects) {
+fn submit_edited_scene(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effects: &mut Effects) {
     state.document.validate();
     match dragged {
         Some((cable, support, to_m)) if !state.live.playback.paused && state.document.fault.is_none() => {
@@ -236,21 +236,21 @@ fn after_edit(state: &mut AppState, dragged: Option<(usize, usize, Point)>, effe
             let by_spring =
                 state.selection.grab.is_some_and(|g| g.item == held) && !is_quasi_static(state.solver.model);
             state.selection.spring_support = by_spring.then_some((cable, support));
-            draw_support(state, cable, support, to_m, effects);
+            drag_support(state, cable, support, to_m, effects);
         }
         _ => submit_edit(state, effects),
     }
 }
 
 /// Has a support drawn to a point (m), by a spring or not.
-fn draw_support(state: &mut AppState, cable: usize, support: usize, to_m: Point, effects: &mut Effects) {
+fn drag_support(state: &mut AppState, cable: usize, support: usize, to_m: Point, effects: &mut Effects) {
     let by_spring = state.selection.spring_support == Some((cable, support));
     let drag = Drag { cable, support, to_m, by_spring, scene: state.document.scene.clone() };
     effects.request.merge(Request { drag: Some(drag), number: next_number(state), ..Request::default() });
 }
 
 /// The pointer lets go of a support that it held by a spring: it is fixed where it is.
-pub(super) fn let_go(state: &mut AppState, effects: &mut Effects) {
+pub(super) fn release_spring_support(state: &mut AppState, effects: &mut Effects) {
     let Some((cable, support)) = state.selection.spring_support.take() else { return };
     let answer = state.live.snapshot.solution.as_ref().and_then(|s| s.cables.get(cable)?.supports.get(support));
     let at = answer.filter(|r| r.hand.is_some()).map(|r| [r.x_m, r.y_m]);
@@ -263,7 +263,7 @@ pub(super) fn let_go(state: &mut AppState, effects: &mut Effects) {
         {
             held.at_m = before;
         }
-        draw_support(state, cable, support, at, effects);
+        drag_support(state, cable, support, at, effects);
     }
 }
 
@@ -299,7 +299,7 @@ fn change(state: &mut AppState, command: SceneCommand) {
         }
         SceneCommand::Remove(item) => remove_all(state, vec![item]),
         SceneCommand::RemoveAll(items) => remove_all(state, items),
-        SceneCommand::Cut => remove_all(state, state.selection.picks()),
+        SceneCommand::Cut => remove_all(state, state.selection.selected_items()),
         SceneCommand::EditDone | SceneCommand::Copy | SceneCommand::Undo | SceneCommand::Redo => {}
     }
 }
@@ -310,7 +310,7 @@ const FIRST_LEG_M_PER_S: f64 = 0.3;
 fn add_leg(state: &mut AppState, to_x_m: f64) {
     let Some(robot) = state.document.scene.robot.as_mut().filter(|_| to_x_m.is_finite()) else { return };
     let place = match state.selection.selected {
-        Some(Item::Leg(k)) => (k + 1).min(robot.path.len()),
+        Some(Item::PathLeg(k)) => (k + 1).min(robot.path.len()),
         _ => robot.path.len(),
     };
     let speeds = robot.path.iter().take(place).rev().filter_map(|task| match task {
@@ -319,5 +319,5 @@ fn add_leg(state: &mut AppState, to_x_m: f64) {
     });
     let speed_m_per_s = speeds.into_iter().next().unwrap_or(FIRST_LEG_M_PER_S);
     robot.path.insert(place, RobotTask::Drive { to_x_m, speed_m_per_s });
-    (state.selection.selected, state.selection.also) = (Some(Item::Leg(place)), Vec::new());
+    (state.selection.selected, state.selection.also_selected) = (Some(Item::PathLeg(place)), Vec::new());
 }

@@ -22,13 +22,13 @@ pub enum ViewCommand {
     /// Picks a thing, or nothing.
     Select(Option<Item>),
     /// Picks a thing besides what is picked, or not any more.
-    Toggle(Item),
+    ToggleSelected(Item),
     /// Picks several things.
     SelectAll(Vec<Item>),
     /// Takes the tension at a place of a cable apart, or not any more.
-    MarkTension(Option<TensionMarker>),
+    SetTensionMarker(Option<TensionMarker>),
     /// Draws a frame round things to pick, between two corners, m.
-    Frame(Option<[Point; 2]>),
+    SetMarquee(Option<[Point; 2]>),
     /// The pointer is over a thing, or over nothing, at a point of the world (m).
     Hover(Option<Item>, Option<Point>),
     /// Picks a thing up, or lets it go.
@@ -64,29 +64,29 @@ pub enum ViewCommand {
     SetTheme(egui::ThemePreference),
     /// Looks for where the robot or an end can be taken, or ends that and keeps what was found, or
     /// forgets it.
-    Reach(bool),
+    SearchSafeReach(bool),
     /// The part of it that is asked and shown.
-    SetReach(safe_reach::Choice),
+    SetSafeReachOptions(safe_reach::SafeReachOptions),
     /// Shows what less and more friction does, or not any more; least and greatest friction over
     /// that of the scene.
-    Spread(bool, [f64; 2]),
+    SetFrictionRange(bool, [f64; 2]),
     /// Ask what neglecting bending stiffness changes.
     AskBending,
     /// Does not show the hints of the first minute again.
     HideFirstSteps,
     /// Leads to a step of a guided scene, or not any more.
-    Guide(Option<TutorialPlace>),
+    SetTutorialPlace(Option<TutorialPlace>),
     /// SI or US units; files stay SI.
     SetUnits(System),
     /// Keeps the answer on screen to compare with.
-    Hold,
+    AddReference,
     /// Asks every model about the scene at rest and holds what they answer, or ends that.
-    HoldModels(bool),
+    CompareModels(bool),
     /// Solves the scene at rest by every model and mesh and charts their error over their cost, or
     /// ends that.
-    ChartPrecision(bool),
+    ChartWorkPrecision(bool),
     /// Lets one go, or all.
-    LetGo(Option<usize>),
+    RemoveReferences(Option<usize>),
 }
 
 /// Part of the scene that is shown round a place. More: the place is not found in it; less: nobody
@@ -100,10 +100,10 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             if state.selection.selected != item {
                 state.document.undo.close_entry();
             }
-            (state.selection.selected, state.selection.also) = (item, Vec::new());
+            (state.selection.selected, state.selection.also_selected) = (item, Vec::new());
         }
-        ViewCommand::Toggle(item) => {
-            let mut picks = state.selection.picks();
+        ViewCommand::ToggleSelected(item) => {
+            let mut picks = state.selection.selected_items();
             match picks.iter().position(|i| *i == item) {
                 Some(k) => drop(picks.remove(k)),
                 None => picks.push(item),
@@ -111,8 +111,8 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             select_all(state, picks);
         }
         ViewCommand::SelectAll(items) => select_all(state, items),
-        ViewCommand::MarkTension(probe) => state.analysis.tension_marker = probe,
-        ViewCommand::Frame(corners) => state.selection.frame_m = corners,
+        ViewCommand::SetTensionMarker(probe) => state.analysis.tension_marker = probe,
+        ViewCommand::SetMarquee(corners) => state.selection.marquee_m = corners,
         ViewCommand::Hover(item, at_m) => {
             state.selection.hovered = item;
             state.selection.cursor_m = at_m;
@@ -120,7 +120,7 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         ViewCommand::Grab(grab) => {
             state.selection.grab = grab;
             if grab.is_none() {
-                crate::command::scene::let_go(state, effects);
+                crate::command::scene::release_spring_support(state, effects);
             }
         }
         ViewCommand::Pan(delta) => state.view.camera.pan(delta),
@@ -155,11 +155,11 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
         ViewCommand::SetColour(colour) => state.view.colour = colour,
         ViewCommand::SetLayers(layers) => state.view.layers = layers,
         ViewCommand::SetTheme(theme) => state.view.theme = theme,
-        ViewCommand::Reach(false) => {
+        ViewCommand::SearchSafeReach(false) => {
             state.analysis.safe_reach.stop_or_clear();
             effects.reach = Some(None);
         }
-        ViewCommand::Reach(true) => {
+        ViewCommand::SearchSafeReach(true) => {
             let Some(moved) = reach_target(state) else {
                 state.analysis.safe_reach.progress =
                     Progress::Failed("nothing here has a place to be taken from".to_owned());
@@ -181,8 +181,8 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             let now = state.live.snapshot.solution.clone().filter(|s| s.time_s > 0.0 && !state.live.snapshot.stale);
             effects.reach = Some(Some(Box::new(ReachQuery { scene, now, settings, moved, corners_m, across })));
         }
-        ViewCommand::SetReach(choice) => state.analysis.safe_reach.choice = choice,
-        ViewCommand::Spread(on, [low, high]) => {
+        ViewCommand::SetSafeReachOptions(choice) => state.analysis.safe_reach.choice = choice,
+        ViewCommand::SetFrictionRange(on, [low, high]) => {
             state.analysis.friction_range.on = on;
             if low >= 0.0 && high.is_finite() {
                 // The scene's own friction lies in between.
@@ -196,9 +196,9 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             }
         }
         ViewCommand::HideFirstSteps => state.ui.first_steps.hide(),
-        ViewCommand::Guide(place) => state.ui.tutorial = place,
+        ViewCommand::SetTutorialPlace(place) => state.ui.tutorial = place,
         ViewCommand::SetUnits(units) => state.view.units = units,
-        ViewCommand::Hold => {
+        ViewCommand::AddReference => {
             if let (Some(solution), Some(scene)) =
                 (state.live.snapshot.solution.clone(), state.live.snapshot.scene.clone())
                 && state.analysis.references.len() < Reference::MAX_COUNT
@@ -211,18 +211,18 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
                 state.analysis.references.push(Reference { name, scene, solution, wall_s, run });
             }
         }
-        ViewCommand::HoldModels(true) => {
+        ViewCommand::CompareModels(true) => {
             state.analysis.models = model_comparison::Progress::Running(0.0, None);
             effects.models = Some(Some(Box::new(state.document.scene.clone())));
         }
-        ViewCommand::HoldModels(false) => {
+        ViewCommand::CompareModels(false) => {
             (state.analysis.models, effects.models) = (model_comparison::Progress::None, Some(None))
         }
-        ViewCommand::ChartPrecision(true) => {
+        ViewCommand::ChartWorkPrecision(true) => {
             state.analysis.work_precision = work_precision::Progress::Running(0.0, None);
             effects.work_precision = Some(Some(Box::new(state.document.scene.clone())));
         }
-        ViewCommand::ChartPrecision(false) => {
+        ViewCommand::ChartWorkPrecision(false) => {
             // The results found until then stay.
             let before = std::mem::take(&mut state.analysis.work_precision);
             if let work_precision::Progress::Running(_, Some(found)) = before {
@@ -230,8 +230,8 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
             }
             effects.work_precision = Some(None);
         }
-        ViewCommand::LetGo(None) => state.analysis.references.clear(),
-        ViewCommand::LetGo(Some(k)) => {
+        ViewCommand::RemoveReferences(None) => state.analysis.references.clear(),
+        ViewCommand::RemoveReferences(Some(k)) => {
             if k < state.analysis.references.len() {
                 state.analysis.references.remove(k);
             }
@@ -242,5 +242,5 @@ pub fn apply(state: &mut AppState, command: ViewCommand, effects: &mut Effects) 
 fn select_all(state: &mut AppState, items: Vec<Item>) {
     state.document.undo.close_entry();
     let mut items = items.into_iter();
-    (state.selection.selected, state.selection.also) = (items.next(), items.collect());
+    (state.selection.selected, state.selection.also_selected) = (items.next(), items.collect());
 }

@@ -29,12 +29,12 @@ pub fn of(state: &AppState, item: Item) -> Option<Point> {
             Shape::Circle { center_m, .. } => Some(*center_m),
         },
         Item::Load(k) => load_at(state, k).map(|(at, _)| at),
-        Item::Head(k) => {
+        Item::LoadHead(k) => {
             state.document.scene.loads.get(k)?.force_n?;
             head_at(state, k)
         }
         Item::Robot => state.document.scene.robot.as_ref().map(|r| r.at_m),
-        Item::Leg(k) => path_flags(state).into_iter().find(|(leg, ..)| *leg == k).map(|(_, at, _)| at),
+        Item::PathLeg(k) => path_flags(state).into_iter().find(|(leg, ..)| *leg == k).map(|(_, at, _)| at),
         Item::Cable(_) | Item::Scene | Item::Environment | Item::Solver => None,
     }
 }
@@ -43,10 +43,11 @@ pub fn of(state: &AppState, item: Item) -> Option<Point> {
 /// each with where it goes to, m.
 #[must_use]
 pub fn moved(state: &AppState, item: Item, by_m: Point) -> Vec<(Item, Point)> {
-    let items = if state.selection.contains(item) { state.selection.picks() } else { vec![item] };
+    let items = if state.selection.contains(item) { state.selection.selected_items() } else { vec![item] };
     // Loads and heads of arrows have places that follow from others.
     let alone = items.len() == 1;
-    let moves = items.into_iter().filter(|i| alone || !matches!(i, Item::Load(_) | Item::Head(_) | Item::Leg(_)));
+    let moves =
+        items.into_iter().filter(|i| alone || !matches!(i, Item::Load(_) | Item::LoadHead(_) | Item::PathLeg(_)));
     moves.filter_map(|i| of(state, i).map(|at| (i, [at[0] + by_m[0], at[1] + by_m[1]]))).collect()
 }
 
@@ -84,7 +85,7 @@ pub fn all(state: &AppState) -> Vec<Item> {
     let supports = scene.cables.iter().enumerate();
     let supports =
         supports.flat_map(|(cable, c)| (0..c.supports.len()).map(move |support| Item::Support { cable, support }));
-    let legs = path_flags(state).into_iter().map(|(k, ..)| Item::Leg(k));
+    let legs = path_flags(state).into_iter().map(|(k, ..)| Item::PathLeg(k));
     supports
         .chain((0..scene.obstacles.len()).map(Item::Obstacle))
         .chain((0..scene.loads.len()).map(Item::Load))

@@ -10,9 +10,9 @@ use crate::geometry::supports::support_position;
 use crate::state::{AppState, Item};
 
 /// The distance that counts as on it, points.
-const SUPPORT: f32 = 13.0;
-const CORNER: f32 = 8.0;
-const LINE: f32 = 7.0;
+const SUPPORT_HIT_RADIUS: f32 = 13.0;
+const CORNER_HIT_RADIUS: f32 = 8.0;
+const LINE_HIT_RADIUS: f32 = 7.0;
 
 /// The thing under a screen point: supports before loads, corners, cables, obstacles.
 #[must_use]
@@ -31,18 +31,18 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     };
     for (cable, c) in state.document.scene.cables.iter().enumerate() {
         for support in 0..c.supports.len() {
-            let d = support_position(state, cable, support).and_then(|at| near(at, SUPPORT));
+            let d = support_position(state, cable, support).and_then(|at| near(at, SUPPORT_HIT_RADIUS));
             offer(d, Item::Support { cable, support });
         }
     }
     for load in 0..state.document.scene.loads.len() {
-        offer(load_at(state, load).and_then(|(at, _)| near(at, CORNER)), Item::Load(load));
+        offer(load_at(state, load).and_then(|(at, _)| near(at, CORNER_HIT_RADIUS)), Item::Load(load));
         if state.view.layers.forces {
-            offer(head_at(state, load).and_then(|at| near(at, CORNER)), Item::Head(load));
+            offer(head_at(state, load).and_then(|at| near(at, CORNER_HIT_RADIUS)), Item::LoadHead(load));
         }
     }
     for (leg, at, _) in path_flags(state) {
-        offer(near(at, CORNER), Item::Leg(leg));
+        offer(near(at, CORNER_HIT_RADIUS), Item::PathLeg(leg));
     }
     for (obstacle, o) in state.document.scene.obstacles.iter().enumerate() {
         // Corners can be picked once their handles are shown; before, the whole obstacle is.
@@ -57,7 +57,7 @@ pub fn item_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     if let Some((_, item)) = best {
         return Some(item);
     }
-    if let Some((cable, _, _)) = cable_at(state, canvas, p, LINE) {
+    if let Some((cable, _, _)) = cable_at(state, canvas, p, LINE_HIT_RADIUS) {
         return Some(Item::Cable(cable));
     }
     if inside(&robot_outline(state), state.view.camera.to_world(canvas, p)) {
@@ -82,7 +82,7 @@ fn corner_reach(state: &AppState, points: &[Point], corner: usize) -> f32 {
     let Some(&p) = points.get(corner) else { return 0.0 };
     let neighbours = [corner.checked_sub(1), corner.checked_add(1)].into_iter().flatten().filter_map(|k| points.get(k));
     let nearest = neighbours.map(|q| (q[0] - p[0]).hypot(q[1] - p[1])).fold(f64::INFINITY, f64::min);
-    ((0.35 * nearest * state.view.camera.points_per_m) as f32).clamp(3.0, CORNER)
+    ((0.35 * nearest * state.view.camera.points_per_m) as f32).clamp(3.0, CORNER_HIT_RADIUS)
 }
 
 fn corners(shape: &Shape) -> &[Point] {
@@ -139,7 +139,7 @@ fn along(a: Point, b: Point, p: Point) -> f64 {
 
 fn obstacle_at(state: &AppState, canvas: Rect, p: Pos2) -> Option<Item> {
     let world = state.view.camera.to_world(canvas, p);
-    let reach = f64::from(LINE) / state.view.camera.points_per_m;
+    let reach = f64::from(LINE_HIT_RADIUS) / state.view.camera.points_per_m;
     let near_line = |points: &[Point], reach: f64| {
         points.windows(2).any(|s| {
             let f = along(s[0], s[1], world);

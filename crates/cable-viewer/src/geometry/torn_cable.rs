@@ -7,7 +7,7 @@ use crate::state::AppState;
 
 /// A cable that broke: its longest piece, and if it falls.
 #[derive(Clone, Copy, Debug)]
-pub struct Torn {
+pub struct TornCable {
     /// Least and greatest corner of its longest piece, m.
     pub piece: [Point; 2],
     /// No support holds any of it.
@@ -16,7 +16,7 @@ pub struct Torn {
 
 /// The first cable that is broken in the answer on screen.
 #[must_use]
-pub fn torn(state: &AppState) -> Option<Torn> {
+pub fn torn(state: &AppState) -> Option<TornCable> {
     let solution = state.live.snapshot.solution.as_ref()?;
     let cable = solution.cables.iter().find(|c| !c.breaks.is_empty())?;
     let mut bounds = Bounds::EMPTY;
@@ -24,5 +24,5 @@ pub fn torn(state: &AppState) -> Option<Torn> {
         bounds.add([n.x_m, n.y_m]);
     }
     let falls = cable.supports.iter().all(|s| s.reaction_x_n == 0.0 && s.reaction_y_n == 0.0);
-    (bounds.low[0] <= bounds.high[0]).then_some(Torn { piece: [bounds.low, bounds.high], falls })
+    (bounds.low[0] <= bounds.high[0]).then_some(TornCable { piece: [bounds.low, bounds.high], falls })
 }

@@ -63,7 +63,7 @@ impl Autosave {
 
     /// Looks at the scene: `unsaved` if it differs from its file, `whole` if it can be read again.
     /// Returns after how long to look again, if that matters.
-    pub fn look(&mut self, scene: &Scene, [unsaved, whole]: [bool; 2], now: Instant) -> Option<Duration> {
+    pub fn update(&mut self, scene: &Scene, [unsaved, whole]: [bool; 2], now: Instant) -> Option<Duration> {
         self.take_result();
         if !unsaved {
             if self.written.is_some() {
@@ -150,12 +150,12 @@ mod tests {
         let mut autosave = Autosave::new(folder.path().join("deep").join("recovery.toml"));
         let mut scene = catalog::tank();
         let began = Instant::now();
-        assert_eq!(autosave.look(&scene, [false, true], began), None);
+        assert_eq!(autosave.update(&scene, [false, true], began), None);
         scene.name = "changed".to_owned();
-        let wait = autosave.look(&scene, [true, true], began).unwrap();
+        let wait = autosave.update(&scene, [true, true], began).unwrap();
         assert!(wait <= Duration::from_secs(10));
         assert!(autosave.found().is_none());
-        assert_eq!(autosave.look(&scene, [true, true], began + wait), None);
+        assert_eq!(autosave.update(&scene, [true, true], began + wait), None);
         autosave.finish();
         assert_eq!(autosave.fault(), None);
         assert_eq!(autosave.found().unwrap().unwrap(), scene);
@@ -163,11 +163,11 @@ mod tests {
         let whole = scene.clone();
         scene.name = "half typed".to_owned();
         let later = began + Duration::from_secs(60);
-        autosave.look(&scene, [true, false], later);
-        autosave.look(&scene, [true, false], later + Duration::from_secs(60));
+        autosave.update(&scene, [true, false], later);
+        autosave.update(&scene, [true, false], later + Duration::from_secs(60));
         autosave.finish();
         assert_eq!(autosave.found().unwrap().unwrap(), whole);
-        autosave.look(&scene, [false, true], later);
+        autosave.update(&scene, [false, true], later);
         assert!(autosave.found().is_none());
     }
 
@@ -179,11 +179,11 @@ mod tests {
         let mut autosave = Autosave::new(file.join("recovery.toml"));
         let scene = catalog::tank();
         let began = Instant::now();
-        autosave.look(&scene, [true, true], began);
-        autosave.look(&scene, [true, true], began + PERIOD);
+        autosave.update(&scene, [true, true], began);
+        autosave.update(&scene, [true, true], began + PERIOD);
         autosave.finish();
         assert!(autosave.fault().is_some());
-        assert!(autosave.look(&scene, [true, true], began + PERIOD).is_some());
+        assert!(autosave.update(&scene, [true, true], began + PERIOD).is_some());
     }
 
     #[test]

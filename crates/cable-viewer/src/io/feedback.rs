@@ -12,9 +12,9 @@ pub const QUESTIONS: [(&str, &str); 4] = [
     ("easy", "It is easy to use"),
 ];
 /// Answers below this are low: what confused is asked for.
-pub const MIN_GOOD_MARK: u8 = 4;
+pub const MIN_GOOD_RATING: u8 = 4;
 /// Best answer; the worst is 1.
-pub const MAX_MARK: u8 = 5;
+pub const MAX_RATING: u8 = 5;
 
 /// Largest file that is added to, bytes: more is not a table of answers.
 const MAX_BYTES: u64 = 16 << 20;
@@ -42,14 +42,14 @@ pub struct Context<'a> {
 impl Answers {
     /// Something was marked low, and what confused is not said yet.
     #[must_use]
-    pub fn wants_words(&self) -> bool {
-        self.marks.iter().flatten().any(|m| *m < MIN_GOOD_MARK) && self.words.trim().is_empty()
+    pub fn needs_comment(&self) -> bool {
+        self.marks.iter().flatten().any(|m| *m < MIN_GOOD_RATING) && self.words.trim().is_empty()
     }
 
     /// It can be saved.
     #[must_use]
     pub fn complete(&self) -> bool {
-        self.marks.iter().all(Option::is_some) && !self.wants_words()
+        self.marks.iter().all(Option::is_some) && !self.needs_comment()
     }
 
     /// A row: the marks, the words, and what was on screen while they were given.

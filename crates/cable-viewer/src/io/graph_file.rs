@@ -12,12 +12,12 @@ use crate::io::graph_layout;
 ///
 /// # Errors
 /// In words: another ending, or the path refuses.
-pub fn save(path: &Path, sheet: &GraphInView) -> Result<(), String> {
+pub fn save(path: &Path, graph: &GraphInView) -> Result<(), String> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let bytes = match ending.as_str() {
-        "csv" => csv(sheet).into_bytes(),
-        "svg" => graph_layout::svg(sheet).into_bytes(),
-        "png" => graph_layout::png(sheet)?,
+        "csv" => csv(graph).into_bytes(),
+        "svg" => graph_layout::svg(graph).into_bytes(),
+        "png" => graph_layout::png(graph)?,
         _ => return Err("its name must end in .csv, .svg or .png".to_owned()),
     };
     files::write_atomic(path, &bytes).map_err(|e| e.to_string())
@@ -26,11 +26,11 @@ pub fn save(path: &Path, sheet: &GraphInView) -> Result<(), String> {
 /// A row for each place, a column for each line; SI units, and the fewest digits that read back to
 /// the same bits.
 #[must_use]
-pub fn csv(sheet: &GraphInView) -> String {
+pub fn csv(graph: &GraphInView) -> String {
     let name = |text: &str| text.to_lowercase().replace([' ', ',', '"', '\n', '\r'], "_");
-    let mut out = sheet.across[1].clone();
-    for line in &sheet.lines {
-        let (line, quantity) = (name(&line.name), &sheet.up[1]);
+    let mut out = graph.across[1].clone();
+    for line in &graph.lines {
+        let (line, quantity) = (name(&line.name), &graph.up[1]);
         // A line that is called as the quantity says nothing beside it.
         let _ = match quantity.strip_prefix(&line) {
             Some(unit) if unit.starts_with('_') => write!(out, ",{quantity}"),
@@ -39,11 +39,11 @@ pub fn csv(sheet: &GraphInView) -> String {
     }
     out.push('\n');
     // Lines of a graph have the same places; one that has fewer leaves its cells empty.
-    let longest = sheet.lines.iter().map(|l| visible(l, sheet)).max_by_key(|p| p.len()).unwrap_or_default();
+    let longest = graph.lines.iter().map(|l| visible(l, graph)).max_by_key(|p| p.len()).unwrap_or_default();
     for (k, place) in longest.iter().enumerate() {
         let _ = write!(out, "{:?}", place[0]);
-        for line in &sheet.lines {
-            match visible(line, sheet).get(k).filter(|p| p[0] == place[0] && p[1].is_finite()) {
+        for line in &graph.lines {
+            match visible(line, graph).get(k).filter(|p| p[0] == place[0] && p[1].is_finite()) {
                 Some(p) => {
                     let _ = write!(out, ",{:?}", p[1]);
                 }
@@ -58,19 +58,19 @@ pub fn csv(sheet: &GraphInView) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::graph_in_view::sample as sheet;
+    use crate::io::graph_in_view::sample as graph;
 
     #[test]
     fn a_line_named_as_its_quantity_is_named_once() {
-        let mut sheet = sheet();
-        sheet.lines.truncate(1);
-        sheet.lines[0].name = "Tension".to_owned();
-        assert_eq!(csv(&sheet).lines().next(), Some("time_s,tension_n"));
+        let mut graph = graph();
+        graph.lines.truncate(1);
+        graph.lines[0].name = "Tension".to_owned();
+        assert_eq!(csv(&graph).lines().next(), Some("time_s,tension_n"));
     }
 
     #[test]
     fn the_table_has_what_is_in_view_bit_for_bit() {
-        let text = csv(&sheet());
+        let text = csv(&graph());
         let mut rows = text.lines();
         assert_eq!(rows.next(), Some("time_s,maximum_tension_n,at_left__end_tension_n"));
         let table: Vec<Vec<&str>> = rows.map(|r| r.split(',').collect()).collect();
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn other_endings_are_refused_in_words() {
         let folder = tempfile::tempdir().unwrap();
-        let error = save(&folder.path().join("graph.xls"), &sheet()).unwrap_err();
+        let error = save(&folder.path().join("graph.xls"), &graph()).unwrap_err();
         assert!(error.contains(".csv"), "{error}");
     }
 }

@@ -22,14 +22,14 @@ pub struct GraphInView {
 }
 
 /// Points of a line in view.
-pub(crate) fn visible<'a>(line: &'a Series, sheet: &GraphInView) -> &'a [[f64; 2]] {
-    let [left, right] = [sheet.bounds[0], sheet.bounds[2]].map(|x| x * sheet.si[0]);
+pub(crate) fn visible<'a>(line: &'a Series, graph: &GraphInView) -> &'a [[f64; 2]] {
+    let [left, right] = [graph.bounds[0], graph.bounds[2]].map(|x| x * graph.si[0]);
     let from = line.points.partition_point(|p| p[0] < left);
     let to = line.points.partition_point(|p| p[0] <= right).max(from);
     line.points.get(from..to).unwrap_or_default()
 }
 
-/// A sheet for tests: two lines, one of them with a pole.
+/// A graph for tests: two lines, one of them with a pole.
 #[cfg(test)]
 pub(crate) fn sample() -> GraphInView {
     let line = |name: &str, f: fn(f64) -> f64| Series {

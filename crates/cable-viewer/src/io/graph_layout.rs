@@ -15,9 +15,9 @@ use crate::units::format::{round_step, significant};
 const LIMITS: [(&str, [u8; 3]); 2] = [("service limit", [196, 122, 0]), ("breaking limit", [213, 60, 40])];
 
 /// The limits that are in view, in the unit shown.
-fn limits(sheet: &GraphInView) -> impl Iterator<Item = (f64, &'static str, [u8; 3])> {
-    let [_, bottom, _, top] = sheet.bounds;
-    let shown = sheet.limits.map(|limit| limit / sheet.si[1]);
+fn limits(graph: &GraphInView) -> impl Iterator<Item = (f64, &'static str, [u8; 3])> {
+    let [_, bottom, _, top] = graph.bounds;
+    let shown = graph.limits.map(|limit| limit / graph.si[1]);
     let named = shown.into_iter().zip(LIMITS).map(|(limit, (name, colour))| (limit, name, colour));
     named.filter(move |(limit, ..)| limit.is_finite() && *limit > bottom && *limit < top)
 }
@@ -25,57 +25,57 @@ fn limits(sheet: &GraphInView) -> impl Iterator<Item = (f64, &'static str, [u8; 
 /// Size of a drawing, points.
 const SIZE: [f64; 2] = [800.0, 420.0];
 /// Room for numbers and names round it: left, top, right, bottom; for each line of the legend more.
-const ROOM: [f64; 4] = [70.0, 28.0, 24.0, 52.0];
+const MARGINS: [f64; 4] = [70.0, 28.0, 24.0, 52.0];
 /// Height of a line of the legend, points.
 const LEGEND_LINE: f64 = 16.0;
 /// Length of a line's sample in the legend, points.
 const SWATCH: f64 = 20.0;
 /// Width of a letter, points: fonts of a reader are wider or narrower, and must not overlap.
-const LETTER: f64 = 7.0;
+const LETTER_WIDTH: f64 = 7.0;
 
 /// Places of the entries of the legend, points from the left and lines from above, so that none
 /// leaves the picture or lies on another; longer names are cut. Last: how many lines there are.
-fn legend(sheet: &GraphInView) -> (Vec<(String, f64, usize)>, usize) {
-    let widest = SIZE[0] - ROOM[0] - ROOM[2];
-    let most = ((widest - SWATCH - 6.0) / LETTER) as usize;
-    let (mut at, mut row, mut entries) = (ROOM[0], 0, Vec::new());
-    for line in &sheet.lines {
+fn legend(graph: &GraphInView) -> (Vec<(String, f64, usize)>, usize) {
+    let widest = SIZE[0] - MARGINS[0] - MARGINS[2];
+    let most = ((widest - SWATCH - 6.0) / LETTER_WIDTH) as usize;
+    let (mut at, mut row, mut entries) = (MARGINS[0], 0, Vec::new());
+    for line in &graph.lines {
         let cut = line.name.chars().count() > most;
         let mut name: String = line.name.chars().take(if cut { most - 1 } else { most }).collect();
         if cut {
             name.push('…');
         }
-        let width = SWATCH + 6.0 + LETTER * name.chars().count() as f64;
-        if at > ROOM[0] && at + width > SIZE[0] - ROOM[2] {
-            (at, row) = (ROOM[0], row + 1);
+        let width = SWATCH + 6.0 + LETTER_WIDTH * name.chars().count() as f64;
+        if at > MARGINS[0] && at + width > SIZE[0] - MARGINS[2] {
+            (at, row) = (MARGINS[0], row + 1);
         }
         entries.push((name, at, row));
         at += width + 16.0;
     }
-    (entries, if sheet.lines.is_empty() { 0 } else { row + 1 })
+    (entries, if graph.lines.is_empty() { 0 } else { row + 1 })
 }
 
 /// Size of letters, points.
-const LETTERS: f64 = 12.0;
+const FONT_SIZE: f64 = 12.0;
 /// Pixels of a PNG in a point: sharp on paper and on dense screens.
 const PNG_PIXELS_PER_POINT: f32 = 2.0;
 /// Colour of the grid; those of the frame and of text follow.
 const GRID: [u8; 3] = [221; 3];
 const FRAME: [u8; 3] = [68; 3];
-const INK: [u8; 3] = [0; 3];
+const TEXT_COLOUR: [u8; 3] = [0; 3];
 
 /// Stroke of a line: colour, width and lengths of dashes and gaps (points), if it has any.
-type Pen = ([u8; 3], f64, Option<[f64; 2]>);
+type StrokeStyle = ([u8; 3], f64, Option<[f64; 2]>);
 
 /// One mark of a drawing, in points from the left and from above.
 #[derive(Debug)]
 enum Mark {
     /// Straight from one place to another.
-    Line([[f64; 2]; 2], Pen),
+    Line([[f64; 2]; 2], StrokeStyle),
     /// From place to place, as far as it lies in the frame.
-    Path(Vec<[f64; 2]>, Pen),
+    Path(Vec<[f64; 2]>, StrokeStyle),
     /// Words on a base line.
-    Text(Words),
+    Text(TextLabel),
 }
 
 /// Side of its place on which a word stands.
@@ -88,7 +88,7 @@ enum Anchor {
 
 /// Words on a base line.
 #[derive(Debug)]
-struct Words {
+struct TextLabel {
     at: [f64; 2],
     anchor: Anchor,
     colour: [u8; 3],
@@ -99,9 +99,9 @@ struct Words {
     title: bool,
 }
 
-impl Words {
+impl TextLabel {
     fn new(at: [f64; 2], anchor: Anchor, text: impl Into<String>) -> Self {
-        Self { at, anchor, colour: INK, text: text.into(), upwards: false, title: false }
+        Self { at, anchor, colour: TEXT_COLOUR, text: text.into(), upwards: false, title: false }
     }
 }
 
@@ -115,55 +115,58 @@ struct Drawing {
 }
 
 impl Drawing {
-    fn of(sheet: &GraphInView) -> Self {
-        let [left, bottom, right, top] = sheet.bounds;
-        let (entries, rows) = legend(sheet);
-        let under = ROOM[1] + LEGEND_LINE * rows as f64;
-        let [width, height] = [SIZE[0] - ROOM[0] - ROOM[2], SIZE[1] - ROOM[1] - LEGEND_LINE - ROOM[3]];
-        let x = |v: f64| ROOM[0] + (v - left) / (right - left) * width;
+    fn of(graph: &GraphInView) -> Self {
+        let [left, bottom, right, top] = graph.bounds;
+        let (entries, rows) = legend(graph);
+        let under = MARGINS[1] + LEGEND_LINE * rows as f64;
+        let [width, height] = [SIZE[0] - MARGINS[0] - MARGINS[2], SIZE[1] - MARGINS[1] - LEGEND_LINE - MARGINS[3]];
+        let x = |v: f64| MARGINS[0] + (v - left) / (right - left) * width;
         let y = |v: f64| under + (top - v) / (top - bottom) * height;
-        let frame = [ROOM[0], under, ROOM[0] + width, under + height];
+        let frame = [MARGINS[0], under, MARGINS[0] + width, under + height];
         // The graph keeps its height however many lines are named above it.
-        let size = [SIZE[0], frame[3] + ROOM[3]];
+        let size = [SIZE[0], frame[3] + MARGINS[3]];
         let mut marks = Vec::new();
         for v in ticks(left, right) {
             marks.push(Mark::Line([[x(v), frame[1]], [x(v), frame[3]]], (GRID, 1.0, None)));
             let at = [x(v), frame[3] + 16.0];
-            marks.push(Mark::Text(Words::new(at, Anchor::Middle, tick_text(v, [left, right]))));
+            marks.push(Mark::Text(TextLabel::new(at, Anchor::Middle, tick_text(v, [left, right]))));
         }
         for v in ticks(bottom, top) {
             marks.push(Mark::Line([[frame[0], y(v)], [frame[2], y(v)]], (GRID, 1.0, None)));
             let text = tick_text(v, [bottom, top]);
-            marks.push(Mark::Text(Words::new([frame[0] - 6.0, y(v) + 4.0], Anchor::End, text)));
+            marks.push(Mark::Text(TextLabel::new([frame[0] - 6.0, y(v) + 4.0], Anchor::End, text)));
         }
-        for (k, line) in sheet.lines.iter().enumerate() {
+        for (k, line) in graph.lines.iter().enumerate() {
             let [r, g, b, _] = LINES[line.reference.unwrap_or(k) % LINES.len()].to_array();
             let pen = |width: f64| ([r, g, b], width, line.reference.map(|_| [6.0, 4.0]));
-            let points = visible(line, sheet).iter().filter(|p| p[1].is_finite());
-            let path = points.map(|p| [x(p[0] / sheet.si[0]), y(p[1] / sheet.si[1])]).collect();
+            let points = visible(line, graph).iter().filter(|p| p[1].is_finite());
+            let path = points.map(|p| [x(p[0] / graph.si[0]), y(p[1] / graph.si[1])]).collect();
             marks.push(Mark::Path(path, pen(1.8)));
             if let Some((name, at, row)) = entries.get(k) {
-                let low = ROOM[1] + LEGEND_LINE * *row as f64 + 8.0;
+                let low = MARGINS[1] + LEGEND_LINE * *row as f64 + 8.0;
                 marks.push(Mark::Line([[*at, low - 4.0], [at + SWATCH, low - 4.0]], pen(2.5)));
-                marks.push(Mark::Text(Words::new([at + SWATCH + 6.0, low], Anchor::Start, name)));
+                marks.push(Mark::Text(TextLabel::new([at + SWATCH + 6.0, low], Anchor::Start, name)));
             }
         }
-        for (limit, name, colour) in limits(sheet) {
+        for (limit, name, colour) in limits(graph) {
             let at = y(limit);
             marks.push(Mark::Line([[frame[0], at], [frame[2], at]], (colour, 1.0, Some([8.0, 4.0]))));
             // A limit at the top has its name below it: beside the names above the graph it would
             // be taken for one.
             let low = if at - 18.0 < under { at + 14.0 } else { at - 5.0 };
-            let unit = sheet.up[0].rsplit_once(", ").map_or("", |(_, unit)| unit);
+            let unit = graph.up[0].rsplit_once(", ").map_or("", |(_, unit)| unit);
             let text = format!("{name} {} {unit}", significant(limit, 4));
-            let words = Words::new([frame[2] - 6.0, low], Anchor::End, text.trim_end());
-            marks.push(Mark::Text(Words { colour, ..words }));
+            let words = TextLabel::new([frame[2] - 6.0, low], Anchor::End, text.trim_end());
+            marks.push(Mark::Text(TextLabel { colour, ..words }));
         }
         let middle = [(frame[0] + frame[2]) / 2.0, (frame[1] + frame[3]) / 2.0];
-        marks.push(Mark::Text(Words::new([middle[0], size[1] - 14.0], Anchor::Middle, &sheet.across[0])));
-        let up = Words::new([16.0, middle[1]], Anchor::Middle, &sheet.up[0]);
-        marks.push(Mark::Text(Words { upwards: true, ..up }));
-        marks.push(Mark::Text(Words { title: true, ..Words::new([ROOM[0], 18.0], Anchor::Start, &sheet.title) }));
+        marks.push(Mark::Text(TextLabel::new([middle[0], size[1] - 14.0], Anchor::Middle, &graph.across[0])));
+        let up = TextLabel::new([16.0, middle[1]], Anchor::Middle, &graph.up[0]);
+        marks.push(Mark::Text(TextLabel { upwards: true, ..up }));
+        marks.push(Mark::Text(TextLabel {
+            title: true,
+            ..TextLabel::new([MARGINS[0], 18.0], Anchor::Start, &graph.title)
+        }));
         Self { size, frame, marks }
     }
 }
@@ -174,18 +177,18 @@ fn escaped(text: &str) -> String {
 
 /// The graph as SVG.
 #[must_use]
-pub fn svg(sheet: &GraphInView) -> String {
-    let Drawing { size: [w, h], frame, marks } = Drawing::of(sheet);
+pub fn svg(graph: &GraphInView) -> String {
+    let Drawing { size: [w, h], frame, marks } = Drawing::of(graph);
     let [left, top, width, height] = [frame[0], frame[1], frame[2] - frame[0], frame[3] - frame[1]];
     let inside = format!("<rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\"");
     let hex = |[r, g, b]: [u8; 3]| format!("#{r:02x}{g:02x}{b:02x}");
-    let stroke = |(colour, width, dashes): &Pen| {
+    let stroke = |(colour, width, dashes): &StrokeStyle| {
         let dashes = dashes.map_or_else(String::new, |[dash, gap]| format!(" stroke-dasharray=\"{dash} {gap}\""));
         format!("stroke=\"{}\" stroke-width=\"{width}\"{dashes}", hex(*colour))
     };
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
-         font-family=\"sans-serif\" font-size=\"{LETTERS}\">\n<rect width=\"{w}\" height=\"{h}\" fill=\"white\"/>\n\
+         font-family=\"sans-serif\" font-size=\"{FONT_SIZE}\">\n<rect width=\"{w}\" height=\"{h}\" fill=\"white\"/>\n\
          <clipPath id=\"c\">{inside}/></clipPath>\n"
     );
     for mark in &marks {
@@ -224,8 +227,8 @@ pub fn svg(sheet: &GraphInView) -> String {
 ///
 /// # Errors
 /// In words: the picture cannot be encoded.
-pub fn png(sheet: &GraphInView) -> Result<Vec<u8>, String> {
-    let drawing = Drawing::of(sheet);
+pub fn png(graph: &GraphInView) -> Result<Vec<u8>, String> {
+    let drawing = Drawing::of(graph);
     let mut offscreen = Offscreen::new(drawing.size.map(|s| s.ceil() as u32), PNG_PIXELS_PER_POINT);
     crate::render::theme::install(offscreen.ctx());
     // The font knows its letters from the second frame on.
@@ -245,7 +248,7 @@ fn paint(ui: &Ui, drawing: &Drawing) -> Vec<egui::Rect> {
     let frame = egui::Rect::from_min_max(place([left, top]), place([right, bottom]));
     let plot = paper.with_clip_rect(frame);
     let colour = |[r, g, b]: [u8; 3]| Color32::from_rgb(r, g, b);
-    let line = |painter: &egui::Painter, points: Vec<Pos2>, (ink, width, dashes): &Pen| {
+    let line = |painter: &egui::Painter, points: Vec<Pos2>, (ink, width, dashes): &StrokeStyle| {
         let stroke = Stroke::new(*width as f32, colour(*ink));
         match dashes {
             Some([dash, gap]) => painter.extend(Shape::dashed_line(&points, stroke, *dash as f32, *gap as f32)),
@@ -265,9 +268,9 @@ fn paint(ui: &Ui, drawing: &Drawing) -> Vec<egui::Rect> {
 }
 
 /// Paints words; returns where they stand.
-fn write(painter: &egui::Painter, words: &Words) -> egui::Rect {
+fn write(painter: &egui::Painter, words: &TextLabel) -> egui::Rect {
     let [r, g, b] = words.colour;
-    let size = LETTERS as f32 * if words.title { 1.15 } else { 1.0 };
+    let size = FONT_SIZE as f32 * if words.title { 1.15 } else { 1.0 };
     let colour = Color32::from_rgb(r, g, b);
     let galley = painter.layout_no_wrap(words.text.clone(), FontId::proportional(size), colour);
     // Words of SVG stand on their base line: that is where the first row has it.
@@ -312,12 +315,12 @@ fn tick_text(value: f64, [low, high]: [f64; 2]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::graph_in_view::sample as sheet;
+    use crate::io::graph_in_view::sample as graph;
     use crate::record::series::Series;
 
     #[test]
     fn the_drawing_is_well_formed_and_clipped() {
-        let text = svg(&sheet());
+        let text = svg(&graph());
         assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
         assert!(text.contains("Over &lt;time&gt;") && text.matches("<polyline").count() == 2 && !text.contains("NaN"));
         assert!(text.contains("service limit") && !text.contains("breaking limit"), "10 kN is not in view");
@@ -330,11 +333,11 @@ mod tests {
     #[test]
     fn names_in_a_drawing_neither_leave_it_nor_lie_on_each_other() {
         let name = |k: usize| format!("Maximum of pinned run number {k}, tank out and back");
-        let lines = (0..9).map(|k| Series { name: name(k), ..sheet().lines[0].clone() });
-        let mut many = GraphInView { lines: lines.collect(), ..sheet() };
+        let lines = (0..9).map(|k| Series { name: name(k), ..graph().lines[0].clone() });
+        let mut many = GraphInView { lines: lines.collect(), ..graph() };
         many.lines[3].name = "a name without end ".repeat(20);
         let (entries, rows) = legend(&many);
-        let end = |(name, at, _): &(String, f64, usize)| at + SWATCH + 6.0 + LETTER * name.chars().count() as f64;
+        let end = |(name, at, _): &(String, f64, usize)| at + SWATCH + 6.0 + LETTER_WIDTH * name.chars().count() as f64;
         assert!(entries.iter().all(|e| end(e) <= SIZE[0] && e.2 < rows), "{entries:?}");
         assert!(entries.windows(2).all(|e| e[0].2 < e[1].2 || end(&e[0]) < e[1].1), "{entries:?}");
         let text = svg(&many);
@@ -354,12 +357,12 @@ mod tests {
         assert!(texts(0.0, 1e-9).iter().all(|t| t.chars().count() < 10));
     }
 
-    /// A sheet with both limits in view and long names, as a run of hours has it.
+    /// A graph with both limits in view and long names, as a run of hours has it.
     fn crowded() -> GraphInView {
         GraphInView {
             up: ["Tension, kN".to_owned(), "tension_n".to_owned()],
             bounds: [0.0, -0.000_012_345, 9.9, 10.2],
-            ..sheet()
+            ..graph()
         }
     }
 
@@ -382,14 +385,14 @@ mod tests {
 
     #[test]
     fn a_picture_has_the_limits_from_side_to_side_and_nothing_on_its_edges() {
-        let sheet = crowded();
-        let picture = image::load_from_memory(&png(&sheet).unwrap()).unwrap().to_rgb8();
-        let drawing = Drawing::of(&sheet);
+        let graph = crowded();
+        let picture = image::load_from_memory(&png(&graph).unwrap()).unwrap().to_rgb8();
+        let drawing = Drawing::of(&graph);
         assert_eq!([picture.width(), picture.height()], drawing.size.map(|s| 2 * s as u32));
         let edge = |x: u32, y: u32| x < 4 || y < 4 || x + 4 >= picture.width() || y + 4 >= picture.height();
         assert!(picture.enumerate_pixels().all(|(x, y, p)| !edge(x, y) || p.0 == [255; 3]), "a mark is cut off");
         let near = |p: [u8; 3], c: [u8; 3]| p.iter().zip(c).all(|(a, b)| a.abs_diff(b) < 40);
-        for (limit, name, colour) in limits(&sheet) {
+        for (limit, name, colour) in limits(&graph) {
             let height = drawing.frame[3] - drawing.frame[1];
             let y = drawing.frame[1] + (10.2 - limit) / (10.2 + 0.000_012_345) * height;
             let rows = || (2.0 * y) as u32 - 1..=(2.0 * y) as u32 + 1;

@@ -39,26 +39,26 @@ impl Default for FrictionRangeState {
 #[derive(Debug)]
 pub struct Job {
     job: background::Job<Outcome>,
-    ask: Arc<FrictionQuery>,
+    query: Arc<FrictionQuery>,
 }
 
 impl Job {
     /// Starts one; `shown` is called whenever there is something new to show.
     #[must_use]
-    pub fn start(ask: FrictionQuery, shown: impl Fn() + Send + 'static) -> Self {
-        let ask = Arc::new(ask);
-        let theirs = Arc::clone(&ask);
+    pub fn start(query: FrictionQuery, shown: impl Fn() + Send + 'static) -> Self {
+        let query = Arc::new(query);
+        let theirs = Arc::clone(&query);
         let work = move |listen: background::Listener<'_, Outcome>| {
             let found = friction_range::friction_range(&theirs, |share| listen(share, None));
             found.map(|s| (Arc::new(s), theirs)).map_err(|e| e.to_string())
         };
-        Self { job: background::Job::start("friction range", work, shown), ask }
+        Self { job: background::Job::start("friction range", work, shown), query }
     }
 
     /// Returns what was asked.
     #[must_use]
-    pub fn ask(&self) -> &FrictionQuery {
-        &self.ask
+    pub fn query(&self) -> &FrictionQuery {
+        &self.query
     }
 
     /// Returns how far it is.
@@ -74,7 +74,7 @@ const MIN_MOVE_M: f64 = 1e-9;
 /// Returns what hands did in a run: where supports that move by nothing else went, and what the
 /// robot was told.
 #[must_use]
-pub fn hands(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
+pub fn recorded_actions(scene: &Scene, answers: &[Solution]) -> Vec<Action> {
     let by_hand = scene.cables.iter().enumerate().flat_map(|(cable, c)| {
         let held = |s: &cable_core::Support| {
             s.at_m.is_some() && s.motion.is_none() && !matches!(s.kind, SupportKind::Pulley | SupportKind::Robot)

@@ -14,10 +14,10 @@ use crate::jobs::background;
 
 /// Places of a robot that are looked at. More: finer and, with the way back from each, slower by
 /// the square; fewer: mounds fall between them.
-pub const PLACES: usize = 41;
+pub const ROBOT_PLACES: usize = 41;
 
 /// Fewest and most places of an end side by side.
-pub const ACROSS: [usize; 2] = [8, 96];
+pub const PLACES_ACROSS_RANGE: [usize; 2] = [8, 96];
 
 /// The ways back are followed from every so manieth place, both ways: as much work as the places
 /// themselves, not thirty times.
@@ -43,18 +43,18 @@ pub enum ReachSubject {
 
 /// The choice of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Choice {
+pub struct SafeReachOptions {
     /// What is taken somewhere; None: the robot, else what is picked, else what moves, else an end.
     pub moved: Option<ReachSubject>,
     /// Shows the way there and back instead of the place itself.
-    pub back: bool,
+    pub round_trip: bool,
     /// Places of an end side by side.
     pub across: usize,
 }
 
-impl Default for Choice {
+impl Default for SafeReachOptions {
     fn default() -> Self {
-        Self { moved: None, back: false, across: 24 }
+        Self { moved: None, round_trip: false, across: 24 }
     }
 }
 
@@ -62,7 +62,7 @@ impl Default for Choice {
 #[derive(Clone, Debug, Default)]
 pub struct SafeReachState {
     /// The choice of the user.
-    pub choice: Choice,
+    pub choice: SafeReachOptions,
     /// Its progress.
     pub progress: Progress,
     /// The time when the search began.
@@ -101,14 +101,14 @@ pub struct ReachQuery {
 
 /// The findings.
 #[derive(Clone, Debug)]
-pub enum Maps {
+pub enum ReachMaps {
     /// Of a robot.
     Line(Arc<ReachMap>),
     /// Of an end: the places, and the way there and back, once it is begun.
     Area(Arc<Area>, Option<Arc<Area>>),
 }
 
-impl Maps {
+impl ReachMaps {
     /// Service and breaking tension, N.
     #[must_use]
     pub fn limits_n(&self) -> [f64; 2] {
@@ -120,7 +120,7 @@ impl Maps {
 }
 
 /// The map, and the scene it is of.
-pub type Outcome = (Maps, Arc<Scene>);
+pub type Outcome = (ReachMaps, Arc<Scene>);
 /// Its progress.
 pub type Progress = background::Progress<Outcome>;
 /// A map being computed.
@@ -156,32 +156,33 @@ impl SafeReachState {
 
 /// Starts one; `shown` is called whenever there is something new to show.
 #[must_use]
-pub fn start(order: ReachQuery, shown: impl Fn() + Send + 'static) -> Job {
-    Job::start("safe reach", move |listen| find(order, listen), shown)
+pub fn start(query: ReachQuery, shown: impl Fn() + Send + 'static) -> Job {
+    Job::start("safe reach", move |listen| find(query, listen), shown)
 }
 
-fn find(order: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<Outcome, String> {
-    let scene = Arc::new(order.scene);
+fn find(query: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<Outcome, String> {
+    let scene = Arc::new(query.scene);
     let mut told = -MIN_PROGRESS_STEP;
-    let mut tell = |share: f64, maps: &dyn Fn() -> Maps| {
+    let mut tell = |share: f64, maps: &dyn Fn() -> ReachMaps| {
         if share < told + MIN_PROGRESS_STEP {
             return ControlFlow::Continue(());
         }
         told = share;
         listen(share, Some((maps(), Arc::clone(&scene))))
     };
-    let maps = match order.moved {
+    let maps = match query.moved {
         ReachSubject::Robot => {
-            let ends_m = order.corners_m.map(|p| p[0]);
-            let told = |map: &ReachMap, _: f64| tell(known_share(map), &|| Maps::Line(Arc::new(map.clone())));
-            let map = line::robot_reach(&scene, order.now.as_deref(), order.settings, ends_m, PLACES, told)
+            let ends_m = query.corners_m.map(|p| p[0]);
+            let told = |map: &ReachMap, _: f64| tell(known_share(map), &|| ReachMaps::Line(Arc::new(map.clone())));
+            let map = line::robot_reach(&scene, query.now.as_deref(), query.settings, ends_m, ROBOT_PLACES, told)
                 .map_err(|e| e.to_string())?;
-            Maps::Line(Arc::new(map))
+            ReachMaps::Line(Arc::new(map))
         }
         ReachSubject::Support { cable, support } => {
-            let [low, high] = order.corners_m;
-            let spacing_m = (high[0] - low[0]) / order.across.clamp(ACROSS[0], ACROSS[1]) as f64;
-            let (now, settings, corners_m) = (order.now, order.settings, order.corners_m);
+            let [low, high] = query.corners_m;
+            let spacing_m =
+                (high[0] - low[0]) / query.across.clamp(PLACES_ACROSS_RANGE[0], PLACES_ACROSS_RANGE[1]) as f64;
+            let (now, settings, corners_m) = (query.now, query.settings, query.corners_m);
             let ask = area::ReachQuery {
                 scene: (*scene).clone(),
                 now,
@@ -192,14 +193,14 @@ fn find(order: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<
                 spacing_m,
                 back: false,
             };
-            let told = |area: &Area, share: f64| tell(0.5 * share, &|| Maps::Area(Arc::new(area.clone()), None));
+            let told = |area: &Area, share: f64| tell(0.5 * share, &|| ReachMaps::Area(Arc::new(area.clone()), None));
             let there = Arc::new(area::area(&ask, told).map_err(|e| e.to_string())?);
             let ask = area::ReachQuery { spacing_m: RETURN_COARSENING * spacing_m, back: true, ..ask };
             let told = |area: &Area, share: f64| {
-                tell(0.5 + 0.5 * share, &|| Maps::Area(Arc::clone(&there), Some(Arc::new(area.clone()))))
+                tell(0.5 + 0.5 * share, &|| ReachMaps::Area(Arc::clone(&there), Some(Arc::new(area.clone()))))
             };
             let back = area::area(&ask, told).map_err(|e| e.to_string())?;
-            Maps::Area(there, Some(Arc::new(back)))
+            ReachMaps::Area(there, Some(Arc::new(back)))
         }
     };
     Ok((maps, scene))
@@ -209,7 +210,7 @@ fn find(order: ReachQuery, listen: background::Listener<'_, Outcome>) -> Result<
 /// other. Lengths of ways say less, because most ways back are not gone.
 fn known_share(map: &ReachMap) -> f64 {
     let back = map.places.iter().filter(|p| !p.there_and_back_n.is_nan()).count();
-    0.5 * (map.places.len() + back) as f64 / PLACES as f64
+    0.5 * (map.places.len() + back) as f64 / ROBOT_PLACES as f64
 }
 
 /// All that can be taken somewhere.

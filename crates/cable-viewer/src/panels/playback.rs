@@ -9,11 +9,11 @@ use crate::units::unit::Unit;
 use crate::units::{format, labels};
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
-use crate::widgets::slider::{self, Rail};
+use crate::widgets::slider::{self, SliderRange};
 
 /// Below this share of the speed asked for, the shortfall is named: smaller ones are jitter of the
 /// clock.
-const KEEPS_UP: f64 = 0.9;
+const MIN_REAL_TIME_FRACTION: f64 = 0.9;
 
 /// Width of each button, points: “Pause” and its sign fit, and nothing moves when it turns to
 /// “Play”.
@@ -49,13 +49,13 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 fn speed(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let label = ui.label("Speed").id;
-    let rail = Rail { ends: [Playback::MIN_SPEED, Playback::MAX_SPEED], logarithmic: true };
+    let rail = SliderRange { ends: [Playback::MIN_SPEED, Playback::MAX_SPEED], logarithmic: true };
     let slid = slider::ui(ui, state.live.playback.speed, rail);
     field::name(&slid.response, "Speed slider");
     if let Some(speed) = slid.value {
         commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));
     }
-    slid.response.on_hover_text(format!("Simulated seconds per second, 0.01× to 4×\n{}", slider::law(true)));
+    slid.response.on_hover_text(format!("Simulated seconds per second, 0.01× to 4×\n{}", slider::drag_help(true)));
     let entry = field::number(ui, "Speed", Unit::TIMES, state.live.playback.speed, SPEED_WIDTH);
     if let Some(speed) = entry.value {
         commands.push(Command::Playback(PlaybackCommand::SetSpeed(speed)));
@@ -84,7 +84,7 @@ fn real_time(ui: &mut Ui, state: &AppState) {
     let asked = state.live.playback.speed;
     let text = format!("Runs at {}", format::times(reached));
     let help = "Simulated seconds per second actually reached";
-    if reached < KEEPS_UP * asked {
+    if reached < MIN_REAL_TIME_FRACTION * asked {
         let slow = format!("{text} of {}", format::times(asked));
         ui.colored_label(ui.visuals().warn_fg_color, slow)
             .on_hover_text(format!("{help}. The solver does not keep up: fewer segments or a looser tolerance help"));

@@ -8,12 +8,12 @@ use crate::panels::readouts::DIMMED;
 use crate::panels::timeline;
 use crate::plot::{GraphResponse, GraphView, along, time};
 use crate::record::measure::Measure;
-use crate::render::colour::Quantity;
+use crate::render::colour::CableQuantity;
 use crate::state::AppState;
 use crate::state::dialog::Dialog;
 use crate::state::questions::friction_answer;
 use crate::widgets::field;
-use crate::widgets::tick::tick;
+use crate::widgets::tick::checkbox;
 
 /// From this width on the timeline stands beside the choice of graphs, points. Less: its rail is
 /// too short to aim at.
@@ -23,7 +23,7 @@ const UNDO_RESTART: f32 = 98.0;
 /// Below this width the graphs stand one under the other, points.
 const SIDE_BY_SIDE: f32 = 480.0;
 /// Lowest graph that can still be read, points.
-const LEAST_HEIGHT: f32 = 90.0;
+const MIN_HEIGHT: f32 = 90.0;
 
 /// The lengths of the past that can be followed.
 const WINDOWS: [(Option<f64>, &str); 4] =
@@ -50,7 +50,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let wide = ui.available_width() >= SIDE_BY_SIDE;
     let room = ui.available_height() - ui.spacing().item_spacing.y;
     let height = if wide { room } else { room / 2.0 };
-    let touched = if !wide && height < LEAST_HEIGHT {
+    let touched = if !wide && height < MIN_HEIGHT {
         // No room for both: the one that is always full.
         vec![along_cable(ui, state, view, room)]
     } else if wide && view.second.is_some() {
@@ -72,7 +72,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         // A graph that follows would take the zoom back at once.
         view.follow &= !graph.zoomed;
         if let (Some(time_s), Some([first, last])) = (graph.scrubbed_s, state.live.recording.span_s()) {
-            commands.push(Command::Playback(PlaybackCommand::Show(Some(time_s.clamp(first, last)))));
+            commands.push(Command::Playback(PlaybackCommand::ShowTime(Some(time_s.clamp(first, last)))));
         }
         if let Some(sheet) = graph.export {
             let path = format!("{}.csv", sheet.title.to_lowercase().replace(' ', "-"));
@@ -97,7 +97,7 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
         }
     }
     ui.separator();
-    tick(ui, &mut view.follow, "Follow").on_hover_text(
+    checkbox(ui, &mut view.follow, "Follow").on_hover_text(
         "The graphs keep up with the data. The wheel zooms at the pointer and turns this off; then drag to move, double-click \
          to fit. Click for a cursor, again for a second and their difference, again for none",
     );
@@ -112,7 +112,7 @@ fn controls(ui: &mut Ui, state: &AppState, view: &mut GraphView) {
     shown.response.on_hover_text("How much of the past the time graph follows");
     if state.live.history.samples.len() >= 2
         && state.document.scene.cables.len() > 1
-        && matches!(view.measure, Measure::Cable(Quantity::Stress | Quantity::Strain))
+        && matches!(view.measure, Measure::Cable(CableQuantity::Stress | CableQuantity::Strain))
     {
         ui.weak("Over time: tension, as there are several cables");
     }

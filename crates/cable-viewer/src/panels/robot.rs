@@ -14,7 +14,7 @@ use crate::units::format::{self, significant};
 use crate::units::unit::Unit;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
-use crate::widgets::tick::tick;
+use crate::widgets::tick::checkbox;
 use crate::widgets::{field, readout};
 
 /// Width of a number, points: “12.34 m/s” fits.
@@ -57,12 +57,12 @@ pub fn hand_speed(state: &AppState) -> f64 {
         .as_ref()
         .and_then(|r| robot_preset(&r.preset))
         .map_or(0.0, |p| p.speed_m_per_s.value);
-    state.live.robot_speed.map_or(top, |v| v.min(top))
+    state.live.manual_robot_speed.map_or(top, |v| v.min(top))
 }
 
 fn by_hand(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let speed = hand_speed(state);
-    let order = state.live.robot_order;
+    let order = state.live.robot_speed_command;
     ui.horizontal_wrapped(|ui| {
         for (text, help, wanted, on) in [
             (
@@ -183,7 +183,7 @@ fn path(ui: &mut Ui, robot: &Robot, commands: &mut Vec<Command>) {
             add(RobotTask::Wait { wait_s: FIRST_LEG.1 });
         }
         let mut repeat = robot.repeat;
-        if tick(ui, &mut repeat, "Repeat").on_hover_text("Begins anew after the last leg").changed() {
+        if checkbox(ui, &mut repeat, "Repeat").on_hover_text("Begins anew after the last leg").changed() {
             set(Robot { repeat, ..robot.clone() }, commands);
         }
     });

@@ -47,7 +47,7 @@ pub fn sentence(fault: &SceneFault) -> String {
 
 /// Returns what is wrong with the scene, if anything: which property of what, and why.
 #[must_use]
-pub fn whole(state: &AppState) -> Option<String> {
+pub fn summary(state: &AppState) -> Option<String> {
     let found = state.document.fault.as_ref()?;
     let named = cable_and_key(&found.path).and_then(|(index, key)| {
         let property = crate::panels::cable::property::PROPERTIES.iter().find(|p| p.key == key)?;

@@ -41,9 +41,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.push_id(item, |ui| match item {
         Item::Support { cable, support } => supports::form(ui, state, cable, support, commands),
         Item::Obstacle(k) | Item::Corner { obstacle: k, .. } => obstacles::form(ui, state, k, commands),
-        Item::Load(k) | Item::Head(k) => loads::form(ui, state, k, commands),
+        Item::Load(k) | Item::LoadHead(k) => loads::form(ui, state, k, commands),
         Item::Cable(_) => cable::ui(ui, state, commands),
-        Item::Robot | Item::Leg(_) => {
+        Item::Robot | Item::PathLeg(_) => {
             scene::robot::ui(ui, state, commands);
             robot::ui(ui, state, commands);
         }
@@ -79,13 +79,13 @@ fn remove(ui: &mut Ui, state: &AppState, item: Item, commands: &mut Vec<Command>
         Item::Obstacle(k) | Item::Corner { obstacle: k, .. } => {
             (scene.obstacles.get(k).map_or_else(String::new, |o| o.name.clone()), "Removes it")
         }
-        Item::Load(k) | Item::Head(k) => (format!("load {}", k + 1), "Removes it"),
+        Item::Load(k) | Item::LoadHead(k) => (format!("load {}", k + 1), "Removes it"),
         _ => return,
     };
     // A corner or the head of an arrow has the form of what it is of.
     let whole = match item {
         Item::Corner { obstacle, .. } => Item::Obstacle(obstacle),
-        Item::Head(k) => Item::Load(k),
+        Item::LoadHead(k) => Item::Load(k),
         other => other,
     };
     let button = icon::plain_button(ui, Icon::Remove, true);
@@ -104,9 +104,9 @@ fn figures(state: &AppState, answer: &Solution, item: Item) -> Vec<Figure> {
             let name = state.document.scene.obstacles.get(k).map_or("", |o| o.name.as_str());
             of_obstacle(answer, name)
         }
-        Item::Load(k) | Item::Head(k) => of_load(state, answer, k),
+        Item::Load(k) | Item::LoadHead(k) => of_load(state, answer, k),
         // The panels of the others have their own figures, or none.
-        Item::Robot | Item::Leg(_) | Item::Cable(_) | Item::Scene | Item::Environment | Item::Solver => Vec::new(),
+        Item::Robot | Item::PathLeg(_) | Item::Cable(_) | Item::Scene | Item::Environment | Item::Solver => Vec::new(),
     }
 }
 

@@ -13,7 +13,7 @@ use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
 use crate::widgets::property::{Provenance, Quantity, row};
-use crate::widgets::tick::tick;
+use crate::widgets::tick::checkbox;
 use crate::worker;
 
 const TOLERANCE: Quantity = Quantity {
@@ -134,7 +134,7 @@ fn mesh(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     pull_past_length(ui, state, commands);
     let mut fixed = segments.is_some();
     let help = "Off: the cable's own number, else by the tolerance";
-    if tick(ui, &mut fixed, "Same number of segments for every cable").on_hover_text(help).changed() {
+    if checkbox(ui, &mut fixed, "Same number of segments for every cable").on_hover_text(help).changed() {
         let count = largest_mesh(state.live.snapshot.solution.as_deref()).unwrap_or(FIRST_SEGMENTS);
         commands.push(Command::SetSettings(Settings { segments: fixed.then_some(count), ..state.solver.settings }));
     }
@@ -153,7 +153,7 @@ fn default_hand_stiffness(ui: &mut Ui, state: &AppState, commands: &mut Vec<Comm
         |hand_stiffness_n_per_m| Command::SetSettings(Settings { hand_stiffness_n_per_m, ..state.solver.settings });
     let mut stated = stiffness.is_some();
     let help = "Off: a hand that carries the whole of a cable is a hundredth of its length ahead of the support";
-    if tick(ui, &mut stated, "Same stiffness of the hand for every cable").on_hover_text(help).changed() {
+    if checkbox(ui, &mut stated, "Same stiffness of the hand for every cable").on_hover_text(help).changed() {
         // That of the present cable, which is as wide a choice as any.
         let of_cable =
             problems(&state.document.scene).ok().and_then(|all| all.first().map(|p| hand::default_hand_stiffness(p)));
@@ -169,7 +169,7 @@ fn pull_past_length(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) 
     let mut pulls = state.solver.pulls_past_length;
     let help = "On: a support that is dragged farther than the cable reaches, while time runs, is pulled by the hand's \
                 spring; the force rises with the way until the cable breaks. Off: it is refused";
-    if tick(ui, &mut pulls, "Pull past the length").on_hover_text(help).changed() {
+    if checkbox(ui, &mut pulls, "Pull past the length").on_hover_text(help).changed() {
         commands.push(Command::Playback(PlaybackCommand::PullPastLength(pulls)));
     }
 }

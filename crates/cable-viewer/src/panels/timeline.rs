@@ -8,18 +8,18 @@ use crate::state::AppState;
 use crate::units::format;
 use crate::units::sentence::sentence;
 use crate::widgets::icon::{self, Icon};
-use crate::widgets::tick::tick;
+use crate::widgets::tick::checkbox;
 use crate::widgets::{field, highlight};
 
 /// Shortest rail that can be aimed at, points.
-const LEAST_RAIL: f32 = 60.0;
+const MIN_SLIDER_WIDTH: f32 = 60.0;
 /// How near to a mark the pointer tells what it is, points.
 const MARK_REACH: f32 = 4.0;
 
 /// The reason why its controls are off.
-const NOTHING: &str = "Nothing is recorded yet: press play";
+const NO_RECORDING_HINT: &str = "Nothing is recorded yet: press play";
 /// The reason why the control that leads back to the present is off.
-const PRESENT: &str = "The latest frame is shown";
+const AT_PRESENT_HINT: &str = "The latest frame is shown";
 
 /// Draws it in a row of its own.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -34,31 +34,32 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     ui.add_enabled_ui(span.is_some(), |ui| {
         let back = icon::plain_button(ui, Icon::StepBack, span.is_some());
         field::name(&back, "Step back");
-        let back = back.on_hover_text("The frame before this one (arrow left)").on_disabled_hover_text(NOTHING);
+        let back =
+            back.on_hover_text("The frame before this one (arrow left)").on_disabled_hover_text(NO_RECORDING_HINT);
         if back.clicked() {
             push(PlaybackCommand::StepBack);
         }
         let mut looped = state.live.recording.looped;
         let help = "Playback starts again at the end of the recording; off, the simulation goes on from there";
-        if tick(ui, &mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NOTHING).changed() {
+        if checkbox(ui, &mut looped, "Loop").on_hover_text(help).on_disabled_hover_text(NO_RECORDING_HINT).changed() {
             push(PlaybackCommand::SetLoop(looped));
             // A loop of what is not shown begins at its start.
             if let (true, None, Some([first, _])) = (looped, state.live.recording.shown_s, span) {
-                push(PlaybackCommand::Show(Some(first)));
+                push(PlaybackCommand::ShowTime(Some(first)));
             }
         }
         let shown = state.live.recording.shown_s.is_some();
         let help = "Returns to the latest frame";
         let present = ui.add_enabled(shown, egui::Button::new("Latest")).on_hover_text(help);
-        highlight::offer(&present, "Latest");
-        if present.on_disabled_hover_text(PRESENT).clicked() {
-            push(PlaybackCommand::Show(None));
+        highlight::register(&present, "Latest");
+        if present.on_disabled_hover_text(AT_PRESENT_HINT).clicked() {
+            push(PlaybackCommand::ShowTime(None));
         }
         let help = "Continues from the time shown: later frames are dropped, and friction starts fresh";
         let on = ui.add_enabled(shown, egui::Button::new("Resume")).on_hover_text(help);
         field::name(&on, "Resume from here");
-        if on.on_disabled_hover_text(PRESENT).clicked() {
-            push(PlaybackCommand::GoOn);
+        if on.on_disabled_hover_text(AT_PRESENT_HINT).clicked() {
+            push(PlaybackCommand::ResumeFromShown);
         }
     });
     if let Some(run) = &state.live.earlier_run {
@@ -85,19 +86,21 @@ pub fn in_row(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     // Without room events are marks on the rail and stand in the hover text.
     let beside = width(ui, &text);
     let with_count = beside + width(ui, &count);
-    let counted =
-        span.is_some() && !state.live.recording.events().is_empty() && ui.available_width() - with_count >= LEAST_RAIL;
-    ui.spacing_mut().slider_width = (ui.available_width() - if counted { with_count } else { beside }).max(LEAST_RAIL);
+    let counted = span.is_some()
+        && !state.live.recording.events().is_empty()
+        && ui.available_width() - with_count >= MIN_SLIDER_WIDTH;
+    ui.spacing_mut().slider_width =
+        (ui.available_width() - if counted { with_count } else { beside }).max(MIN_SLIDER_WIDTH);
     let mut time_s = state.live.recording.shown_s.unwrap_or(now_s).clamp(first, last);
     let slider = ui.add_enabled(span.is_some(), Slider::new(&mut time_s, first..=last).show_value(false));
     field::name(&slider, "Timeline");
     if slider.changed() {
-        push(PlaybackCommand::Show(Some(time_s)));
+        push(PlaybackCommand::ShowTime(Some(time_s)));
     }
     if span.is_some() {
         marks(ui, state, slider.rect, [first, last]);
     }
-    slider.on_hover_text(state.live.recording.about()).on_disabled_hover_text(NOTHING);
+    slider.on_hover_text(state.live.recording.about()).on_disabled_hover_text(NO_RECORDING_HINT);
     let text = if span.is_some() { RichText::new(text) } else { RichText::new(text).weak() };
     ui.add(Label::new(text).truncate()).on_hover_text(count.as_str());
     if counted {

@@ -198,7 +198,7 @@ fn dead_worker(state: &AppState) -> Option<Entry> {
 }
 
 fn scene_fault(state: &AppState) -> Option<Entry> {
-    let found = scene_errors::whole(state)?;
+    let found = scene_errors::summary(state)?;
     let text = format!("{found}. The picture and the figures are of the last scene that could be solved.");
     let title = "The scene cannot be solved".to_owned();
     Some(Entry { title, fix: scene_errors::fix(state), ..entry(Severity::Stop, text) })

@@ -17,7 +17,7 @@ use crate::io::graph_in_view::GraphInView;
 use crate::plot::cursors::Cursors;
 use crate::record::measure::Measure;
 use crate::record::series::{Series, line_style, value_at};
-use crate::render::colour::{LINES, Quantity};
+use crate::render::colour::{CableQuantity, LINES};
 use crate::render::theme;
 use crate::units::format::{round_step, significant};
 use crate::units::unit::{DIGITS, Unit};
@@ -45,19 +45,19 @@ const LIMIT_IN_VIEW_FROM: f64 = 0.5;
 const HEADROOM: f64 = 0.12;
 
 /// Lowest graph that can still be read, points.
-const LEAST_HEIGHT: f32 = 42.0;
+const MIN_HEIGHT: f32 = 42.0;
 /// Distance of numbers on the horizontal axis, points: close enough to read between, far enough not
 /// to touch.
-const COLUMN: f32 = 66.0;
+const X_TICK_SPACING: f32 = 66.0;
 /// Part of an axis at its end in which a number with its unit would be cut.
 const UNIT_MARGIN: f64 = 0.03;
 /// Height of the numbers below a graph, points.
-const TICKS: f32 = 18.0;
+const TICK_LABELS_HEIGHT: f32 = 18.0;
 /// Distance of numbers on the vertical axis, points.
-const ROW: f32 = 24.0;
+const Y_TICK_SPACING: f32 = 24.0;
 
 /// Room for the export button beside the legend, points.
-const EXPORT: f32 = 62.0;
+const EXPORT_BUTTON_WIDTH: f32 = 62.0;
 
 /// A held line that goes up and down by this many times its whole height is drawn solid and thin.
 /// More: frames with long runs take longer; fewer: a few swings lose their dashes.
@@ -88,7 +88,7 @@ pub struct GraphView {
 impl Default for GraphView {
     fn default() -> Self {
         Self {
-            measure: Measure::Cable(Quantity::Tension),
+            measure: Measure::Cable(CableQuantity::Tension),
             second: None,
             follow: true,
             window_s: Some(10.0),
@@ -177,9 +177,9 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     // Those of a run that is no more read nothing.
     cursors.forget_without_data(ui, graph.group, graph.last);
     let cursor_text = cursors.text([(across_symbol, x_si), (symbol, si)], lines.first());
-    let height = (graph.height - (ui.cursor().top() - top)).max(LEAST_HEIGHT);
-    let columns = f64::from(ui.available_width() / COLUMN).max(1.0);
-    let rows = f64::from((height - TICKS) / ROW).max(1.0);
+    let height = (graph.height - (ui.cursor().top() - top)).max(MIN_HEIGHT);
+    let columns = f64::from(ui.available_width() / X_TICK_SPACING).max(1.0);
+    let rows = f64::from((height - TICK_LABELS_HEIGHT) / Y_TICK_SPACING).max(1.0);
     let plot = Plot::new(graph.title)
         .link_axis(Id::unique(("axis", graph.group.to_owned())), [!follow, false])
         .link_cursor(Id::unique(("cursor", graph.group.to_owned())), [true, false])
@@ -215,7 +215,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         }
         draw_ribbon(plot, &graph.ribbon, [x_si, si]);
         for (k, line) in lines.iter().enumerate() {
-            let (colour, style, width) = line_look(line, k);
+            let (colour, style, width) = line_appearance(line, k);
             draw_band(plot, line, colour, [x_si, si]);
             let points: Vec<[f64; 2]> = line.points.iter().map(|p| [p[0] / x_si, p[1] / si]).collect();
             plot.line(egui_plot::Line::new(line.name.clone(), points).color(colour).width(width).style(style));
@@ -247,7 +247,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
     }
     let figure = response.response.labelled_by(title);
     let ribbon = graph.ribbon.last().map(|r| r.map(|v| v / si));
-    speak(&figure, (graph.title, ribbon), lines, ((symbol, si), cursor_text));
+    set_accessible_text(&figure, (graph.title, ribbon), lines, ((symbol, si), cursor_text));
     let sheet = || GraphInView {
         title: graph.title.to_owned(),
         across: [format!("{across}, {across_symbol}"), format!("{}_{column}", across.to_lowercase().replace(' ', "_"))],
@@ -273,7 +273,7 @@ fn moved_mark(ui: &Ui, graph: &Graph<'_>) -> Option<f64> {
 }
 
 /// Says the last values of the lines, and what the cursors read.
-fn speak(
+fn set_accessible_text(
     figure: &egui::Response,
     (title, ribbon): (&str, Option<[f64; 3]>),
     lines: &[Series],
@@ -323,7 +323,7 @@ fn draw_band(plot: &mut PlotUi<'_>, line: &Series, colour: Color32, [x_si, si]: 
 
 /// Colour, style and width with which it is drawn. Where it goes up and down in every column,
 /// dashes cannot be seen, and would be thousands.
-fn line_look(line: &Series, k: usize) -> (Color32, LineStyle, f32) {
+fn line_appearance(line: &Series, k: usize) -> (Color32, LineStyle, f32) {
     let (colour, style) = line_style(line, k);
     if line.reference.is_some() && oscillates(&line.points) {
         return (colour.gamma_multiply(0.7), LineStyle::Solid, 1.0);
@@ -431,7 +431,9 @@ fn legend(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series], high: f64) -> (Id, b
         let mut left_out = Vec::new();
         for (name, colour, dashed) in entries {
             let galley = ui.painter().layout_no_wrap(name.clone(), small.clone(), colour);
-            if !left_out.is_empty() || galley.size().x + 2.0 * SWATCH + 10.0 > ui.available_width() - EXPORT {
+            if !left_out.is_empty()
+                || galley.size().x + 2.0 * SWATCH + 10.0 > ui.available_width() - EXPORT_BUTTON_WIDTH
+            {
                 left_out.push(name);
                 continue;
             }
@@ -510,10 +512,10 @@ mod tests {
         let held = |values: &[f64]| Series { reference: Some(0), ..line(values) };
         let wave: Vec<f64> = (0..1200).map(|k| (0.02 * f64::from(k)).sin()).collect();
         let noise: Vec<f64> = (0..1200).map(|k| f64::from(k % 2)).collect();
-        assert!(matches!(line_look(&held(&wave), 0), (_, LineStyle::Dashed { .. }, _)));
-        assert!(matches!(line_look(&held(&noise), 0), (_, LineStyle::Solid, _)));
-        assert!(matches!(line_look(&held(&[1.0; 9]), 0), (_, LineStyle::Dashed { .. }, _)));
-        assert!(matches!(line_look(&line(&noise), 0), (_, LineStyle::Solid, w) if w == 2.0));
+        assert!(matches!(line_appearance(&held(&wave), 0), (_, LineStyle::Dashed { .. }, _)));
+        assert!(matches!(line_appearance(&held(&noise), 0), (_, LineStyle::Solid, _)));
+        assert!(matches!(line_appearance(&held(&[1.0; 9]), 0), (_, LineStyle::Dashed { .. }, _)));
+        assert!(matches!(line_appearance(&line(&noise), 0), (_, LineStyle::Solid, w) if w == 2.0));
     }
 
     #[test]

@@ -8,19 +8,19 @@ use crate::plot::{Graph, GraphResponse, GraphView, TIME, in_view, show};
 use crate::record::measure::{Measure, per_newton};
 use crate::record::sample::Sample;
 use crate::record::series::{Series, envelope, thin};
-use crate::render::colour::Quantity;
+use crate::render::colour::CableQuantity;
 use crate::state::AppState;
 use crate::state::questions::friction_answer;
 use crate::units::unit::Unit;
 
 /// Between two columns of a line of more samples than can be told apart, points: lines are as wide.
 /// Less: twice the triangles for the same picture; more: peaks look blunt.
-const COLUMN: f32 = 2.0;
+const SAMPLE_COLUMN_WIDTH: f32 = 2.0;
 
 /// Title of the first graph.
 pub const TITLE: &str = "Over time";
 /// Shortest time axis, s: the first frames would otherwise jump.
-const SHORTEST_S: f64 = 1.0;
+const MIN_SPAN_S: f64 = 1.0;
 
 /// Draws the first one. Stress and strain follow from tension for a single cable only; with
 /// several, tension is shown.
@@ -39,7 +39,7 @@ fn graph(ui: &mut Ui, state: &AppState, view: GraphView, title: &str, height: f3
     let scene = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let Some(cable) = scene.cables.get(state.current_cable()) else { return GraphResponse::default() };
     let measure = match view.measure {
-        Measure::Cable(_) if scene.cables.len() > 1 => Measure::Cable(Quantity::Tension),
+        Measure::Cable(_) if scene.cables.len() > 1 => Measure::Cable(CableQuantity::Tension),
         measure => measure,
     };
     let now_s = state.live.history.samples.back().map_or(0.0, |s| s.time_s);
@@ -53,12 +53,12 @@ fn graph(ui: &mut Ui, state: &AppState, view: GraphView, title: &str, height: f3
         _ => left_s,
     };
     let now_s = view.window_s.map_or(now_s, |w| now_s.min(left_s + w));
-    let range = [left_s, now_s.max(left_s + view.window_s.unwrap_or(SHORTEST_S).max(SHORTEST_S))];
+    let range = [left_s, now_s.max(left_s + view.window_s.unwrap_or(MIN_SPAN_S).max(MIN_SPAN_S))];
     // A zoomed graph shows what it showed in the frame before, and a little on each side.
     let seen = if view.follow { None } else { in_view(ui, title) }.unwrap_or(range);
     let margin = 0.1 * (seen[1] - seen[0]);
     let seen = [seen[0] - margin, seen[1] + margin];
-    let columns = (ui.available_width() / COLUMN).max(1.0) as usize;
+    let columns = (ui.available_width() / SAMPLE_COLUMN_WIDTH).max(1.0) as usize;
     let graph = Graph {
         title,
         group: TIME,
@@ -93,7 +93,7 @@ fn ribbon(state: &AppState, cable: &Cable, measure: Measure) -> Vec<[f64; 3]> {
 /// The lines of a measure, SI, between two times: thinned to `columns` of the screen if there are
 /// any; then those of held runs.
 fn lines(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], columns: Option<usize>) -> Vec<Series> {
-    let mut lines = own(state, scene, measure, seen, columns);
+    let mut lines = recorded_lines(state, scene, measure, seen, columns);
     for (k, held) in state.analysis.references.iter().enumerate() {
         let Some(line) = held.run.as_ref().and_then(|r| r.line(measure)) else { continue };
         let scale = match (measure, held.scene.cables.first()) {
@@ -113,7 +113,13 @@ fn lines(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], colu
 }
 
 /// Those of what was recorded.
-fn own(state: &AppState, scene: &Scene, measure: Measure, seen: [f64; 2], columns: Option<usize>) -> Vec<Series> {
+fn recorded_lines(
+    state: &AppState,
+    scene: &Scene,
+    measure: Measure,
+    seen: [f64; 2],
+    columns: Option<usize>,
+) -> Vec<Series> {
     let history = &state.live.history;
     let (samples, means) = (history.view(seen, columns), history.means(seen, columns));
     let ends = [samples.first(), samples.last()].map(|s| s.map_or(0.0, |s| s.time_s));

@@ -45,7 +45,7 @@ impl History {
         self.bytes += sample.bytes();
         self.samples.push_back(sample);
         if self.bytes > Self::BUDGET_BYTES {
-            self.thin();
+            self.decimate();
         }
         self.summarise();
     }
@@ -99,8 +99,8 @@ impl History {
     }
 
     /// Time (s) and value of the greatest of a line that
-    /// [`Measure::LEADS`](crate::record::measure::Measure::LEADS) names: the block it is in is
-    /// found first.
+    /// [`Measure::PRIMARY_LINES`](crate::record::measure::Measure::PRIMARY_LINES) names: the block
+    /// it is in is found first.
     #[must_use]
     pub fn peak(&self, of: impl Fn(&Sample) -> f64) -> Option<[f64; 2]> {
         let greatest = |a: (usize, f64), b: (usize, f64)| if b.1 > a.1 { b } else { a };
@@ -127,7 +127,7 @@ impl History {
     }
 
     /// Leaves half of the older half.
-    fn thin(&mut self) {
+    fn decimate(&mut self) {
         let recent = self.samples.split_off(self.samples.len() / 8 * 4);
         let old = std::mem::take(&mut self.samples);
         self.samples.reserve_exact(old.len() / 2 + recent.len());

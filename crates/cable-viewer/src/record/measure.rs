@@ -3,20 +3,20 @@
 use cable_core::Cable;
 
 use crate::record::sample::Sample;
-use crate::render::colour::Quantity;
+use crate::render::colour::CableQuantity;
 use crate::units::format::{self, significant};
 use crate::units::{system, unit};
 
 /// A line over time: its name, and how to read it off a sample.
-pub type OverTime = (&'static str, ReadOff);
+pub type OverTime = (&'static str, SampleReader);
 /// Reads a value (SI) off a sample.
-pub type ReadOff = fn(&Sample) -> f64;
+pub type SampleReader = fn(&Sample) -> f64;
 
 /// The quantity that goes up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// A quantity of the cable, along it or its greatest over time.
-    Cable(Quantity),
+    Cable(CableQuantity),
     /// Pull of the cable on the robot's hitch, N.
     Pull,
     /// Speed of the robot, m/s.
@@ -28,17 +28,17 @@ pub enum Measure {
 impl Measure {
     /// All of them, in the order a picker shows.
     pub const ALL: [Self; 6] = [
-        Self::Cable(Quantity::Tension),
-        Self::Cable(Quantity::Stress),
-        Self::Cable(Quantity::Strain),
+        Self::Cable(CableQuantity::Tension),
+        Self::Cable(CableQuantity::Stress),
+        Self::Cable(CableQuantity::Strain),
         Self::Pull,
         Self::Speed,
         Self::Energy,
     ];
 
     /// The line of each that a whole run is compared by, SI. Stress and strain follow from tension.
-    pub const LEADS: [(Self, ReadOff); 4] = [
-        (Self::Cable(Quantity::Tension), |s| s.max_tension_n),
+    pub const PRIMARY_LINES: [(Self, SampleReader); 4] = [
+        (Self::Cable(CableQuantity::Tension), |s| s.max_tension_n),
         (Self::Pull, |s| s.robot.map_or(f64::NAN, |r| r[1])),
         (Self::Speed, |s| s.robot.map_or(f64::NAN, |r| r[0])),
         (Self::Energy, |s| s.energy_j[0]),
@@ -46,13 +46,13 @@ impl Measure {
 
     /// The line this one is compared by.
     #[must_use]
-    pub fn lead(self) -> Option<ReadOff> {
-        Self::LEADS.iter().find(|(m, _)| m.leads_as(self)).map(|(_, of)| *of)
+    pub fn primary_line(self) -> Option<SampleReader> {
+        Self::PRIMARY_LINES.iter().find(|(m, _)| m.shares_primary_line(self)).map(|(_, of)| *of)
     }
 
     /// Returns whether the line of this one is that of another.
     #[must_use]
-    pub fn leads_as(self, other: Self) -> bool {
+    pub fn shares_primary_line(self, other: Self) -> bool {
         self == other || matches!((self, other), (Self::Cable(_), Self::Cable(_)))
     }
 
@@ -71,9 +71,9 @@ impl Measure {
     #[must_use]
     pub fn help(self) -> &'static str {
         match self {
-            Self::Cable(Quantity::Tension) => "Pull in the cable",
-            Self::Cable(Quantity::Stress) => "Tension over the full round section",
-            Self::Cable(Quantity::Strain) => "Change of length over length",
+            Self::Cable(CableQuantity::Tension) => "Pull in the cable",
+            Self::Cable(CableQuantity::Stress) => "Tension over the full round section",
+            Self::Cable(CableQuantity::Strain) => "Change of length over length",
             Self::Pull => "Force of the cable on the robot's hitch over time",
             Self::Speed => "Speed of the robot along the ground over time",
             Self::Energy => "Of motion, height above y = 0, stretch and bending over time",
@@ -85,7 +85,7 @@ impl Measure {
     pub fn unit(self, greatest: f64) -> (&'static str, f64) {
         match self {
             Self::Cable(quantity) => quantity.unit(greatest),
-            Self::Pull => Quantity::Tension.unit(greatest),
+            Self::Pull => CableQuantity::Tension.unit(greatest),
             Self::Speed => {
                 let unit::Unit { symbol, si, .. } = unit::Unit::M_PER_S.display();
                 (symbol, si)
@@ -98,9 +98,9 @@ impl Measure {
     #[must_use]
     pub fn suffix(self) -> &'static str {
         match self {
-            Self::Cable(Quantity::Tension) => "tension_n",
-            Self::Cable(Quantity::Stress) => "stress_pa",
-            Self::Cable(Quantity::Strain) => "strain",
+            Self::Cable(CableQuantity::Tension) => "tension_n",
+            Self::Cable(CableQuantity::Stress) => "stress_pa",
+            Self::Cable(CableQuantity::Strain) => "strain",
             Self::Pull => "pull_n",
             Self::Speed => "speed_m_per_s",
             Self::Energy => "energy_j",
@@ -111,9 +111,9 @@ impl Measure {
     #[must_use]
     pub fn text(self, value: f64) -> String {
         match self {
-            Self::Cable(Quantity::Tension) | Self::Pull => format::force(value),
-            Self::Cable(Quantity::Stress) => format::stress(value),
-            Self::Cable(Quantity::Strain) => format::strain(value),
+            Self::Cable(CableQuantity::Tension) | Self::Pull => format::force(value),
+            Self::Cable(CableQuantity::Stress) => format::stress(value),
+            Self::Cable(CableQuantity::Strain) => format::strain(value),
             Self::Speed | Self::Energy => {
                 let (symbol, si) = self.unit(value.abs());
                 format!("{} {symbol}", significant(value / si, unit::DIGITS))
@@ -124,10 +124,10 @@ impl Measure {
     /// The quantity of the cable it is, or the tension where it is none: what a graph along the
     /// cable shows.
     #[must_use]
-    pub fn quantity(self) -> Quantity {
+    pub fn quantity(self) -> CableQuantity {
         match self {
             Self::Cable(quantity) => quantity,
-            _ => Quantity::Tension,
+            _ => CableQuantity::Tension,
         }
     }
 
@@ -159,17 +159,17 @@ impl Measure {
 
 /// Service and breaking limit of a quantity, SI.
 #[must_use]
-pub fn tension_limits(quantity: Quantity, cable: &Cable) -> [f64; 2] {
+pub fn tension_limits(quantity: CableQuantity, cable: &Cable) -> [f64; 2] {
     let per_newton = per_newton(quantity, cable);
     [cable.service_tension_n * per_newton, cable.breaking_tension_n * per_newton]
 }
 
 /// The quantity of a cable under one newton, SI.
 #[must_use]
-pub fn per_newton(quantity: Quantity, cable: &Cable) -> f64 {
+pub fn per_newton(quantity: CableQuantity, cable: &Cable) -> f64 {
     match quantity {
-        Quantity::Tension => 1.0,
-        Quantity::Stress => 1.0 / cable.area_m2(),
-        Quantity::Strain => 1.0 / cable.axial_stiffness_n,
+        CableQuantity::Tension => 1.0,
+        CableQuantity::Stress => 1.0 / cable.area_m2(),
+        CableQuantity::Strain => 1.0 / cable.axial_stiffness_n,
     }
 }

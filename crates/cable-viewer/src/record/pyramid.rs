@@ -4,7 +4,7 @@
 
 /// Samples in a block, blocks in a block of blocks. Larger: more to look through at the ends;
 /// smaller: more memory (a third of the line at 4).
-const FAN: usize = 4;
+const BRANCHING_FACTOR: usize = 4;
 
 /// A line with its extremes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,11 +29,11 @@ impl Pyramid {
             [ends[0].min(ends[1]), ends[0].max(ends[1])]
         };
         let count = points.len() as u32;
-        let starts = (0..count).step_by(FAN);
+        let starts = (0..count).step_by(BRANCHING_FACTOR);
         let mut level: Vec<[u32; 2]> =
-            starts.map(|s| extremes(&mut (s..count.min(s.saturating_add(FAN as u32))))).collect();
+            starts.map(|s| extremes(&mut (s..count.min(s.saturating_add(BRANCHING_FACTOR as u32))))).collect();
         while level.len() > 1 {
-            let next = level.chunks(FAN).map(|c| extremes(&mut c.iter().flatten().copied())).collect();
+            let next = level.chunks(BRANCHING_FACTOR).map(|c| extremes(&mut c.iter().flatten().copied())).collect();
             levels.push(std::mem::replace(&mut level, next));
         }
         Self { points, levels }
@@ -54,16 +54,16 @@ impl Pyramid {
         let to = (self.points.partition_point(|p| p[0] <= right) + 1).min(self.points.len()).max(from);
         let per_column = (to - from) / columns.max(1);
         // The widest blocks of which each column still has one.
-        let mut size = FAN;
+        let mut size = BRANCHING_FACTOR;
         let level = self.levels.iter().take_while(|_| {
             let fits = size <= per_column;
-            size *= if fits { FAN } else { 1 };
+            size *= if fits { BRANCHING_FACTOR } else { 1 };
             fits
         });
         let Some(blocks) = level.last() else {
             return self.points.get(from..to).unwrap_or_default().to_vec();
         };
-        let size = size / FAN;
+        let size = size / BRANCHING_FACTOR;
         let blocks = blocks.get(from / size..to.div_ceil(size).min(blocks.len())).unwrap_or_default();
         let mut out = Vec::with_capacity(2 * blocks.len());
         for &[a, b] in blocks {
@@ -87,7 +87,7 @@ mod tests {
         let p = Pyramid::new(wave(1_000_000));
         for range in [[0.0, 1e6], [70_000.0, 80_000.0], [77_700.5, 77_800.5], [-5.0, 1.0], [2e6, 3e6]] {
             let seen = p.view(range, 1000);
-            assert!(seen.len() <= 2 * FAN * 1000 + 4, "{range:?}: {}", seen.len());
+            assert!(seen.len() <= 2 * BRANCHING_FACTOR * 1000 + 4, "{range:?}: {}", seen.len());
             assert!(seen.windows(2).all(|w| w[0][0] < w[1][0]), "{range:?}");
             let inside = || p.points.iter().filter(|q| q[0] >= range[0] && q[0] <= range[1]).map(|q| q[1]);
             let most = inside().fold(f64::NEG_INFINITY, f64::max);

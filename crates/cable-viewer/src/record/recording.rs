@@ -61,7 +61,7 @@ impl Recording {
                 WarningKind::Broken => self.events.iter().any(|e| e.warning == *w),
                 _ => self.active.iter().any(|(kind, cable)| *kind == w.kind && *cable == w.cable),
             };
-            if !known && marks(w.kind) && self.events.len() < MAX_EVENTS {
+            if !known && is_event(w.kind) && self.events.len() < MAX_EVENTS {
                 self.events.push(Event { time_s: began(w, solution.time_s), warning: w.clone() });
             }
         }
@@ -139,7 +139,7 @@ impl Recording {
 }
 
 /// Returns whether a kind is something that happens, not a remark on the answer.
-fn marks(kind: WarningKind) -> bool {
+fn is_event(kind: WarningKind) -> bool {
     !matches!(
         kind,
         WarningKind::NotUnique

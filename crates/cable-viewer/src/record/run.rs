@@ -14,12 +14,12 @@ use crate::record::sample::Sample;
 /// longer run is shown at fewer pictures a second, at least one a second up to ten minutes. 600
 /// pictures of 200 nodes are 9 MB, of eight runs 70 MB. More: eight held runs fill the memory of a
 /// small machine; fewer: the cable of a fast run jumps.
-const MAX_PICTURES: usize = 600;
+const MAX_ANSWERS: usize = 600;
 
 /// The description of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Run {
-    /// The leading line of each measure over time, SI, in the order of [`Measure::LEADS`].
+    /// The leading line of each measure over time, SI, in the order of [`Measure::PRIMARY_LINES`].
     lines: Vec<Pyramid>,
     /// The greatest of each of them: looked for once, not in every frame.
     peaks: Vec<Option<Peak>>,
@@ -53,9 +53,9 @@ impl Run {
             let points = samples.clone().map(|s| [s.time_s, of(s)]).filter(|p| p[1].is_finite());
             Pyramid::new(points.collect())
         };
-        let lines: Vec<Pyramid> = Measure::LEADS.iter().map(|(_, of)| line(*of)).collect();
+        let lines: Vec<Pyramid> = Measure::PRIMARY_LINES.iter().map(|(_, of)| line(*of)).collect();
         let peaks = lines.iter().map(|l| Peak::of(l.points().iter().copied())).collect();
-        let every = answers.len().div_ceil(MAX_PICTURES).max(1);
+        let every = answers.len().div_ceil(MAX_ANSWERS).max(1);
         let kept = answers.iter().step_by(every).chain(answers.last());
         Some(Self { lines, peaks, answers: kept.map(|a| Arc::new(a.clone())).collect(), events })
     }
@@ -63,7 +63,7 @@ impl Run {
     /// The leading line of a measure over time; None where it has none.
     #[must_use]
     pub fn line(&self, measure: Measure) -> Option<&Pyramid> {
-        let k = Measure::LEADS.iter().position(|(m, _)| m.leads_as(measure))?;
+        let k = Measure::PRIMARY_LINES.iter().position(|(m, _)| m.shares_primary_line(measure))?;
         self.lines.get(k).filter(|l| !l.points().is_empty())
     }
 
@@ -84,7 +84,7 @@ impl Run {
     /// The greatest of a measure.
     #[must_use]
     pub fn peak(&self, measure: Measure) -> Option<Peak> {
-        let k = Measure::LEADS.iter().position(|(m, _)| m.leads_as(measure))?;
+        let k = Measure::PRIMARY_LINES.iter().position(|(m, _)| m.shares_primary_line(measure))?;
         self.peaks.get(k).copied().flatten()
     }
 }

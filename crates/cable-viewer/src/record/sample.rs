@@ -45,7 +45,7 @@ impl Sample {
     /// Its memory, bytes, with what the heap adds.
     pub(super) fn bytes(&self) -> usize {
         /// Of a piece of heap.
-        const HEAP: usize = 16;
-        size_of::<Self>() + HEAP + size_of_val(self.reactions_n.as_slice())
+        const ALLOCATION_OVERHEAD_BYTES: usize = 16;
+        size_of::<Self>() + ALLOCATION_OVERHEAD_BYTES + size_of_val(self.reactions_n.as_slice())
     }
 }

@@ -10,7 +10,7 @@ use crate::units::system;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
     /// Which quantity.
-    pub quantity: Quantity,
+    pub quantity: CableQuantity,
     /// Which colours.
     pub map: ColourMap,
     /// Least and greatest value in SI units (N, Pa, 1); None = those of the present answer.
@@ -19,13 +19,13 @@ pub struct ColourScale {
 
 impl Default for ColourScale {
     fn default() -> Self {
-        Self { quantity: Quantity::Tension, map: ColourMap::Viridis, fixed: None }
+        Self { quantity: CableQuantity::Tension, map: ColourMap::Viridis, fixed: None }
     }
 }
 
 /// The quantity that the colour shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
+pub enum CableQuantity {
     /// Tension, N.
     Tension,
     /// Stress over the full round section, Pa.
@@ -34,7 +34,7 @@ pub enum Quantity {
     Strain,
 }
 
-impl Quantity {
+impl CableQuantity {
     /// All of them, in the order a picker shows.
     pub const ALL: [Self; 3] = [Self::Tension, Self::Stress, Self::Strain];
 

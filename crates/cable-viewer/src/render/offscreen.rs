@@ -59,19 +59,19 @@ impl Offscreen {
         self.last = Some(output);
     }
 
-    /// The last frame as SVG, on a ground of one colour.
+    /// The last frame as SVG, on a background of one colour.
     #[must_use]
-    pub fn svg(&self, ground: Color32) -> String {
-        svg::write(self.last.as_ref().map_or(&[], |output| &output.shapes), self.size, ground)
+    pub fn svg(&self, background: Color32) -> String {
+        svg::write(self.last.as_ref().map_or(&[], |output| &output.shapes), self.size, background)
     }
 
-    /// The last frame as a picture, on a ground of one colour.
+    /// The last frame as a picture, on a background of one colour.
     #[must_use]
-    pub fn picture(&self, ground: Color32) -> RgbaImage {
+    pub fn picture(&self, background: Color32) -> RgbaImage {
         let size = [self.size.x, self.size.y].map(|s| (s * self.pixels_per_point).round() as u32);
         let shapes = self.last.as_ref().map_or_else(Vec::new, |output| output.shapes.clone());
         let primitives = self.ctx.tessellate(shapes, self.pixels_per_point);
-        triangle_rasteriser::draw(&primitives, &self.textures, (size, self.pixels_per_point, ground))
+        triangle_rasteriser::draw(&primitives, &self.textures, (size, self.pixels_per_point, background))
     }
 }
 

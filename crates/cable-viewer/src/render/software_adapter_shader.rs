@@ -40,13 +40,13 @@ const PLAIN: f32 = 4000.0;
 const CORNER_BYTES: u64 = 20;
 
 /// Takes over what egui would draw.
-pub struct Software {
+pub struct SoftwarePainter {
     format: wgpu::TextureFormat,
     /// Changes of the font not yet on the device: a frame that is never drawn must not lose them.
     font: Arc<Mutex<Vec<ImageDelta>>>,
 }
 
-impl Software {
+impl SoftwarePainter {
     /// For a device that is software; None where a GPU draws, which egui's shader suits.
     #[must_use]
     pub fn of(state: &RenderState) -> Option<Self> {
@@ -58,7 +58,7 @@ impl Software {
     }
 }
 
-impl egui::Plugin for Software {
+impl egui::Plugin for SoftwarePainter {
     fn debug_name(&self) -> &'static str {
         "software drawing"
     }
@@ -82,7 +82,7 @@ impl egui::Plugin for Software {
         }
         let jobs = ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
         let screen = ctx.viewport_rect();
-        let picture = Picture::of(&jobs, screen, (self.format, Arc::clone(&self.font)));
+        let picture = FrameGeometry::of(&jobs, screen, (self.format, Arc::clone(&self.font)));
         let callback = egui_wgpu::Callback::new_paint_callback(screen, picture);
         output.shapes = vec![ClippedShape::new(screen, callback)];
     }
@@ -108,7 +108,7 @@ enum Fill {
 }
 
 /// A frame.
-struct Picture {
+struct FrameGeometry {
     corners: Vec<u8>,
     indices: Vec<u32>,
     parts: Vec<Part>,
@@ -117,7 +117,7 @@ struct Picture {
     font: Arc<Mutex<Vec<ImageDelta>>>,
 }
 
-impl Picture {
+impl FrameGeometry {
     fn of(
         jobs: &[ClippedPrimitive],
         screen: Rect,
@@ -170,7 +170,7 @@ impl Picture {
     }
 }
 
-impl CallbackTrait for Picture {
+impl CallbackTrait for FrameGeometry {
     fn prepare(
         &self,
         device: &wgpu::Device,
@@ -234,29 +234,29 @@ fn fills(mesh: &Mesh) -> Vec<Fill> {
     // Where the row of small white ones began, and twice its area, points².
     let (mut began, mut area) = (0, 0.0);
     for triangle in mesh.indices.chunks_exact(3) {
-        let (size, fill) = alone(mesh, triangle);
+        let (size, fill) = single_triangle_fill(mesh, triangle);
         if fill == Some(Fill::Plain) && size <= PLAIN {
             area += size;
             fills.push(Fill::Font);
             continue;
         }
-        settle(&mut fills, began, area);
+        close_triangle_run(&mut fills, began, area);
         fills.push(fill.unwrap_or(Fill::Font));
         (began, area) = (fills.len(), 0.0);
     }
-    settle(&mut fills, began, area);
+    close_triangle_run(&mut fills, began, area);
     fills
 }
 
 /// A row of small triangles is over.
-fn settle(fills: &mut [Fill], began: usize, area: f32) {
+fn close_triangle_run(fills: &mut [Fill], began: usize, area: f32) {
     if area > PLAIN {
         fills.iter_mut().skip(began).for_each(|f| *f = Fill::Plain);
     }
 }
 
 /// Twice the area of a triangle, points², and how it can be drawn without the font, if it can.
-fn alone(mesh: &Mesh, triangle: &[u32]) -> (f32, Option<Fill>) {
+fn single_triangle_fill(mesh: &Mesh, triangle: &[u32]) -> (f32, Option<Fill>) {
     let corner = |k: usize| triangle.get(k).and_then(|i| mesh.vertices.get(*i as usize));
     let (Some(a), Some(b), Some(c)) = (corner(0), corner(1), corner(2)) else { return (0.0, None) };
     let (u, v) = (b.pos - a.pos, c.pos - a.pos);

@@ -10,14 +10,14 @@ use egui::{Color32, Pos2, Rect, Shape, Stroke, Vec2};
 /// Steps that a curve is drawn in.
 const STEPS: u16 = 16;
 
-/// Writes shapes on a ground of one colour, of a size in points.
+/// Writes shapes on a background of one colour, of a size in points.
 #[must_use]
-pub fn write(shapes: &[ClippedShape], size: Vec2, ground: Color32) -> String {
+pub fn write(shapes: &[ClippedShape], size: Vec2, background: Color32) -> String {
     let (w, h) = (size.x, size.y);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
          font-family=\"Ubuntu, sans-serif\">\n<rect width=\"{w}\" height=\"{h}\"{}/>\n",
-        fill(ground)
+        fill(background)
     );
     let paper = Rect::from_min_size(Pos2::ZERO, size);
     let mut clip: Option<Rect> = None;

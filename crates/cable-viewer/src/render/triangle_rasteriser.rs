@@ -87,14 +87,14 @@ fn parts(colour: Color32) -> Colour {
     colour.to_array().map(f32::from)
 }
 
-/// Draws what a frame is made of on a ground of one opaque colour; `size` in pixels.
+/// Draws what a frame is made of on a background of one opaque colour; `size` in pixels.
 #[must_use]
 pub fn draw(
     primitives: &[ClippedPrimitive],
     textures: &Textures,
-    (size, pixels_per_point, ground): ([u32; 2], f32, Color32),
+    (size, pixels_per_point, background): ([u32; 2], f32, Color32),
 ) -> RgbaImage {
-    let mut picture = RgbaImage::from_pixel(size[0], size[1], Rgba(ground.to_opaque().to_array()));
+    let mut picture = RgbaImage::from_pixel(size[0], size[1], Rgba(background.to_opaque().to_array()));
     for ClippedPrimitive { clip_rect, primitive } in primitives {
         if let Primitive::Mesh(mesh) = primitive
             && let Some(texture) = textures.known.get(&mesh.texture_id)

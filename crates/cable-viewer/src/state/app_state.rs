@@ -53,7 +53,7 @@ impl AppState {
         let scene = &self.document.scene;
         let index = match self.selection.selected {
             Some(Item::Cable(cable) | Item::Support { cable, .. }) => cable,
-            Some(Item::Load(k) | Item::Head(k)) => {
+            Some(Item::Load(k) | Item::LoadHead(k)) => {
                 let load = scene.loads.get(k);
                 load.and_then(|l| scene.cables.iter().position(|c| c.name == l.cable)).unwrap_or(0)
             }
@@ -77,9 +77,9 @@ impl AppState {
             Item::Obstacle(k) => format!("obstacle {}", obstacle(k)),
             Item::Corner { obstacle: k, corner } => format!("corner {} of {}", corner + 1, obstacle(k)),
             Item::Load(k) => format!("load {}", k + 1),
-            Item::Head(k) => format!("force of load {}", k + 1),
+            Item::LoadHead(k) => format!("force of load {}", k + 1),
             Item::Robot => "the robot".to_owned(),
-            Item::Leg(k) => format!("leg {} of the robot's path", k + 1),
+            Item::PathLeg(k) => format!("leg {} of the robot's path", k + 1),
             Item::Scene => "the scene".to_owned(),
             Item::Environment => "the environment".to_owned(),
             Item::Solver => "the solver".to_owned(),

@@ -35,11 +35,11 @@ pub struct Live {
     /// The reset is the last thing that was done: undo takes it back.
     pub reset_is_last: bool,
     /// The next history that restarts is that of a reset.
-    pub resets: bool,
+    pub restart_is_reset: bool,
     /// Speed of the robot by hand, m/s, positive to the right; None: it follows its path.
-    pub robot_order: Option<f64>,
+    pub robot_speed_command: Option<f64>,
     /// Speed the robot is driven with by hand, m/s; None: its greatest.
-    pub robot_speed: Option<f64>,
+    pub manual_robot_speed: Option<f64>,
 }
 
 impl Default for Live {
@@ -53,9 +53,9 @@ impl Default for Live {
             reopened_run: Vec::new(),
             earlier_run: None,
             reset_is_last: false,
-            resets: false,
-            robot_order: None,
-            robot_speed: None,
+            restart_is_reset: false,
+            robot_speed_command: None,
+            manual_robot_speed: None,
         }
     }
 }
@@ -69,7 +69,7 @@ impl Live {
 
     /// Begins recording anew, for another scene or after a reset; what a reset ends is kept.
     pub fn restart_history(&mut self) {
-        if std::mem::take(&mut self.resets) {
+        if std::mem::take(&mut self.restart_is_reset) {
             self.reset_is_last = self.end_run(None);
         } else {
             self.end_run(None);

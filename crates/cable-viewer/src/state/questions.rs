@@ -6,20 +6,20 @@ use std::sync::Arc;
 use cable_core::Scene;
 use cable_core::analysis::friction_range::FrictionQuery;
 
-use crate::jobs::friction_range::{self, MAX_RUN_S, hands};
+use crate::jobs::friction_range::{self, MAX_RUN_S, recorded_actions};
 use crate::jobs::neglected_bending;
 use crate::jobs::safe_reach::{ReachSubject, movable};
 use crate::state::app_state::AppState;
 use crate::state::selection::Item;
 
-/// Returns whether an ask is the one that what is on screen asks.
+/// Returns whether a query is the one that what is on screen asks.
 #[must_use]
-pub fn friction_query_fits(state: &AppState, ask: &FrictionQuery) -> bool {
-    ask.span_s == run_time_s(state)
-        && ask.factors == state.analysis.friction_range.factors
-        && ask.model == state.solver.model
-        && ask.settings == state.solver.settings
-        && ask.scene == *answered_scene(state)
+pub fn friction_query_fits(state: &AppState, query: &FrictionQuery) -> bool {
+    query.span_s == run_time_s(state)
+        && query.factors == state.analysis.friction_range.factors
+        && query.model == state.solver.model
+        && query.settings == state.solver.settings
+        && query.scene == *answered_scene(state)
 }
 
 /// Returns what is on screen asks; None while it moves or has no answer.
@@ -34,7 +34,7 @@ pub fn friction_query(state: &AppState) -> Option<FrictionQuery> {
         settings: state.solver.settings,
         factors: state.analysis.friction_range.factors,
         span_s: run_time_s(state),
-        hands: hands(answered_scene(state), state.live.recording.answers()),
+        hands: recorded_actions(answered_scene(state), state.live.recording.answers()),
     })
 }
 
@@ -80,7 +80,7 @@ pub fn bending_query_fits(state: &AppState) -> bool {
         .query
         .as_ref()
         .zip(shown)
-        .is_some_and(|(ask, shown)| Arc::ptr_eq(&ask.answer, shown))
+        .is_some_and(|(query, shown)| Arc::ptr_eq(&query.answer, shown))
 }
 
 /// Returns what is taken somewhere: what was chosen, if it is still there.

@@ -10,9 +10,9 @@ pub struct Selection {
     /// The thing that the user picked.
     pub selected: Option<Item>,
     /// The things that were picked besides: they are moved, copied and removed with it.
-    pub also: Vec<Item>,
+    pub also_selected: Vec<Item>,
     /// Two corners of the frame being drawn round things to pick, m.
-    pub frame_m: Option<[Point; 2]>,
+    pub marquee_m: Option<[Point; 2]>,
     /// The things that were copied.
     pub clipboard: Clipboard,
     /// The thing that the pointer is over.
@@ -28,14 +28,14 @@ pub struct Selection {
 impl Selection {
     /// Everything picked.
     #[must_use]
-    pub fn picks(&self) -> Vec<Item> {
-        self.selected.into_iter().chain(self.also.iter().copied()).collect()
+    pub fn selected_items(&self) -> Vec<Item> {
+        self.selected.into_iter().chain(self.also_selected.iter().copied()).collect()
     }
 
     /// Returns whether a thing is picked.
     #[must_use]
     pub fn contains(&self, item: Item) -> bool {
-        self.selected == Some(item) || self.also.contains(&item)
+        self.selected == Some(item) || self.also_selected.contains(&item)
     }
 }
 
@@ -63,11 +63,11 @@ pub enum Item {
     /// A point load.
     Load(usize),
     /// The head of a load's arrow: its force.
-    Head(usize),
+    LoadHead(usize),
     /// The robot.
     Robot,
     /// Where a leg of the robot's path ends.
-    Leg(usize),
+    PathLeg(usize),
     /// The scene as a whole: its name, map and robot.
     Scene,
     /// Gravity, wind, temperature and view.

@@ -5,8 +5,8 @@ use cable_core::Scene;
 /// Scenes to go back and forward to.
 #[derive(Clone, Debug, Default)]
 pub struct Undo {
-    before: Vec<Scene>,
-    after: Vec<Scene>,
+    undo_stack: Vec<Scene>,
+    redo_stack: Vec<Scene>,
     /// The kind of the last edit: further ones of the same kind (a drag, a slider) join it.
     last: Option<EditKind>,
 }
@@ -21,15 +21,15 @@ const DEPTH: usize = 200;
 impl Undo {
     /// Keeps `scene`, about to be changed by an edit of a kind.
     pub fn record(&mut self, scene: &Scene, kind: EditKind) {
-        self.after.clear();
+        self.redo_stack.clear();
         if self.last.as_ref() == Some(&kind) {
             return;
         }
         self.last = Some(kind);
-        if self.before.len() == DEPTH {
-            self.before.remove(0);
+        if self.undo_stack.len() == DEPTH {
+            self.undo_stack.remove(0);
         }
-        self.before.push(scene.clone());
+        self.undo_stack.push(scene.clone());
     }
 
     /// The next edit is a new entry, whatever its kind.
@@ -38,9 +38,9 @@ impl Undo {
     }
 
     /// The scene before `present`, which becomes the one to redo.
-    pub fn back(&mut self, present: &Scene) -> Option<Scene> {
-        let scene = self.before.pop()?;
-        self.after.push(present.clone());
+    pub fn undo(&mut self, present: &Scene) -> Option<Scene> {
+        let scene = self.undo_stack.pop()?;
+        self.redo_stack.push(present.clone());
         self.last = None;
         Some(scene)
     }
@@ -48,21 +48,21 @@ impl Undo {
     /// The scenes that an undo and a redo lead to.
     #[must_use]
     pub fn neighbours(&self) -> [Option<&Scene>; 2] {
-        [self.before.last(), self.after.last()]
+        [self.undo_stack.last(), self.redo_stack.last()]
     }
 
     /// Goes from `present` back or forward to a scene, or makes it the next entry if it is in
     /// neither direction.
     pub fn go_to(&mut self, mut present: Scene, scene: &Scene) -> Scene {
-        let forward = self.after.contains(scene);
-        if !forward && !self.before.contains(scene) {
+        let forward = self.redo_stack.contains(scene);
+        if !forward && !self.undo_stack.contains(scene) {
             self.close_entry();
             self.record(&present, EditKind("restart".to_owned()));
             self.close_entry();
             return scene.clone();
         }
         while present != *scene {
-            let next = if forward { self.forward(&present) } else { self.back(&present) };
+            let next = if forward { self.redo(&present) } else { self.undo(&present) };
             let Some(next) = next else { break };
             present = next;
         }
@@ -70,16 +70,16 @@ impl Undo {
     }
 
     /// The scene undone last.
-    pub fn forward(&mut self, present: &Scene) -> Option<Scene> {
-        let scene = self.after.pop()?;
-        self.before.push(present.clone());
+    pub fn redo(&mut self, present: &Scene) -> Option<Scene> {
+        let scene = self.redo_stack.pop()?;
+        self.undo_stack.push(present.clone());
         self.last = None;
         Some(scene)
     }
 
     /// Returns whether there is something to undo, to redo.
     #[must_use]
-    pub fn available(&self) -> (bool, bool) {
-        (!self.before.is_empty(), !self.after.is_empty())
+    pub fn can_undo_and_redo(&self) -> (bool, bool) {
+        (!self.undo_stack.is_empty(), !self.redo_stack.is_empty())
     }
 }

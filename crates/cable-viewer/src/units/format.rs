@@ -21,12 +21,12 @@ pub fn times(factor: f64) -> String {
 }
 
 /// Smaller forces (N) are what rounding leaves of a balance: they read 0.
-const LEAST_FORCE_N: f64 = 1e-9;
+const MIN_FORCE_N: f64 = 1e-9;
 
 /// A force with N, kN or MN, N.
 #[must_use]
 pub fn force(value_n: f64) -> String {
-    scaled(if value_n.abs() < LEAST_FORCE_N { 0.0 } else { value_n }, system::Kind::Force)
+    scaled(if value_n.abs() < MIN_FORCE_N { 0.0 } else { value_n }, system::Kind::Force)
 }
 
 /// A stress with Pa, kPa, MPa or GPa, Pa.
@@ -78,12 +78,12 @@ fn duration_with(value_s: f64, digits: usize) -> String {
 
 /// Smaller ratios are not written with their power of ten: nobody reads more into it than that it
 /// is very small.
-pub const LEAST_RATIO: f64 = 1e-6;
+pub const MIN_RATIO: f64 = 1e-6;
 
 /// A ratio in per cent with three digits.
 #[must_use]
 pub fn percent(ratio: f64) -> String {
-    if ratio.abs() < LEAST_RATIO && ratio != 0.0 {
+    if ratio.abs() < MIN_RATIO && ratio != 0.0 {
         return "< 0.0001 %".to_owned();
     }
     format!("{} %", significant(ratio * 1e2, 3))

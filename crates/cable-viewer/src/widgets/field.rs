@@ -9,7 +9,7 @@ use crate::widgets::icon::{self, Icon};
 
 /// What a field holds while it differs from the value behind it.
 #[derive(Clone, Debug, Default)]
-struct Draft {
+struct FieldDraft {
     text: String,
     /// The value when typing began: if it changed since, the draft is about something else.
     value: String,
@@ -19,7 +19,7 @@ struct Draft {
 
 /// The outcome of a field in this frame.
 #[derive(Debug)]
-pub struct Entry<T> {
+pub struct FieldOutput<T> {
     /// A new value, entered just now.
     pub value: Option<T>,
     /// The reason why the text in the field cannot be read.
@@ -30,30 +30,30 @@ pub struct Entry<T> {
 
 /// Gives a widget without text of its own the name that screen readers and tests find it by.
 pub fn name(response: &Response, label: &str) {
-    highlight::offer(response, label);
+    highlight::register(response, label);
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(label));
 }
 
 /// A field for a number in a unit; `value` is SI. Enter or leaving the field enters the text,
 /// Escape drops it.
-pub fn number(ui: &mut Ui, label: &str, unit: Unit, value: f64, width: f32) -> Entry<f64> {
+pub fn number(ui: &mut Ui, label: &str, unit: Unit, value: f64, width: f32) -> FieldOutput<f64> {
     let shown = [unit.text(value), unit.exact(value)];
     let entry = text_field(ui, label, &shown, (width, Align2::RIGHT_CENTER), |text| unit.parse(text));
     // Text shown with fewer digits than the value has must not round it when it is entered
     // unchanged.
     let value = entry.value.filter(|&v| unit.exact(v) != shown[1]);
-    Entry { value, ..entry }
+    FieldOutput { value, ..entry }
 }
 
 /// A field for a name.
-pub fn text(ui: &mut Ui, label: &str, value: &str, width: f32) -> Entry<String> {
+pub fn text(ui: &mut Ui, label: &str, value: &str, width: f32) -> FieldOutput<String> {
     let shown = [value.to_owned(), value.to_owned()];
     let read = |text: &str| match text.trim() {
         "" => Err("a name must not be empty".to_owned()),
         name => Ok(name.to_owned()),
     };
     let entry = text_field(ui, label, &shown, (width, Align2::LEFT_CENTER), read);
-    Entry { value: entry.value.filter(|v| v != value), ..entry }
+    FieldOutput { value: entry.value.filter(|v| v != value), ..entry }
 }
 
 /// `shown`: the value at rest, and to be edited.
@@ -63,13 +63,13 @@ fn text_field<T>(
     shown: &[String; 2],
     (width, align): (f32, Align2),
     read: impl FnOnce(&str) -> Result<T, String>,
-) -> Entry<T> {
+) -> FieldOutput<T> {
     let id = ui.scope_id().with(("field", label));
     let [at_rest, exact] = shown;
-    let mut draft: Option<Draft> = ui.data(|d| d.get_temp(id)).filter(|d: &Draft| d.value == *exact);
+    let mut draft: Option<FieldDraft> = ui.data(|d| d.get_temp(id)).filter(|d: &FieldDraft| d.value == *exact);
     let began = draft.is_none() && ui.memory(|m| m.has_focus(id));
     if began {
-        draft = Some(Draft { text: exact.clone(), value: exact.clone(), fault: None });
+        draft = Some(FieldDraft { text: exact.clone(), value: exact.clone(), fault: None });
         select_all(ui, id, exact);
     }
     let mut text = draft.as_ref().map_or_else(|| at_rest.clone(), |d| d.text.clone());
@@ -89,10 +89,10 @@ fn text_field<T>(
                 entered = Some(value);
                 None
             }
-            Err(fault) => Some(Draft { text, value: exact.clone(), fault: Some(fault) }),
+            Err(fault) => Some(FieldDraft { text, value: exact.clone(), fault: Some(fault) }),
         };
     } else if response.changed() {
-        draft = Some(Draft { text, value: exact.clone(), fault: None });
+        draft = Some(FieldDraft { text, value: exact.clone(), fault: None });
     }
     let fault = draft.as_ref().and_then(|d| d.fault.clone());
     ui.data_mut(|d| match draft {
@@ -100,15 +100,15 @@ fn text_field<T>(
             d.insert_temp(id, draft);
         }
         None => {
-            d.remove_temp::<Draft>(id);
+            d.remove_temp::<FieldDraft>(id);
         }
     });
-    Entry { value: entered, fault, response }
+    FieldOutput { value: entered, fault, response }
 }
 
 /// Forgets what was typed into a field of this `ui`.
 pub fn forget(ui: &Ui, label: &str) {
-    ui.data_mut(|d| d.remove_temp::<Draft>(ui.scope_id().with(("field", label))));
+    ui.data_mut(|d| d.remove_temp::<FieldDraft>(ui.scope_id().with(("field", label))));
 }
 
 fn select_all(ui: &Ui, id: Id, text: &str) {

@@ -67,7 +67,7 @@ pub fn text_button(ui: &mut Ui, icon: Icon, text: &str, width: f32) -> Response 
     if let Some(rect) = answer.rect(id) {
         paint(ui.painter(), icon, rect, ui.style().interact(&answer.response).text_color());
     }
-    crate::widgets::highlight::offer(&answer.response, text);
+    crate::widgets::highlight::register(&answer.response, text);
     answer.response
 }
 

@@ -5,7 +5,7 @@ use egui::{Response, RichText, Ui};
 use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
-use crate::widgets::slider::{self, Rail};
+use crate::widgets::slider::{self, SliderRange};
 
 /// What a quantity is called, shown in and usually worth.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ pub struct Provenance {
 
 /// The edit that a row asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Change {
+pub struct PropertyEdit {
     /// A new value, SI.
     pub value: Option<f64>,
     /// The edit is complete: the next one is undone by itself.
@@ -47,19 +47,19 @@ pub struct Change {
 /// Width of the typed value, points: “9.807 m/s²” and “17.00 ppm/K” fit.
 const FIELD_WIDTH: f32 = 84.0;
 /// Narrowest slider that can still be aimed at, points.
-const LEAST_SLIDER: f32 = 36.0;
+const MIN_SLIDER_WIDTH: f32 = 36.0;
 /// Width of the reset button, points.
 const RESET_WIDTH: f32 = 18.0;
 /// Width of the names, points: “Bending stiffness ≈” fits.
 pub const NAME_WIDTH: f32 = 122.0;
 
 /// Draws the row; faults stand below it.
-pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
-    let mut change = Change::default();
+pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> PropertyEdit {
+    let mut change = PropertyEdit::default();
     let mut fault = None;
     let spent = NAME_WIDTH + FIELD_WIDTH + RESET_WIDTH + 3.0 * 4.0;
     // In a narrow panel the slider has a line of its own: it is aimed at with a hand.
-    let narrow = ui.available_width() < spent + LEAST_SLIDER;
+    let narrow = ui.available_width() < spent + MIN_SLIDER_WIDTH;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let left = ui.available_width();
@@ -77,7 +77,7 @@ pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
             .inner;
         let label_id = label.on_hover_ui(|ui| explanation(ui, quantity, known)).id;
         if !narrow {
-            ui.spacing_mut().slider_width = (left - spent).max(LEAST_SLIDER);
+            ui.spacing_mut().slider_width = (left - spent).max(MIN_SLIDER_WIDTH);
             slide(ui, quantity, known, &mut change);
         }
         let entry = field::number(ui, quantity.name, quantity.unit, known.value, FIELD_WIDTH);
@@ -85,21 +85,21 @@ pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
         field::name(&response, quantity.name);
         response.on_hover_ui(|ui| explanation(ui, quantity, known));
         if let Some(value) = entry.value {
-            change = Change { value: Some(value), done: true };
+            change = PropertyEdit { value: Some(value), done: true };
         }
         fault = entry.fault;
         if reset(ui, quantity, known, fault.is_some()) {
             field::forget(ui, quantity.name);
             fault = None;
-            change = Change { value: known.origin.as_ref().map(|(v, _)| *v), done: true };
+            change = PropertyEdit { value: known.origin.as_ref().map(|(v, _)| *v), done: true };
         }
     });
     if narrow {
         ui.spacing_mut().slider_width = ui.available_width() - 4.0;
-        let mut slid = Change::default();
+        let mut slid = PropertyEdit::default();
         slide(ui, quantity, known, &mut slid);
         if change.value.is_none() {
-            change = Change { done: change.done || slid.done, ..slid };
+            change = PropertyEdit { done: change.done || slid.done, ..slid };
         }
     }
     if let Some(fault) = fault {
@@ -108,9 +108,9 @@ pub fn row(ui: &mut Ui, quantity: &Quantity, known: &Provenance) -> Change {
     change
 }
 
-fn slide(ui: &mut Ui, quantity: &Quantity, known: &Provenance, change: &mut Change) {
+fn slide(ui: &mut Ui, quantity: &Quantity, known: &Provenance, change: &mut PropertyEdit) {
     let si = quantity.unit.display().si;
-    let rail = Rail { ends: quantity.usual.map(|v| v / si), logarithmic: quantity.logarithmic };
+    let rail = SliderRange { ends: quantity.usual.map(|v| v / si), logarithmic: quantity.logarithmic };
     let slid = slider::ui(ui, known.value / si, rail);
     field::name(&slid.response, &format!("{} slider", quantity.name));
     if let Some(value) = slid.value {
@@ -119,7 +119,7 @@ fn slide(ui: &mut Ui, quantity: &Quantity, known: &Provenance, change: &mut Chan
     change.done |= slid.done;
     slid.response.on_hover_ui(|ui| {
         explanation(ui, quantity, known);
-        ui.weak(slider::law(quantity.logarithmic));
+        ui.weak(slider::drag_help(quantity.logarithmic));
     });
 }
 
@@ -155,7 +155,7 @@ fn explanation(ui: &mut Ui, quantity: &Quantity, known: &Provenance) {
 /// screen readers call it.
 pub fn labelled(ui: &mut Ui, text: &str, name: &str, contents: impl FnOnce(&mut Ui) -> Response) {
     // In a narrow panel the name gives way: what is typed must be read.
-    let name_width = NAME_WIDTH.min(ui.available_width() - FIELD_WIDTH - 24.0).max(LEAST_SLIDER);
+    let name_width = NAME_WIDTH.min(ui.available_width() - FIELD_WIDTH - 24.0).max(MIN_SLIDER_WIDTH);
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 4.0;
         let height = ui.spacing().interact_size.y;

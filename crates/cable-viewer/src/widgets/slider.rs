@@ -6,7 +6,7 @@ use egui::{Response, SliderClamping, Ui};
 
 /// What a slider runs over.
 #[derive(Clone, Copy, Debug)]
-pub struct Rail {
+pub struct SliderRange {
     /// Values at its ends.
     pub ends: [f64; 2],
     /// Even steps are even factors.
@@ -15,7 +15,7 @@ pub struct Rail {
 
 /// What a slider says this frame.
 #[derive(Debug)]
-pub struct Slid {
+pub struct SliderOutput {
     /// A new value.
     pub value: Option<f64>,
     /// The knob was let go of or the keyboard left it.
@@ -27,23 +27,24 @@ pub struct Slid {
 /// What a point of movement does beside the place where the knob was taken: a fraction of the value
 /// on a logarithmic rail. More: a hand cannot set 10.8 m; less: an order of magnitude is further
 /// than the edge of the screen.
-pub const OF_VALUE: f64 = 0.005;
-/// As [`OF_VALUE`], a fraction of the whole rail on a linear one.
-pub const OF_RAIL: f64 = 0.002;
+pub const VALUE_FRACTION_PER_POINT: f64 = 0.005;
+/// As [`VALUE_FRACTION_PER_POINT`], a fraction of the whole rail on a linear one.
+pub const RANGE_FRACTION_PER_POINT: f64 = 0.002;
 /// Points of movement over which a point comes to do twice as much.
 const DOUBLES_IN: f64 = 10.0;
 /// What Shift leaves of the movement.
 const SHIFT: f64 = 0.1;
 /// Rest of the hand after which movement is fine again about where the value is, s. Less: a slow
 /// hand never gets far; more: who overshot waits.
-const REST_S: f64 = 0.3;
+const POINTER_REST_S: f64 = 0.3;
 /// Smallest value above zero that a logarithmic slider from zero resolves, as a fraction of its
 /// top.
-const LEAST_OF_TOP: f64 = 1e-4;
+const MIN_LOG_FRACTION: f64 = 1e-4;
 
 /// Says what a drag does, for the hover text.
-pub fn law(logarithmic: bool) -> String {
-    let (fraction, of) = if logarithmic { (OF_VALUE, "the value") } else { (OF_RAIL, "the range") };
+pub fn drag_help(logarithmic: bool) -> String {
+    let (fraction, of) =
+        if logarithmic { (VALUE_FRACTION_PER_POINT, "the value") } else { (RANGE_FRACTION_PER_POINT, "the range") };
     format!(
         "Drag the knob: {:.1} % of {of} per point at first, more the farther; Shift: a tenth. Click the rail: jump there",
         1e2 * fraction
@@ -60,10 +61,10 @@ struct Anchor {
     last: (f32, f64),
 }
 
-impl Rail {
+impl SliderRange {
     /// The least value above zero that is told from zero.
     fn least(self) -> f64 {
-        if self.ends[0] > 0.0 { self.ends[0] } else { LEAST_OF_TOP * self.ends[1] }
+        if self.ends[0] > 0.0 { self.ends[0] } else { MIN_LOG_FRACTION * self.ends[1] }
     }
 
     /// Where a value stands, from 0 to 1.
@@ -83,17 +84,17 @@ impl Rail {
         let [low, high] = self.ends;
         let way = points * (1.0 + points.abs() / (2.0 * DOUBLES_IN));
         let value = if self.logarithmic {
-            let value = from.max(self.least()) * (OF_VALUE * way).exp();
+            let value = from.max(self.least()) * (VALUE_FRACTION_PER_POINT * way).exp();
             if low <= 0.0 && value < self.least() { low } else { value }
         } else {
-            from + OF_RAIL * (high - low) * way
+            from + RANGE_FRACTION_PER_POINT * (high - low) * way
         };
         value.clamp(low.min(from), high.max(from))
     }
 }
 
 /// Draws it over the width that sliders have here; `value` is what it stands at.
-pub fn ui(ui: &mut Ui, value: f64, rail: Rail) -> Slid {
+pub fn ui(ui: &mut Ui, value: f64, rail: SliderRange) -> SliderOutput {
     let [low, high] = rail.ends;
     let value = if value.is_finite() { value } else { low };
     // Keys and screen readers, and a press on the rail, ask for a value; the knob stays at its own.
@@ -103,7 +104,7 @@ pub fn ui(ui: &mut Ui, value: f64, rail: Rail) -> Slid {
         value
     });
     let widget = widget.show_value(false).clamping(SliderClamping::Edits).logarithmic(rail.logarithmic);
-    let response = ui.add(widget.smallest_positive(LEAST_OF_TOP * high));
+    let response = ui.add(widget.smallest_positive(MIN_LOG_FRACTION * high));
     // Also in the frame in which it is let go of.
     let value = if response.interact_pointer_pos().is_some() {
         dragged(ui, &response, value, rail, asked)
@@ -111,11 +112,11 @@ pub fn ui(ui: &mut Ui, value: f64, rail: Rail) -> Slid {
         ui.data_mut(|d| d.remove_temp::<Anchor>(response.id));
         asked
     };
-    Slid { value, done: response.drag_stopped() || response.lost_focus(), response }
+    SliderOutput { value, done: response.drag_stopped() || response.lost_focus(), response }
 }
 
 /// The value while a pointer holds the slider; `asked`: what is below the pointer on the rail.
-fn dragged(ui: &Ui, response: &Response, value: f64, rail: Rail, asked: Option<f64>) -> Option<f64> {
+fn dragged(ui: &Ui, response: &Response, value: f64, rail: SliderRange, asked: Option<f64>) -> Option<f64> {
     let x = response.interact_pointer_pos()?.x;
     let (now_s, fine, pressed) = ui.input(|i| (i.time, i.modifiers.shift, i.pointer.press_origin()));
     let known = ui.data(|d| d.get_temp::<Anchor>(response.id)).filter(|_| !response.drag_started());
@@ -135,7 +136,7 @@ fn dragged(ui: &Ui, response: &Response, value: f64, rail: Rail, asked: Option<f
         Anchor { value, x: from, fine, last: (from, now_s) }
     };
     let (last_x, moved_s) = anchor.last;
-    if fine != anchor.fine || (x != last_x && now_s - moved_s > REST_S) {
+    if fine != anchor.fine || (x != last_x && now_s - moved_s > POINTER_REST_S) {
         anchor = Anchor { value, x: last_x, fine, ..anchor };
     }
     let points = f64::from(x - anchor.x) * if fine { SHIFT } else { 1.0 };
@@ -158,22 +159,25 @@ fn dragged(ui: &Ui, response: &Response, value: f64, rail: Rail, asked: Option<f
 mod tests {
     use super::*;
 
-    const LENGTH: Rail = Rail { ends: [0.5, 200.0], logarithmic: true };
+    const LENGTH: SliderRange = SliderRange { ends: [0.5, 200.0], logarithmic: true };
 
     #[test]
     fn a_point_of_movement_is_the_stated_fraction_of_any_value() {
         for value in [0.6, 10.8, 150.0] {
             let moved = LENGTH.moved(value, 1.0) / value - 1.0;
-            assert!((moved - OF_VALUE).abs() < 0.1 * OF_VALUE, "{value}: {moved}");
+            assert!((moved - VALUE_FRACTION_PER_POINT).abs() < 0.1 * VALUE_FRACTION_PER_POINT, "{value}: {moved}");
         }
-        let friction = Rail { ends: [0.0, 1.5], logarithmic: false };
-        assert!((friction.moved(0.4, -1.0) - 0.4 + 1.5 * OF_RAIL).abs() < 0.1 * 1.5 * OF_RAIL);
+        let friction = SliderRange { ends: [0.0, 1.5], logarithmic: false };
+        assert!(
+            (friction.moved(0.4, -1.0) - 0.4 + 1.5 * RANGE_FRACTION_PER_POINT).abs()
+                < 0.1 * 1.5 * RANGE_FRACTION_PER_POINT
+        );
     }
 
     #[test]
     fn the_ends_are_within_reach_of_a_hand_and_zero_is_one() {
         assert_eq!((LENGTH.moved(10.8, 130.0), LENGTH.moved(10.8, -130.0)), (200.0, 0.5));
-        let stiffness = Rail { ends: [0.0, 100.0], logarithmic: true };
+        let stiffness = SliderRange { ends: [0.0, 100.0], logarithmic: true };
         assert_eq!(stiffness.moved(1.0, -130.0), 0.0);
         assert!(stiffness.moved(0.0, 3.0) > 0.0);
         // A typed value beyond the end goes down from where it is.

@@ -4,18 +4,18 @@
 use egui::{Response, Stroke, Ui, WidgetText};
 
 /// A box to tick.
-pub fn tick(ui: &mut Ui, on: &mut bool, text: impl Into<WidgetText>) -> Response {
+pub fn checkbox(ui: &mut Ui, on: &mut bool, text: impl Into<WidgetText>) -> Response {
     outlined(ui, |ui| ui.checkbox(on, text.into()))
 }
 
 /// A ring to choose by.
-pub fn ring(ui: &mut Ui, chosen: bool, text: impl Into<WidgetText>) -> Response {
+pub fn radio_button(ui: &mut Ui, chosen: bool, text: impl Into<WidgetText>) -> Response {
     outlined(ui, |ui| ui.radio(chosen, text.into()))
 }
 
 /// A ring that sets a value.
-pub fn choose<T: PartialEq>(ui: &mut Ui, value: &mut T, of: T, text: impl Into<WidgetText>) -> Response {
-    let mut response = ring(ui, *value == of, text);
+pub fn radio_value<T: PartialEq>(ui: &mut Ui, value: &mut T, of: T, text: impl Into<WidgetText>) -> Response {
+    let mut response = radio_button(ui, *value == of, text);
     if response.clicked() && *value != of {
         *value = of;
         response.mark_changed();
@@ -50,7 +50,7 @@ mod tests {
             let mut places = Vec::new();
             for _ in 0..3 {
                 offscreen.frame(|ui| {
-                    places = [false, true].map(|mut on| tick(ui, &mut on, "Grid").rect).to_vec();
+                    places = [false, true].map(|mut on| checkbox(ui, &mut on, "Grid").rect).to_vec();
                 });
             }
             let visuals = offscreen.ctx().global_style().visuals.clone();

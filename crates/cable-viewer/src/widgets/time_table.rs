@@ -7,7 +7,7 @@ use egui::{Button, ScrollArea, Ui};
 use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
-use crate::widgets::tick::tick;
+use crate::widgets::tick::checkbox;
 
 /// Height of a table, points: about six rows.
 const HEIGHT: f32 = 140.0;
@@ -158,7 +158,7 @@ pub fn toggle(ui: &mut Ui, label: &str, on: bool, help: &str) -> Option<bool> {
     ui.scope(|ui| {
         // A narrow panel cuts the label, and the hover text has it whole.
         ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Truncate);
-        tick(ui, &mut wanted, label).on_hover_text(format!("{label}. {help}")).changed().then_some(wanted)
+        checkbox(ui, &mut wanted, label).on_hover_text(format!("{label}. {help}")).changed().then_some(wanted)
     })
     .inner
 }

@@ -26,7 +26,7 @@ const SPEED_RETENTION: f64 = 0.85;
 pub fn settling_draft(edit: &Edit, old: &Simulation) -> Option<Simulation> {
     // An answer without a mesh is drafted with one: laying the cable anew takes as long however it
     // is asked.
-    if !old.model().capabilities().long_rests || !same_cables(edit, old) || buried(edit, old) {
+    if !old.model().capabilities().long_rests || !same_cables(edit, old) || penetrates_new_obstacle(edit, old) {
         return None;
     }
     let mut settings = edit.settings;
@@ -34,7 +34,7 @@ pub fn settling_draft(edit: &Edit, old: &Simulation) -> Option<Simulation> {
     // It jerks where the hand jumps, and would break where the answer does not.
     settings.breaks = false;
     let mut draft = Simulation::with_settings(edit.scene.clone(), Model::MOST_CAPABLE, settings).ok()?;
-    carry(&mut draft, old).ok()?;
+    transfer_state(&mut draft, old).ok()?;
     advance_frame(&mut draft).ok()?;
     Some(draft)
 }
@@ -69,7 +69,7 @@ pub fn coarse_edit(edit: &Edit, old: &Simulation) -> Edit {
 
 /// The mesh of a simulation in motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mesh {
+pub enum MeshResolution {
     /// Few segments, to follow the hand.
     Coarse,
     /// The segments that were asked for.
@@ -78,7 +78,7 @@ pub enum Mesh {
 
 /// A simulation in motion with few segments (or with those asked for) that goes on where `old` is;
 /// None where it cannot, and for other models than `fem`, whose frames are short.
-pub fn with_mesh(edit: &Edit, old: &Simulation, mesh: Mesh) -> Option<Simulation> {
+pub fn with_mesh(edit: &Edit, old: &Simulation, mesh: MeshResolution) -> Option<Simulation> {
     if !old.model().capabilities().long_steps || !same_cables(edit, old) {
         return None;
     }
@@ -96,7 +96,7 @@ pub fn with_mesh(edit: &Edit, old: &Simulation, mesh: Mesh) -> Option<Simulation
         }
     }
     let mut settings = edit.settings;
-    if mesh == Mesh::Coarse {
+    if mesh == MeshResolution::Coarse {
         settings.segments = Some(SEGMENTS);
     }
     let mut next = Simulation::with_settings(scene, Model::MOST_CAPABLE, settings).ok()?;
@@ -107,7 +107,7 @@ pub fn with_mesh(edit: &Edit, old: &Simulation, mesh: Mesh) -> Option<Simulation
     Some(next)
 }
 
-fn carry(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {
+fn transfer_state(draft: &mut Simulation, old: &Simulation) -> Result<(), SolveError> {
     let mut states = old.states();
     for state in &mut states {
         // `fem` would bring a state at rest to rest on the new mesh first.
@@ -124,7 +124,7 @@ const SEARCH_RADIUS_M: f64 = 1e3;
 /// or not there, before: contact begins at a surface, so it would stay inside. It is laid anew
 /// instead.
 #[must_use]
-pub fn buried(edit: &Edit, old: &Simulation) -> bool {
+pub fn penetrates_new_obstacle(edit: &Edit, old: &Simulation) -> bool {
     let obstacles = &edit.scene.obstacles;
     if *obstacles == old.scene().obstacles {
         return false;

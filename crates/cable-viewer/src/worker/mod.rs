@@ -29,44 +29,52 @@ use crate::state::WorkerStatus;
 use crate::worker::engine::{Engine, Report};
 use crate::worker::request::Request;
 use crate::worker::slots::{Shared, keep};
-use crate::worker::solver_thread::{Shown, guarded, start};
-use crate::worker::superseded_solve::{Patience, take_superseded};
+use crate::worker::solver_thread::{UpdateCallback, catch_panic, start};
+use crate::worker::superseded_solve::{AbandonTimeout, take_superseded};
 
 /// The window's end.
 pub struct Worker {
-    kind: Kind,
+    kind: Backend,
 }
 
-enum Kind {
-    Thread { shared: Arc<Shared>, shown: Shown, handle: Option<JoinHandle<()>>, patience: Patience },
-    Inline { engine: Box<Engine>, report: Option<Report> },
+enum Backend {
+    Thread {
+        shared: Arc<Shared>,
+        shown: UpdateCallback,
+        handle: Option<JoinHandle<()>>,
+        abandon_timeout: AbandonTimeout,
+    },
+    Inline {
+        engine: Box<Engine>,
+        report: Option<Report>,
+    },
 }
 
 impl Worker {
     /// Starts the thread; `shown` is called whenever there is something new to show.
     #[must_use]
     pub fn thread(shown: impl Fn() + Send + Sync + 'static) -> Self {
-        let (shared, shown): (_, Shown) = (Arc::new(Shared::default()), Arc::new(shown));
+        let (shared, shown): (_, UpdateCallback) = (Arc::new(Shared::default()), Arc::new(shown));
         let handle = start(&shared, &shown, Engine::with_drafts(), 0);
-        Self { kind: Kind::Thread { shared, shown, handle, patience: Patience::default() } }
+        Self { kind: Backend::Thread { shared, shown, handle, abandon_timeout: AbandonTimeout::default() } }
     }
 
     /// Does the work in [`Self::submit`] and [`Self::poll`] themselves, for tests and still
     /// pictures.
     #[must_use]
     pub fn inline() -> Self {
-        Self { kind: Kind::Inline { engine: Box::default(), report: None } }
+        Self { kind: Backend::Inline { engine: Box::default(), report: None } }
     }
 
     /// Asks; never waits for the answer.
     pub fn submit(&mut self, request: Request) {
         match &mut self.kind {
-            Kind::Thread { shared, .. } => {
+            Backend::Thread { shared, .. } => {
                 let mut slots = shared.lock();
                 let mut request = request;
                 // An edit that comes while other histories are sought has waited for no answer.
                 let answers = slots.solve.as_ref().is_some_and(|s| !s.seeks_histories);
-                request.hurried = request.edit.is_some() && answers;
+                request.came_during_solve = request.edit.is_some() && answers;
                 slots.asked_at.get_or_insert_with(Instant::now);
                 match &mut slots.request {
                     Some(waiting) => waiting.merge(request),
@@ -77,7 +85,7 @@ impl Worker {
                 shared.wake.notify_all();
                 self.abandon_superseded_solve();
             }
-            Kind::Inline { engine, report } => keep(report, guarded(engine, |e| e.handle(request))),
+            Backend::Inline { engine, report } => keep(report, catch_panic(engine, |e| e.handle(request))),
         }
     }
 
@@ -85,10 +93,10 @@ impl Worker {
     pub fn poll(&mut self) -> Option<Report> {
         self.abandon_superseded_solve();
         match &mut self.kind {
-            Kind::Thread { shared, .. } => shared.lock().report.take(),
-            Kind::Inline { engine, report } => {
+            Backend::Thread { shared, .. } => shared.lock().report.take(),
+            Backend::Inline { engine, report } => {
                 if engine.playing() {
-                    keep(report, guarded(engine, Engine::tick));
+                    keep(report, catch_panic(engine, Engine::advance_frame));
                 }
                 report.take()
             }
@@ -98,8 +106,8 @@ impl Worker {
     /// Abandons the thread of a solve that nobody waits for any more, and starts another; to be
     /// called often.
     fn abandon_superseded_solve(&mut self) {
-        let Kind::Thread { shared, shown, handle, patience } = &mut self.kind else { return };
-        let taken = take_superseded(&mut shared.lock(), patience, Arc::strong_count(shared));
+        let Backend::Thread { shared, shown, handle, abandon_timeout } = &mut self.kind else { return };
+        let taken = take_superseded(&mut shared.lock(), abandon_timeout, Arc::strong_count(shared));
         if let Some((engine, thread)) = taken {
             *handle = start(shared, shown, *engine, thread);
         }
@@ -109,8 +117,8 @@ impl Worker {
     #[must_use]
     pub fn status(&self) -> WorkerStatus {
         match &self.kind {
-            Kind::Inline { .. } => WorkerStatus::Idle,
-            Kind::Thread { shared, handle, .. } => match handle {
+            Backend::Inline { .. } => WorkerStatus::Idle,
+            Backend::Thread { shared, handle, .. } => match handle {
                 Some(handle) if !handle.is_finished() => {
                     let slots = shared.lock();
                     if slots.busy || slots.request.is_some() { WorkerStatus::Busy } else { WorkerStatus::Idle }
@@ -124,7 +132,7 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        if let Kind::Thread { shared, .. } = &self.kind {
+        if let Backend::Thread { shared, .. } = &self.kind {
             // Not joined: a long solve must not keep the window from closing.
             shared.lock().stop = true;
             shared.wake.notify_all();

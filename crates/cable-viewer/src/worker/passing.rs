@@ -11,13 +11,13 @@ use cable_core::scene::{Obstacle, Shape};
 
 /// Nearest points of a way, as a part of the cable's length. Nearer: the way is as long as the
 /// mesh; farther: it leads through what the cable was led round.
-const SPACING: f64 = 0.01;
+const MIN_POINT_SPACING_FRACTION: f64 = 0.01;
 /// How far round a point obstacles are asked for, m.
 const SEARCH_RADIUS_M: f64 = 1e3;
 
 /// The cables (by number) that would have to pass an obstacle to get from one shape to another.
 #[must_use]
-pub fn jumped(old: &Simulation, new: &Simulation) -> Vec<usize> {
+pub fn tunnelled_cables(old: &Simulation, new: &Simulation) -> Vec<usize> {
     let stays = |o: &&Obstacle| new.scene().obstacles.iter().any(|n| n.shape == o.shape);
     let kept: Vec<Vec2> = old.scene().obstacles.iter().filter(stays).filter_map(|o| inner_point(&o.shape)).collect();
     if kept.is_empty() {
@@ -64,7 +64,7 @@ fn winding(line: &[Vec2], about: Vec2) -> i32 {
 /// The way a cable takes, as a scene states it: points far enough apart, none inside an obstacle.
 /// None where that leaves no way.
 #[must_use]
-pub fn way(old: &Simulation, cable: usize) -> Option<Vec<Point>> {
+pub fn cable_route(old: &Simulation, cable: usize) -> Option<Vec<Point>> {
     let of = old.scene().cables.get(cable)?;
     let states = old.states();
     let points = &states.get(cable)?.position_m;
@@ -74,7 +74,7 @@ pub fn way(old: &Simulation, cable: usize) -> Option<Vec<Point>> {
         Some(gap) if gap.gap_m < 0.0 => p - gap.normal * gap.gap_m,
         _ => p,
     };
-    let spacing = SPACING * of.length_m;
+    let spacing = MIN_POINT_SPACING_FRACTION * of.length_m;
     let last = points.len().saturating_sub(1);
     let mut way: Vec<Vec2> = Vec::new();
     for (k, p) in points.iter().enumerate() {

@@ -28,7 +28,7 @@ pub struct Request {
     /// Single steps to take.
     pub steps: u32,
     /// Came while an earlier edit was being solved: edits come faster than answers.
-    pub hurried: bool,
+    pub came_during_solve: bool,
     /// Number of the last edit, reset or step in it.
     pub number: u64,
 }
@@ -43,10 +43,10 @@ pub struct Edit {
     /// Mesh and accuracy.
     pub settings: Settings,
     /// Another scene, not a change of the present one: nothing is carried over.
-    pub fresh: bool,
+    pub is_new_scene: bool,
     /// The cable lies as the scene says, wherever it is now: an undo leads back to the answer that
     /// was, even where the cable passes an obstacle on the way.
-    pub as_laid: bool,
+    pub starts_from_scene: bool,
 }
 
 /// An earlier instant to go on from.
@@ -82,14 +82,14 @@ impl Request {
         // What is asked after it is to be solved.
         self.cancel = later.cancel || (self.cancel && !later.solves());
         if let Some(edit) = later.edit {
-            let fresh = edit.fresh || self.edit.as_ref().is_some_and(|e| e.fresh);
-            if edit.fresh {
+            let is_new_scene = edit.is_new_scene || self.edit.as_ref().is_some_and(|e| e.is_new_scene);
+            if edit.is_new_scene {
                 self.reset = false;
                 self.steps = 0;
             }
             self.drag = None;
             self.resume = None;
-            self.edit = Some(Edit { fresh, ..edit });
+            self.edit = Some(Edit { is_new_scene, ..edit });
         }
         if let Some(drag) = later.drag {
             if let Some(edit) = &mut self.edit {
@@ -109,7 +109,7 @@ impl Request {
         self.robot = later.robot.or(self.robot);
         self.playback = later.playback.or(self.playback);
         self.steps = (self.steps + later.steps).min(MAX_STEPS);
-        self.hurried |= later.hurried;
+        self.came_during_solve |= later.came_during_solve;
         self.number = self.number.max(later.number);
     }
 
@@ -140,11 +140,14 @@ mod tests {
     #[test]
     fn later_requests_win_and_steps_are_bounded() {
         let scene = cable_core::scene::catalog::hanging_span();
-        let edit = |fresh, name: &str| {
+        let edit = |is_new_scene, name: &str| {
             let mut scene = scene.clone();
             scene.name = name.to_owned();
             let (model, settings) = (cable_core::Model::Auto, cable_core::Settings::default());
-            Request { edit: Some(Edit { scene, model, settings, fresh, as_laid: false }), ..Request::default() }
+            Request {
+                edit: Some(Edit { scene, model, settings, is_new_scene, starts_from_scene: false }),
+                ..Request::default()
+            }
         };
         let mut waiting = edit(true, "first");
         for _ in 0..1000 {
@@ -153,7 +156,7 @@ mod tests {
         waiting.merge(edit(false, "last"));
         let merged = waiting.edit.expect("an edit");
         assert_eq!(merged.scene.name, "last");
-        assert!(merged.fresh, "the new scene must not inherit the old one's state");
+        assert!(merged.is_new_scene, "the new scene must not inherit the old one's state");
         assert!(waiting.steps <= 60);
     }
 }

@@ -9,17 +9,17 @@ use std::time::{Duration, Instant};
 use crate::worker::engine::{Engine, Report};
 use crate::worker::request::Request;
 use crate::worker::slots::{Shared, Solve, keep};
-use crate::worker::timing::{FRAME_S, LEAST_QUIET_S, QUIET_EDITS, QUIET_S};
+use crate::worker::timing::{FRAME_S, IDLE_EDIT_INTERVALS, IDLE_S, MIN_IDLE_S};
 
 /// Called whenever there is something new to show.
-pub type Shown = Arc<dyn Fn() + Send + Sync>;
+pub type UpdateCallback = Arc<dyn Fn() + Send + Sync>;
 
 /// Least share of a frame that a drag lets pass at once. Smaller: many short steps for a quick
 /// mouse; larger: the hand waits.
-const LEAST_SHARE: f64 = 0.4;
+const MIN_FRAME_FRACTION: f64 = 0.4;
 
 /// Starts a thread; `thread` is its number.
-pub fn start(shared: &Arc<Shared>, shown: &Shown, engine: Engine, thread: u64) -> Option<JoinHandle<()>> {
+pub fn start(shared: &Arc<Shared>, shown: &UpdateCallback, engine: Engine, thread: u64) -> Option<JoinHandle<()>> {
     let (shared, shown) = (Arc::clone(shared), Arc::clone(shown));
     let run = move || work(&shared, &*shown, engine, thread);
     std::thread::Builder::new().name("cable solver".to_owned()).spawn(run).ok()
@@ -68,7 +68,7 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
         let refines = request.is_none() && !engine.playing() && (!engine.settling() || Instant::now() >= refine_at);
         if refines || request.as_ref().is_some_and(Request::solves) {
             let seeks_histories = request.is_none() && engine.seeks_histories();
-            let (began, engine) = (Instant::now(), Box::new(engine.spare()));
+            let (began, engine) = (Instant::now(), Box::new(engine.checkpoint()));
             let solve = Solve { began, engine, request: request.clone(), seeks_histories };
             shared.lock().solve = Some(solve);
         }
@@ -76,25 +76,25 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
             Some(request) => {
                 let drag = request.drag.is_some();
                 // A single edit is answered at once, a hand that goes on is waited for.
-                let draft_s = if engine.draft() || request.hurried {
-                    let between = edited_at.map_or(QUIET_S, |at| at.elapsed().as_secs_f64());
-                    (QUIET_EDITS * between).clamp(LEAST_QUIET_S, QUIET_S)
+                let draft_s = if engine.draft() || request.came_during_solve {
+                    let between = edited_at.map_or(IDLE_S, |at| at.elapsed().as_secs_f64());
+                    (IDLE_EDIT_INTERVALS * between).clamp(MIN_IDLE_S, IDLE_S)
                 } else {
                     0.0
                 };
                 if request.edit.is_some() {
                     edited_at = Some(Instant::now());
                 }
-                let mut report = guarded(&mut engine, |e| e.handle(request));
+                let mut report = catch_panic(&mut engine, |e| e.handle(request));
                 let passed = last_tick.elapsed().as_secs_f64() / FRAME_S;
-                if drag && engine.playing() && passed > LEAST_SHARE {
+                if drag && engine.playing() && passed > MIN_FRAME_FRACTION {
                     // The hand does not wait for the next frame: what has passed of this one is let
                     // pass.
                     last_tick = Instant::now();
                     next_tick = last_tick + frame;
-                    report.merge(guarded(&mut engine, |e| e.tick_part(passed.min(1.0))));
+                    report.merge(catch_panic(&mut engine, |e| e.advance_part_of_frame(passed.min(1.0))));
                 }
-                let pause_s = if engine.draft() { draft_s } else { LEAST_QUIET_S };
+                let pause_s = if engine.draft() { draft_s } else { MIN_IDLE_S };
                 refine_at = Instant::now() + Duration::from_secs_f64(pause_s);
                 if engine.draft() {
                     next_tick = Instant::now() + frame;
@@ -103,15 +103,15 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
             }
             None if !engine.playing() && engine.settling() && Instant::now() < refine_at => {
                 next_tick = Instant::now() + frame;
-                guarded(&mut engine, Engine::settle_frame)
+                catch_panic(&mut engine, Engine::settle_frame)
             }
-            None if !engine.playing() => guarded(&mut engine, Engine::refine),
+            None if !engine.playing() => catch_panic(&mut engine, Engine::refine),
             None => {
                 // A late frame is not made up for: time runs slower instead of falling behind for
                 // ever.
                 last_tick = Instant::now();
                 next_tick = last_tick.max(next_tick + frame);
-                guarded(&mut engine, Engine::tick)
+                catch_panic(&mut engine, Engine::advance_frame)
             }
         };
         let mut slots = shared.lock();
@@ -127,7 +127,7 @@ fn work(shared: &Shared, shown: &dyn Fn(), mut engine: Engine, thread: u64) {
 }
 
 /// Runs a job; a panic inside becomes a report with its words.
-pub fn guarded(engine: &mut Engine, job: impl FnOnce(&mut Engine) -> Report) -> Report {
+pub fn catch_panic(engine: &mut Engine, job: impl FnOnce(&mut Engine) -> Report) -> Report {
     match catch_unwind(AssertUnwindSafe(|| job(engine))) {
         Ok(report) => report,
         Err(payload) => {
@@ -148,11 +148,11 @@ mod tests {
     #[test]
     fn a_panic_in_the_solver_is_caught_and_said() {
         let mut engine = Engine::default();
-        let report = guarded(&mut engine, |_| std::panic::panic_any("index out of bounds"));
+        let report = catch_panic(&mut engine, |_| std::panic::panic_any("index out of bounds"));
         assert!(report.snapshot.stale && report.paused_itself);
         assert!(report.snapshot.error.is_some_and(|e| e.to_string().contains("index out of bounds")));
         // It goes on with the next request.
-        let report = guarded(&mut engine, |e| e.handle(Request { reset: true, number: 3, ..Request::default() }));
+        let report = catch_panic(&mut engine, |e| e.handle(Request { reset: true, number: 3, ..Request::default() }));
         assert_eq!(report.snapshot.edit, 3);
     }
 }

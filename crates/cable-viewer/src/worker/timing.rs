@@ -7,15 +7,15 @@ pub const FRAME_S: f64 = 1.0 / 60.0;
 /// replaced. Longer: figures of the draft stay on screen; shorter: an answer is begun between two
 /// steps of a drag where frames are slow (a tenth of a second without a GPU), and the next draft
 /// waits for it.
-pub const QUIET_S: f64 = 0.2;
+pub const IDLE_S: f64 = 0.2;
 
 /// Least time without a further edit (s) before a draft is replaced: a hand at 60 edits a second is
 /// waited for no longer. Shorter: a late frame begins an answer that the next edit gives up.
-pub const LEAST_QUIET_S: f64 = 0.06;
+pub const MIN_IDLE_S: f64 = 0.06;
 
 /// Pause of a hand, in times between its last two edits, after which it counts as resting. Smaller:
 /// an answer is begun between two edits of an uneven hand; larger: the draft stays.
-pub const QUIET_EDITS: f64 = 3.0;
+pub const IDLE_EDIT_INTERVALS: f64 = 3.0;
 
 /// A solve that took longer (s) is drafted while edits come faster than answers. Longer: the
 /// picture lags behind the hand; shorter: drafts where the answer itself would be in the next two

@@ -57,7 +57,7 @@ fn every_cable_property_has_a_slider_a_field_and_a_reset() {
         let typed = (property.get)(&harness.state().state.document.scene.cables[0]);
         assert!((typed / (0.35 * quantity.usual[1]) - 1.0).abs() < 1e-9, "{}: {typed}", quantity.name);
     }
-    assert_eq!(harness.state().state.document.undo.available(), (true, false));
+    assert_eq!(harness.state().state.document.undo.can_undo_and_redo(), (true, false));
 }
 
 #[test]

@@ -26,7 +26,7 @@ fn names() -> BTreeSet<String> {
         catalog::over_beam(),
     ] {
         let mut harness = open(scene);
-        apply(&mut harness, Command::View(ViewCommand::Hold));
+        apply(&mut harness, Command::View(ViewCommand::AddReference));
         harness.set_size(Vec2::new(1600.0, 3000.0));
         // What edits a thing stands where it is selected.
         let all = handles::all(&harness.state().state);

@@ -129,15 +129,15 @@ fn at_rest_the_greatest_tension_is_still_and_no_node_stands_out() {
 fn time_goes_on_from_the_answer_and_not_from_a_draft_of_it() {
     let mut scene = catalog::tank();
     scene.cables[0].segments = Some(400);
-    let edit = |scene: &Scene, fresh: bool| Request {
+    let edit = |scene: &Scene, is_new_scene: bool| Request {
         edit: Some(Edit {
             scene: scene.clone(),
             model: cable_core::Model::Fem,
             settings: cable_core::Settings::default(),
-            fresh,
-            as_laid: false,
+            is_new_scene,
+            starts_from_scene: false,
         }),
-        hurried: !fresh,
+        came_during_solve: !is_new_scene,
         ..Request::default()
     };
     let time = |paused: bool| Request { playback: Some(Playback { paused, speed: 1.0 }), ..Request::default() };
@@ -148,7 +148,7 @@ fn time_goes_on_from_the_answer_and_not_from_a_draft_of_it() {
         let mut engine = Engine::with_drafts();
         engine.handle(edit(&with_beam, true));
         engine.handle(time(false));
-        (0..frames_before).for_each(|_| drop(engine.tick()));
+        (0..frames_before).for_each(|_| drop(engine.advance_frame()));
         engine.handle(time(true));
         engine.handle(edit(&scene, false));
         (0..5).for_each(|_| drop(engine.settle_frame()));
@@ -159,7 +159,7 @@ fn time_goes_on_from_the_answer_and_not_from_a_draft_of_it() {
             assert!(!report.snapshot.draft);
             let most_n = report.snapshot.solution.expect("an answer").max_tension().tension_n;
             (low_n, high_n) = (low_n.min(most_n), high_n.max(most_n));
-            report = engine.tick();
+            report = engine.advance_frame();
         }
         assert!(high_n - low_n < 1e-3 * high_n, "{low_n} to {high_n} N after {frames_before} frames");
     }

@@ -68,7 +68,7 @@ fn several_things_are_picked_moved_copied_and_removed_together() {
     let [beam, post] = [screen(&harness, [4.5, -0.5]), screen(&harness, [7.0, -0.5])];
     click_at(&mut harness, beam, Modifiers::NONE, 1);
     click_at(&mut harness, post, Modifiers::SHIFT, 1);
-    assert_eq!(state(&harness).selection.picks(), [Item::Obstacle(0), Item::Obstacle(1)]);
+    assert_eq!(state(&harness).selection.selected_items(), [Item::Obstacle(0), Item::Obstacle(1)]);
     // A drag of one moves both by the same.
     let metre = state(&harness).view.camera.points_per_m as f32;
     drag(&mut harness, post, Vec2::new(0.5 * metre, -0.25 * metre));
@@ -96,7 +96,7 @@ fn several_things_are_picked_moved_copied_and_removed_together() {
     harness.run_steps(2);
     let names: Vec<String> = state(&harness).document.scene.obstacles.iter().map(|o| o.name.clone()).collect();
     assert_eq!(names, ["beam", "post", "beam 2", "post 2"]);
-    assert_eq!(state(&harness).selection.picks(), [Item::Obstacle(2), Item::Obstacle(3)]);
+    assert_eq!(state(&harness).selection.selected_items(), [Item::Obstacle(2), Item::Obstacle(3)]);
     assert!((centre(&harness, 2)[0] - centre(&harness, 0)[0] - 0.5).abs() < 1e-9);
     assert_eq!(state(&harness).live.snapshot.error, None);
     harness.key_press(Key::Delete);
@@ -122,11 +122,11 @@ fn a_frame_picks_what_is_in_it_and_a_cut_is_undone() {
         harness.event_modifiers(Event::PointerMoved(at), Modifiers::SHIFT);
         harness.step();
     }
-    assert!(state(&harness).selection.frame_m.is_some());
+    assert!(state(&harness).selection.marquee_m.is_some());
     harness.event_modifiers(press(to, false), Modifiers::SHIFT);
     harness.run_steps(3);
-    assert_eq!(state(&harness).selection.picks(), [Item::Obstacle(0), Item::Obstacle(1)]);
-    assert!(state(&harness).selection.frame_m.is_none());
+    assert_eq!(state(&harness).selection.selected_items(), [Item::Obstacle(0), Item::Obstacle(1)]);
+    assert!(state(&harness).selection.marquee_m.is_none());
     harness.event(Event::Cut);
     harness.run_steps(2);
     assert!(state(&harness).document.scene.obstacles.is_empty());
@@ -244,7 +244,7 @@ fn s08_time_goes_on_from_an_earlier_picture() {
     let mut harness = open(catalog::robot_drive());
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
     harness.run_steps(60);
-    apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.5))));
+    apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.5))));
     let then = state(&harness).live.snapshot.solution.clone().unwrap();
     click(&mut harness, "Resume from here");
     let now = state(&harness).live.snapshot.solution.clone().unwrap();

@@ -52,7 +52,7 @@ fn hints_are_hidden_for_good() {
         let kept = kept.to_owned();
         let mut harness = Harness::builder().with_size(Vec2::new(1280.0, 800.0)).build_eframe(move |cc| {
             let mut app = ViewerApp::inline(&cc.egui_ctx, catalog::hanging_span(), None);
-            app.keep_changes_in(kept);
+            app.enable_autosave(kept);
             app
         });
         harness.run_steps(5);
@@ -113,16 +113,16 @@ fn guides_point_at_what_they_speak_of() {
                 "Pause" => harness.key_press(Key::Space),
                 _ => {}
             }
-            apply(&mut harness, Command::View(ViewCommand::Guide(Some(TutorialPlace { tutorial, step }))));
+            apply(&mut harness, Command::View(ViewCommand::SetTutorialPlace(Some(TutorialPlace { tutorial, step }))));
             // Scrolling takes some frames.
             harness.run_steps(40);
             let window = harness.ctx.content_rect();
-            let seen = highlight::seen(&harness.ctx);
+            let seen = highlight::visible_rect(&harness.ctx);
             let name = format!("{}, step {}: {}", guide.title, step + 1, told.points_at);
             assert!(seen.is_some_and(|rect| window.contains_rect(rect)), "{name}: {seen:?}");
         }
-        apply(&mut harness, Command::View(ViewCommand::Guide(None)));
-        assert_eq!(highlight::seen(&harness.ctx), None);
+        apply(&mut harness, Command::View(ViewCommand::SetTutorialPlace(None)));
+        assert_eq!(highlight::visible_rect(&harness.ctx), None);
     }
 }
 

@@ -106,7 +106,7 @@ fn a_zoomed_graph_goes_to_the_time_that_is_scrubbed_to() {
     harness.run_steps(60);
     let [left, right] = in_view(&harness);
     assert!(right - left < 2.0 && left > 0.5, "{left} to {right}");
-    apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.3))));
+    apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.3))));
     harness.run_steps(3);
     let [left, right] = in_view(&harness);
     assert!(left < 0.3 && 0.3 < right, "{left} to {right}");
@@ -119,7 +119,7 @@ fn a_zoomed_graph_goes_to_the_time_that_is_scrubbed_to() {
 fn the_timeline_tells_the_time_of_the_frame_that_is_shown() {
     let mut harness = played(1);
     for knob_s in [0.345, 0.5, 0.6649] {
-        apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(knob_s))));
+        apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(knob_s))));
         let shown_s = harness.state().state.live.snapshot.solution.as_ref().unwrap().time_s;
         harness.get_by_label_contains(&format!("{shown_s:.2} of "));
     }

@@ -49,7 +49,7 @@ pub fn controls(harness: &Harness<'_, ViewerApp>) -> Vec<(String, Role, Pos2)> {
 fn u11_every_control_has_a_name() {
     for scene in [catalog::robot_drive(), catalog::loads_wind_heat(), catalog::pulley_waypoints()] {
         let mut harness = open(scene);
-        apply(&mut harness, Command::View(ViewCommand::Hold));
+        apply(&mut harness, Command::View(ViewCommand::AddReference));
         let all = controls(&harness);
         assert!(all.len() > 60, "{}", all.len());
         let nameless: Vec<_> = all.iter().filter(|(name, ..)| name.trim().is_empty()).collect();
@@ -82,15 +82,15 @@ fn u11_every_control_of_what_is_picked_explains_itself_on_hover() {
     let mut value = state(&harness).document.scene.cables[0].clone();
     value.length_m = 7.0;
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(value) }));
-    apply(&mut harness, Command::View(ViewCommand::Spread(true, [0.5, 1.5])));
+    apply(&mut harness, Command::View(ViewCommand::SetFrictionRange(true, [0.5, 1.5])));
     let from = cable_core::analysis::tension_budget::StartEnd::Start;
     let probe = cable_viewer::state::TensionMarker { cable: 0, arc_length_m: 4.0, from };
-    apply(&mut harness, Command::View(ViewCommand::MarkTension(Some(probe))));
+    apply(&mut harness, Command::View(ViewCommand::SetTensionMarker(Some(probe))));
     every_control_explains_itself(harness, None);
 }
 
 fn every_control_explains_itself(mut harness: Harness<'static, ViewerApp>, picked: Option<Item>) {
-    apply(&mut harness, Command::View(ViewCommand::Hold));
+    apply(&mut harness, Command::View(ViewCommand::AddReference));
     apply(&mut harness, Command::View(ViewCommand::Select(picked)));
     harness.ctx.all_styles_mut(|style| {
         style.interaction.tooltip_delay = 0.0;

@@ -147,9 +147,9 @@ fn s16_every_model_of_a_scene_is_held_with_its_cost_and_refusals_are_told() {
     click(&mut harness, "Cancel comparison");
     assert!(matches!(state(&harness).analysis.models, Progress::None));
     // What was ended holds nothing, however soon it comes.
-    apply(&mut harness, Command::View(ViewCommand::LetGo(None)));
+    apply(&mut harness, Command::View(ViewCommand::RemoveReferences(None)));
     let ctx = harness.ctx.clone();
-    let commands = [true, false].map(|on| Command::View(ViewCommand::HoldModels(on)));
+    let commands = [true, false].map(|on| Command::View(ViewCommand::CompareModels(on)));
     harness.state_mut().apply(&ctx, commands.into());
     std::thread::sleep(std::time::Duration::from_millis(300));
     harness.run_steps(3);

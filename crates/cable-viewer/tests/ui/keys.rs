@@ -99,17 +99,17 @@ fn several_things_are_picked_by_keys() {
         press(&mut harness, Modifiers::NONE, Key::M);
     }
     let ends = [0, 1].map(|support| Item::Support { cable: 0, support });
-    assert_eq!(state(&harness).selection.picks(), [ends[0], ends[1], Item::Obstacle(0)]);
+    assert_eq!(state(&harness).selection.selected_items(), [ends[0], ends[1], Item::Obstacle(0)]);
     press(&mut harness, Modifiers::NONE, Key::N);
-    assert_eq!(state(&harness).selection.picks().len(), 1, "N picks one alone");
+    assert_eq!(state(&harness).selection.selected_items().len(), 1, "N picks one alone");
     // One alone, and another that is not the next.
     press(&mut harness, Modifiers::NONE, Key::M);
-    assert_eq!(state(&harness).selection.picks(), [ends[1], Item::Obstacle(0)]);
+    assert_eq!(state(&harness).selection.selected_items(), [ends[1], Item::Obstacle(0)]);
     for _ in 0..20 {
         press(&mut harness, Modifiers::NONE, Key::M);
     }
     let mut all = cable_viewer::geometry::handles::all(state(&harness));
-    let mut picks = state(&harness).selection.picks();
+    let mut picks = state(&harness).selection.selected_items();
     all.sort_by_key(|i| format!("{i:?}"));
     picks.sort_by_key(|i| format!("{i:?}"));
     assert_eq!(picks, all, "each once");

@@ -91,7 +91,7 @@ fn what_is_in_a_panel_does_not_move_the_canvas() {
         assert_eq!(harness.get_by_label("Canvas").rect(), before, "{item:?}");
     }
     for _ in 0..3 {
-        apply(&mut harness, Command::View(ViewCommand::Hold));
+        apply(&mut harness, Command::View(ViewCommand::AddReference));
     }
     let mut cable = harness.state().state.document.scene.cables[0].clone();
     (cable.service_tension_n, cable.name) = (1.0, "a cable with an unreasonably long name for a panel".to_owned());
@@ -180,7 +180,7 @@ fn a_recording_with_events_does_not_push_the_graphs_out_of_sight() {
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(true)));
     let last = harness.state().state.live.recording.span_s().expect("a recording")[1];
     for shown in [None, Some(0.5 * last)] {
-        apply(&mut harness, Command::Playback(PlaybackCommand::Show(shown)));
+        apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(shown)));
         for size in [[1280.0, 800.0], [1024.0, 640.0]] {
             harness.set_size(Vec2::from(size));
             harness.run_steps(4);
@@ -259,7 +259,7 @@ fn the_form_of_what_is_picked_begins_at_its_top() {
     assert!(harness.get_by_label_contains("Show less and more friction").rect().bottom() < 780.0);
     // A click on the cable asks where its tension comes from: the answer stood below the form.
     let marker = TensionMarker { cable: 0, arc_length_m: 6.0, from: StartEnd::Slacker };
-    apply(&mut harness, Command::View(ViewCommand::MarkTension(Some(marker))));
+    apply(&mut harness, Command::View(ViewCommand::SetTensionMarker(Some(marker))));
     harness.run_steps(4);
     let budget = harness.get_by_label("Tension at the marked place").rect();
     assert!(budget.top() > 170.0 && budget.bottom() < 400.0, "{budget:?}");
@@ -269,7 +269,7 @@ fn the_form_of_what_is_picked_begins_at_its_top() {
 #[test]
 fn the_table_of_pinned_results_is_as_wide_as_its_panel() {
     let mut harness = open(catalog::tank_robot());
-    apply(&mut harness, Command::View(ViewCommand::Hold));
+    apply(&mut harness, Command::View(ViewCommand::AddReference));
     let mut cable = harness.state().state.document.scene.cables[0].clone();
     cable.length_m = 15.2;
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
@@ -364,7 +364,7 @@ fn a_result_that_is_pinned_by_name_is_seen() {
     let mut harness = open(catalog::over_beam());
     harness.hover_at(harness.get_by_label("Canvas").rect().center());
     harness.run_steps(2);
-    apply(&mut harness, Command::View(ViewCommand::Hold));
+    apply(&mut harness, Command::View(ViewCommand::AddReference));
     harness.run_steps(5);
     let unpin = harness.get_by_label("Unpin all").rect();
     assert!(harness.ctx.content_rect().contains_rect(unpin), "{unpin:?}");

@@ -47,7 +47,7 @@ fn the_outline_begins_the_left_panel_and_selects() {
     click(&mut harness, "Select robot");
     assert_eq!(selected(&harness), Some(Item::Robot));
     click(&mut harness, "Select leg 1");
-    assert_eq!(selected(&harness), Some(Item::Leg(0)));
+    assert_eq!(selected(&harness), Some(Item::PathLeg(0)));
 }
 
 #[test]

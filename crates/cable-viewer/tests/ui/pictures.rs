@@ -186,10 +186,10 @@ fn safe_reach_and_path_dark() {
     };
     let map = ReachMap { places: (0..41).map(place).collect(), start_x_m: 10.0, service_n: 800.0, breaking_n: 1e4 };
     let scene = std::sync::Arc::new(state.document.scene.clone());
-    let maps = cable_viewer::jobs::safe_reach::Maps::Line(std::sync::Arc::new(map));
+    let maps = cable_viewer::jobs::safe_reach::ReachMaps::Line(std::sync::Arc::new(map));
     state.analysis.safe_reach.progress = cable_viewer::jobs::safe_reach::Progress::Done((maps, scene));
-    state.analysis.safe_reach.choice.back = true;
-    state.selection.selected = Some(Item::Leg(2));
+    state.analysis.safe_reach.choice.round_trip = true;
+    state.selection.selected = Some(Item::PathLeg(2));
     compare("safe_reach_and_path_dark", state, Theme::Dark);
 }
 
@@ -260,7 +260,7 @@ fn end_reached() -> AppState {
         })
         .collect();
     let scene = std::sync::Arc::new(state.document.scene.clone());
-    let maps = cable_viewer::jobs::safe_reach::Maps::Area(std::sync::Arc::new(area), None);
+    let maps = cable_viewer::jobs::safe_reach::ReachMaps::Area(std::sync::Arc::new(area), None);
     state.analysis.safe_reach.progress = cable_viewer::jobs::safe_reach::Progress::Done((maps, scene));
     state
 }
@@ -279,8 +279,8 @@ fn safe_reach_of_an_end_dark() {
 fn several_picked_in_us_units_light() {
     let mut state = solved(catalog::loads_wind_heat());
     state.selection.selected = Some(Item::Support { cable: 0, support: 0 });
-    state.selection.also = vec![Item::Load(0)];
-    state.selection.frame_m = Some([[2.0, 1.0], [6.0, 4.0]]);
+    state.selection.also_selected = vec![Item::Load(0)];
+    state.selection.marquee_m = Some([[2.0, 1.0], [6.0, 4.0]]);
     state.view.layers.components = true;
     // The window says this at the start of each frame.
     cable_viewer::units::system::set_current(cable_viewer::units::system::System::Us);

@@ -54,7 +54,7 @@ fn t08_the_motion_of_any_point_is_shown_live() {
     tall(&mut harness);
     let from = cable_core::analysis::tension_budget::StartEnd::Start;
     let marker = TensionMarker { cable: 0, arc_length_m: 6.0, from };
-    apply(&mut harness, Command::View(ViewCommand::MarkTension(Some(marker))));
+    apply(&mut harness, Command::View(ViewCommand::SetTensionMarker(Some(marker))));
     for row in ["Displacement", "Velocity", "Acceleration"] {
         harness.get_by_label(row);
     }

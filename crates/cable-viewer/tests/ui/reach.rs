@@ -7,7 +7,7 @@ use cable_core::scene::catalog;
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
 use cable_viewer::jobs::safe_reach::{
-    Choice, Maps, Outcome, PLACES, Progress, ReachQuery, ReachSubject, SafeReachState, start,
+    Outcome, Progress, ROBOT_PLACES, ReachMaps, ReachQuery, ReachSubject, SafeReachOptions, SafeReachState, start,
 };
 use egui::{Key, Vec2};
 use egui_kittest::Harness;
@@ -71,9 +71,9 @@ fn safe_reach_of_a_robot_is_found_beside_the_window_and_can_be_ended() {
     });
     let (maps, of) = found.unwrap();
     assert_eq!(*of, scene);
-    let Maps::Line(map) = maps else { panic!("{maps:?}") };
+    let ReachMaps::Line(map) = maps else { panic!("{maps:?}") };
     let map: &ReachMap = &map;
-    assert_eq!(map.places.len(), PLACES);
+    assert_eq!(map.places.len(), ROBOT_PLACES);
     assert!(map.safe_m(map.service_n, Trip::ThereAndBack).is_some());
 }
 
@@ -105,7 +105,10 @@ fn a_search_that_is_dropped_ends() {
 fn safe_reach_of_an_end_is_a_map_of_the_plane_found_by_keys_alone_and_told_in_words() {
     let mut harness = tall(catalog::hanging_span());
     assert_eq!(reach(&harness).choice.moved, None);
-    apply(&mut harness, Command::View(ViewCommand::SetReach(Choice { across: 10, ..Choice::default() })));
+    apply(
+        &mut harness,
+        Command::View(ViewCommand::SetSafeReachOptions(SafeReachOptions { across: 10, ..SafeReachOptions::default() })),
+    );
     harness.get_by_label("Find safe reach").focus();
     harness.step();
     harness.key_press(Key::Enter);
@@ -123,7 +126,7 @@ fn safe_reach_of_an_end_is_a_map_of_the_plane_found_by_keys_alone_and_told_in_wo
         matches!(reach(&harness).progress, Progress::Done(_))
     });
     harness.get_by_label("Out of date: edited since");
-    let Some((Maps::Area(there, Some(ways)), _)) = reach(&harness).found().cloned() else {
+    let Some((ReachMaps::Area(there, Some(ways)), _)) = reach(&harness).found().cloned() else {
         panic!("{:?}", reach(&harness))
     };
     let [low, high] = harness.state().state.view.visible_m;
@@ -140,7 +143,7 @@ fn safe_reach_of_an_end_is_a_map_of_the_plane_found_by_keys_alone_and_told_in_wo
     assert!(words().contains("safe reach, there: Below service"), "{}", words());
     harness.get_by_label_contains("Below breaking");
     click(&mut harness, "There and back");
-    assert!(reach(&harness).choice.back);
+    assert!(reach(&harness).choice.round_trip);
     click(&mut harness, "Clear");
     assert!(reach(&harness).found().is_none());
     assert!(harness.query_by_label("There and back").is_none(), "nothing to show");
@@ -154,7 +157,10 @@ fn safe_reach_begins_where_the_end_is_on_screen() {
     let (times_s, points_m) = (vec![0.0, 0.5], vec![[9.0, 0.5], [8.0, 1.0]]);
     scene.cables[0].supports[1].motion = Some(cable_core::scene::Motion { times_s, points_m });
     let mut harness = tall(scene);
-    apply(&mut harness, Command::View(ViewCommand::SetReach(Choice { across: 8, ..Choice::default() })));
+    apply(
+        &mut harness,
+        Command::View(ViewCommand::SetSafeReachOptions(SafeReachOptions { across: 8, ..SafeReachOptions::default() })),
+    );
     apply(&mut harness, Command::Playback(cable_viewer::command::PlaybackCommand::SetPaused(false)));
     harness.run_steps(50);
     apply(&mut harness, Command::Playback(cable_viewer::command::PlaybackCommand::SetPaused(true)));
@@ -165,7 +171,7 @@ fn safe_reach_begins_where_the_end_is_on_screen() {
         harness.step();
         matches!(reach(&harness).progress, Progress::Done(_))
     });
-    let Some((Maps::Area(map, _), _)) = reach(&harness).found() else { panic!("{:?}", reach(&harness)) };
+    let Some((ReachMaps::Area(map, _), _)) = reach(&harness).found() else { panic!("{:?}", reach(&harness)) };
     assert!(
         (map.start_m[0] - there.x_m).abs() < 1e-9 && (map.start_m[1] - there.y_m).abs() < 1e-9,
         "{:?}",
@@ -205,7 +211,10 @@ fn a_cancelled_search_keeps_what_it_found_and_none_of_it_lies_outside_the_tank()
     apply(&mut harness, Command::View(ViewCommand::Zoom { about_m: [0.0, 4.0], factor: 0.4 }));
     let [low, high] = harness.state().state.view.visible_m;
     assert!(low[0] < -20.0 && high[0] > 20.0, "{low:?} {high:?}");
-    apply(&mut harness, Command::View(ViewCommand::SetReach(Choice { across: 12, ..Choice::default() })));
+    apply(
+        &mut harness,
+        Command::View(ViewCommand::SetSafeReachOptions(SafeReachOptions { across: 12, ..SafeReachOptions::default() })),
+    );
     click(&mut harness, "Find safe reach");
     patiently("a first part", || {
         harness.step();
@@ -216,7 +225,7 @@ fn a_cancelled_search_keeps_what_it_found_and_none_of_it_lies_outside_the_tank()
     let eta = |text: &str| harness.query_all_by_label_contains(text).count();
     assert!(eta("s left") + eta("min left") + eta("seconds left") > 0, "how long it still takes");
     click(&mut harness, "Cancel safe reach");
-    let Some((Maps::Area(there, _), _)) = reach(&harness).found() else { panic!("{:?}", reach(&harness)) };
+    let Some((ReachMaps::Area(there, _), _)) = reach(&harness).found() else { panic!("{:?}", reach(&harness)) };
     assert!(there.most_n.iter().any(|n| n.is_finite()), "what was found is kept");
     let walls = harness.state().state.document.scene.obstacles.iter().find_map(|o| match &o.shape {
         // Their inner faces: above a wall is no place in the tank either.
@@ -246,23 +255,23 @@ fn progress_of_a_robots_reach_counts_places_and_what_is_found_so_far_is_said_to_
     let job = start(ask, || ());
     patiently("a short reach", || {
         let progress = job.progress();
-        if let Progress::Running(share, Some((Maps::Line(map), _))) = &progress {
+        if let Progress::Running(share, Some((ReachMaps::Line(map), _))) = &progress {
             told.lock().unwrap().push((*share, map.places.len()));
         }
         matches!(progress, Progress::Done(_))
     });
     let told = told.into_inner().unwrap();
     assert!(told.windows(2).all(|t| t[0].0 <= t[1].0), "{told:?}");
-    let there = told.iter().filter(|(_, places)| *places < PLACES);
+    let there = told.iter().filter(|(_, places)| *places < ROBOT_PLACES);
     for (share, places) in there {
-        let expected = 0.5 * *places as f64 / PLACES as f64;
-        assert!((share - expected).abs() < 0.03, "{share} with {places} of {PLACES} places");
+        let expected = 0.5 * *places as f64 / ROBOT_PLACES as f64;
+        assert!((share - expected).abs() < 0.03, "{share} with {places} of {ROBOT_PLACES} places");
     }
     let mut harness = tall(catalog::tank_robot());
     click(&mut harness, "Find safe reach");
     patiently("the first places", || {
         harness.step();
-        reach(&harness).found().is_some_and(|(maps, _)| matches!(maps, Maps::Line(map) if map.places.len() > 2))
+        reach(&harness).found().is_some_and(|(maps, _)| matches!(maps, ReachMaps::Line(map) if map.places.len() > 2))
     });
     if matches!(reach(&harness).progress, Progress::Running(..)) {
         assert!(harness.query_all_by_label_contains("So far: safe from").next().is_some());
@@ -286,7 +295,7 @@ fn issue_020_a_search_is_seen_wherever_it_was_begun() {
     let mut harness = open(catalog::tank_robot());
     harness.hover_at(harness.get_by_label("Canvas").rect().center());
     harness.run_steps(2);
-    apply(&mut harness, Command::View(ViewCommand::Reach(true)));
+    apply(&mut harness, Command::View(ViewCommand::SearchSafeReach(true)));
     patiently("the first places", || {
         harness.run_steps(2);
         reach(&harness).found().is_some()
@@ -307,5 +316,5 @@ fn issue_020_a_search_is_seen_wherever_it_was_begun() {
     harness.run_steps(3);
     let hints = harness.get_by_label("Start here…").rect();
     assert!(legend(&harness).max.y < hints.min.y, "{:?} {hints:?}", legend(&harness));
-    apply(&mut harness, Command::View(ViewCommand::Reach(false)));
+    apply(&mut harness, Command::View(ViewCommand::SearchSafeReach(false)));
 }

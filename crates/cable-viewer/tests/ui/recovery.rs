@@ -17,7 +17,7 @@ fn kept_changes_are_offered_and_taken_over_as_unsaved() {
     kept.name = "Worked on for hours".to_owned();
     cable_viewer::io::scene_file::save(&path, &kept).unwrap();
     let mut harness = open(catalog::hanging_span());
-    harness.state_mut().keep_changes_in(path.clone());
+    harness.state_mut().enable_autosave(path.clone());
     harness.run_steps(2);
     harness.get_by_label("Recover").click();
     harness.run_steps(3);
@@ -36,7 +36,7 @@ fn kept_changes_can_be_deleted() {
     let path = folder.path().join("recovery.toml");
     cable_viewer::io::scene_file::save(&path, &catalog::over_beam()).unwrap();
     let mut harness = open(catalog::hanging_span());
-    harness.state_mut().keep_changes_in(path.clone());
+    harness.state_mut().enable_autosave(path.clone());
     harness.run_steps(2);
     harness.get_by_label("Discard").click();
     harness.run_steps(2);
@@ -49,7 +49,7 @@ fn a_damaged_copy_is_said_and_the_window_stays_usable() {
     let path = folder.path().join("recovery.toml");
     std::fs::write(&path, "version = 1\nname = \"half").unwrap();
     let mut harness = open(catalog::hanging_span());
-    harness.state_mut().keep_changes_in(path);
+    harness.state_mut().enable_autosave(path);
     harness.run_steps(2);
     assert!(matches!(harness.state().state.ui.dialog, Some(Dialog::Message { .. })));
     harness.get_by_label("Close").click();

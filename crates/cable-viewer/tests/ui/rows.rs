@@ -7,7 +7,7 @@ use cable_core::solution::WarningKind;
 use cable_core::{Model, Robot, Scene, Solution};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, FileCommand, PlaybackCommand, SceneCommand};
-use cable_viewer::render::colour::{ColourMap, Quantity};
+use cable_viewer::render::colour::{CableQuantity, ColourMap};
 use cable_viewer::state::dialog::Replacement;
 use cable_viewer::state::{AppState, Item};
 use egui::Vec2;
@@ -325,7 +325,7 @@ fn s20_colours_are_even_to_every_eye_and_what_they_show_is_chosen() {
     harness.run_steps(3);
     harness.get_by_label("Colour by stress").click();
     harness.run_steps(3);
-    assert_eq!(state(&harness).view.colour.quantity, Quantity::Stress);
+    assert_eq!(state(&harness).view.colour.quantity, CableQuantity::Stress);
     let [low, high] = state(&harness).view.colour.range(&answer(&harness));
     let node = answer(&harness).cables[0].nodes[0];
     assert!(low < high && (low..=high).contains(&node.stress_pa));

@@ -78,7 +78,7 @@ fn a_folder_that_is_no_run_changes_nothing_and_is_named() {
 fn s16_whole_runs_are_overlaid_and_compared() {
     let mut harness = open_span();
     play(&mut harness, 30);
-    apply(&mut harness, Command::View(ViewCommand::Hold));
+    apply(&mut harness, Command::View(ViewCommand::AddReference));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run");
     apply(&mut harness, Command::File(FileCommand::SaveRun(path.clone())));
@@ -87,7 +87,7 @@ fn s16_whole_runs_are_overlaid_and_compared() {
     apply(&mut harness, Command::Playback(PlaybackCommand::Reset));
     apply(&mut harness, Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
     play(&mut harness, 30);
-    apply(&mut harness, Command::File(FileCommand::HoldRun(path)));
+    apply(&mut harness, Command::File(FileCommand::AddReferenceRun(path)));
     harness.run_steps(2);
     let [own, read] = [0, 1].map(|k| state(&harness).analysis.references[k].run.clone().expect("a run"));
     let tension = Measure::ALL[0];
@@ -99,7 +99,7 @@ fn s16_whole_runs_are_overlaid_and_compared() {
     let spoken = harness.get_by_label("Over time").accesskit_node().description().unwrap_or_default();
     assert!(spoken.contains("Held 1") && spoken.contains("Held 2"), "{spoken}");
     // The picture of a held run is that of the time shown.
-    apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.2))));
+    apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.2))));
     let time_s = state(&harness).live.snapshot.solution.as_ref().unwrap().time_s;
     assert!((state(&harness).analysis.references[0].picture(time_s).time_s - time_s).abs() < 0.02);
     let told =
@@ -113,7 +113,7 @@ fn s16_whole_runs_are_overlaid_and_compared() {
 fn speed_of_a_million_samples() {
     let mut harness = open_span();
     play(&mut harness, 3);
-    apply(&mut harness, Command::View(ViewCommand::Hold));
+    apply(&mut harness, Command::View(ViewCommand::AddReference));
     let frame = |harness: &mut Harness<'_, ViewerApp>| {
         let began = Instant::now();
         harness.run_steps(30);

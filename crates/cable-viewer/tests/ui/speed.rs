@@ -10,7 +10,7 @@ use cable_core::scene::{Obstacle, Shape, catalog};
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
 use cable_viewer::command::{Command, ViewCommand};
-use cable_viewer::render::software_adapter_shader::Software;
+use cable_viewer::render::software_adapter_shader::SoftwarePainter;
 use eframe::egui_wgpu::{RenderState, RendererOptions, ScreenDescriptor, wgpu};
 use egui::Vec2;
 use egui_kittest::{Harness, TestRenderer};
@@ -126,7 +126,7 @@ fn thread_cpu_s() -> f64 {
 }
 
 /// The whole program in a window of 1280×800.
-fn window(renderer: Screen, software: Option<Software>, scene: Scene) -> Harness<'static, ViewerApp> {
+fn window(renderer: Screen, software: Option<SoftwarePainter>, scene: Scene) -> Harness<'static, ViewerApp> {
     Harness::builder()
         .with_size(Vec2::new(1280.0, 800.0))
         .with_step_dt(1.0 / 60.0)
@@ -146,7 +146,7 @@ fn draw(name: &str, mut scene: Scene, taken_over: bool) {
         Ok(renderer) => renderer,
         Err(why) => return eprintln!("{name}: not measured, {why}"),
     };
-    let software = Software::of(&renderer.state).filter(|_| taken_over);
+    let software = SoftwarePainter::of(&renderer.state).filter(|_| taken_over);
     let mut harness = window(renderer, software, scene);
     let ctx = harness.ctx.clone();
     harness.state_mut().apply(&ctx, vec![Command::SetModel(Model::Fem)]);
@@ -244,7 +244,7 @@ fn software_drawing_looks_the_same_at(scale: f32) {
                 return None;
             }
         };
-        let software = Software::of(&state).filter(|_| taken_over);
+        let software = SoftwarePainter::of(&state).filter(|_| taken_over);
         let mut harness = Harness::builder()
             .with_size(Vec2::new(1100.0, 640.0))
             .with_pixels_per_point(scale)
@@ -298,7 +298,7 @@ fn speed_of_graphs() {
         Ok(renderer) => renderer,
         Err(why) => return eprintln!("not measured, {why}"),
     };
-    let software = Software::of(&renderer.state);
+    let software = SoftwarePainter::of(&renderer.state);
     let mut harness = window(renderer, software, catalog::hanging_span());
     harness.run_steps(4);
     let all = cable_viewer::plot::GraphView { window_s: None, ..cable_viewer::plot::GraphView::default() };

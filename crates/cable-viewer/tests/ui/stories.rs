@@ -80,7 +80,7 @@ fn s08_pause_step_back_scrub_and_go_on() {
 
     // Scrubbed to the middle, everything on screen is of that time; played, it runs to the present
     // and on.
-    apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.25))));
+    apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.25))));
     assert!((time_s(&harness) - 0.25).abs() < 1.0 / 60.0);
     harness.get_by_label_contains("0.25 of ");
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
@@ -114,7 +114,7 @@ fn s08_an_edit_is_of_the_present() {
     let mut harness = open_span();
     apply(&mut harness, Command::Playback(PlaybackCommand::SetPaused(false)));
     harness.run_steps(20);
-    apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.1))));
+    apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.1))));
     let mut cable = harness.state().state.document.scene.cables[0].clone();
     cable.length_m += 0.01;
     let edit = cable_viewer::command::SceneCommand::SetCable { cable: 0, value: Box::new(cable) };

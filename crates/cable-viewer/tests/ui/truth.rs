@@ -285,7 +285,7 @@ fn a_reset_can_be_undone_and_starts_the_robots_task_again() {
     harness.key_press(Key::R);
     harness.run_steps(3);
     assert_eq!(answer(&harness).time_s, 0.0);
-    assert_eq!(state(&harness).live.robot_order, None, "the task, not the hand");
+    assert_eq!(state(&harness).live.robot_speed_command, None, "the task, not the hand");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     harness.run_steps(3);
     assert_eq!(answer(&harness).time_s, end);
@@ -334,9 +334,9 @@ fn an_edit_that_begins_the_run_anew_keeps_what_was_recorded() {
         assert!((answer(&harness).time_s - end.time_s).abs() < 0.02 && state(&harness).live.playback.paused);
         assert!(harness.query_by_label("Undo restart").is_none());
         // Any of it can be looked at, and time goes on from its end.
-        apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.5))));
+        apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.5))));
         assert!((answer(&harness).time_s - 0.5).abs() < 0.02);
-        apply(&mut harness, Command::Playback(PlaybackCommand::Show(None)));
+        apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(None)));
         harness.key_press(Key::Space);
         harness.run_steps(10);
         assert!(answer(&harness).time_s > end.time_s, "{} s", answer(&harness).time_s);
@@ -375,9 +375,9 @@ fn resuming_keeps_the_forces_on_supports() {
     harness.run_steps(40);
     harness.key_press(Key::Space);
     harness.run_steps(2);
-    apply(&mut harness, Command::Playback(PlaybackCommand::Show(Some(0.3))));
+    apply(&mut harness, Command::Playback(PlaybackCommand::ShowTime(Some(0.3))));
     let then = answer(&harness);
-    apply(&mut harness, Command::Playback(PlaybackCommand::GoOn));
+    apply(&mut harness, Command::Playback(PlaybackCommand::ResumeFromShown));
     let now = answer(&harness);
     assert_eq!(now.time_s, then.time_s);
     let pull = |a: &Solution| a.cables[0].supports[0].reaction_x_n.hypot(a.cables[0].supports[0].reaction_y_n);
@@ -388,7 +388,7 @@ fn resuming_keeps_the_forces_on_supports() {
 #[test]
 fn pins_belong_to_their_scene() {
     let mut harness = open(catalog::hanging_span());
-    apply(&mut harness, Command::View(cable_viewer::command::ViewCommand::Hold));
+    apply(&mut harness, Command::View(cable_viewer::command::ViewCommand::AddReference));
     apply(&mut harness, Command::File(FileCommand::OpenCatalogue("hanging-span".to_owned())));
     assert_eq!(state(&harness).analysis.references.len(), 1, "the same scene again");
     apply(&mut harness, Command::File(FileCommand::OpenCatalogue("over-beam".to_owned())));

@@ -94,12 +94,12 @@ fn walk_a_span() {
     walk.look("a03-dragged");
     walk.plays(150);
     walk.look("a04-played");
-    walk.view(ViewCommand::Hold);
+    walk.view(ViewCommand::AddReference);
     let mut cable = walk.harness.state().state.document.scene.cables[0].clone();
     cable.length_m *= 1.15;
     walk.does(Command::Scene(SceneCommand::SetCable { cable: 0, value: Box::new(cable) }));
     walk.look("a05-held-and-changed");
-    walk.view(ViewCommand::MarkTension(Some(TensionMarker {
+    walk.view(ViewCommand::SetTensionMarker(Some(TensionMarker {
         cable: 0,
         arc_length_m: 4.0,
         from: cable_core::analysis::tension_budget::StartEnd::Start,
@@ -173,7 +173,7 @@ fn walk_c_tank() {
     walk.look("c03-tank-light");
     walk.view(ViewCommand::Select(Some(Item::Obstacle(1))));
     walk.look("c04-obstacle-picked");
-    walk.does(Command::Playback(PlaybackCommand::Show(Some(2.0))));
+    walk.does(Command::Playback(PlaybackCommand::ShowTime(Some(2.0))));
     walk.look("c05-scrubbed");
 }
 
@@ -243,7 +243,7 @@ fn walk_g_small_dialogs() {
 fn walk_f_tall_panels() {
     for (name, scene) in [("robot", catalog::robot_drive()), ("tank", catalog::tank())] {
         let Some(mut walk) = Walk::open(scene, [1280.0, 2400.0]) else { return };
-        walk.view(ViewCommand::Hold);
+        walk.view(ViewCommand::AddReference);
         walk.look(&format!("f-tall-{name}-dark"));
         walk.light();
         walk.view(ViewCommand::SetUnits(cable_viewer::units::system::System::Us));

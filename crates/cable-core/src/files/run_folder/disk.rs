@@ -28,33 +28,33 @@ pub(super) fn temporary(name: &str) -> String {
 /// place.
 pub(super) fn put(folder: &Path, name: &str, bytes: &[u8]) -> Result<(), FileError> {
     let path = folder.join(name);
-    write_beside(&path, bytes).map_err(|e| FileError::write(&path, &e))?;
+    write_temporary_and_rename(&path, bytes).map_err(|e| FileError::write(&path, &e))?;
     sync_folder(folder);
     Ok(())
 }
 
 /// As [`put`], where there is nothing of that name yet.
-pub(super) fn put_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    if exists(path) { Err(io::ErrorKind::AlreadyExists.into()) } else { write_beside(path, bytes) }
+pub(super) fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if exists(path) { Err(io::ErrorKind::AlreadyExists.into()) } else { write_temporary_and_rename(path, bytes) }
 }
 
-fn write_beside(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn write_temporary_and_rename(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let beside = path.with_file_name(temporary(&name));
     let write = || -> io::Result<()> {
         // Left by a run that was killed within these lines; a link is removed, not followed.
-        remove_left(&beside)?;
+        remove_if_present(&beside)?;
         let mut file = fs::OpenOptions::new().write(true).create_new(true).open(&beside)?;
         file.write_all(bytes)?;
         file.sync_all()?;
         fs::rename(&beside, path)
     };
     write().inspect_err(|_| {
-        let _ = remove_left(&beside);
+        let _ = remove_if_present(&beside);
     })
 }
 
-pub(super) fn remove_left(path: &Path) -> io::Result<()> {
+pub(super) fn remove_if_present(path: &Path) -> io::Result<()> {
     match fs::remove_file(path) {
         Err(e) if e.kind() != io::ErrorKind::NotFound => Err(e),
         _ => Ok(()),

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use super::disk::{put_new, remove_left};
+use super::disk::{remove_if_present, write_new};
 use crate::record::{Fingerprint, Pages};
 
 /// A table of a run on the disk.
@@ -46,7 +46,7 @@ impl TableFile {
         match &mut self.file {
             Some(file) => file.write_all(part),
             none => {
-                put_new(&self.path, part)?;
+                write_new(&self.path, part)?;
                 *none = Some(fs::OpenOptions::new().append(true).open(&self.path)?);
                 Ok(())
             }
@@ -65,7 +65,7 @@ impl TableFile {
             Some(file) if bytes > 0 => file.set_len(bytes),
             Some(_) => {
                 self.file = None;
-                remove_left(&self.path)
+                remove_if_present(&self.path)
             }
             None => Ok(()),
         };

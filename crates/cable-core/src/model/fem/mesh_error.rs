@@ -141,7 +141,7 @@ impl TwoMeshes {
         };
         let Some(coarse) = coarse else { return };
         // Friction is as wrong as the steps that it remembers.
-        self.errors = before.errors.or_larger(&ErrorEstimates::between(&coarse.solution(), &answer));
+        self.errors = before.errors.componentwise_max(&ErrorEstimates::between(&coarse.solution(), &answer));
         self.coarse = Some(coarse);
     }
 }
@@ -174,7 +174,7 @@ fn errors_by_coarser_meshes(
     let errors = ErrorEstimates::between(&other, &answer).plus(&ErrorEstimates::rounding(&answer, problem));
     let coarsest = at_rest_with_bars(problem, settings, fine, fine.cable.meshing.even_bars / 4, &answer, dragged);
     let change = coarsest.map(|c| ErrorEstimates::between(&c.solution(), &other).times(FIRST_ORDER_ERROR_FRACTION));
-    Some((change.map_or(errors, |change| errors.or_larger(&change)), coarse))
+    Some((change.map_or(errors, |change| errors.componentwise_max(&change)), coarse))
 }
 
 /// Errors of an answer beside one without a mesh.

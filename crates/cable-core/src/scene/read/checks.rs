@@ -16,10 +16,10 @@ pub(super) const MAX_KNOTS: usize = 100_000;
 /// Longest name, bytes.
 const MAX_NAME: usize = 200;
 
-pub(super) type Checked = Result<(), SceneError>;
+pub(super) type CheckResult = Result<(), SceneError>;
 
 /// A finite number in its range.
-pub(super) fn number(at: &Path<'_>, value: f64, range: Range) -> Checked {
+pub(super) fn number(at: &Path<'_>, value: f64, range: Range) -> CheckResult {
     if range.holds(value) {
         Ok(())
     } else {
@@ -27,29 +27,29 @@ pub(super) fn number(at: &Path<'_>, value: f64, range: Range) -> Checked {
     }
 }
 
-pub(super) fn point(at: &Path<'_>, value: Point, range: Range) -> Checked {
+pub(super) fn point(at: &Path<'_>, value: Point, range: Range) -> CheckResult {
     number(&at.index(0), value[0], range)?;
     number(&at.index(1), value[1], range)
 }
 
-pub(super) fn points(at: &Path<'_>, values: &[Point], range: Range) -> Checked {
+pub(super) fn points(at: &Path<'_>, values: &[Point], range: Range) -> CheckResult {
     values.iter().enumerate().try_for_each(|(i, p)| point(&at.index(i), *p, range))
 }
 
 /// No two neighbours in the same place.
-pub(super) fn apart(at: &Path<'_>, line: &[Point]) -> Checked {
+pub(super) fn apart(at: &Path<'_>, line: &[Point]) -> CheckResult {
     match line.windows(2).position(|w| w[0] == w[1]) {
         Some(i) => Err(at.index(i + 1).shape(ShapeFault::RepeatedPoint)),
         None => Ok(()),
     }
 }
 
-pub(super) fn at_most(at: &Path<'_>, count: usize, most: usize) -> Checked {
+pub(super) fn at_most(at: &Path<'_>, count: usize, most: usize) -> CheckResult {
     if count <= most { Ok(()) } else { Err(at.fault(SceneFault::TooMany { count, most })) }
 }
 
 /// Names that are there, short enough and each used once.
-pub(super) fn unique<'a>(at: &Path<'_>, names: impl Iterator<Item = &'a str>) -> Checked {
+pub(super) fn unique<'a>(at: &Path<'_>, names: impl Iterator<Item = &'a str>) -> CheckResult {
     let mut seen = std::collections::BTreeSet::new();
     for (i, name) in names.enumerate() {
         let place = at.index(i);
@@ -72,7 +72,7 @@ pub(super) fn series(
     times: &[f64],
     values: &[Point],
     range: Range,
-) -> Checked {
+) -> CheckResult {
     at_most(times_at, times.len(), MAX_KNOTS)?;
     if times.is_empty() {
         return Err(times_at.shape(ShapeFault::NoTime));
@@ -94,7 +94,7 @@ pub(super) fn series(
 }
 
 /// Either a constant force or a series.
-pub(super) fn force(at: &Path<'_>, constant: Option<Point>, times: &[f64], forces: &[Point]) -> Checked {
+pub(super) fn force(at: &Path<'_>, constant: Option<Point>, times: &[f64], forces: &[Point]) -> CheckResult {
     let given = !times.is_empty() || !forces.is_empty();
     match constant {
         Some(_) if given => Err(at.key("force_n").shape(ShapeFault::TwoForces)),
@@ -105,7 +105,7 @@ pub(super) fn force(at: &Path<'_>, constant: Option<Point>, times: &[f64], force
 }
 
 /// A motion and that it starts where its support is.
-pub(super) fn motion(at: &Path<'_>, motion: &Motion, start: Point) -> Checked {
+pub(super) fn motion(at: &Path<'_>, motion: &Motion, start: Point) -> CheckResult {
     series(&at.key("times_s"), &at.key("points_m"), &motion.times_s, &motion.points_m, range::COORDINATE)?;
     /// Further apart than this the first instant would be a jump, m.
     const PLACE_TOLERANCE: f64 = 1e-6;

@@ -23,7 +23,7 @@ type TomlNode<'a> = Spanned<DeValue<'a>>;
 
 /// A fault on its way up the tree, gathering its path.
 #[derive(Debug)]
-pub(super) struct Refusal {
+pub(super) struct DeserializeError {
     /// The fault.
     pub(super) fault: SceneFault,
     /// Bytes of the text it is about.
@@ -38,7 +38,7 @@ enum PathStep {
     Index(usize),
 }
 
-impl Refusal {
+impl DeserializeError {
     fn new(fault: SceneFault) -> Self {
         Self { fault, span: None, steps: Vec::new() }
     }
@@ -70,15 +70,15 @@ impl Refusal {
     }
 }
 
-impl fmt::Display for Refusal {
+impl fmt::Display for DeserializeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.path(), self.fault)
     }
 }
 
-impl std::error::Error for Refusal {}
+impl std::error::Error for DeserializeError {}
 
-impl serde::de::Error for Refusal {
+impl serde::de::Error for DeserializeError {
     fn custom<T: fmt::Display>(message: T) -> Self {
         Self::new(SceneFault::Shape(ShapeFault::Refused { message: message.to_string() }))
     }
@@ -126,9 +126,9 @@ fn plain(expected: &dyn Expected) -> String {
 pub(super) struct Document<'a>(pub(super) &'a DeTable<'a>, pub(super) Range<usize>);
 
 impl<'de> Deserializer<'de> for Document<'de> {
-    type Error = Refusal;
+    type Error = DeserializeError;
 
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Refusal> {
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, DeserializeError> {
         visitor.visit_map(Entries::new(self.0, Vec::new())).map_err(|e| e.spanned(self.1))
     }
 
@@ -142,9 +142,9 @@ impl<'de> Deserializer<'de> for Document<'de> {
 struct Value<'a>(&'a TomlNode<'a>);
 
 impl<'de> Deserializer<'de> for Value<'de> {
-    type Error = Refusal;
+    type Error = DeserializeError;
 
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Refusal> {
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, DeserializeError> {
         let span = self.0.span();
         match self.0.get_ref() {
             DeValue::String(s) => visitor.visit_str(s),
@@ -155,7 +155,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
             },
             DeValue::Float(x) => visitor.visit_f64(x.as_str().parse().unwrap_or(f64::NAN)),
             DeValue::Boolean(b) => visitor.visit_bool(*b),
-            DeValue::Datetime(_) => Err(Refusal::invalid_type(Unexpected::Other("a date"), &visitor)),
+            DeValue::Datetime(_) => Err(DeserializeError::invalid_type(Unexpected::Other("a date"), &visitor)),
             DeValue::Array(items) => {
                 let mut seq = Items { items, next: 0 };
                 visitor.visit_seq(&mut seq).and_then(|value| {
@@ -163,7 +163,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
                         Ok(value)
                     } else {
                         let needed = seq.next.to_string();
-                        Err(Refusal::new(SceneFault::Elements { count: items.len(), needed }))
+                        Err(DeserializeError::new(SceneFault::Elements { count: items.len(), needed }))
                     }
                 })
             }
@@ -172,11 +172,15 @@ impl<'de> Deserializer<'de> for Value<'de> {
         .map_err(|e| e.spanned(span))
     }
 
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Refusal> {
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, DeserializeError> {
         visitor.visit_some(self)
     }
 
-    fn deserialize_newtype_struct<V: Visitor<'de>>(self, _: &'static str, visitor: V) -> Result<V::Value, Refusal> {
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, DeserializeError> {
         visitor.visit_newtype_struct(self)
     }
 
@@ -185,9 +189,9 @@ impl<'de> Deserializer<'de> for Value<'de> {
         _: &'static str,
         _: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Refusal> {
+    ) -> Result<V::Value, DeserializeError> {
         match self.0.get_ref() {
-            DeValue::String(s) => visitor.visit_enum(Word(s)).map_err(|e| e.spanned(self.0.span())),
+            DeValue::String(s) => visitor.visit_enum(VariantName(s)).map_err(|e| e.spanned(self.0.span())),
             _ => self.deserialize_any(visitor),
         }
     }
@@ -197,7 +201,7 @@ impl<'de> Deserializer<'de> for Value<'de> {
         name: &'static str,
         _: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Refusal> {
+    ) -> Result<V::Value, DeserializeError> {
         match self.0.get_ref() {
             DeValue::Table(table) if name == "Cable" => {
                 let defaults = cable_defaults(table)?;
@@ -214,46 +218,50 @@ impl<'de> Deserializer<'de> for Value<'de> {
 }
 
 /// The numbers of a cable's preset that its table leaves out.
-fn cable_defaults(table: &DeTable<'_>) -> Result<Vec<(&'static str, f64)>, Refusal> {
+fn cable_defaults(table: &DeTable<'_>) -> Result<Vec<(&'static str, f64)>, DeserializeError> {
     let Some(value) = table.get("preset") else { return Ok(Vec::new()) };
     let DeValue::String(id) = value.get_ref() else { return Ok(Vec::new()) };
     let Some(preset) = preset::cable_preset(id) else {
         let fault = preset::unknown("cable preset", id, preset::cable_presets().iter().map(|p| p.id));
-        return Err(Refusal::new(fault).inside(PathStep::Key("preset".to_owned()), value.span()));
+        return Err(DeserializeError::new(fault).inside(PathStep::Key("preset".to_owned()), value.span()));
     };
     Ok(preset.values().into_iter().filter(|(key, _)| table.get(*key).is_none()).collect())
 }
 
 /// The name of an enum's variant.
-struct Word<'a>(&'a str);
+struct VariantName<'a>(&'a str);
 
-impl<'de> EnumAccess<'de> for Word<'_> {
-    type Error = Refusal;
+impl<'de> EnumAccess<'de> for VariantName<'_> {
+    type Error = DeserializeError;
     type Variant = Self;
 
-    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Self), Refusal> {
-        let name: StrDeserializer<'_, Refusal> = self.0.into_deserializer();
+    fn variant_seed<V: DeserializeSeed<'de>>(self, seed: V) -> Result<(V::Value, Self), DeserializeError> {
+        let name: StrDeserializer<'_, DeserializeError> = self.0.into_deserializer();
         Ok((seed.deserialize(name)?, self))
     }
 }
 
-impl<'de> VariantAccess<'de> for Word<'_> {
-    type Error = Refusal;
+impl<'de> VariantAccess<'de> for VariantName<'_> {
+    type Error = DeserializeError;
 
-    fn unit_variant(self) -> Result<(), Refusal> {
+    fn unit_variant(self) -> Result<(), DeserializeError> {
         Ok(())
     }
 
-    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, _: T) -> Result<T::Value, Refusal> {
-        Err(Refusal::invalid_type(Unexpected::Str(self.0), &"a table"))
+    fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, _: T) -> Result<T::Value, DeserializeError> {
+        Err(DeserializeError::invalid_type(Unexpected::Str(self.0), &"a table"))
     }
 
-    fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Refusal> {
-        Err(Refusal::invalid_type(Unexpected::Str(self.0), &visitor))
+    fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, DeserializeError> {
+        Err(DeserializeError::invalid_type(Unexpected::Str(self.0), &visitor))
     }
 
-    fn struct_variant<V: Visitor<'de>>(self, _: &'static [&'static str], visitor: V) -> Result<V::Value, Refusal> {
-        Err(Refusal::invalid_type(Unexpected::Str(self.0), &visitor))
+    fn struct_variant<V: Visitor<'de>>(
+        self,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, DeserializeError> {
+        Err(DeserializeError::invalid_type(Unexpected::Str(self.0), &visitor))
     }
 }
 
@@ -263,9 +271,9 @@ struct Items<'a> {
 }
 
 impl<'de> SeqAccess<'de> for &mut Items<'de> {
-    type Error = Refusal;
+    type Error = DeserializeError;
 
-    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Refusal> {
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, DeserializeError> {
         let Some(item) = self.items.get(self.next) else { return Ok(None) };
         let index = self.next;
         self.next += 1;
@@ -298,23 +306,23 @@ impl<'de, I> MapAccess<'de> for Entries<'de, I>
 where
     I: Iterator<Item = (&'de Spanned<std::borrow::Cow<'de, str>>, &'de TomlNode<'de>)>,
 {
-    type Error = Refusal;
+    type Error = DeserializeError;
 
-    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Refusal> {
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, DeserializeError> {
         if let Some((key, value)) = self.entries.next() {
             let name: &'de str = key.get_ref();
             self.value = Some((name, value));
-            let word: StrDeserializer<'_, Refusal> = name.into_deserializer();
+            let word: StrDeserializer<'_, DeserializeError> = name.into_deserializer();
             return seed.deserialize(word).map(Some).map_err(|e| e.inside(PathStep::Key(name.to_owned()), key.span()));
         }
         let Some((name, value)) = self.defaults.next() else { return Ok(None) };
         self.value = None;
         self.default = value;
-        let word: StrDeserializer<'_, Refusal> = name.into_deserializer();
+        let word: StrDeserializer<'_, DeserializeError> = name.into_deserializer();
         seed.deserialize(word).map(Some)
     }
 
-    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Refusal> {
+    fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, DeserializeError> {
         match self.value.take() {
             Some((key, value)) => {
                 seed.deserialize(Value(value)).map_err(|e| e.inside(PathStep::Key(key.to_owned()), value.span()))

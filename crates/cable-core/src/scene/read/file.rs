@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::deserialize::{Document, Refusal};
+use super::deserialize::{DeserializeError, Document};
 use super::path::Path;
 use crate::error::{SceneError, SceneFault, ShapeFault, TextPosition};
 use crate::scene::{Scene, VERSION, preset};
@@ -32,7 +32,7 @@ impl Scene {
             fault: SceneFault::Syntax { message: e.message().to_owned() },
             at: e.span().map(|s| position(text, s.start)),
         })?;
-        let refused = |e: Refusal| SceneError {
+        let refused = |e: DeserializeError| SceneError {
             path: e.path(),
             at: e.span.as_ref().map(|s| position(text, s.start)),
             fault: e.fault,

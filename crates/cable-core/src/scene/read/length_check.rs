@@ -1,6 +1,6 @@
 //! A cable is refused if it is too short for the straight way through its supports.
 
-use super::checks::Checked;
+use super::checks::CheckResult;
 use super::path::Path;
 use crate::error::SceneFault;
 use crate::math::{Vec2, vec2};
@@ -8,7 +8,7 @@ use crate::scene::{Cable, Scene, Support, SupportKind};
 
 /// Refuses a cable that would have to break to reach its supports. Each stretch between two
 /// supports that grip it is looked at by itself; obstacles only make the way longer.
-pub(super) fn long_enough(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checked {
+pub(super) fn check_length(scene: &Scene, cable: &Cable, at: &Path<'_>) -> CheckResult {
     let thermal = 1.0 + cable.thermal_expansion_per_k * scene.environment.temperature_change_k;
     let last = cable.supports.len().saturating_sub(1);
     let mut from: Option<Waypoint> = None;
@@ -22,7 +22,7 @@ pub(super) fn long_enough(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checke
             continue;
         };
         if let Some(before) = from {
-            way += before.least_way_to(here);
+            way += before.tangent_length(here);
         }
         from = Some(here);
         if support.kind == SupportKind::Pulley {
@@ -52,7 +52,7 @@ const MIN_SEPARATION_FRACTION: f64 = 1e-9;
 /// Refuses neighbours along the cable without a straight line that touches both: a support inside
 /// the wheel beside it, a wheel inside the next one, an eye in the very place of what it stands
 /// beside.
-pub(super) fn lines_exist(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checked {
+pub(super) fn check_tangents_exist(scene: &Scene, cable: &Cable, at: &Path<'_>) -> CheckResult {
     for (i, pair) in cable.supports.windows(2).enumerate() {
         let [from, to] = pair else { continue };
         let slides = from.kind == SupportKind::Pulley || to.kind == SupportKind::Pulley;
@@ -89,7 +89,7 @@ impl Waypoint {
 
     /// Tangent between two circles, the crossed one, which is the shorter: √(d² − (r₁ + r₂)²). The
     /// arcs on the wheels come on top, so this is never more than the cable needs.
-    fn least_way_to(self, other: Self) -> f64 {
+    fn tangent_length(self, other: Self) -> f64 {
         let (d, r) = ((other.at - self.at).norm(), self.radius + other.radius);
         if d > r { ((d - r) * (d + r)).sqrt() } else { 0.0 }
     }

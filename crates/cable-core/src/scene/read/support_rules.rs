@@ -1,7 +1,7 @@
 //! The rules of supports say which keys belong to which kind, and where along the cable each kind
 //! may sit.
 
-use super::checks::{Checked, MAX_POINTS_ON_CABLE, at_most, force, motion, number, point, unique};
+use super::checks::{CheckResult, MAX_POINTS_ON_CABLE, at_most, force, motion, number, point, unique};
 use super::path::Path;
 use super::range;
 use crate::error::{SceneFault, ShapeFault};
@@ -10,7 +10,7 @@ use crate::scene::{Cable, Scene, Support, SupportKind};
 use SupportKind::{Clamped, Fixed, Free, Load, Pulley, Robot};
 
 /// Checks the supports of a cable.
-pub(super) fn check(scene: &Scene, cable: &Cable, cable_at: &Path<'_>) -> Checked {
+pub(super) fn check(scene: &Scene, cable: &Cable, cable_at: &Path<'_>) -> CheckResult {
     let at = cable_at.key("supports");
     let supports = &cable.supports;
     at_most(&at, supports.len(), MAX_POINTS_ON_CABLE)?;
@@ -52,7 +52,7 @@ pub(super) fn check(scene: &Scene, cable: &Cable, cable_at: &Path<'_>) -> Checke
 }
 
 /// Keys that a kind must have, and must not.
-fn check_keys(s: &Support, at: &Path<'_>) -> Checked {
+fn check_keys(s: &Support, at: &Path<'_>) -> CheckResult {
     let kind = s.kind;
     let held = matches!(kind, Fixed | Clamped | Pulley);
     let forced = s.force_n.is_some() || !s.times_s.is_empty() || !s.forces_n.is_empty();
@@ -84,7 +84,7 @@ fn check_keys(s: &Support, at: &Path<'_>) -> Checked {
     Ok(())
 }
 
-fn check_numbers(s: &Support, at: &Path<'_>) -> Checked {
+fn check_numbers(s: &Support, at: &Path<'_>) -> CheckResult {
     let numbers = [
         ("arc_length_m", s.arc_length_m, range::ARC_LENGTH),
         ("angle_deg", s.angle_deg, range::ANGLE),

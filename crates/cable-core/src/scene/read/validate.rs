@@ -5,7 +5,7 @@
 //! unusual.
 
 use super::checks::{
-    Checked, MAX_KNOTS, MAX_POINTS_ON_CABLE, apart, at_most, force, number, point, points, series, unique,
+    CheckResult, MAX_KNOTS, MAX_POINTS_ON_CABLE, apart, at_most, force, number, point, points, series, unique,
 };
 use super::path::Path;
 use super::range;
@@ -61,14 +61,14 @@ impl Scene {
             check_robot(robot, &root.key("robot"))?;
         }
         for (i, cable) in self.cables.iter().enumerate() {
-            length_check::lines_exist(self, cable, &root.key("cables").index(i))?;
-            length_check::long_enough(self, cable, &root.key("cables").index(i).key("length_m"))?;
+            length_check::check_tangents_exist(self, cable, &root.key("cables").index(i))?;
+            length_check::check_length(self, cable, &root.key("cables").index(i).key("length_m"))?;
         }
         Ok(())
     }
 }
 
-fn check_environment(env: &Environment) -> Checked {
+fn check_environment(env: &Environment) -> CheckResult {
     let at = Path::Root.key("environment");
     number(&at.key("gravity_m_per_s2"), env.gravity_m_per_s2, range::GRAVITY)?;
     number(&at.key("temperature_change_k"), env.temperature_change_k, range::TEMPERATURE)?;
@@ -79,7 +79,7 @@ fn check_environment(env: &Environment) -> Checked {
     series(&at.key("wind_times_s"), &at.key("winds_n_per_m"), &env.wind_times_s, &env.winds_n_per_m, range::WIND)
 }
 
-fn check_cable(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checked {
+fn check_cable(scene: &Scene, cable: &Cable, at: &Path<'_>) -> CheckResult {
     let numbers = [
         ("length_m", cable.length_m, range::LENGTH),
         ("linear_density_kg_per_m", cable.linear_density_kg_per_m, range::DENSITY),
@@ -131,7 +131,7 @@ fn check_cable(scene: &Scene, cable: &Cable, at: &Path<'_>) -> Checked {
     support_rules::check(scene, cable, at)
 }
 
-fn check_load(scene: &Scene, load: &Load, at: &Path<'_>) -> Checked {
+fn check_load(scene: &Scene, load: &Load, at: &Path<'_>) -> CheckResult {
     let Some(cable) = scene.cables.iter().find(|c| c.name == load.cable) else {
         let known = scene.cables.iter().map(|c| c.name.as_str());
         return Err(at.key("cable").fault(preset::unknown("cable", &load.cable, known)));
@@ -178,15 +178,15 @@ fn check_obstacle(obstacle: &Obstacle, at: &Path<'_>) -> Result<usize, SceneErro
         (Shape::Polygon { .. }, _, _) if !(area(corners).abs() > 0.0) => {
             Err(line.shape(ShapeFault::PolygonWithoutArea))
         }
-        (Shape::Terrain { .. }, _, _) => not_crossing(&line, corners, LineEnds::Open),
-        (Shape::Polygon { .. }, _, _) => not_crossing(&line, corners, LineEnds::Joined),
+        (Shape::Terrain { .. }, _, _) => check_not_self_crossing(&line, corners, LineEnds::Open),
+        (Shape::Polygon { .. }, _, _) => check_not_self_crossing(&line, corners, LineEnds::Joined),
         _ => Ok(()),
     }?;
     Ok(corners.len())
 }
 
 /// A line with an inside must not cross or touch itself.
-fn not_crossing(at: &Path<'_>, line: &[Point], ends: LineEnds) -> Checked {
+fn check_not_self_crossing(at: &Path<'_>, line: &[Point], ends: LineEnds) -> CheckResult {
     match first_self_touch(line, ends) {
         None => Ok(()),
         Some(SelfTouch::Edges(i, j)) => {
@@ -204,7 +204,7 @@ fn area(corners: &[Point]) -> f64 {
     corners.windows(2).map(|w| ((w[0][0] - o[0]) * (w[1][1] - o[1]) - (w[1][0] - o[0]) * (w[0][1] - o[1])) / 2.0).sum()
 }
 
-fn check_robot(robot: &Robot, at: &Path<'_>) -> Checked {
+fn check_robot(robot: &Robot, at: &Path<'_>) -> CheckResult {
     if preset::robot_preset(&robot.preset).is_none() {
         let known = preset::robot_presets().iter().map(|p| p.id);
         return Err(at.key("preset").fault(preset::unknown("robot preset", &robot.preset, known)));

@@ -10,7 +10,7 @@ use crate::render::colour::ColourScale;
 use crate::state::{AppState, Freshness, Item};
 
 /// Thinnest ribbon, points: the true diameter is drawn only where it is wider.
-pub const LEAST_WIDTH: f32 = 4.5;
+pub const MIN_WIDTH: f32 = 4.5;
 /// Nodes nearer to each other than this are drawn as one, points: a ribbon of pieces shorter than
 /// it is smooth costs as much as a screen full of text.
 const MIN_SPACING: f32 = 1.5;
@@ -32,11 +32,11 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     let fade = |c: Color32| if current { c } else { grey(c) };
     for (k, answer) in solution.cables.iter().enumerate() {
         let Some(cable) = solved.cables.get(k) else { continue };
-        let width = view.points(cable.diameter_m).max(LEAST_WIDTH);
+        let width = view.points(cable.diameter_m).max(MIN_WIDTH);
         let picked = |item: Option<Item>| item == Some(Item::Cable(k));
         let service = cable.service_tension_n;
         for nodes in answer.pieces() {
-            let nodes = &seen(view, nodes, service);
+            let nodes = &distinct_nodes(view, nodes, service);
             let line = Ribbon::new(view, nodes);
             if state.selection.contains(Item::Cable(k)) || picked(state.selection.hovered) {
                 line.add(&mut mesh, width + 7.0, |_| Some(view.palette.accent.gamma_multiply(0.55)));
@@ -56,7 +56,7 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     }
     view.painter.add(mesh);
     for piece in solution.cables.iter().flat_map(|c| c.pieces()) {
-        for pair in seen(view, piece, f64::INFINITY).windows(2) {
+        for pair in distinct_nodes(view, piece, f64::INFINITY).windows(2) {
             view.avoid_line(view.at([pair[0].x_m, pair[0].y_m]), view.at([pair[1].x_m, pair[1].y_m]));
         }
     }
@@ -84,7 +84,7 @@ fn grey(c: Color32) -> Color32 {
 
 /// The nodes that can be told apart on screen: the ends, those at least [`MIN_SPACING`] from the
 /// one before, and those where the risk begins or ends.
-pub(super) fn seen(view: &CanvasView<'_>, nodes: &[Node], service: f64) -> Vec<Node> {
+pub(super) fn distinct_nodes(view: &CanvasView<'_>, nodes: &[Node], service: f64) -> Vec<Node> {
     let mut out: Vec<Node> = Vec::with_capacity(nodes.len());
     let mut last: Option<(Pos2, bool)> = None;
     let end = nodes.len().saturating_sub(1);

@@ -5,7 +5,7 @@
 use cable_core::solution::{CableSolution, ContactPart, ContactReport, ContactState, Node};
 use egui::{Mesh, Painter, Pos2, Rect, Stroke, StrokeKind, vec2};
 
-use crate::canvas::layers::cable::{LEAST_WIDTH, Ribbon, seen};
+use crate::canvas::layers::cable::{MIN_WIDTH, Ribbon, distinct_nodes};
 use crate::canvas::view::CanvasView;
 use crate::render::theme::Palette;
 use crate::state::AppState;
@@ -42,13 +42,13 @@ pub fn draw(view: &CanvasView<'_>, state: &AppState) {
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
     let mut mesh = Mesh::default();
     for (answer, cable) in solution.cables.iter().zip(&solved.cables) {
-        let width = view.points(cable.diameter_m).max(LEAST_WIDTH);
+        let width = view.points(cable.diameter_m).max(MIN_WIDTH);
         for part in answer.contacts.iter().flat_map(parts) {
             let nodes = between(answer, [part.begins_m, part.ends_m]);
             if nodes.len() < 2 {
                 continue;
             }
-            let line = Ribbon::new(view, &seen(view, &nodes, f64::INFINITY));
+            let line = Ribbon::new(view, &distinct_nodes(view, &nodes, f64::INFINITY));
             let (colour, inside) = match part.state {
                 ContactState::Stick => (view.palette.normal, None),
                 ContactState::Slip => (view.palette.friction, Some(view.palette.background)),

@@ -137,7 +137,7 @@ fn loads(
 ) {
     let mut arrow = |at: Point, force: Point, item: Item| {
         let along = load_arrow(force);
-        let head = matches!((item, state.selection.hovered), (Item::Load(k), Some(Item::Head(h))) if k == h);
+        let head = matches!((item, state.selection.hovered), (Item::Load(k), Some(Item::LoadHead(h))) if k == h);
         let picked = state.selection.contains(item) || state.selection.hovered == Some(item) || head;
         let colour = if picked { view.palette.accent } else { view.palette.load };
         let tail = view.at(at);

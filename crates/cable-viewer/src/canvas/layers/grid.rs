@@ -7,7 +7,7 @@ use crate::state::camera::Camera;
 use crate::units::labels;
 
 /// Least distance of numbered lines, points: closer and their numbers touch.
-const LEAST_SPACING: f64 = 64.0;
+const MIN_SPACING: f64 = 64.0;
 /// Width of the strip with the y numbers, and height of the one with the x numbers, points.
 pub const STRIP: [f32; 2] = [46.0, 20.0];
 
@@ -16,7 +16,7 @@ pub const STRIP: [f32; 2] = [46.0, 20.0];
 pub fn steps(camera: &Camera) -> [f64; 2] {
     // Round in the unit shown.
     let (_, unit_m) = labels::of_length();
-    let least = LEAST_SPACING / (camera.points_per_m * unit_m);
+    let least = MIN_SPACING / (camera.points_per_m * unit_m);
     let power = 10f64.powf(least.log10().floor());
     let (factor, parts) = [(1.0, 5.0), (2.0, 4.0), (5.0, 5.0), (10.0, 5.0)]
         .into_iter()
@@ -98,7 +98,7 @@ pub fn axes(view: &mut CanvasView<'_>) {
         palette.text,
     );
     view.text(pos2(left.min.x + 6.0, rect.min.y + 6.0), Align2::LEFT_TOP, &format!("y ({length})"), 11.0, palette.text);
-    view.taken.extend([left, below]);
+    view.occupied.extend([left, below]);
 }
 
 /// A bar of a round length, in the lower right corner.
@@ -115,5 +115,5 @@ pub fn scale_bar(view: &mut CanvasView<'_>) {
     let text = format!("{} {}", labels::coordinate(major, major), labels::of_length().0);
     let middle = pos2(0.5 * (begin.x + end.x), begin.y - 4.0);
     let rect = view.text(middle, Align2::CENTER_BOTTOM, &text, 11.0, view.palette.text);
-    view.taken.push(rect.union(Rect::from_two_pos(begin, end)).expand(4.0));
+    view.occupied.push(rect.union(Rect::from_two_pos(begin, end)).expand(4.0));
 }

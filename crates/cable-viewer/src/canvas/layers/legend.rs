@@ -4,7 +4,7 @@ use egui::{Align2, FontId, Mesh, Rect, Role, Sense, Stroke, StrokeKind, Ui, Widg
 
 use crate::canvas::layers::contact;
 use crate::canvas::view::CanvasView;
-use crate::render::colour::{ColourScale, Quantity};
+use crate::render::colour::{CableQuantity, ColourScale};
 use crate::render::theme;
 use crate::state::AppState;
 use crate::units::labels;
@@ -14,7 +14,7 @@ const STRIP_HEIGHT: f32 = 42.0;
 /// Size of the coloured bar, points.
 const BAR: [f32; 2] = [14.0, 132.0];
 /// Numbers beside the bar.
-const TICKS: usize = 5;
+const BAR_LABEL_COUNT: usize = 5;
 
 /// The colours and what they mean.
 pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
@@ -48,18 +48,18 @@ pub fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     view.painter.add(mesh);
     view.painter.rect_stroke(bar, 0.0, line, StrokeKind::Outside);
     // A quarter of a step: 2.5 must not be read as 3.
-    let decimals = labels::decimals_of((high - low) / si / (4 * (TICKS - 1)) as f64).min(4);
-    for k in 0..TICKS {
-        let f = k as f64 / (TICKS - 1) as f64;
+    let decimals = labels::decimals_of((high - low) / si / (4 * (BAR_LABEL_COUNT - 1)) as f64).min(4);
+    for k in 0..BAR_LABEL_COUNT {
+        let f = k as f64 / (BAR_LABEL_COUNT - 1) as f64;
         let y = bar.max.y - bar.height() * f as f32;
         view.painter.hline(bar.max.x..=bar.max.x + 4.0, y, Stroke::new(1.0, view.palette.weak_text));
         let text = format!("{:.decimals$}", (low + f * (high - low)) / si);
         view.text(pos2(bar.max.x + 8.0, y), Align2::LEFT_CENTER, &text, 11.0, view.palette.text);
     }
-    if state.view.colour.quantity == Quantity::Tension {
+    if state.view.colour.quantity == CableQuantity::Tension {
         service(view, state, bar, [low, high]);
     }
-    view.taken.push(plate);
+    view.occupied.push(plate);
 }
 
 /// The colours and what they mean, as a strip beside the canvas.
@@ -78,7 +78,7 @@ pub fn beside(ui: &mut Ui, state: &AppState) {
     let title = format!("{} ({unit})", quantity.name());
     painter.text(rect.left_top(), Align2::LEFT_TOP, title, font.clone(), ink);
     let solved = state.live.snapshot.scene.as_deref().unwrap_or(&state.document.scene);
-    let service = solved.cables.first().filter(|_| current && quantity == Quantity::Tension);
+    let service = solved.cables.first().filter(|_| current && quantity == CableQuantity::Tension);
     let stretches = solution.cables.iter().flat_map(|c| &c.contacts);
     if current && state.view.layers.contacts && stretches.into_iter().any(|c| c.ends_m > c.begins_m) {
         let mut x = rect.right();
@@ -143,7 +143,7 @@ pub fn contacts(view: &mut CanvasView<'_>, state: &AppState) {
         contact::sample(view.painter, view.palette, bar, k == 0);
         view.text(pos2(bar.max.x + 9.0, y), Align2::LEFT_CENTER, text, 11.0, view.palette.text);
     }
-    view.taken.push(plate);
+    view.occupied.push(plate);
 }
 
 /// A red mark where the first cable's service tension lies.

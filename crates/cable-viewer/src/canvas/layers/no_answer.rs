@@ -12,7 +12,7 @@ pub fn banner(view: &mut CanvasView<'_>, state: &AppState) {
     let (title, text) = match (&state.solver.status, &state.live.snapshot.error) {
         (WorkerStatus::Dead(why), _) => ("The solver has stopped", why.clone()),
         (_, Some(why)) => {
-            let told = scene_errors::whole(state).unwrap_or_else(|| sentence(why));
+            let told = scene_errors::summary(state).unwrap_or_else(|| sentence(why));
             ("No answer for this scene", told)
         }
         _ => return,
@@ -32,5 +32,5 @@ pub fn banner(view: &mut CanvasView<'_>, state: &AppState) {
     let gap = heading.size().y + 4.0;
     view.painter.galley(at + vec2(15.0, 8.0), heading, view.palette.risk);
     view.painter.galley(at + vec2(15.0, 8.0 + gap), body, view.palette.text);
-    view.taken.push(plate);
+    view.occupied.push(plate);
 }

@@ -67,7 +67,7 @@ fn corners(view: &CanvasView<'_>, shape: &Shape, state: &AppState) {
 }
 
 fn terrain(view: &CanvasView<'_>, points_m: &[Point], stroke: Stroke) {
-    let line = seen(view, points_m);
+    let line = distinct_points(view, points_m);
     let bottom = line.iter().fold(view.rect.max.y, |b, p| b.max(p.y)) + 4.0;
     let mut mesh = Mesh::default();
     for pair in line.windows(2) {
@@ -87,7 +87,7 @@ fn terrain(view: &CanvasView<'_>, points_m: &[Point], stroke: Stroke) {
 
 /// The points of a line that can be told apart on screen, with one beyond each edge that it
 /// crosses.
-fn seen(view: &CanvasView<'_>, points_m: &[Point]) -> Vec<Pos2> {
+fn distinct_points(view: &CanvasView<'_>, points_m: &[Point]) -> Vec<Pos2> {
     let side = |p: Pos2| i8::from(p.x > view.rect.max.x) - i8::from(p.x < view.rect.min.x);
     let mut out: Vec<Pos2> = Vec::new();
     let mut skipped: Option<Pos2> = None;

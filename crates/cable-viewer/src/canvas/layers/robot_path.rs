@@ -12,7 +12,7 @@ const FLAG: [f32; 2] = [26.0, 15.0];
 /// Draws them; what they say goes to `figures` for the labels to place.
 pub fn draw(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
     for (k, at, text) in path_flags(state) {
-        let item = Item::Leg(k);
+        let item = Item::PathLeg(k);
         let marked = state.selection.contains(item) || state.selection.hovered == Some(item);
         let colour = if marked { view.palette.accent } else { view.palette.surface };
         let foot = view.at(at);

@@ -13,16 +13,16 @@ use egui::{
 };
 
 use crate::canvas::view::{CanvasView, hints_height};
-use crate::jobs::safe_reach::Maps;
+use crate::jobs::safe_reach::ReachMaps;
 use crate::render::colour::ColourMap;
 use crate::render::theme::{self, Palette};
 use crate::state::AppState;
 use crate::units::labels;
 
 /// How much of the picture below shines through, of 1: the grid stays readable.
-const COVER: f32 = 0.62;
+const FILL_OPACITY: f32 = 0.62;
 /// For lines, a place that the cable does not reach counts as this many times the breaking tension.
-const BEYOND: f64 = 2.0;
+const OUT_OF_REACH_FACTOR: f64 = 2.0;
 /// Between hatching lines, points.
 const HATCH: f32 = 7.0;
 /// Height of the strip of a robot of unknown size, m.
@@ -34,8 +34,10 @@ const LEGEND: [f32; 2] = [206.0, KEY_HEIGHT + 12.0];
 
 /// Draws the map of an end.
 pub fn area(view: &CanvasView<'_>, state: &AppState) {
-    let Some((Maps::Area(there, ways), _)) = state.analysis.safe_reach.found() else { return };
-    let Some(area) = (if state.analysis.safe_reach.choice.back { ways.as_ref() } else { Some(there) }) else { return };
+    let Some((ReachMaps::Area(there, ways), _)) = state.analysis.safe_reach.found() else { return };
+    let Some(area) = (if state.analysis.safe_reach.choice.round_trip { ways.as_ref() } else { Some(there) }) else {
+        return;
+    };
     let mut mesh = Mesh::default();
     let mut lines = Vec::new();
     for k in 0..area.most_n.len() {
@@ -100,7 +102,7 @@ fn quad(view: &CanvasView<'_>, area: &Area, corners: [(Point, f64); 4], mesh: &m
     if over(area.breaking_n) {
         lines.extend(stroke(view.palette, [at[1], at[3]], 1.0));
     }
-    let values = corners.map(|(_, n)| n.min(BEYOND * area.breaking_n));
+    let values = corners.map(|(_, n)| n.min(OUT_OF_REACH_FACTOR * area.breaking_n));
     for (limit_n, width) in [(area.service_n, 2.0), (area.breaking_n, 3.5)] {
         for ends in crossing(at, values, limit_n) {
             lines.extend(stroke(view.palette, ends, width));
@@ -133,13 +135,13 @@ fn crossing(at: [Pos2; 4], values: [f64; 4], limit: f64) -> Vec<[Pos2; 2]> {
 /// The colour of a share of the service tension; what is below shines through.
 #[must_use]
 pub fn colour(share: f64) -> Color32 {
-    ColourMap::Cividis.at(share).gamma_multiply(COVER)
+    ColourMap::Cividis.at(share).gamma_multiply(FILL_OPACITY)
 }
 
 /// Draws the map of a robot; its ends go to `figures` for the labels to place.
 pub fn line(view: &CanvasView<'_>, state: &AppState, figures: &mut Vec<(Pos2, String, Color32)>) {
-    let Some((Maps::Line(map), _)) = state.analysis.safe_reach.found() else { return };
-    let back = state.analysis.safe_reach.choice.back;
+    let Some((ReachMaps::Line(map), _)) = state.analysis.safe_reach.found() else { return };
+    let back = state.analysis.safe_reach.choice.round_trip;
     let preset = state.document.scene.robot.as_ref().and_then(|r| robot_preset(&r.preset));
     let height = view.points(preset.map_or(HEIGHT_M, |p| p.height_m.value)).max(9.0);
     let value = |p: &ReachPlace| if back { p.there_and_back_n } else { p.there_n };
@@ -212,7 +214,7 @@ pub fn legend(view: &mut CanvasView<'_>, state: &AppState) {
     let line = Stroke::new(1.0, view.palette.plate_line);
     view.painter.rect(plate, 4.0, view.palette.plate, line, StrokeKind::Inside);
     key.draw(view.painter, view.palette, plate.shrink2(vec2(9.0, 6.0)));
-    view.taken.push(plate);
+    view.occupied.push(plate);
 }
 
 /// Draws what the colours of the map mean as a strip beside the canvas.
@@ -234,11 +236,12 @@ impl MapKey {
     fn of(state: &AppState) -> Option<Self> {
         let (maps, scene) = state.analysis.safe_reach.found()?;
         let [service_n, breaking_n] = maps.limits_n();
-        let title = if state.analysis.safe_reach.choice.back { "Safe reach, there and back" } else { "Safe reach" };
+        let title =
+            if state.analysis.safe_reach.choice.round_trip { "Safe reach, there and back" } else { "Safe reach" };
         let out_of_date = if **scene == state.document.scene { "" } else { " (out of date)" };
         let over = match maps {
-            Maps::Line(_) => "above service".to_owned(),
-            Maps::Area(..) => format!("above service; thick line: breaks, {}", labels::force(breaking_n)),
+            ReachMaps::Line(_) => "above service".to_owned(),
+            ReachMaps::Area(..) => format!("above service; thick line: breaks, {}", labels::force(breaking_n)),
         };
         let service = format!("service {}", labels::force(service_n));
         Some(Self { title: format!("{title}{out_of_date}"), service, over })

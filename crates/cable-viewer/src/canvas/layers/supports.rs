@@ -4,7 +4,7 @@ use cable_core::scene::{Support, SupportKind};
 use egui::{Color32, Pos2, Stroke, vec2};
 
 use crate::canvas::layers::robot;
-use crate::canvas::view::{CanvasView, Place};
+use crate::canvas::view::{CanvasView, LabelPriority};
 use crate::geometry::supports::{hand_spring, support_position};
 use crate::state::{AppState, Item};
 use crate::units::labels;
@@ -97,7 +97,7 @@ pub fn labels(view: &mut CanvasView<'_>, state: &AppState, figures: Vec<(Pos2, S
         for (support, s) in c.supports.iter().enumerate() {
             if let Some(at) = support_position(state, cable, support) {
                 let p = view.at(at);
-                view.taken.push(egui::Rect::from_min_max(p + vec2(-10.0, -8.0), p + vec2(10.0, 13.0)));
+                view.occupied.push(egui::Rect::from_min_max(p + vec2(-10.0, -8.0), p + vec2(10.0, 13.0)));
                 let [x, y] = at.map(|v| labels::coordinate(v, 0.01));
                 spots.push((p, format!("{}  ({x}, {y}) {}", s.name, labels::of_length().0)));
             }
@@ -107,7 +107,7 @@ pub fn labels(view: &mut CanvasView<'_>, state: &AppState, figures: Vec<(Pos2, S
         spots.push((view.at(at), name));
     }
     for (p, text) in &spots {
-        view.label(*p, text, text_colour, Place::Must);
+        view.label(*p, text, text_colour, LabelPriority::Required);
     }
     if let Some(solution) = state.live.snapshot.solution.as_ref().filter(|_| state.is_current()) {
         let most = solution.max_tension();
@@ -118,10 +118,10 @@ pub fn labels(view: &mut CanvasView<'_>, state: &AppState, figures: Vec<(Pos2, S
             if spots.iter().all(|(s, _)| s.distance(p) > 14.0) {
                 view.painter.circle_stroke(p, 9.0, Stroke::new(1.5, text_colour));
             }
-            view.label(p, &format!("max {}", labels::force(most.tension_n)), text_colour, Place::Must);
+            view.label(p, &format!("max {}", labels::force(most.tension_n)), text_colour, LabelPriority::Required);
         }
     }
     for (p, text, colour) in figures {
-        view.label(p, &text, colour, Place::IfRoom);
+        view.label(p, &text, colour, LabelPriority::Optional);
     }
 }

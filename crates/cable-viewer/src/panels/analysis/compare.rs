@@ -11,7 +11,7 @@ use crate::jobs::background::Progress;
 use crate::panels::words;
 use crate::record::measure::Measure;
 use crate::record::run::Peak;
-use crate::render::colour::{LINES, Quantity};
+use crate::render::colour::{CableQuantity, LINES};
 use crate::state::dialog::Dialog;
 use crate::state::{AppState, Reference};
 use crate::units::sentence::sentence;
@@ -19,7 +19,7 @@ use crate::units::{format, labels};
 use crate::widgets::{field, highlight, readout};
 
 /// Narrowest column of the table, points: the cross and the number of a pin fit.
-const LEAST_COLUMN: f32 = 28.0;
+const MIN_COLUMN_WIDTH: f32 = 28.0;
 /// Size of its figures, points. Larger: the last column is cut in US units.
 const FIGURES: f32 = 12.0;
 /// Most lines of difference told; more are counted.
@@ -36,9 +36,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         };
         let can = state.live.snapshot.solution.is_some() && !full;
         let pin = ui.add_enabled(can, egui::Button::new("Pin this result")).on_hover_text(help);
-        highlight::offer(&pin, "Pin this result");
+        highlight::register(&pin, "Pin this result");
         if pin.clicked() {
-            commands.push(Command::View(ViewCommand::Hold));
+            commands.push(Command::View(ViewCommand::AddReference));
         }
         let help = "Reads a recorded run from its folder and pins it";
         if ui.add_enabled(!full, egui::Button::new("Pin a recorded run…")).on_hover_text(help).clicked() {
@@ -48,7 +48,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         if !state.analysis.references.is_empty()
             && ui.button("Unpin all").on_hover_text("Removes every pinned result").clicked()
         {
-            commands.push(Command::View(ViewCommand::LetGo(None)));
+            commands.push(Command::View(ViewCommand::RemoveReferences(None)));
         }
     });
     every_model(ui, state, commands);
@@ -63,7 +63,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         .as_deref()
         .map(|s| Figures::of(s, &state.document.scene, state.live.snapshot.solve_wall_s));
     readout::wide(ui, "compare", |ui| {
-        let grid = Grid::new("compare").num_columns(5).spacing([4.0, 3.0]).min_col_width(LEAST_COLUMN);
+        let grid = Grid::new("compare").num_columns(5).spacing([4.0, 3.0]).min_col_width(MIN_COLUMN_WIDTH);
         grid.striped(true).show(ui, |ui| {
             for title in ["", "Tension", "Sag", "Energy", "Cost"] {
                 ui.weak(title);
@@ -81,7 +81,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                     let away = crate::widgets::icon::plain_button(ui, crate::widgets::icon::Icon::Remove, true);
                     field::name(&away, &format!("Unpin {}", k + 1));
                     if away.on_hover_text("Unpins this result").clicked() {
-                        commands.push(Command::View(ViewCommand::LetGo(Some(k))));
+                        commands.push(Command::View(ViewCommand::RemoveReferences(Some(k))));
                     }
                     ui.label(RichText::new(format!("{}", k + 1)).color(colour).strong()).on_hover_text(&held.name);
                 });
@@ -105,7 +105,7 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let bar = ui.add(ProgressBar::new(share as f32).show_percentage().desired_height(16.0));
         field::name(&bar, "Progress of the comparison");
         if ui.button("Cancel comparison").on_hover_text("Stops it; nothing is pinned").clicked() {
-            commands.push(Command::View(ViewCommand::HoldModels(false)));
+            commands.push(Command::View(ViewCommand::CompareModels(false)));
         }
         return;
     }
@@ -114,7 +114,7 @@ fn every_model(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let can = state.document.fault.is_none();
     let button = ui.add_enabled(can, egui::Button::new("Compare all models")).on_hover_text(help);
     if button.on_disabled_hover_text("The scene has a fault: see Warnings").clicked() {
-        commands.push(Command::View(ViewCommand::HoldModels(true)));
+        commands.push(Command::View(ViewCommand::CompareModels(true)));
     }
     match &state.analysis.models {
         Progress::Failed(why) => field::fault(ui, why),
@@ -138,9 +138,10 @@ fn runs(ui: &mut Ui, state: &AppState) {
     if state.analysis.references.iter().all(|h| h.run.is_none()) {
         return;
     }
-    let measures = [Measure::Cable(Quantity::Tension), Measure::Pull];
+    let measures = [Measure::Cable(CableQuantity::Tension), Measure::Pull];
     let own = state.live.recording.span_s().map(|span_s| {
-        let peaks = measures.map(|m| state.live.history.peak(m.lead()?).map(|[time_s, value]| Peak { time_s, value }));
+        let peaks =
+            measures.map(|m| state.live.history.peak(m.primary_line()?).map(|[time_s, value]| Peak { time_s, value }));
         ("Now".to_owned(), None, (span_s, peaks, state.live.recording.events().len()))
     });
     ui.separator();

@@ -12,9 +12,9 @@ use crate::units::sentence::sentence;
 use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::property::{Provenance, Quantity, row};
-use crate::widgets::tick::tick;
+use crate::widgets::tick::checkbox;
 
-const LEAST_FRICTION: Quantity = Quantity {
+const MIN_FRICTION: Quantity = Quantity {
     name: "Least friction",
     unit: Unit::PERCENT,
     usual: [0.0, 1.0],
@@ -35,20 +35,20 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
     let mut on = view.on;
     let help = "The same question with less and with more friction, as a ribbon in the graphs of tension; computed beside the \
                 window whenever time stands still. What was moved or driven by hand meanwhile is repeated";
-    if tick(ui, &mut on, "Show less and more friction").on_hover_text(help).changed() {
-        commands.push(Command::View(ViewCommand::Spread(on, view.factors)));
+    if checkbox(ui, &mut on, "Show less and more friction").on_hover_text(help).changed() {
+        commands.push(Command::View(ViewCommand::SetFrictionRange(on, view.factors)));
     }
     if !on {
         return;
     }
     let usual = friction_range::FrictionRangeState::default().factors;
-    for (k, quantity) in [LEAST_FRICTION, GREATEST_FRICTION].iter().enumerate() {
+    for (k, quantity) in [MIN_FRICTION, GREATEST_FRICTION].iter().enumerate() {
         let origin = Some((usual[k], "the default".to_owned()));
         let change = row(ui, quantity, &Provenance { value: view.factors[k], origin, ..Provenance::default() });
         if let Some(value) = change.value {
             let mut factors = view.factors;
             factors[k] = value;
-            commands.push(Command::View(ViewCommand::Spread(true, factors)));
+            commands.push(Command::View(ViewCommand::SetFrictionRange(true, factors)));
         }
     }
     match &view.progress {

@@ -8,12 +8,12 @@ use cable_core::analysis::safe_reach::line::{ReachMap, Trip};
 use egui::{ComboBox, ProgressBar, Slider, Ui};
 
 use crate::command::{Command, ViewCommand};
-use crate::jobs::safe_reach::{self, ACROSS, Choice, Maps, Progress, ReachSubject};
+use crate::jobs::safe_reach::{self, PLACES_ACROSS_RANGE, Progress, ReachMaps, ReachSubject, SafeReachOptions};
 use crate::state::AppState;
 use crate::state::questions::reach_target;
 use crate::units::format;
 use crate::units::unit::Unit;
-use crate::widgets::tick::ring;
+use crate::widgets::tick::radio_button;
 use crate::widgets::{field, highlight};
 
 /// Width of a slider's value beside it, points.
@@ -44,7 +44,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         ui.horizontal(|ui| {
             let help = "Stops the search; what was found stays";
             if ui.button("Cancel safe reach").on_hover_text(help).clicked() {
-                commands.push(Command::View(ViewCommand::Reach(false)));
+                commands.push(Command::View(ViewCommand::SearchSafeReach(false)));
             }
             if let Some(left_s) = view.remaining_s() {
                 ui.weak(time_left(left_s)).on_hover_text("Estimated from the part that is done");
@@ -56,9 +56,9 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                         from where the cable lies now; first coarsely, then finer, between the ends of the ground. The window stays usable meanwhile. Nothing \
                         limits what moves: the question is what the cable would bear";
             let find = ui.button("Find safe reach").on_hover_text(help);
-            highlight::offer(&find, "Find safe reach");
+            highlight::register(&find, "Find safe reach");
             if find.clicked() {
-                commands.push(Command::View(ViewCommand::Reach(true)));
+                commands.push(Command::View(ViewCommand::SearchSafeReach(true)));
             }
             let shown = !matches!(view.progress, Progress::None);
             if ui
@@ -67,7 +67,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
                 .on_disabled_hover_text("There is no map yet")
                 .clicked()
             {
-                commands.push(Command::View(ViewCommand::Reach(false)));
+                commands.push(Command::View(ViewCommand::SearchSafeReach(false)));
             }
         });
     }
@@ -83,7 +83,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let text = format!("Incomplete: stopped at {:.0} %", 100.0 * share);
         ui.colored_label(ui.visuals().warn_fg_color, text).on_hover_text("Places not reached yet are not shown");
     }
-    for line in describe(maps, view.choice.back) {
+    for line in describe(maps, view.choice.round_trip) {
         ui.label(if running.is_some() { so_far(&line) } else { line });
     }
 }
@@ -103,7 +103,7 @@ fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Ve
         let shown = combo.width(ui.available_width() - 14.0).truncate().show_ui(ui, |ui| {
             for other in safe_reach::movable(&state.document.scene) {
                 if ui.selectable_label(other == moved, safe_reach::name(&state.document.scene, other)).clicked() {
-                    commands.push(set(Choice { moved: Some(other), ..choice }));
+                    commands.push(set(SafeReachOptions { moved: Some(other), ..choice }));
                 }
             }
         });
@@ -117,24 +117,24 @@ fn choices(ui: &mut Ui, state: &AppState, moved: ReachSubject, commands: &mut Ve
             ui.label("Grid resolution");
             let mut across = choice.across;
             ui.spacing_mut().slider_width = (ui.available_width() - SPIN_WIDTH).max(30.0);
-            let slider = ui.add(Slider::new(&mut across, ACROSS[0]..=ACROSS[1]));
+            let slider = ui.add(Slider::new(&mut across, PLACES_ACROSS_RANGE[0]..=PLACES_ACROSS_RANGE[1]));
             field::name(&slider, "Grid resolution");
             let help =
                 "How finely the part of the picture in view is looked at: twice as many take up to four times as long";
             if slider.on_hover_text(help).changed() {
-                commands.push(set(Choice { across, ..choice }));
+                commands.push(set(SafeReachOptions { across, ..choice }));
             }
         });
     }
 }
 
-fn both_ways(ui: &mut Ui, choice: Choice, commands: &mut Vec<Command>) {
+fn both_ways(ui: &mut Ui, choice: SafeReachOptions, commands: &mut Vec<Command>) {
     ui.horizontal_wrapped(|ui| {
         let there = "The largest tension with the end at each place";
         let back = "The largest tension on the way there and back, snags included";
         for (back, text, help) in [(false, "There", there), (true, "There and back", back)] {
-            if ring(ui, choice.back == back, text).on_hover_text(help).clicked() {
-                commands.push(set(Choice { back, ..choice }));
+            if radio_button(ui, choice.round_trip == back, text).on_hover_text(help).clicked() {
+                commands.push(set(SafeReachOptions { round_trip: back, ..choice }));
             }
         }
     });
@@ -149,20 +149,20 @@ fn time_left(seconds: f64) -> String {
     }
 }
 
-fn set(choice: Choice) -> Command {
-    Command::View(ViewCommand::SetReach(choice))
+fn set(choice: SafeReachOptions) -> Command {
+    Command::View(ViewCommand::SetSafeReachOptions(choice))
 }
 
 /// The map in words.
 #[must_use]
-pub fn describe(maps: &Maps, back: bool) -> Vec<String> {
+pub fn describe(maps: &ReachMaps, back: bool) -> Vec<String> {
     let limits = ["service", "breaking"].into_iter().zip(maps.limits_n());
     limits
         .map(|(name, tension_n)| match maps {
-            Maps::Line(map) => of_line(map, back, name, tension_n),
-            Maps::Area(there, None) if !back => of_area(there, name, tension_n),
-            Maps::Area(_, None) => "The way back has not been computed yet".to_owned(),
-            Maps::Area(there, Some(ways)) => of_area(if back { ways } else { there }, name, tension_n),
+            ReachMaps::Line(map) => of_line(map, back, name, tension_n),
+            ReachMaps::Area(there, None) if !back => of_area(there, name, tension_n),
+            ReachMaps::Area(_, None) => "The way back has not been computed yet".to_owned(),
+            ReachMaps::Area(there, Some(ways)) => of_area(if back { ways } else { there }, name, tension_n),
         })
         .collect()
 }

@@ -15,9 +15,9 @@ use crate::widgets::property::{Provenance, Quantity, row};
 use crate::widgets::readout;
 
 /// Height of each of the two rows of the bar, points.
-const ROW: f32 = 15.0;
+const BAR_ROW_HEIGHT: f32 = 15.0;
 /// Terms below this share of the greatest are not listed: rounding.
-const NOTHING: f64 = 1e-6;
+const NEGLIGIBLE_FRACTION: f64 = 1e-6;
 
 const END: Color32 = Color32::from_rgb(136, 136, 136);
 const WEIGHT: Color32 = Color32::from_rgb(0, 114, 178);
@@ -41,11 +41,11 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             let most = answer.max_tension();
             let from = state.analysis.tension_marker.map(|p| p.from).unwrap_or_default();
             let probe = TensionMarker { cable: most.cable, arc_length_m: most.arc_length_m, from };
-            commands.push(Command::View(ViewCommand::MarkTension(Some(probe))));
+            commands.push(Command::View(ViewCommand::SetTensionMarker(Some(probe))));
         }
         let help = "Removes the mark";
         if state.analysis.tension_marker.is_some() && ui.button("Unmark").on_hover_text(help).clicked() {
-            commands.push(Command::View(ViewCommand::MarkTension(None)));
+            commands.push(Command::View(ViewCommand::SetTensionMarker(None)));
         }
     });
     let Some(probe) = state.analysis.tension_marker else {
@@ -80,7 +80,7 @@ fn place(ui: &mut Ui, scene: &Scene, probe: TensionMarker, commands: &mut Vec<Co
     let change = row(ui, &quantity, &Provenance { value: probe.arc_length_m, ..Provenance::default() });
     if let Some(value) = change.value {
         let arc_length_m = value.clamp(0.0, cable.length_m);
-        commands.push(Command::View(ViewCommand::MarkTension(Some(TensionMarker { arc_length_m, ..probe }))));
+        commands.push(Command::View(ViewCommand::SetTensionMarker(Some(TensionMarker { arc_length_m, ..probe }))));
     }
     ui.horizontal_wrapped(|ui| {
         ui.weak("From").on_hover_text("The end at which the sum begins");
@@ -94,7 +94,7 @@ fn place(ui: &mut Ui, scene: &Scene, probe: TensionMarker, commands: &mut Vec<Co
             let chosen = ui.selectable_label(probe.from == from, &name);
             crate::widgets::field::name(&chosen, &format!("From {name}"));
             if chosen.on_hover_text("The sum begins at this end").clicked() {
-                commands.push(Command::View(ViewCommand::MarkTension(Some(TensionMarker { from, ..probe }))));
+                commands.push(Command::View(ViewCommand::SetTensionMarker(Some(TensionMarker { from, ..probe }))));
             }
         }
     });
@@ -133,7 +133,7 @@ fn motion(ui: &mut Ui, answer: &Solution, marker: TensionMarker) {
 /// The terms worth a line.
 fn listed(found: &TensionBudget) -> Vec<Contribution> {
     let greatest = found.contributions.iter().map(|t| t.tension_n.abs()).fold(0.0, f64::max);
-    found.contributions.iter().filter(|t| t.tension_n.abs() > NOTHING * greatest).copied().collect()
+    found.contributions.iter().filter(|t| t.tension_n.abs() > NEGLIGIBLE_FRACTION * greatest).copied().collect()
 }
 
 fn title(scene: &Scene, answer: &Solution, cable: usize, term: &Contribution) -> String {
@@ -178,7 +178,8 @@ fn colour(term: &Contribution) -> Color32 {
 
 /// Returns what adds, from left to right; below it what takes away, from there back to the tension.
 fn bar(ui: &mut Ui, found: &TensionBudget, listed: &[Contribution], title: &dyn Fn(&Contribution) -> String) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 2.0 * ROW + 2.0), Sense::hover());
+    let (rect, response) =
+        ui.allocate_exact_size(vec2(ui.available_width(), 2.0 * BAR_ROW_HEIGHT + 2.0), Sense::hover());
     let words: Vec<String> = listed.iter().map(|t| format!("{} {}", title(t), format::force(t.tension_n))).collect();
     let spoken = format!("{} = {}", format::force(found.tension_n), words.join(" + "));
     response.widget_info(|| WidgetInfo::labeled(Role::Figure, true, "Where the tension comes from"));
@@ -193,8 +194,8 @@ fn bar(ui: &mut Ui, found: &TensionBudget, listed: &[Contribution], title: &dyn 
     // Pale pieces stand off the panel by their outline.
     let gap = Stroke::new(1.0, ui.visuals().weak_text_color());
     let piece = |from: f64, to: f64, row: f32, term: &Contribution| {
-        let top = rect.top() + row * (ROW + 2.0);
-        let piece = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), top..=top + ROW);
+        let top = rect.top() + row * (BAR_ROW_HEIGHT + 2.0);
+        let piece = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), top..=top + BAR_ROW_HEIGHT);
         painter.rect(piece, 0.0, colour(term), gap, egui::StrokeKind::Inside);
     };
     let mut sum = 0.0;

@@ -25,7 +25,7 @@ const HEIGHT: f32 = 190.0;
 /// dark as text, points.
 const LABELS_APART: Rangef = Rangef { min: 18.0, max: 26.0 };
 /// Differences below this are drawn at it: they are rounding.
-const LEAST_DIFFERENCE: f64 = 1e-10;
+const MIN_DIFFERENCE: f64 = 1e-10;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
@@ -34,7 +34,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let bar = ui.add(ProgressBar::new(*share as f32).show_percentage().desired_height(16.0));
         field::name(&bar, "Progress of the chart");
         if ui.button("Cancel chart").on_hover_text("Stops it after the model that is being asked").clicked() {
-            commands.push(Command::View(ViewCommand::ChartPrecision(false)));
+            commands.push(Command::View(ViewCommand::ChartWorkPrecision(false)));
         }
     } else {
         let help = "Solves the scene at rest by every model, on meshes of 25 to 400 elements, in the background, and charts \
@@ -42,7 +42,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         let can = state.document.fault.is_none();
         let button = ui.add_enabled(can, egui::Button::new("Chart error over cost")).on_hover_text(help);
         if button.on_disabled_hover_text("The scene has a fault: see Warnings").clicked() {
-            commands.push(Command::View(ViewCommand::ChartPrecision(true)));
+            commands.push(Command::View(ViewCommand::ChartWorkPrecision(true)));
         }
     }
     match progress {
@@ -91,7 +91,7 @@ fn name(setting: Setting) -> String {
 /// Place of an answer in the chart: powers of ten of milliseconds and of the difference.
 fn place(entry: &Entry) -> Option<[f64; 2]> {
     let (compared, wall_s) = entry.result.as_ref().ok()?;
-    Some([(wall_s * 1e3).max(1e-6).log10(), compared.force_difference.max(LEAST_DIFFERENCE).log10()])
+    Some([(wall_s * 1e3).max(1e-6).log10(), compared.force_difference.max(MIN_DIFFERENCE).log10()])
 }
 
 fn chart(ui: &mut Ui, found: &Outcome, tolerance: f64) {
@@ -101,7 +101,7 @@ fn chart(ui: &mut Ui, found: &Outcome, tolerance: f64) {
         all.fold([also, also], |[low, high], v| [low.min(v), high.max(v)])
     };
     let [left, right] = ends(0, (found.given.1 * 1e3).max(1e-6).log10());
-    let [low, high] = ends(1, tolerance.max(LEAST_DIFFERENCE).log10());
+    let [low, high] = ends(1, tolerance.max(MIN_DIFFERENCE).log10());
     let across =
         AxisHints::new_x().label("Time, ms").formatter(|mark, _| power(mark.value)).label_spacing(LABELS_APART);
     let plot = Plot::new(TITLE)
@@ -118,7 +118,7 @@ fn chart(ui: &mut Ui, found: &Outcome, tolerance: f64) {
         .y_axis_formatter(|mark, _| power(mark.value));
     let shown = plot.show(ui, |plot| {
         plot.set_plot_bounds(PlotBounds::from_min_max([left - 0.4, low - 0.8], [right + 0.4, high + 0.8]));
-        let line = HLine::new("Tolerance", tolerance.max(LEAST_DIFFERENCE).log10()).color(SERVICE).width(1.5);
+        let line = HLine::new("Tolerance", tolerance.max(MIN_DIFFERENCE).log10()).color(SERVICE).width(1.5);
         plot.hline(line.style(LineStyle::dashed_dense()).allow_hover(false));
         for (model, shape) in SHAPES {
             let of_model = found.entries.iter().filter(|e| e.setting.model == model);

@@ -16,7 +16,7 @@ use crate::panels::scene_errors;
 use crate::state::{AppState, Item};
 use crate::widgets::field;
 use crate::widgets::property::{Provenance, labelled, row};
-use crate::widgets::tick::tick;
+use crate::widgets::tick::checkbox;
 
 /// Height of the list of presets, points: all of them are seen at once.
 const POPUP_HEIGHT: f32 = 360.0;
@@ -125,7 +125,7 @@ fn segments(ui: &mut Ui, state: &AppState, index: usize, loaded: Option<&Cable>,
     let Some(cable) = state.document.scene.cables.get(index) else { return };
     let mut own = cable.segments.is_some();
     let help = "Off: the model chooses by the accuracy asked for";
-    if tick(ui, &mut own, "Fixed number of segments").on_hover_text(help).changed() {
+    if checkbox(ui, &mut own, "Fixed number of segments").on_hover_text(help).changed() {
         let chosen = own.then(|| solved_segments(state, index).unwrap_or(100));
         commands.push(changed(index, cable, |c| c.segments = chosen));
         commands.push(Command::Scene(SceneCommand::EditDone));
@@ -152,7 +152,7 @@ fn solved_segments(state: &AppState, index: usize) -> Option<usize> {
 fn self_contact(ui: &mut Ui, index: usize, cable: &Cable, commands: &mut Vec<Command>) {
     let mut on = cable.self_contact;
     let help = "The cable is an obstacle to itself (fem only, without pulleys). Off: it passes in front of itself";
-    if tick(ui, &mut on, "Self-contact").on_hover_text(help).changed() {
+    if checkbox(ui, &mut on, "Self-contact").on_hover_text(help).changed() {
         commands.push(changed(index, cable, |c| c.self_contact = on));
         commands.push(Command::Scene(SceneCommand::EditDone));
     }

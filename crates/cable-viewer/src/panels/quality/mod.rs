@@ -19,7 +19,7 @@ use crate::widgets::icon::{self, Icon};
 use crate::widgets::readout;
 
 /// A peak of the kinetic energy above that of the span before by less is said to be steady.
-const GROWTH: f64 = 1.1;
+const MIN_GROWTH_RATIO: f64 = 1.1;
 
 /// Draws it.
 pub fn ui(ui: &mut Ui, state: &AppState, answer: &Solution, commands: &mut Vec<Command>) {
@@ -31,7 +31,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, answer: &Solution, commands: &mut Vec<C
 }
 
 /// A row that says in the colour of warnings where something is wrong.
-fn judged(ui: &mut Ui, name: &str, value: &str, help: &str, wrong: Option<&str>) {
+fn assessed_row(ui: &mut Ui, name: &str, value: &str, help: &str, wrong: Option<&str>) {
     let help = wrong.map_or_else(|| help.to_owned(), |wrong| format!("{wrong}. {help}"));
     readout::row(ui, name, value, &help, |ui| {
         if wrong.is_some() {
@@ -46,7 +46,7 @@ fn residual(ui: &mut Ui, tolerance: f64, answer: &Solution) {
     let wrong = (share > tolerance).then_some("It is above the tolerance asked for: the tensions are not settled");
     let value = format!("{} ({})", format::force(answer.cost.residual_n), format::percent(share));
     let help = "Largest force left unbalanced at a node, and its share of the greatest tension: the smaller, the closer to equilibrium";
-    judged(ui, "Residual", &value, help, wrong);
+    assessed_row(ui, "Residual", &value, help, wrong);
 }
 
 fn displacement(ui: &mut Ui, answer: &Solution, commands: &mut Vec<Command>) {
@@ -78,14 +78,14 @@ fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
         .then_some("Rounding alone may spoil the tolerance asked for: use fewer segments, or a softer cable");
     let help = "Condition number, estimated as that of a straight cable of as many elements under the mean tension, without bending and \
                 contact: of 16 digits its logarithm are lost to rounding";
-    judged(ui, name, &format!("≈ {worst:.1e}"), help, wrong);
+    assessed_row(ui, name, &format!("≈ {worst:.1e}"), help, wrong);
 }
 
 fn kinetic_energy(ui: &mut Ui, history: &History, answer: &Solution) {
     let help = "Energy of motion now, and whether its greatest in the last second is above that of the second before. \
                 What supports, loads and the robot do explains a growth; energy that nothing gave is warned of";
     let now = format::energy(answer.energy.kinetic_j);
-    let grows = kinetic_peaks_j(history).filter(|[before, last]| *last > GROWTH * before && *last > 0.0);
+    let grows = kinetic_peaks_j(history).filter(|[before, last]| *last > MIN_GROWTH_RATIO * before && *last > 0.0);
     let value = grows.map_or_else(|| now.clone(), |_| format!("{now}, growing"));
-    judged(ui, "Kinetic energy", &value, help, grows.map(|_| "It grows"));
+    assessed_row(ui, "Kinetic energy", &value, help, grows.map(|_| "It grows"));
 }

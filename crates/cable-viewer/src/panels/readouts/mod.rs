@@ -302,10 +302,10 @@ fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSum
 
 /// Friction of this part of all there is is what the solver leaves. More: friction that holds a
 /// light end is hidden; less: rounding is read as friction.
-const NO_FRICTION: f64 = 1e-6;
+const NEGLIGIBLE_FRICTION_FRACTION: f64 = 1e-6;
 /// An error of this part of the greatest tension is one of rounding. More: meshes that are very
 /// fine are called exact; less: models without a mesh show their rounding as if it mattered.
-const ROUNDED: f64 = 1e-9;
+const ROUNDING_FRACTION: f64 = 1e-9;
 
 /// The greatest tension since the run began, and what coarser runs beside it leave open.
 fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
@@ -388,8 +388,8 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(
 
 fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
     let text = match solved.error_estimate {
-        Some(e) if e < ROUNDED => "exact for this model".to_owned(),
-        Some(e) if e < format::LEAST_RATIO => format::percent(e),
+        Some(e) if e < ROUNDING_FRACTION => "exact for this model".to_owned(),
+        Some(e) if e < format::MIN_RATIO => format::percent(e),
         // Figures of such an answer say its order of magnitude at best: digits would say more.
         Some(e) if e > 1.0 => "more than 100 %".to_owned(),
         Some(e) => format!("± {}", format::percent(e)),
@@ -410,7 +410,7 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
         figure(ui, "Contact force", format::force(normal_n), "Sum of the normal forces", None);
     }
     if let Some(f) = &first.friction {
-        let used_n = if f.used_n.abs() < NO_FRICTION * f.available_n.abs() { 0.0 } else { f.used_n };
+        let used_n = if f.used_n.abs() < NEGLIGIBLE_FRICTION_FRACTION * f.available_n.abs() { 0.0 } else { f.used_n };
         let text = format!("{} of {}", format::force(used_n), format::force(f.available_n));
         let help = format!(
             "Friction called upon of all there is; `{}` uses {} of its own",

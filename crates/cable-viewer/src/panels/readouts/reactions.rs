@@ -11,7 +11,7 @@ use crate::widgets::field;
 /// Side of the square an arrow is drawn in, points.
 const ARROW: f32 = 18.0;
 /// Below this share of the largest reaction a direction is noise, and a dot is drawn.
-const NOTHING: f64 = 1e-9;
+const NEGLIGIBLE_FRACTION: f64 = 1e-9;
 
 /// Draws them.
 pub fn ui(ui: &mut Ui, cable: &Cable, solved: &CableSolution, commands: &mut Vec<Command>) {
@@ -89,14 +89,14 @@ fn explanation(cable: &Cable, s: &SupportReaction) -> String {
 
 fn arrow(ui: &mut Ui, s: &SupportReaction, largest: f64) {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(ARROW), Sense::hover());
-    let text = if size(s) > NOTHING * largest {
+    let text = if size(s) > NEGLIGIBLE_FRACTION * largest {
         format!("{} at {:.0}°", format::force(size(s)), direction_deg(s))
     } else {
         "no force".to_owned()
     };
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("{}: {text}", s.name)));
     let colour = ui.visuals().strong_text_color();
-    if size(s) > NOTHING * largest {
+    if size(s) > NEGLIGIBLE_FRACTION * largest {
         let angle = s.reaction_y_n.atan2(s.reaction_x_n) as f32;
         let along = vec2(angle.cos(), -angle.sin()) * (ARROW - 4.0);
         ui.painter().arrow(rect.center() - along / 2.0, along, Stroke::new(1.5, colour));

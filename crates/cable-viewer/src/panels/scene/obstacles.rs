@@ -13,7 +13,7 @@ use crate::units::unit::Unit;
 use crate::widgets::field;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
-use crate::widgets::tick::tick;
+use crate::widgets::tick::checkbox;
 
 /// Height of the list of corners, points: about ten.
 const CORNERS_HEIGHT: f32 = 240.0;
@@ -112,7 +112,7 @@ pub fn form(ui: &mut Ui, state: &AppState, k: usize, commands: &mut Vec<Command>
     head(ui, k, obstacle, commands, &mut faults);
     let mut own = obstacle.friction.is_some();
     let help = "Off: the cable's own coefficient";
-    if tick(ui, &mut own, "Custom friction").on_hover_text(help).changed() {
+    if checkbox(ui, &mut own, "Custom friction").on_hover_text(help).changed() {
         value.friction = own.then_some(0.5);
     }
     if let Some(mu) = obstacle.friction {

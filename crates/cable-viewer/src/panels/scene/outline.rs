@@ -89,7 +89,7 @@ fn robot(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
         indented(ui, ("leg", k), |ui| match task {
             RobotTask::Drive { to_x_m, .. } => {
                 let about = format!("to {}", Unit::COORDINATE.text(*to_x_m));
-                row(ui, state, Item::Leg(k), &format!("leg {}", k + 1), &about, commands);
+                row(ui, state, Item::PathLeg(k), &format!("leg {}", k + 1), &about, commands);
             }
             RobotTask::Wait { wait_s } => {
                 ui.weak(format!("leg {}: wait {}", k + 1, format::duration(*wait_s)));

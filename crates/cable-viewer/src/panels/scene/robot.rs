@@ -71,9 +71,9 @@ fn choose(state: &AppState, p: &RobotPreset, commands: &mut Vec<Command>) {
 
 /// Steepest ground that a first robot is put on, rad: 11°. More: much of what its tracks hold is
 /// spent before it pulls; less: rough waste has no place for it.
-const STEEPEST: f64 = 0.2;
+const MAX_START_SLOPE: f64 = 0.2;
 /// How far apart the places that are tried are, m, and how many to each side: a tank's width.
-const TRIED: (f64, u32) = (0.25, 100);
+const PLACEMENT_TRIALS: (f64, u32) = (0.25, 100);
 
 /// Puts a robot into a scene that has none: as near as can be to below the end of a cable, which it
 /// takes over from a hand.
@@ -83,7 +83,7 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
     let (ground, half) = (Ground::of(scene), p.track_half_length_m());
     let stands = |x: f64| {
         // No part of it in a wall, and not on top of one.
-        let level = |half: f64| ground.stand(x, half).filter(|s| s.pitch.abs() < STEEPEST);
+        let level = |half: f64| ground.stand(x, half).filter(|s| s.pitch.abs() < MAX_START_SLOPE);
         let place = level(0.5 * p.length_m.value).and(level(half)).map(|s| [x, s.y]);
         place.filter(|place| place[1] <= at[1] + p.height_m.value)
     };
@@ -92,7 +92,8 @@ fn add(scene: &mut Scene, cable: usize, p: &RobotPreset) {
     let (heading, forward) =
         if start.is_some_and(|s| s[0] > at[0]) { (Heading::Left, -1.0) } else { (Heading::Right, 1.0) };
     let below = at[0] + forward * p.hitch_back_m.value;
-    let places = (0..=TRIED.1).flat_map(|k| [-1.0, 1.0].map(|side| below + side * TRIED.0 * f64::from(k)));
+    let places =
+        (0..=PLACEMENT_TRIALS.1).flat_map(|k| [-1.0, 1.0].map(|side| below + side * PLACEMENT_TRIALS.0 * f64::from(k)));
     let at_m = places.into_iter().find_map(stands).unwrap_or([below, at[1] - p.hitch_up_m.value]);
     scene.robot = Some(Robot { preset: p.id.to_owned(), at_m, heading, ..Robot::default() });
     let taken = |kind| matches!(kind, SupportKind::Fixed | SupportKind::Clamped | SupportKind::Free);

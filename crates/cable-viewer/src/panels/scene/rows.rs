@@ -36,8 +36,8 @@ pub fn row(ui: &mut Ui, state: &AppState, item: Item, name: &str, about: &str, c
     let about = egui::RichText::new(about).color(colour.gamma_multiply(opacity));
     // A name given by the user gives way to the word about it, but what is always called the same
     // does not.
-    let about =
-        about.atom_shrink(matches!(item, Item::Scene | Item::Robot | Item::Leg(_) | Item::Environment | Item::Solver));
+    let about = about
+        .atom_shrink(matches!(item, Item::Scene | Item::Robot | Item::PathLeg(_) | Item::Environment | Item::Solver));
     let button = Button::selectable(selected, (name, Atom::grow(), about)).truncate();
     let width = ui.available_width() - RIGHT_MARGIN;
     let row = ui.scope(|ui| {

@@ -16,10 +16,10 @@ use crate::worker::timing::{DRAFT_AFTER_S, DRAFT_FIRST_S};
 impl Engine {
     /// Shows an edit with few segments, if answering it in full would take long; whether it did. A
     /// single edit is answered at once: a draft from an answer takes 0.1 s itself.
-    pub(super) fn show_draft(&mut self, edit: &Edit, hurried: bool) -> bool {
+    pub(super) fn show_draft(&mut self, edit: &Edit, came_during_solve: bool) -> bool {
         let Some(last) = &self.edit else { return false };
-        let same = !edit.fresh && last.model == edit.model && last.settings == edit.settings;
-        let slow = self.solve_s > if hurried || self.draft() { DRAFT_AFTER_S } else { DRAFT_FIRST_S };
+        let same = !edit.is_new_scene && last.model == edit.model && last.settings == edit.settings;
+        let slow = self.solve_s > if came_during_solve || self.draft() { DRAFT_AFTER_S } else { DRAFT_FIRST_S };
         let (true, Some(old)) = (self.drafts && same && slow, &self.simulation) else {
             return false;
         };
@@ -49,8 +49,8 @@ impl Engine {
 
     pub(super) fn take_edit(&mut self, edit: Edit) -> Result<(), Error> {
         let began = Instant::now();
-        let old = if edit.fresh { None } else { self.simulation.take() };
-        if edit.fresh {
+        let old = if edit.is_new_scene { None } else { self.simulation.take() };
+        if edit.is_new_scene {
             self.simulation = None;
             self.snapshot.solution = None;
             self.last_answer = None;
@@ -70,7 +70,8 @@ impl Engine {
         // Other histories take longer than the rest itself: each is another rest. Where nobody
         // refines the answer they are asked for at once.
         self.histories_due = self.drafts && at_rest && edit.settings.histories;
-        let rebuilt = if at_rest { self.lay(&mut edit, from).map(|s| (s, true)) } else { self.rebuild(&edit, from) };
+        let rebuilt =
+            if at_rest { self.settle_edit(&mut edit, from).map(|s| (s, true)) } else { self.rebuild(&edit, from) };
         self.edit = Some(edit);
         self.solve_s = began.elapsed().as_secs_f64();
         match rebuilt {
@@ -94,31 +95,31 @@ impl Engine {
     /// The simulation of a scene at rest: a function of the scene alone, so that typing, undo, load
     /// and reset give the same answer for the same scene. Where that would move a cable through an
     /// obstacle that stays where it is, the way the cable takes now becomes part of the scene.
-    pub(super) fn lay(&mut self, edit: &mut Edit, old: Option<&Simulation>) -> Result<Simulation, Error> {
+    pub(super) fn settle_edit(&mut self, edit: &mut Edit, old: Option<&Simulation>) -> Result<Simulation, Error> {
         let histories = edit.settings.histories && !self.histories_due;
         let settings = Settings { histories, ..edit.settings };
         let of = |scene: &Scene| laid(scene, edit.model, settings);
         let laid = of(&edit.scene);
-        let Some(old) = old.filter(|o| !edit.as_laid && draft::same_cables(edit, o)) else { return laid };
-        let jumped = match &laid {
-            Ok(laid) => passing::jumped(old, laid),
+        let Some(old) = old.filter(|o| !edit.starts_from_scene && draft::same_cables(edit, o)) else { return laid };
+        let tunnelled_cables = match &laid {
+            Ok(laid) => passing::tunnelled_cables(old, laid),
             // Only a scene that could be solved from where the cable is gets a second look.
-            Err(_) if draft::buried(edit, old) => return laid,
+            Err(_) if draft::penetrates_new_obstacle(edit, old) => return laid,
             Err(_) => (0..edit.scene.cables.len()).collect(),
         };
-        if jumped.is_empty() {
+        if tunnelled_cables.is_empty() {
             return laid;
         }
         let mut scene = edit.scene.clone();
         let routes: Vec<(usize, Vec<Point>)> =
-            jumped.iter().filter_map(|&k| Some((k, passing::way(old, k)?))).collect();
+            tunnelled_cables.iter().filter_map(|&k| Some((k, passing::cable_route(old, k)?))).collect();
         for (k, way) in &routes {
             if let Some(cable) = scene.cables.get_mut(*k) {
                 cable.route_m.clone_from(way);
             }
         }
         match of(&scene) {
-            Ok(led) if laid.is_err() || passing::jumped(old, &led).len() < jumped.len() => {
+            Ok(led) if laid.is_err() || passing::tunnelled_cables(old, &led).len() < tunnelled_cables.len() => {
                 self.routes = routes;
                 edit.scene = scene;
                 Ok(led)
@@ -133,12 +134,12 @@ impl Engine {
         let time_s = old.map_or(0.0, Simulation::time_s);
         let moves = old.is_some() && (time_s > 0.0 || !self.playback.paused);
         let question = if moves { MOTION } else { Question::Rest };
-        let mut fresh = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, question)?;
+        let mut is_new_scene = Simulation::for_question(edit.scene.clone(), edit.model, edit.settings, question)?;
         if let Some(old) = old
             && draft::same_cables(edit, old)
-            && !draft::buried(edit, old)
+            && !draft::penetrates_new_obstacle(edit, old)
         {
-            let mut carried = fresh.clone();
+            let mut carried = is_new_scene.clone();
             if carried.carry(old).is_ok() {
                 if !self.playback.paused {
                     return Ok((carried, false));
@@ -148,8 +149,8 @@ impl Engine {
                 }
             }
         }
-        fresh.settle()?;
-        Ok((fresh, true))
+        is_new_scene.settle()?;
+        Ok((is_new_scene, true))
     }
 
     /// Lays the scene on screen once more and asks what other histories would have left. The rest

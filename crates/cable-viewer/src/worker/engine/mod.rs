@@ -42,7 +42,7 @@ pub struct Engine {
     /// The history starts again before the first of `answers`.
     history_restarts: bool,
     /// Speed of the robot by hand, m/s.
-    robot_order: Option<f64>,
+    robot_speed_command: Option<f64>,
     /// Drafts may be shown: there is a thread to replace them by the answer.
     drafts: bool,
     /// The figures of the run so far; None where it does not go on from a start that has settled:
@@ -56,7 +56,7 @@ pub struct Engine {
     /// Number of a drag while time runs that no frame shows yet.
     dragged: u64,
     /// Wall time of the last frame on the full mesh, s.
-    tick_s: f64,
+    frame_wall_s: f64,
     /// The support that a hand holds by a spring.
     hand: Option<Hand>,
 }
@@ -133,14 +133,14 @@ impl Default for Engine {
             last_answer: None,
             routes: Vec::new(),
             answers: Vec::new(),
-            robot_order: None,
+            robot_speed_command: None,
             history_restarts: false,
             drafts: false,
             monitor: None,
             histories_due: false,
             solve_s: 0.0,
             dragged: 0,
-            tick_s: 0.0,
+            frame_wall_s: 0.0,
             hand: None,
         }
     }
@@ -155,7 +155,7 @@ impl Engine {
 
     /// As it is now, to go on from where what follows is given up.
     #[must_use]
-    pub fn spare(&self) -> Self {
+    pub fn checkpoint(&self) -> Self {
         Self {
             simulation: self.simulation.clone(),
             edit: self.edit.clone(),
@@ -199,7 +199,7 @@ impl Engine {
             self.playback = playback;
         }
         if let Some(order) = request.robot {
-            self.robot_order = order;
+            self.robot_speed_command = order;
         }
         let began = Instant::now();
         let runs = !self.playback.paused;
@@ -212,7 +212,8 @@ impl Engine {
             solved = true;
         } else if let Some(edit) = request.edit {
             let stays = self.playback.paused && !request.reset && request.steps == 0;
-            result = if stays && self.show_draft(&edit, request.hurried) { Ok(()) } else { self.take_edit(edit) };
+            result =
+                if stays && self.show_draft(&edit, request.came_during_solve) { Ok(()) } else { self.take_edit(edit) };
         } else if self.draft() && (request.reset || request.steps > 0 || !self.playback.paused) {
             // Time goes on from the answer, never from a draft of it.
             result = self.solve_draft();
@@ -313,7 +314,7 @@ impl Engine {
     /// The scene stays without an answer.
     fn cancel(&mut self, edit: Option<Edit>) {
         if let Some(edit) = edit {
-            self.history_restarts |= edit.fresh;
+            self.history_restarts |= edit.is_new_scene;
             self.edit = Some(edit);
         }
         self.phase = Phase::Refused { reason: NoAnswer::Cancelled };
@@ -355,7 +356,7 @@ impl Engine {
         } else if let Some(edit) = self.edit.clone() {
             let mut edit = edit;
             self.histories_due = self.drafts && edit.settings.histories;
-            self.simulation = Some(self.lay(&mut edit, None)?);
+            self.simulation = Some(self.settle_edit(&mut edit, None)?);
             self.before_motion = None;
             self.phase = Phase::Answer { start_kept: true };
         }

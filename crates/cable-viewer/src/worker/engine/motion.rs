@@ -9,20 +9,20 @@ use cable_core::{Error, Model, Settings, Simulation};
 
 use super::{Engine, Hand, MOTION, Phase, Report, is_quasi_static};
 use crate::state::Playback;
-use crate::worker::draft::{self, Mesh};
+use crate::worker::draft::{self, MeshResolution};
 use crate::worker::request::Drag;
-use crate::worker::timing::{COARSE_AFTER_S, FRAME_S, QUIET_S};
+use crate::worker::timing::{COARSE_AFTER_S, FRAME_S, IDLE_S};
 
 impl Engine {
     /// Lets one frame (1/60 s of wall time) pass.
-    pub fn tick(&mut self) -> Report {
-        self.tick_part(1.0)
+    pub fn advance_frame(&mut self) -> Report {
+        self.advance_part_of_frame(1.0)
     }
 
     /// Lets a share of a frame pass.
-    pub fn tick_part(&mut self, share: f64) -> Report {
+    pub fn advance_part_of_frame(&mut self, share: f64) -> Report {
         if let Phase::CoarseMotion { moved_at } = self.phase
-            && moved_at.elapsed().as_secs_f64() > QUIET_S
+            && moved_at.elapsed().as_secs_f64() > IDLE_S
         {
             self.leave_coarse();
         }
@@ -44,7 +44,7 @@ impl Engine {
         self.snapshot.real_speed = (!failed).then(|| speed * (FRAME_S * share / wall.max(FRAME_S * share)));
         self.snapshot.edit = self.dragged.max(self.snapshot.edit);
         if !self.coarse() {
-            self.tick_s = wall;
+            self.frame_wall_s = wall;
         }
         self.show(result);
         self.report(failed)
@@ -53,7 +53,7 @@ impl Engine {
     pub(super) fn drag(&mut self, drag: Drag) -> Result<(), Error> {
         if self.coarse() {
             self.phase = Phase::CoarseMotion { moved_at: Instant::now() };
-        } else if self.drafts && self.playing() && self.tick_s > COARSE_AFTER_S {
+        } else if self.drafts && self.playing() && self.frame_wall_s > COARSE_AFTER_S {
             self.enter_coarse();
         }
         let Drag { cable, support, to_m, .. } = drag;
@@ -81,7 +81,7 @@ impl Engine {
     /// that is.
     pub(super) fn enter_coarse(&mut self) {
         let (Some(edit), Some(old)) = (&self.edit, &self.simulation) else { return };
-        if let Some(coarse) = draft::with_mesh(edit, old, Mesh::Coarse) {
+        if let Some(coarse) = draft::with_mesh(edit, old, MeshResolution::Coarse) {
             self.simulation = Some(coarse);
             self.monitor = None;
             self.phase = Phase::CoarseMotion { moved_at: Instant::now() };
@@ -92,7 +92,7 @@ impl Engine {
     pub(super) fn leave_coarse(&mut self) {
         self.phase = Phase::Answer { start_kept: false };
         if let (Some(edit), Some(old)) = (&self.edit, &self.simulation)
-            && let Some(mut full) = draft::with_mesh(edit, old, Mesh::Full)
+            && let Some(mut full) = draft::with_mesh(edit, old, MeshResolution::Full)
         {
             if let Some(hand) = self.hand {
                 full.pull_support(hand.cable, hand.support, vec2(hand.at_m));
@@ -119,7 +119,7 @@ impl Engine {
         if starts {
             self.monitor = Some(RunMonitor::with_errors(simulation, inertia));
         }
-        let order = self.robot_order;
+        let order = self.robot_speed_command;
         simulation.command_robot(order);
         if let Some(monitor) = &mut self.monitor {
             monitor.steer(|simulation| simulation.command_robot(order));

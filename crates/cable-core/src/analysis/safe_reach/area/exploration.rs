@@ -67,7 +67,7 @@ const NEGLIGIBLE_FRACTION: f64 = 0.1;
 const RETRY_DISTANCE_FRACTION: f64 = 0.8;
 
 /// The end at a place, and the cable there.
-struct Reached {
+struct ReachedPlace {
     place: usize,
     simulation: Simulation,
     /// Length of the way there, fifths of the finest spacing.
@@ -106,11 +106,11 @@ impl Exploration<'_> {
     /// Goes outwards from the start, grid after grid; what is only guessed from coarser grids is
     /// not there in the end.
     pub fn spread(&mut self, laid: Simulation, progress: AreaProgress<'_>) {
-        self.free = (0..self.found.most_n.len()).map(|k| self.may(k)).collect();
+        self.free = (0..self.found.most_n.len()).map(|k| self.is_candidate(k)).collect();
         let most_n = self.tension_n(&laid);
         self.found.most_n[self.first] = most_n;
         self.known[self.first] = true;
-        let mut kept = vec![Rc::new(Reached { place: self.first, simulation: laid, cost: 0, most_n })];
+        let mut kept = vec![Rc::new(ReachedPlace { place: self.first, simulation: laid, cost: 0, most_n })];
         let strides = self.strides();
         // A step takes as long on every grid: a coarse one has few places and many steps to each.
         let steps = |stride: usize| (self.found.spacing_m * stride as f64 / STEP_M).ceil();
@@ -226,7 +226,7 @@ impl Exploration<'_> {
     fn grid(
         &mut self,
         stride: usize,
-        kept: &mut Vec<Rc<Reached>>,
+        kept: &mut Vec<Rc<ReachedPlace>>,
         progress: &mut dyn FnMut(&Area, usize) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
         // By cost and place; by from where as well: where one way has no answer another one of the
@@ -261,21 +261,21 @@ impl Exploration<'_> {
                 } else {
                     self.tension_n(&simulation)
                 };
-                let reached = Rc::new(Reached { place, simulation, cost, most_n });
+                let reached = Rc::new(ReachedPlace { place, simulation, cost, most_n });
                 self.open(&reached, stride, &mut open);
                 if stride > 1 {
                     kept.push(reached);
                 }
             }
             if stride > 1 {
-                self.guess(place, stride);
+                self.interpolate_places(place, stride);
             }
         }
         ControlFlow::Continue(())
     }
 
     /// Opens the ways to all neighbours of a place on a grid.
-    fn open(&self, from: &Rc<Reached>, stride: usize, open: &mut BTreeMap<(u64, usize, usize), Rc<Reached>>) {
+    fn open(&self, from: &Rc<ReachedPlace>, stride: usize, open: &mut BTreeMap<(u64, usize, usize), Rc<ReachedPlace>>) {
         for (next, cost) in self.neighbours(from.place, stride) {
             if !self.known[next]
                 && !self.settled[next]
@@ -289,7 +289,7 @@ impl Exploration<'_> {
 
     /// Interpolates the places between four neighbours on a coarse grid until a finer one computes
     /// them.
-    fn guess(&mut self, place: usize, stride: usize) {
+    fn interpolate_places(&mut self, place: usize, stride: usize) {
         let around: Vec<usize> = self.neighbours(place, stride).map(|(k, _)| k).chain([place]).collect();
         for low in around.iter().copied() {
             let told = |k: &usize| around.contains(k) && self.is_decided(*k);
@@ -324,7 +324,7 @@ impl Exploration<'_> {
     }
 
     /// Returns whether a place is free and not hopelessly far.
-    fn may(&self, place: usize) -> bool {
+    fn is_candidate(&self, place: usize) -> bool {
         let p = self.at(place);
         place == self.first || (self.is_free(p) && self.holds.iter().all(|h| (p - h).norm() <= self.far_m))
     }

@@ -64,7 +64,7 @@ impl Estimate {
         let mut errors = ErrorEstimates::between(&half, &fine).plus(&rounding);
         if let Some(coarsest) = coarser(model, 4, start) {
             let change = ErrorEstimates::between(&coarsest.solution(), &half);
-            errors = errors.or_larger(&change.times(model.chain.mesh.tuning.estimate.first_order_fraction));
+            errors = errors.componentwise_max(&change.times(model.chain.mesh.tuning.estimate.first_order_fraction));
         }
         Self { estimator: ErrorEstimator::Coarse(Box::new(coarse)), errors }
     }
@@ -101,7 +101,7 @@ impl Estimate {
     /// Errors beside a coarser mesh, at least those `before`: friction is as wrong as the steps
     /// were that it remembers.
     fn beside(model: &MassSpringModel, before: ErrorEstimates, coarse: MassSpringModel) -> Self {
-        let errors = before.or_larger(&ErrorEstimates::between(&coarse.solution(), &model.solution()));
+        let errors = before.componentwise_max(&ErrorEstimates::between(&coarse.solution(), &model.solution()));
         Self { estimator: ErrorEstimator::Coarse(Box::new(coarse)), errors }
     }
 }
