@@ -361,6 +361,14 @@ impl BreakableCable {
         }
     }
 
+    /// Bounds the work of a search for an equilibrium and of an advance without inertia: see
+    /// [`Mechanics::limit_work`](crate::model::Mechanics::limit_work).
+    pub(crate) fn limit_work(&mut self, work: usize) {
+        for piece in &mut self.pieces {
+            piece.mechanics.limit_work(work);
+        }
+    }
+
     /// Gives the whole cable to the next model: see
     /// [`Mechanics::fall_back`](crate::model::Mechanics::fall_back).
     pub(crate) fn fall_back(&mut self, why: &SolveError) -> bool {

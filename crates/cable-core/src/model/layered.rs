@@ -174,6 +174,10 @@ impl<L: Layer> Mechanics for Layered<L> {
         self.0.set_robot_pose(to);
     }
 
+    fn limit_work(&mut self, work: usize) {
+        self.0.inner_mut().limit_work(work);
+    }
+
     fn robot_contact(&self) -> Option<RobotContact> {
         self.0.inner().robot_contact()
     }

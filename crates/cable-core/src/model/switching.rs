@@ -370,6 +370,12 @@ impl Mechanics for SwitchingModel {
         }
     }
 
+    fn limit_work(&mut self, work: usize) {
+        if let Some(fem) = &mut self.fem {
+            fem.limit_work(work);
+        }
+    }
+
     fn fall_back(&mut self, why: &SolveError) -> bool {
         // Refused as it is, the answer is no place to go on from: the cable is laid anew where it
         // was, or where it was put.

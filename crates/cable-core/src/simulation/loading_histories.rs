@@ -21,9 +21,13 @@ const END_TRAVEL_FRACTIONS: [f64; 3] = [0.01, 0.02, 0.04];
 /// with their square (540 elements on a slope took 38 s); fewer: a rest that may be another.
 const MAX_ELEMENTS: usize = 100;
 
-/// Most work for an end in one direction, in iterations times elements: a few tenths of a second.
-/// What was found until then stands; a step that has begun is finished.
+/// Most work for an end in one direction, and of a step, in iterations times elements: a few tenths
+/// of a second. What was found until then stands.
 const MAX_WORK: usize = 200_000;
+
+/// Most work of the search for the equilibrium of the copy that is moved, in the same unit: some
+/// seconds. More: what other histories leave is told of a few scenes more, after a longer wait.
+const MAX_SEARCH_WORK: usize = 1_000_000;
 
 /// Change of the greatest tension, of itself, below which a longer way of an end made no
 /// difference: less than an engineer would act on.
@@ -42,6 +46,7 @@ pub(super) fn exploration_copy(cable: &BreakableCable) -> Option<BreakableCable>
     let source = ModelSource::Registered(Model::MOST_CAPABLE);
     let settings = Settings { segments: Some(elements.clamp(1, MAX_ELEMENTS)), ..cable.settings() };
     let mut other = cable.rebuilt_with(source, settings).ok()?;
+    other.limit_work(MAX_SEARCH_WORK);
     other.settle().ok()?;
     Some(other)
 }
@@ -86,6 +91,7 @@ fn move_and_return(
 ) -> Vec<ResidualTensions> {
     let laid = tensions(&cable.answer());
     let mut moved = cable.clone();
+    moved.limit_work(MAX_WORK);
     let (mut found, mut work): (Vec<ResidualTensions>, usize) = (Vec::new(), 0);
     for displacement_m in END_TRAVEL_FRACTIONS.map(|part| part * cable.problem().length) {
         let Some(there) = move_support_to(&mut moved, support, place + direction * displacement_m) else { break };

@@ -27,7 +27,7 @@ pub struct Slots {
     pub solve: Option<Solve>,
     /// Number of the thread that is listened to; the others have been given up.
     pub thread: u64,
-    /// Reports so far: a solve that ends resets the abandon_timeout.
+    /// Reports so far: a solve that ends starts the time to its abandonment anew.
     pub reports: u64,
 }
 

@@ -607,6 +607,12 @@ impl Mechanics for FemModel {
         }
     }
 
+    fn limit_work(&mut self, work: usize) {
+        self.dynamics.solver.work_of_advance = WorkBudget::Left(work);
+        let most = &mut Arc::make_mut(&mut self.dynamics.cable.mesh.tuning).equilibrium.max_work;
+        *most = work.min(*most);
+    }
+
     fn fall_back(&mut self, why: &SolveError) -> bool {
         let finer = if matches!(why, SolveError::Unsound { .. }) { self.on_finer_mesh() } else { None };
         let found = finer.is_some();

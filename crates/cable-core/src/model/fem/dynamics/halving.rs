@@ -171,7 +171,8 @@ impl Dynamics {
             progress.size = progress.left;
         }
         self.cable.motion.step_before = 0.0;
-        if progress.depth <= self.cable.mesh.tuning.step.max_halvings {
+        let spent = failure.cause == FailureCause::WorkSpent;
+        if !spent && progress.depth <= self.cable.mesh.tuning.step.max_halvings {
             return Ok(());
         }
         Err(SolveError::StepFailed {

@@ -18,7 +18,7 @@ use crate::model::fem::results;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::fold_imperfection::open_collinear_folds;
 use crate::model::fem::state::moving_mass::MovingMass;
-use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
+use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, WorkBudget};
 use crate::model::fem::time::bdf2::{Weights, keep_balanced_tensions, report_held_back, set_inertia};
 use crate::model::fem::time::hands::HandDrive;
 use crate::model::fem::time::rollback::Rollback;
@@ -124,11 +124,19 @@ impl Dynamics {
         };
         let h = dt_s / pieces;
         let request = StepRequest { due: end, inertia, dragged };
-        let (mut total, mut halved) = (Converged::default(), 0);
-        for _ in 0..pieces as usize {
-            let done = self.step_in_halves(h, request, &mut halved, gauge)?;
-            total = Converged { iterations: total.iterations + done.iterations, ..done };
+        if inertia == Inertia::QuasiStatic {
+            self.solver.work_left = self.solver.work_of_advance;
         }
+        let mut total: Result<Converged, SolveError> = Ok(Converged::default());
+        let mut halved = 0;
+        for _ in 0..pieces as usize {
+            total = total.and_then(|before| {
+                let done = self.step_in_halves(h, request, &mut halved, gauge)?;
+                Ok(Converged { iterations: before.iterations + done.iterations, ..done })
+            });
+        }
+        self.solver.work_left = WorkBudget::Unlimited;
+        let mut total = total?;
         self.cable.motion.time = end;
         if inertia == Inertia::Dynamic {
             self.cable.motion.account.ends_at(end);

@@ -25,6 +25,8 @@ pub(in crate::model::fem) struct SolverMemory {
     pub(in crate::model::fem) free: MixedFreeSolver,
     /// Room for the part of each branch of the loss that a step leaves.
     pub(in crate::model::fem) decay: Vec<f64>,
-    /// The work that the search for an equilibrium may still do.
+    /// The work that the search for an equilibrium, or an advance, may still do.
     pub(in crate::model::fem) work_left: WorkBudget,
+    /// The work that an advance may do.
+    pub(in crate::model::fem) work_of_advance: WorkBudget,
 }

@@ -50,6 +50,7 @@ impl Dynamics {
                 free: MixedFreeSolver::default(),
                 decay: Vec::new(),
                 work_left: WorkBudget::Unlimited,
+                work_of_advance: WorkBudget::Unlimited,
             },
             time_control: TimeControl {
                 step_size: StepSizeController::new(settings.inner_step_s.unwrap_or(longest)),
