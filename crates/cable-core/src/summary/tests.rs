@@ -243,9 +243,9 @@ fn a_broken_cable_has_no_sag_between_what_its_pieces_hang_on() {
     assert_eq!(sag(&cable, &answer, View::Elevation), None);
     // A piece that two supports hold has its own.
     let mut third = answer.supports[1].clone();
-    (third.arc_length_m, third.x_m) = (0.4, 0.4);
+    (third.arc_length_m, third.x_m, third.y_m) = (0.4, 0.4, -0.96);
     answer.supports.insert(1, third);
-    assert!(sag(&cable, &answer, View::Elevation).is_some_and(|s| s.at.arc_length_m < 0.4));
+    assert!(sag(&cable, &answer, View::Elevation).is_some_and(|s| (s.sag_m - 0.16).abs() < 1e-12));
 }
 
 #[test]
