@@ -2,8 +2,8 @@
 //! greatest tension whatever the mesh and the tolerance.
 //!
 //! All of it: `cargo test --locked -p cable-core --test motions -- --ignored --nocapture` (hours);
-//! `SCENE=tank` takes one scene, `SEED=7` rolls other dice, `WAYS=random` leaves out one factor at a
-//! time, `ONLY="Fem Dynamic"` takes the ways of a model, an inertia or both.
+//! `SCENE=tank` takes one scene, `SEED=7` rolls other dice, `WAYS=random` leaves out one factor at
+//! a time, `ONLY="Fem Dynamic"` takes the ways of a model, an inertia or both.
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 
 mod dice;

@@ -162,8 +162,9 @@ pub trait Mechanics: Send {
     /// ([`Self::set_state`]) finds it there at once. Models that know nothing of it leave it out.
     fn set_robot_pose(&mut self, _to: RigidPose) {}
 
-    /// From now on a search for an equilibrium and an advance without inertia may do so much work at
-    /// most, in iterations times elements, and fail beyond it. Models that need little leave it out.
+    /// From now on a search for an equilibrium and an advance without inertia may do so much work
+    /// at most, in iterations times elements, and fail beyond it. Models that need little leave it
+    /// out.
     fn limit_work(&mut self, _work: usize) {}
 
     /// Returns what the cable does to the outline of the robot; None where the model leaves it out,

@@ -1,5 +1,5 @@
-//! These modules integrate in time: BDF2, step sizes, sleep, hands, impulses, loss, impacts, and the
-//! return to the state before a step that failed.
+//! These modules integrate in time: BDF2, step sizes, sleep, hands, impulses, loss, impacts, and
+//! the return to the state before a step that failed.
 
 pub(in crate::model::fem) mod bdf2;
 pub(in crate::model::fem) mod hands;
