@@ -8,12 +8,12 @@ pub fn checkbox(ui: &mut Ui, on: &mut bool, text: impl Into<WidgetText>) -> Resp
     outlined(ui, |ui| ui.checkbox(on, text.into()))
 }
 
-/// A ring to choose by.
+/// A radio button to choose by.
 pub fn radio_button(ui: &mut Ui, chosen: bool, text: impl Into<WidgetText>) -> Response {
     outlined(ui, |ui| ui.radio(chosen, text.into()))
 }
 
-/// A ring that sets a value.
+/// A radio button that sets a value.
 pub fn radio_value<T: PartialEq>(ui: &mut Ui, value: &mut T, of: T, text: impl Into<WidgetText>) -> Response {
     let mut response = radio_button(ui, *value == of, text);
     if response.clicked() && *value != of {
