@@ -18,6 +18,7 @@
 
 mod choice;
 mod columns;
+mod complete_records;
 mod energy;
 mod fingerprint;
 mod history;
@@ -28,10 +29,10 @@ mod table_error;
 mod table_reader;
 #[cfg(test)]
 mod tables_tests;
-mod whole;
 
 pub use choice::{NodeChoice, NodeColumns, NodeInterval, UnknownColumn};
 pub use columns::RobotColumns;
+pub use complete_records::WholeRecords;
 pub use fingerprint::Fingerprint;
 pub use history::History;
 pub(crate) use page::Pages;
@@ -42,4 +43,3 @@ pub use run_writer::RunWriter;
 pub use table_error::{ReadError, RowFault, WriteError, WrittenNumber};
 pub(crate) use table_reader::has_rows;
 pub use table_reader::{Event, Extra, HistoryTable, NodeRow, SupportColumn, read_events, read_history, read_nodes};
-pub use whole::WholeRecords;

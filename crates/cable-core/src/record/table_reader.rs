@@ -9,8 +9,8 @@ use super::columns::{
     ENERGY_COLUMNS, EVENT_COLUMNS, EVENTS, HISTORY, HISTORY_COLUMNS, NODES, OLD_EVENT_COLUMNS, PEAK_COLUMNS,
     ROBOT_COLUMNS,
 };
+use super::complete_records::WholeRecords;
 use super::table_error::{ReadError, RowFault};
-use super::whole::WholeRecords;
 use crate::solution::{WarningCause, WarningKind};
 
 /// Most rows read of a table: 1e7 node rows are 1 GB of memory. Fewer would refuse an hour at 60 Hz

@@ -7,7 +7,7 @@
 //! | `robot_report.rs` | [`robot_report::RobotReport`]: the vehicle at the same instant |
 //! | `model_reason.rs` | [`ModelReason`]: why that model answered |
 //! | `next_cheaper.rs` | [`NextCheaper`]: what the next cheaper choice would have cost |
-//! | `warning.rs` | [`Warning`]: what a user should know, as data |
+//! | `warning/` | [`Warning`]: what a user should know, as data |
 
 pub mod error_estimates;
 mod model_reason;

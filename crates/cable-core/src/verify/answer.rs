@@ -1,6 +1,6 @@
 //! An answer that holds numbers, along the material, can be asked the other laws.
 
-use super::cable::CheckedCable;
+use super::checked_cable::CheckedCable;
 use super::tolerance::MATERIAL_TOLERANCE;
 use crate::solution::{ContactReport, Node, SupportReaction};
 use crate::verification::{Finding, Law, Verification};

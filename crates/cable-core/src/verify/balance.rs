@@ -7,7 +7,7 @@
 //! within the cone about the normals of what touches the piece elsewhere. Beyond its ends the cable
 //! has no internal force.
 
-use super::cable::{AppliedForce, CheckedCable};
+use super::checked_cable::{AppliedForce, CheckedCable};
 use super::support_hold::{Role, SupportHold};
 use super::surroundings::{NearestFeature, Neighbours};
 use super::tolerance::{

@@ -1,7 +1,7 @@
 //! A flexible cable pulls along its way, with the force in it as its tension, its way is its
 //! material, and what is slack in the air pulls, too.
 
-use super::cable::{CheckedBar, CheckedCable};
+use super::checked_cable::{CheckedBar, CheckedCable};
 use super::surroundings::{Neighbours, distance};
 use super::tolerance::{
     BALANCE_FRACTION, COMPRESSION, CONTACT_SHIFT_DIAMETERS, FOLD_TURN, LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE,

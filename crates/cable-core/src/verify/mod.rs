@@ -24,7 +24,7 @@
 
 mod answer;
 mod balance;
-mod cable;
+mod checked_cable;
 mod flexible_cable;
 mod penetration;
 mod pulleys;
@@ -39,7 +39,7 @@ pub mod tolerance;
 
 use serde::{Deserialize, Serialize};
 
-use self::cable::CheckedCable;
+use self::checked_cable::CheckedCable;
 use self::surroundings::Obstacles;
 use crate::scene::Scene;
 use crate::solution::robot_report::RobotReport;

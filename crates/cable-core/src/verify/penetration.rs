@@ -1,6 +1,6 @@
 //! Nothing of a cable lies inside an obstacle or inside the cable itself.
 
-use super::cable::CheckedCable;
+use super::checked_cable::CheckedCable;
 use super::surroundings::{Neighbours, distance};
 use super::tolerance::{DEPTH_DIAMETERS, DEPTH_LENGTHS, DEPTH_M, MATERIAL_TOLERANCE};
 use crate::math::{larger, smaller};

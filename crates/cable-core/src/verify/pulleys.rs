@@ -5,7 +5,7 @@
 //! follows with m = μ, the least with m = −μ (L. Euler, "Remarques sur l'effet du frottement dans
 //! l'équilibre", Mém. Acad. Berlin 1762, with the weight on the wheel).
 
-use super::cable::CheckedCable;
+use super::checked_cable::CheckedCable;
 use super::support_hold::Role;
 use super::tolerance::{BALANCE_FRACTION, CONE_EXCESS, MATERIAL_TOLERANCE, REPORTED_BALANCE};
 use crate::math::{Vec2, cross, larger};

@@ -7,7 +7,7 @@
 //! directions as there are conditions may lower the energy without being open to the cable; one
 //! more, and it leaves.
 
-use super::cable::CheckedCable;
+use super::checked_cable::CheckedCable;
 use super::support_hold::Role;
 use super::surroundings::Neighbours;
 use crate::math::larger;

@@ -1,7 +1,7 @@
 //! The way of a stiff cable is an arc of its material, on which its bending moment balances its
 //! force.
 
-use super::cable::{CheckedBar, CheckedCable};
+use super::checked_cable::{CheckedBar, CheckedCable};
 use super::flexible_cable::{LengthDeviation, report_length};
 use super::tolerance::{BALANCE_FRACTION, MOMENT, TURN};
 use crate::math::{cross, larger, smaller};

@@ -1,7 +1,7 @@
 //! The law of supports asks whether the cable is where its supports hold it, and runs past its
 //! pulleys.
 
-use super::cable::CheckedCable;
+use super::checked_cable::CheckedCable;
 use super::support_hold::Role;
 use super::surroundings::distance;
 use super::tolerance::SUPPORT_TOLERANCE;
