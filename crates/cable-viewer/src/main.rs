@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use cable_core::scene::catalog;
 use cable_core::{Model, Scene};
 use cable_viewer::ViewerApp;
-use cable_viewer::app::{gallery, screenshot};
+use cable_viewer::app::{documentation_pictures, screenshot};
 use cable_viewer::command::Command;
 use cable_viewer::io::{autosave, scene_file};
 use cable_viewer::render::software_adapter_shader::SoftwarePainter;
@@ -74,7 +74,7 @@ fn main() -> ExitCode {
 
 fn run(arguments: Arguments) -> Result<(), String> {
     if let Some(folder) = arguments.gallery {
-        return gallery::save(&folder);
+        return documentation_pictures::save(&folder);
     }
     let (scene, path) = first_scene(arguments.scene)?;
     let theme = match arguments.theme {

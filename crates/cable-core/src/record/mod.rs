@@ -18,7 +18,7 @@
 
 mod choice;
 mod columns;
-mod complete_records;
+mod csv_records;
 mod energy;
 mod fingerprint;
 mod history;
@@ -32,7 +32,7 @@ mod tables_tests;
 
 pub use choice::{NodeChoice, NodeColumns, NodeInterval, UnknownColumn};
 pub use columns::RobotColumns;
-pub use complete_records::WholeRecords;
+pub use csv_records::WholeRecords;
 pub use fingerprint::Fingerprint;
 pub use history::History;
 pub(crate) use page::Pages;

@@ -5,7 +5,7 @@
 //! page is written whole or not at all. So the last row that fits on a page is made to end with it,
 //! by zeros after the digits of its time, which change no number and no reader's mind.
 
-use super::complete_records::record_ends;
+use super::csv_records::record_ends;
 
 /// Bytes of a page: 4096 or a multiple everywhere. Smaller numbers would cost more zeros, larger
 /// ones leave rows on two pages.

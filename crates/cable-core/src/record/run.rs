@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::choice::{NodeChoice, NodeInterval};
 use super::columns::{EVENTS, HISTORY, NODES};
-use super::complete_records::WholeRecords;
+use super::csv_records::WholeRecords;
 use super::fingerprint::Fingerprint;
 use super::table_error::ReadError;
 use super::table_reader::{Event, HistoryTable, NodeRow, read_events, read_history, read_nodes};

@@ -9,7 +9,7 @@ use super::columns::{
     ENERGY_COLUMNS, EVENT_COLUMNS, EVENTS, HISTORY, HISTORY_COLUMNS, NODES, OLD_EVENT_COLUMNS, PEAK_COLUMNS,
     ROBOT_COLUMNS,
 };
-use super::complete_records::WholeRecords;
+use super::csv_records::WholeRecords;
 use super::table_error::{ReadError, RowFault};
 use crate::solution::{WarningCause, WarningKind};
 

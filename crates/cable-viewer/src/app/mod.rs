@@ -10,10 +10,10 @@
 
 mod canvas_picture;
 mod dialogs;
+pub mod documentation_pictures;
 mod early_clicks;
 mod feedback_form;
 mod first_steps;
-pub mod gallery;
 mod keys;
 mod layout;
 mod menu;

@@ -1,6 +1,6 @@
 //! The page of pictures has every state that the program draws, and each of them with a sentence.
 
-use cable_viewer::app::gallery::STATES;
+use cable_viewer::app::documentation_pictures::STATES;
 
 #[test]
 fn the_gallery_has_a_picture_of_each_state() {

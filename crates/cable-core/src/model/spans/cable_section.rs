@@ -14,6 +14,7 @@ use crate::model::spans::boundary::capstan::{CableLaw, ContactPath};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
 use crate::model::spans::boundary::friction_memory::{Ends, Mode, StickZone, TensionProfile};
 use crate::model::spans::boundary::loose::Loose;
+use crate::model::spans::boundary_conditions::BoundaryConditions;
 use crate::model::spans::settings::SpansSettings;
 
 /// Everything given at an instant.
@@ -167,6 +168,14 @@ pub(in crate::model::spans) struct CableSection {
     pub forces: Vec<Vec2>,
     /// The shape without tension, where the cable lies so: it has neither contacts nor spans then.
     pub loose: Option<Loose>,
+}
+
+/// All sections of a cable at an instant.
+#[derive(Clone, Debug)]
+pub(in crate::model::spans) struct CableEquilibrium {
+    pub sections: Vec<CableSection>,
+    pub context: SolveContext,
+    pub instant: BoundaryConditions,
 }
 
 impl Default for EndCondition {

@@ -10,7 +10,7 @@
 //! | `boundary` | the boundary as the centre line runs along it, the capstan law and friction memory |
 //! | `contact` | a contact: equations, loads on it, supports on it, wheels |
 //! | `cable_section` | free spans and contacts in a row between two end conditions: the unknowns |
-//! | `boundary_conditions` | supports and loads at an instant, and how they cut a cable into sections |
+//! | `boundary_conditions`, `section_layout` | supports and loads at an instant; how they cut a cable into sections |
 //! | `newton`, `numerics` | all unknowns of a section at once; band LU, root finding |
 //! | `changes` | contacts that are released, merged and made, until none is needed |
 //! | `initial` | the first shape: route, shortest path, contacts, tension; or another answer |
@@ -43,6 +43,7 @@ mod newton;
 mod numerics;
 mod results;
 mod reversed;
+mod section_layout;
 pub mod settings;
 mod slack;
 
@@ -52,15 +53,15 @@ use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
 use crate::model::catenary::slack_without_weight;
 use crate::model::gauge::TensionGauge;
-use crate::model::spans::boundary_conditions::{
-    BoundaryConditions, CableEnd, CableEquilibrium, SectionLayout, unsupported,
-};
+use crate::model::spans::boundary_conditions::BoundaryConditions;
+use crate::model::spans::cable_section::CableEquilibrium;
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::failure::Failure;
 use crate::model::spans::first_equilibrium::{NotFound, SearchStart};
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::results::Report;
 use crate::model::spans::reversed::Reversal;
+use crate::model::spans::section_layout::{CableEnd, SectionLayout, unsupported};
 use crate::model::spans::settings::SpansSettings;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;

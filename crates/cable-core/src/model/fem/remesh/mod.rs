@@ -2,5 +2,5 @@
 
 pub(in crate::model::fem) mod adapt;
 pub(in crate::model::fem) mod arc_marks;
-mod criteria;
 pub(in crate::model::fem) mod edit;
+mod edit_criteria;

@@ -13,7 +13,8 @@ pub(super) use first_shapes::{FirstShape, shapes_with_friction};
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::boundary_conditions::{BoundaryConditions, CableEquilibrium, SectionLayout};
+use crate::model::spans::boundary_conditions::BoundaryConditions;
+use crate::model::spans::cable_section::CableEquilibrium;
 use crate::model::spans::cable_section::CableSection;
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::failure::Failure;
@@ -22,6 +23,7 @@ use crate::model::spans::first_equilibrium::first_shapes::{
 };
 use crate::model::spans::initial::from_solution;
 use crate::model::spans::newton::Workspace;
+use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::{self, LooseShapes};
 use crate::solution::Node;
 

@@ -5,7 +5,7 @@ use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};
 use crate::model::spans::boundary::curve::ChainRange;
 use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, TensionProfile};
-use crate::model::spans::boundary_conditions::{BoundaryConditions, Pulley, SectionBounds, SectionLayout};
+use crate::model::spans::boundary_conditions::BoundaryConditions;
 use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::initial::material::{measure, spread};
@@ -13,6 +13,7 @@ use crate::model::spans::initial::route::{RoutePolyline, section_route};
 use crate::model::spans::initial::shortest_path;
 use crate::model::spans::initial::shortest_path::{PathCorner, PostPolygon};
 use crate::model::spans::initial::tension;
+use crate::model::spans::section_layout::{Pulley, SectionBounds, SectionLayout};
 
 /// A wrap: something that the cable bends round, in order.
 #[derive(Clone, Debug)]
