@@ -127,16 +127,13 @@ impl Dynamics {
         if inertia == Inertia::QuasiStatic {
             self.solver.work_left = self.solver.work_of_advance;
         }
-        let mut total: Result<Converged, SolveError> = Ok(Converged::default());
         let mut halved = 0;
-        for _ in 0..pieces as usize {
-            total = total.and_then(|before| {
-                let done = self.step_in_halves(h, request, &mut halved, gauge)?;
-                Ok(Converged { iterations: before.iterations + done.iterations, ..done })
-            });
-        }
+        let stepped = (0..pieces as usize).try_fold(Converged::default(), |before, _| {
+            let done = self.step_in_halves(h, request, &mut halved, gauge)?;
+            Ok::<_, SolveError>(Converged { iterations: before.iterations + done.iterations, ..done })
+        });
         self.solver.work_left = WorkBudget::Unlimited;
-        let mut total = total?;
+        let mut total = stepped?;
         self.cable.motion.time = end;
         if inertia == Inertia::Dynamic {
             self.cable.motion.account.ends_at(end);
