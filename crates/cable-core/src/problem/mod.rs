@@ -8,6 +8,7 @@
 //! | `support_clearance.rs` | supports on a surface are moved off it by a cable radius |
 //! | `ground_route.rs`, `route_check.rs` | routes below the ground are lifted; routes through a beam are refused |
 //! | `robot_outline.rs` | the robot as an obstacle |
+//! | `wheel_passage.rs` | on which side a cable passes a wheel, and how far it turns about it |
 //! | `wheels_as_posts.rs` | wheels that stand still as rounds which the cable may leave |
 //! | `describe_place.rs`, `rounding_error.rs` | places in words; what rounding leaves of an answer |
 //!
@@ -24,6 +25,7 @@ mod rounding_error;
 mod route_check;
 mod series;
 mod support_clearance;
+pub(crate) mod wheel_passage;
 pub(crate) mod wheels_as_posts;
 
 pub(crate) use self::definition::WheelsAsPosts;

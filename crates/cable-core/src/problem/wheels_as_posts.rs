@@ -4,8 +4,9 @@
 //! A pulley of the models keeps the cable on its wheel. Where the cable does not press on it, it
 //! hangs clear, and the wheel is what a post of the same radius and friction is.
 
+use super::wheel_passage::facing;
 use crate::math::{Vec2, larger, perp, vec2};
-use crate::scene::{Cable, Obstacle, PulleySide, Scene, Shape, SupportKind};
+use crate::scene::{Cable, Obstacle, Scene, Shape, SupportKind};
 
 /// Distance of the route from the centre of a wheel, in radii of the centre line round it. Smaller:
 /// the route cuts wheels whose neighbours are narrower; larger: it comes nearer to what else is
@@ -106,14 +107,4 @@ fn route(scene: &Scene, cable: &Cable, replaced: &[bool]) -> Option<Vec<Vec2>> {
         route.extend([before, before + after, after].into_iter().filter_map(aside).map(|off| at + off));
     }
     Some(route)
-}
-
-/// Returns on which side of its wheel a cable runs, seen along it: 1 on the left (it turns
-/// clockwise), −1 on the right. Over means above where it travels to the right.
-fn facing(side: PulleySide, travel: Vec2) -> f64 {
-    let right = if travel.x < 0.0 { -1.0 } else { 1.0 };
-    match side {
-        PulleySide::Over => right,
-        PulleySide::Under => -right,
-    }
 }

@@ -1,30 +1,31 @@
 //! The first guess has straight ways from wheel to wheel, and the material spread evenly along
 //! them.
 
-use super::layout::{Anchor, AnchorLayout, angle_near, angle_of, direction};
+use super::layout::{Anchor, AnchorLayout, angle_of};
 use super::slide::WheelArc;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::problem::Problem;
+use crate::problem::wheel_passage::{angle_near, turn_through_centre};
 
 /// The arcs of straight ways from wheel to wheel.
 pub(super) fn first_arcs(layout: &AnchorLayout) -> Vec<WheelArc> {
     let all = &layout.anchors;
-    let hang = |force: Vec2| angle_of(if force.norm() > 0.0 { force } else { layout.weight });
+    let hang = |force: Vec2| if force.norm() > 0.0 { force } else { layout.weight };
+    let hanging = |way: Vec2| (way, Some(angle_of(way)));
     let arc = |k: usize, a: &Anchor| {
         let before = k.checked_sub(1).and_then(|j| all.get(j));
-        let arrive = match before {
-            Some(b) => tangent(b, a),
-            None => Some(angle_of(-direction(hang(layout.end_force[0] + layout.weight)))),
+        // Where a neighbour or a load draws it, and along which tangent.
+        let (from, arrive) = match before {
+            Some(b) => (a.at - b.at, tangent(b, a)),
+            None => hanging(-hang(layout.end_force[0] + layout.weight)),
         };
-        let leave = match all.get(k + 1) {
-            Some(b) => tangent(a, b),
-            None => Some(hang(layout.end_force[1] + layout.weight)),
+        let (to, leave) = match all.get(k + 1) {
+            Some(b) => (b.at - a.at, tangent(a, b)),
+            None => hanging(hang(layout.end_force[1] + layout.weight)),
         };
         let arrive = arrive.unwrap_or(0.0);
-        let leave = leave.unwrap_or(arrive);
-        // Between a quarter turn back and three quarters round.
-        let turn = angle_near(a.facing * (arrive - leave), std::f64::consts::FRAC_PI_2);
-        let turn = if turn > 0.0 { turn } else { 0.0 };
+        let turn = a.facing * (arrive - leave.unwrap_or(arrive));
+        let turn = larger(angle_near(turn, turn_through_centre(a.facing, from, to)), 0.0);
         WheelArc { arrive, turn, mark: arrive - 0.5 * a.facing * turn, material: a.radius * turn }
     };
     all.iter().enumerate().map(|(k, a)| if a.radius == 0.0 { WheelArc::default() } else { arc(k, a) }).collect()

@@ -1,14 +1,13 @@
 //! A layout lists what holds the cable at an instant, and what pulls on it.
 
-use std::f64::consts::PI;
-
 use crate::catenary::PointForce;
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, perp};
 use crate::model::Model;
 use crate::model::catenary::settings::CatenarySettings;
+use crate::problem::wheel_passage::facing;
 use crate::problem::{Problem, SupportPoint};
-use crate::scene::{PulleySide, SupportKind};
+use crate::scene::SupportKind;
 
 /// A point the cable cannot leave: held there, or sliding through.
 #[derive(Clone, Debug)]
@@ -132,16 +131,13 @@ impl AnchorLayout {
         (self.weight, self.hint) = auxiliary_weight(p, loads);
     }
 
-    /// Sets the side of its wheel on which the cable runs, seen along it: over means above where it
-    /// travels to the right.
+    /// Sets the side of its wheel on which the cable runs, seen along it.
     fn face_wheels(&mut self, p: &Problem) {
         let centres: Vec<Vec2> = self.anchors.iter().map(|a| a.at).collect();
         for (k, a) in self.anchors.iter_mut().enumerate() {
             let before = if k > 0 { centres[k - 1] } else { a.at };
             let after = centres.get(k + 1).copied().unwrap_or(a.at);
-            let right = if after.x - before.x < 0.0 { -1.0 } else { 1.0 };
-            let over = if p.supports[a.support].side == PulleySide::Over { 1.0 } else { -1.0 };
-            a.facing = right * over;
+            a.facing = facing(p.supports[a.support].side, after - before);
         }
     }
 
@@ -155,11 +151,6 @@ impl AnchorLayout {
         let inside = self.loads.iter().filter(|l| l.arc_length > from && l.arc_length < to);
         inside.fold(self.weight * (to - from), |sum, l| sum + l.force)
     }
-}
-
-/// An angle brought to the 2π around `near`.
-pub(super) fn angle_near(angle: f64, near: f64) -> f64 {
-    angle - 2.0 * PI * ((angle - near) / (2.0 * PI)).round()
 }
 
 /// Direction of an angle.

@@ -15,11 +15,12 @@
 //! S. Sueda, G. L. Jones, D. I. W. Levin and D. K. Pai, "Large-scale dynamic simulation of highly
 //! constrained strands", *ACM Transactions on Graphics* 30 (2011) 39.
 
-use super::layout::{Anchor, AnchorLayout, angle_near, angle_of};
+use super::layout::{Anchor, AnchorLayout, angle_of};
 use super::wheel::traverse_wheel;
 use crate::catenary::{Chain, ChainForce};
 use crate::math::{Vec2, cross, larger};
 use crate::problem::Problem;
+use crate::problem::wheel_passage::angle_near;
 
 /// State of a pulley.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -14,7 +14,8 @@ use crate::model::spans::cable_section::{CableSection, EndCondition, SolveContex
 use crate::model::spans::failure::Failure;
 use crate::model::spans::settings::SpansSettings;
 use crate::problem::Problem;
-use crate::scene::{PulleySide, SupportKind};
+use crate::problem::wheel_passage::facing;
+use crate::scene::SupportKind;
 use std::sync::Arc;
 
 /// A dead load: where, and which it is.
@@ -156,8 +157,7 @@ impl SectionLayout {
         Ok(layout)
     }
 
-    /// Sets the side of its wheel on which the cable passes: over means above where it travels to
-    /// the right.
+    /// Sets the side of its wheel on which the cable passes, by the way in which the scene counts it.
     fn face_wheels(&mut self) {
         let (p, reversed) = (&self.problem, self.counted_from == CableEnd::End);
         let held: Vec<usize> = (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).collect();
@@ -170,10 +170,8 @@ impl SectionLayout {
             let i = held.iter().position(|&k| k == pulley.support).unwrap_or(0);
             let before = i.checked_sub(1).and_then(|j| held.get(j)).map_or(at(pulley.support), |&k| at(k));
             let after = held.get(i + 1).map_or(at(pulley.support), |&k| at(k));
-            let way = after.x - before.x;
-            let right = if way < 0.0 || (way == 0.0 && reversed) { -1.0 } else { 1.0 };
-            let over = if s.side == PulleySide::Over { 1.0 } else { -1.0 };
-            pulley.facing = right * over;
+            let travel = if reversed { before - after } else { after - before };
+            pulley.facing = facing(s.side, travel) * if reversed { -1.0 } else { 1.0 };
         }
     }
 

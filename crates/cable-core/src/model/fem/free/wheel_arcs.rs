@@ -9,8 +9,11 @@ use crate::math::{Vec2, cross, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
 use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
 use crate::model::fem::free::stations::{Restraint, Wheel};
+use crate::problem::wheel_passage::{angle_near, facing, turn_through_centre};
 use crate::scene::PulleySide;
 
+/// The turn that rounding leaves of none, rad.
+const ROUNDED_TURN: f64 = 1e-9;
 /// Steps of the integration round a wheel.
 const WHEEL_STEPS: usize = 16;
 /// Rounds to find where a cable meets and leaves its wheels; each gains the ratio of radius to
@@ -55,31 +58,24 @@ impl PulleyNetwork {
         (tension / first).ln()
     }
 
-    /// +1 where the cable runs clockwise round the wheel, −1 the other way.
-    fn clockwise(&self, wheel: &Wheel, travel: Vec2) -> f64 {
-        let right = if travel.x < 0.0 { -1.0 } else { 1.0 };
-        match wheel.side {
-            PulleySide::Over => right,
-            PulleySide::Under => -right,
-        }
-    }
-
-    /// The same at a station, by the anchors before and after it.
+    /// +1 where the cable runs clockwise round the wheel at a station, −1 the other way, by the
+    /// anchors before and after it.
     pub(in crate::model::fem) fn clockwise_at(&self, station: usize, wheel: &Wheel) -> f64 {
-        self.clockwise(wheel, self.passing(station))
+        let [arrive, leave] = self.passing(station).map(Option::unwrap_or_default);
+        facing(wheel.side, arrive + leave)
     }
 
-    /// The way the cable passes a station, from the anchor before to the anchor after.
-    fn passing(&self, station: usize) -> Vec2 {
+    /// The ways to a station from the anchor before and on to the anchor after, where there are.
+    fn passing(&self, station: usize) -> [Option<Vec2>; 2] {
         let near = |k: usize| match self.layout.stations[k].restraint {
             Restraint::Free => None,
             Restraint::Fixed(p) => Some(p),
             Restraint::Pulley(w) => Some(w.center),
         };
         let here = near(station).unwrap_or_default();
-        let before = (0..station).rev().find_map(near).unwrap_or(here);
-        let after = (station + 1..self.layout.stations.len()).find_map(near).unwrap_or(here);
-        after - before
+        let before = (0..station).rev().find_map(near);
+        let after = (station + 1..self.layout.stations.len()).find_map(near);
+        [before.map(|b| here - b), after.map(|a| a - here)]
     }
 
     /// Contact points for straight cables, to start with.
@@ -87,7 +83,7 @@ impl PulleyNetwork {
         for k in self.pulleys() {
             let Some(mut wheel) = self.wheel(k) else { continue };
             if wheel.radius > 0.0 {
-                let clockwise = self.clockwise(&wheel, self.passing(k));
+                let clockwise = self.clockwise_at(k, &wheel);
                 let up = Vec2::new(0.0, if wheel.side == PulleySide::Over { 1.0 } else { -1.0 });
                 let tilt = perp(up) * clockwise * if wheel.side == PulleySide::Over { 0.05 } else { -0.05 };
                 wheel.contact = [(up + tilt).normalize(), (up - tilt).normalize()];
@@ -124,10 +120,13 @@ impl PulleyNetwork {
         for k in self.pulleys() {
             let Some(mut wheel) = self.wheel(k).filter(|w| w.radius > 0.0) else { continue };
             let [before, after] = self.forces[k];
-            let clockwise = self.clockwise(&wheel, self.passing(k));
+            let clockwise = self.clockwise_at(k, &wheel);
             let mut contact = [perp(before) * (clockwise / before.norm()), perp(after) * (clockwise / after.norm())];
-            let mut turn = arc(contact[0], contact[1], clockwise);
-            if turn > 1.5 * std::f64::consts::PI {
+            // Where nothing holds it, its force leads the way.
+            let [arrive, leave] = self.passing(k);
+            let through_centre = turn_through_centre(clockwise, arrive.unwrap_or(before), leave.unwrap_or(after));
+            let mut turn = angle_near(arc(contact[0], contact[1], clockwise), through_centre);
+            if turn < -ROUNDED_TURN {
                 let between = contact[0] + contact[1];
                 contact = [between / between.norm(); 2];
                 (turn, lifted) = (0.0, Some(k));
@@ -152,7 +151,7 @@ impl PulleyNetwork {
 /// The angle the cable turns through on a wheel between two contact directions, 0 to 2π.
 fn arc(meets: Vec2, leaves: Vec2, clockwise: f64) -> f64 {
     let turn = -clockwise * turn_between(meets, leaves);
-    if turn < -1e-9 { turn + std::f64::consts::TAU } else { turn }
+    if turn < -ROUNDED_TURN { turn + std::f64::consts::TAU } else { turn }
 }
 
 /// The angle through which the contact point goes round a wheel, positive counter-clockwise, rad.
@@ -161,9 +160,9 @@ pub fn turn(wheel: &Wheel, before: Vec2) -> f64 {
     let [meets, leaves] = wheel.contact;
     let clockwise = cross(meets, before) < 0.0;
     let turn = turn_between(meets, leaves);
-    if clockwise && turn > 1e-9 {
+    if clockwise && turn > ROUNDED_TURN {
         turn - std::f64::consts::TAU
-    } else if !clockwise && turn < -1e-9 {
+    } else if !clockwise && turn < -ROUNDED_TURN {
         turn + std::f64::consts::TAU
     } else {
         turn

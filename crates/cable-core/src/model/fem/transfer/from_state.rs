@@ -12,6 +12,7 @@ use crate::model::fem::remesh::adapt::even_out;
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::step_setup::renew_input;
+use crate::problem::wheel_passage::facing;
 use crate::scene::PulleySide;
 use crate::state::State;
 
@@ -29,8 +30,8 @@ pub(in crate::model::fem) fn thread_pulleys(cable: &mut CableState, state: Optio
         let at = if low < high { s.clamp(low, high) } else { 0.5 * (low + high) };
         let passing = cable.motion.positions[k] - cable.motion.positions[k - 1];
         let up = if wheel.side == PulleySide::Over { 1.0 } else { -1.0 };
-        let right = if passing.x < 0.0 { -1.0 } else { 1.0 };
-        let end = BarEnd { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense: -up * right };
+        let sense = -facing(wheel.side, passing);
+        let end = BarEnd { center: wheel.center, radius: wheel.radius, mark: Vec2::new(0.0, up), sense };
         insert(cable, k, at, Some(SlidingNode::new(end, wheel.friction, SlideOver::Pulley(support))));
     }
     even_out(cable);

@@ -21,7 +21,8 @@
 
 use crate::math::{Vec2, perp};
 use crate::problem::Problem;
-use crate::scene::{PulleySide, SupportKind};
+use crate::problem::wheel_passage::{facing, turn_through_centre};
+use crate::scene::SupportKind;
 
 part! {
     /// The pulleys that the cable runs over.
@@ -108,14 +109,8 @@ impl Pulley {
                 let (s, here) = (&p.supports[k], at(k)?);
                 let before = (0..k).rev().find_map(at).map_or(-down, |b| here - b);
                 let after = (k + 1..p.supports.len()).find_map(at).map_or(down, |a| a - here);
-                let right = if (before + after).x < 0.0 { -1.0 } else { 1.0 };
-                let sense = if s.side == PulleySide::Over { right } else { -right };
-                let bend = principal_angle(angle_of(before) - angle_of(after));
-                let bend = if sense * bend < -0.5 * std::f64::consts::PI {
-                    bend + sense * std::f64::consts::TAU
-                } else {
-                    bend
-                };
+                let sense = facing(s.side, before + after);
+                let bend = sense * turn_through_centre(sense, before, after);
                 Some(Self {
                     support: k,
                     node: 0,

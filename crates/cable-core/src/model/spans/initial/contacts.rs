@@ -14,6 +14,7 @@ use crate::model::spans::initial::shortest_path;
 use crate::model::spans::initial::shortest_path::{PathCorner, PostPolygon};
 use crate::model::spans::initial::tension;
 use crate::model::spans::section_layout::{Pulley, SectionBounds, SectionLayout};
+use crate::problem::wheel_passage::{angle_near, turn_through_centre};
 
 /// A wrap: something that the cable bends round, in order.
 #[derive(Clone, Debug)]
@@ -25,7 +26,7 @@ struct Wrap {
     wheel: Option<usize>,
     /// First and last of it along the route, m.
     way: [f64; 2],
-    /// Turn of the string there, rad.
+    /// Turn of the string there, rad; not that at a wheel.
     turn: f64,
 }
 
@@ -254,11 +255,17 @@ fn bends(
         let arrive = tangent(rounds[k][1], rounds[k + 1][0]);
         let leave = tangent(rounds[k + 1][1], rounds[k + 2][0]);
         let curve = &context.curves[wrap.curve];
+        // That of a wheel is known from the rounds beside it; an eye turns it either way.
+        let turn = match (wrap.wheel, rounds[k + 1][0]) {
+            (Some(_), (centre, radius, sense)) if radius > 0.0 => {
+                turn_through_centre(sense, centre - rounds[k][1].0, rounds[k + 2][0].0 - centre)
+            }
+            _ => wrap.turn,
+        };
         let p1 = curve.with_tangent(wrap.pieces[0], arrive);
         let p2 = curve.with_tangent(wrap.pieces[1], leave);
-        // The turns counted along the string, brought to where the tangents are.
-        let turns = if curve.is_round() { ((p1 + wrap.turn - p2) / std::f64::consts::TAU).round() } else { 0.0 };
-        let p2 = p2 + std::f64::consts::TAU * turns;
+        // The turn of the string, brought to where the tangents are.
+        let p2 = if curve.is_round() { p1 + angle_near(p2 - p1, turn) } else { p2 };
         // An eye has no side of its own: it is passed on the one on which the string bends.
         let eye = wrap.wheel.is_some() && curve.place(p1, wrap.chain_range).stretch == 0.0;
         let (index, [p1, p2]) = if eye && p2 < p1 { (wrap.curve ^ 1, [-p1, -p2]) } else { (wrap.curve, [p1, p2]) };
@@ -423,15 +430,11 @@ fn wraps(
         if let Some(q) = pulley {
             let curve = q.curve + usize::from(q.facing < 0.0);
             let chain_range = ChainRange { first: 0, last: 0 };
-            // Tangents say how far it turns but for whole turns. A wheel passed on its side turns
-            // it by −90° (it lifts off, almost) to 270°: half a turn, two tails that hang from it,
-            // lies in the middle of that.
-            let turn = if q.facing == 0.0 { 0.0 } else { std::f64::consts::FRAC_PI_2 };
             // The route may be drawn round it: where it comes and where it goes.
             let radius = context.curves[curve].place(0.0, chain_range).stretch;
             let near = way.distance(stop, w) + context.settings.initial.wheel_route_radii * radius;
             let round = way.beside(stop, w, near);
-            out.push(Wrap { curve, chain_range, pieces: [0, 0], wheel: Some(q.support), way: round, turn });
+            out.push(Wrap { curve, chain_range, pieces: [0, 0], wheel: Some(q.support), way: round, turn: 0.0 });
             (begin, reached) = ((stop, leg), w);
         }
     }
