@@ -95,6 +95,37 @@ fn every_viewer_wing_has_a_line_in_architecture() {
     }
 }
 
+/// The words between back-quotes in the first cell of each row of the table that a module's doc
+/// opens with, where rows name files or folders.
+fn rooms_on_map(text: &str) -> BTreeSet<String> {
+    let rows = text.lines().take_while(|l| l.starts_with("//!")).filter_map(|l| l.strip_prefix("//! | "));
+    let cells = rows.filter_map(|row| row.split(" | ").next());
+    let words = cells.flat_map(|cell| cell.split('`').skip(1).step_by(2));
+    words.map(|w| w.trim_end_matches('/').trim_end_matches(".rs").to_owned()).collect()
+}
+
+#[test]
+fn every_folder_opens_with_the_map_of_it() {
+    let mut wrong = Vec::new();
+    let sources = ["cable-core", "cable-viewer", "cable-cli"].map(|c| root().join("crates").join(c).join("src"));
+    for module in sources.iter().flat_map(|s| files_below(s)).filter(|f| f.ends_with("mod.rs")) {
+        let folder = module.parent().expect("a folder");
+        let entries = std::fs::read_dir(folder).expect("a folder").map(|e| e.expect("an entry").path());
+        let rooms = entries.filter(|p| p.is_dir() || p.extension().is_some_and(|e| e == "rs"));
+        let names = rooms.map(|p| p.file_stem().expect("a name").to_string_lossy().into_owned());
+        let names: BTreeSet<String> = names.filter(|n| n != "mod" && !n.ends_with("tests")).collect();
+        let mapped = rooms_on_map(&std::fs::read_to_string(&module).expect("a source"));
+        // Two files need no map.
+        if names.len() > 1 {
+            wrong.extend(names.difference(&mapped).map(|n| format!("{}: `{n}` is not on the map", folder.display())));
+        }
+        let is_room = |n: &&String| !n.contains('.') && *n != "mod" && !n.ends_with("tests");
+        let gone = mapped.difference(&names).filter(is_room);
+        wrong.extend(gone.map(|n| format!("{}: `{n}` on the map is not there", folder.display())));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 /// Every module of a crate (`a::b`) and its code, without comments and unit tests.
 fn modules(source: &Path) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();

@@ -7,6 +7,7 @@
 //! | `partition.rs` | which supports and loads belong to which piece |
 //! | `rupture.rs` | where and when the breaking tension is first reached |
 //! | `answer.rs` | the pieces read as one cable |
+//! | `support_speed_limit.rs` | motions of supports that are too fast to be followed |
 //!
 //! A model knows one unbroken cable. Where the tension reaches the breaking tension,
 //! [`BreakableCable`] stops the model there, distributes supports and loads over two shorter

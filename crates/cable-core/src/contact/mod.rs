@@ -5,7 +5,7 @@
 //! | `geometry.rs`, `distance.rs` | obstacles as features in search trees; distances |
 //! | `sweep.rs` | continuous collision detection by conservative advancement |
 //! | `pairs.rs`, `neighbour_lists.rs` | contact pairs of a chain; what each segment can come near to |
-//! | `self_contact.rs`, `self_crossings.rs` | contact of a cable with itself; crossings of its line |
+//! | `self_contact_pairs.rs`, `self_crossings.rs` | contact of a cable with itself; crossings of its line |
 //! | `barrier.rs`, `friction.rs` | contact potential and friction potential |
 //! | `outline.rs` | the moving outline of a robot |
 //! | `nearest_corner.rs`, `swept_corners.rs` | the body that a cable wraps; corners that it has passed through |

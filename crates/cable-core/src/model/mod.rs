@@ -3,10 +3,12 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `mechanics.rs` | the trait and its reports; `settings.rs`: [`Settings`]; `gauge/`: tensions of the inner steps |
+//! | `mechanics.rs`, `settings.rs` | the trait and its reports; [`Settings`] |
+//! | `gauge/` | tensions of the inner steps |
 //! | `registry.rs` | one entry a model: name, capabilities, constructor; [`build`] |
-//! | `auto.rs`, `switching.rs` | the choice of a model, and two models that take turns |
-//! | `initial_equilibrium.rs`, `hand.rs`, `smoothed_target.rs`, `layered.rs`, `similar.rs`, `leavable_wheels.rs`, `arc_nodes.rs`, `mobilised_friction.rs` | what several models share |
+//! | `auto.rs` | the choice of a model |
+//! | `layers/` | models around another one: wheels that are left, another scale, two models in turn |
+//! | `initial_equilibrium.rs`, `hand.rs`, `smoothed_target.rs`, `arc_nodes.rs`, `mobilised_friction.rs` | what several models share |
 //! | `catenary/`, `spans/`, `fem/`, `mass_spring/` | the models |
 //!
 //! A model answers two kinds of question: where does the cable rest ([`Mechanics::settle`]), and
@@ -20,17 +22,14 @@ pub mod fem;
 pub mod gauge;
 pub mod hand;
 pub(crate) mod initial_equilibrium;
-mod layered;
-mod leavable_wheels;
+mod layers;
 pub mod mass_spring;
 pub mod mechanics;
 mod mobilised_friction;
 pub mod registry;
 pub mod settings;
-mod similar;
 pub mod smoothed_target;
 pub mod spans;
-mod switching;
 
 pub use self::mechanics::{Inertia, Mechanics, OwnedResources, RobotContact, StepReport};
 pub use self::registry::{Capabilities, ModelInfo, ModelSource, build};

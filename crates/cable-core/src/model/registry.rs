@@ -4,12 +4,12 @@
 use std::sync::Arc;
 
 use super::auto::{self, Question};
-use super::layered::Layered;
+use super::layers::switching::SwitchingModel;
+use super::layers::{Layered, leavable_wheels, similar};
 use super::mechanics::{Constructor, Mechanics};
 use super::mobilised_friction::refuse_mobilised;
 use super::settings::Settings;
-use super::switching::SwitchingModel;
-use super::{catenary, fem, leavable_wheels, mass_spring, similar, spans};
+use super::{catenary, fem, mass_spring, spans};
 use crate::error::{SolveError, Unsupported};
 use crate::model_id::Model;
 use crate::problem::Problem;

@@ -1,5 +1,16 @@
 //! The record is what a run leaves behind: a history in memory, and tables in CSV.
 //!
+//! | room | content |
+//! |---|---|
+//! | `history.rs` | tensions and reactions over time, in memory |
+//! | `energy.rs` | the energy of a cable, from its nodes |
+//! | `run.rs` | a run as a whole: what its folder says about itself, and its tables |
+//! | `columns.rs`, `choice.rs` | names of the tables' columns; which nodes and figures are written |
+//! | `run_writer.rs`, `page.rs` | the tables are written in whole instants; rows that lie on one page of a file |
+//! | `table_reader.rs`, `csv_records.rs` | the tables are read up to their last whole row |
+//! | `table_error.rs` | faults of tables |
+//! | `fingerprint.rs` | whether two runs are the same to the bit |
+//!
 //! A run folder holds `scene.toml`, `run.toml` ([`Manifest`]: what was asked, and whether the run
 //! is complete) and three tables, every number in SI units that its column's name ends in:
 //!

@@ -6,6 +6,7 @@
 //! | `document.rs` | [`Scene`]: the parts of a scene file, and where the robot stands |
 //! | `cable.rs`, `support.rs`, `load.rs`, `motion.rs` | a cable, what holds and pulls it, how its supports move |
 //! | `obstacle.rs`, `environment.rs`, `robot.rs`, `ground.rs` | what surrounds it; the ground under the robot's tracks |
+//! | `robot_contact_outline.rs` | the robot's outline as a cable meets it |
 //! | `read/` | files in and out, and the refusal of what cannot be solved |
 //! | `library/` | named scenes and presets |
 //! | `nearest.rs` | the known name that a mistyped one means |

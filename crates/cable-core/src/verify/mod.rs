@@ -3,11 +3,11 @@
 //! | room | what is in it |
 //! |---|---|
 //! | `mod.rs` | [`Verifier`]: asks the laws of an answer; which and what was found is a [`Verification`] |
-//! | `cable.rs` | one cable as the laws see it: its forces, bars, and what touches them |
+//! | `checked_cable.rs` | one cable as the laws see it: its forces, bars, and what touches them |
 //! | `answer.rs` | every number is one, and nodes run along the material |
 //! | `penetration.rs` | nothing lies inside anything |
 //! | `balance.rs` | forces on each piece, contacts and their friction, momentum |
-//! | `flexible.rs`, `stiff.rs` | tension, length and bending moment from node to node |
+//! | `flexible_cable.rs`, `stiff_cable.rs` | tension, length and bending moment from node to node |
 //! | `surroundings.rs` | obstacles and the robot as the checker sees them: distances by brute force, normals, friction |
 //! | `stability.rs` | whether a stiff cable holds what it pushes with |
 //! | `supports.rs`, `support_hold.rs` | whether the cable is where its supports hold it; what each does to it |

@@ -6,7 +6,6 @@
 //! | `state` | the state of the cable (`state/cable.rs`) and its parts, and the setup of a step |
 //! | `dynamics` | advances that state: one step with inertia, halvings, reports |
 //! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
-//! | `bows` | the other equilibria of a stiff cable that is compressed |
 //! | `equilibrium` | equilibria in contact, and steps without inertia |
 //! | `time` | BDF2, step sizes, sleep, hands, momentum, checkpoints |
 //! | `newton` | one step: its initial guess, its Newton iterations, and what bounds them |
@@ -14,18 +13,16 @@
 //! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
 //! | `obstacle` | the robot's outline; does the cable run through an obstacle? |
 //! | `transfer` | the first state along the route; states and answers of other models |
-//! | `results`, `mesh_error` | the answer of a state, and its errors |
+//! | `results` | the answer of a state, and its errors |
 //! | `settings` | the tuned constants |
 //!
 //! [`FemModel`] decides which part answers, and hands the state over when the question changes.
 
-mod bows;
 mod dynamics;
 mod elastica;
 mod equilibrium;
 mod free;
 mod mesh;
-mod mesh_error;
 pub(in crate::model) mod newton;
 mod obstacle;
 mod remesh;
@@ -44,9 +41,9 @@ use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::model::fem::equilibrium::quasi_static::slides_as_a_whole;
-use crate::model::fem::mesh_error::{Refinement, TwoMeshes};
 use crate::model::fem::obstacle::outline_depenetration::outline_report;
 use crate::model::fem::obstacle::outline_depenetration::place_outline;
+use crate::model::fem::results::mesh_error::{Refinement, TwoMeshes};
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::system::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;
@@ -212,7 +209,8 @@ impl FemModel {
             }
             statics.bows()
         };
-        let histories = bows::other_equilibria(&self.problem, self.time_s(), &self.dragged, &self.solution(), free)?;
+        let histories =
+            elastica::bows::other_equilibria(&self.problem, self.time_s(), &self.dragged, &self.solution(), free)?;
         let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
         Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
     }

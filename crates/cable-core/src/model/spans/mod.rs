@@ -9,19 +9,16 @@
 //! |---|---|
 //! | `boundary` | the boundary as the centre line runs along it, the capstan law and friction memory |
 //! | `contact` | a contact: equations, loads on it, supports on it, wheels |
-//! | `cable_section` | free spans and contacts in a row between two end conditions: the unknowns |
-//! | `boundary_conditions`, `section_layout` | supports and loads at an instant; how they cut a cable into sections |
+//! | `section` | how supports and loads cut the cable; free spans and contacts in a row: the unknowns |
 //! | `newton`, `numerics` | all unknowns of a section at once; band LU, root finding |
 //! | `changes` | contacts that are released, merged and made, until none is needed |
 //! | `initial` | the first shape: route, shortest path, contacts, tension; or another answer |
-//! | `first_equilibrium` | the search for the first equilibrium, from several first shapes |
+//! | `first_equilibrium` | the search for the first equilibrium, from several first shapes; slack elsewhere; how much friction a sliding cable lacks |
 //! | `continuation` | from one instant to the next, in steps that are halved |
-//! | `missing_friction` | how much friction a sliding cable would need; what drawing leaves |
-//! | `multiple_equilibria` | slack elsewhere: equilibria that run away, and other resting places |
 //! | `reversed` | the cable counted from its other end |
 //! | `slack` | cable that lies without tension |
 //! | `acceptance` | checks of an equilibrium that do not use the solver |
-//! | `results`, `failure` | the answer; why there is none |
+//! | `results` | the answer |
 //! | `settings` | the tuned constants |
 //!
 //! The model refuses what it cannot do: bending, self-contact, inertia, plan view, supports that
@@ -29,21 +26,16 @@
 
 mod acceptance;
 mod boundary;
-mod boundary_conditions;
-mod cable_section;
 mod changes;
 pub(in crate::model) mod contact;
 mod continuation;
-mod failure;
 mod first_equilibrium;
 mod initial;
-mod missing_friction;
-mod multiple_equilibria;
 mod newton;
 mod numerics;
 mod results;
 mod reversed;
-mod section_layout;
+mod section;
 pub mod settings;
 mod slack;
 
@@ -53,15 +45,15 @@ use crate::error::{NoEquilibrium, Place, SolveError, Unsupported};
 use crate::math::{Vec2, larger, smaller};
 use crate::model::catenary::slack_without_weight;
 use crate::model::gauge::TensionGauge;
-use crate::model::spans::boundary_conditions::BoundaryConditions;
-use crate::model::spans::cable_section::CableEquilibrium;
 use crate::model::spans::continuation::StepStats;
-use crate::model::spans::failure::Failure;
 use crate::model::spans::first_equilibrium::{NotFound, SearchStart};
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::results::Report;
 use crate::model::spans::reversed::Reversal;
-use crate::model::spans::section_layout::{CableEnd, SectionLayout, unsupported};
+use crate::model::spans::section::boundary_conditions::BoundaryConditions;
+use crate::model::spans::section::cable_section::CableEquilibrium;
+use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::section_layout::{CableEnd, SectionLayout, unsupported};
 use crate::model::spans::settings::SpansSettings;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;

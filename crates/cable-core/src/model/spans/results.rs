@@ -8,11 +8,11 @@ use crate::model::spans::boundary::capstan::ContactPath;
 use crate::model::spans::boundary::curve::BoundaryPoint;
 use crate::model::spans::boundary::friction_memory::{Mode, TensionProfile};
 use crate::model::spans::boundary::segment_cursor::{CachedPiece, SegmentCursor};
-use crate::model::spans::cable_section::CableEquilibrium;
-use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::section_layout::SectionLayout;
+use crate::model::spans::section::cable_section::CableEquilibrium;
+use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
+use crate::model::spans::section::section_layout::SectionLayout;
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Nodes on each stretch of an edge.

@@ -5,8 +5,8 @@
 //! *upper* end, and the solution is reversed afterwards.
 
 use crate::math::Vec2;
-use crate::model::spans::failure::Failure;
 use crate::model::spans::results::Report;
+use crate::model::spans::section::failure::Failure;
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
 use crate::solution::{ContactPart, ContactReport, ContactSample, Node, SupportReaction};

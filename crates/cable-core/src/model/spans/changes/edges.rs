@@ -3,7 +3,7 @@
 
 use crate::math::{Vec2, smaller};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
-use crate::model::spans::cable_section::{CableSection, SolveContext};
+use crate::model::spans::section::cable_section::{CableSection, SolveContext};
 
 /// Part of p by which an end of a contact may be off the end of an arc and be taken to be there:
 /// Newton's steps go beyond it by less.

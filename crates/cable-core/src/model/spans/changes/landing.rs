@@ -8,12 +8,12 @@ use crate::model::spans::acceptance::penetration::Penetration;
 use crate::model::spans::acceptance::tunnelling;
 use crate::model::spans::boundary::curve::{ChainRange, SUPPORT_CONTACT_DISTANCE_M};
 use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, TensionProfile};
-use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::changes::edges::{beyond_edges, move_neighbours_over_edges};
 use crate::model::spans::contact::load_landing;
 use crate::model::spans::contact::release_below;
-use crate::model::spans::failure::Failure;
 use crate::model::spans::newton::Workspace;
+use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
+use crate::model::spans::section::failure::Failure;
 
 /// Depth inside an obstacle from which a span touches it, of the section: points nearer than that
 /// are one.

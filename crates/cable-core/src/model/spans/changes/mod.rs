@@ -18,7 +18,6 @@ mod release;
 use crate::contact::World;
 use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::Vec2;
-use crate::model::spans::cable_section::{CableSection, SolveContext};
 use crate::model::spans::changes::edges::follow_edges;
 use crate::model::spans::changes::landing::{Purpose, touch_obstacles, touch_passed_corner};
 use crate::model::spans::changes::merge::merge_contacts;
@@ -27,9 +26,10 @@ use crate::model::spans::contact::kink_load;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::release_below;
 use crate::model::spans::contact::slack_pocket;
-use crate::model::spans::failure::Failure;
 use crate::model::spans::newton;
 use crate::model::spans::newton::{Converged, Workspace};
+use crate::model::spans::section::cable_section::{CableSection, SolveContext};
+use crate::model::spans::section::failure::Failure;
 
 /// Solves a section with the contacts that belong to its answer.
 ///

@@ -5,25 +5,29 @@
 //! | `mod.rs` | the search: one first shape after the other; equilibria from other answers and in heaps |
 //! | `first_shapes.rs` | the list of first shapes, and the law that makes each necessary |
 //! | `length_homotopy.rs` | a cable is shortened until it is taut, and paid out again |
+//! | `multiple_equilibria.rs` | slack elsewhere: equilibria that run away, and other resting places |
+//! | `missing_friction.rs` | how much friction a sliding cable would need; what drawing leaves |
 
 mod first_shapes;
 mod length_homotopy;
+mod missing_friction;
+mod multiple_equilibria;
 
 pub(super) use first_shapes::{FirstShape, shapes_with_friction};
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::boundary_conditions::BoundaryConditions;
-use crate::model::spans::cable_section::CableEquilibrium;
-use crate::model::spans::cable_section::CableSection;
 use crate::model::spans::continuation::StepStats;
-use crate::model::spans::failure::Failure;
 use crate::model::spans::first_equilibrium::first_shapes::{
     FIRST_SHAPES, FirstFriction, FirstLength, SlackCable, posts_seen_nearer,
 };
 use crate::model::spans::initial::from_solution;
 use crate::model::spans::newton::Workspace;
-use crate::model::spans::section_layout::SectionLayout;
+use crate::model::spans::section::boundary_conditions::BoundaryConditions;
+use crate::model::spans::section::cable_section::CableEquilibrium;
+use crate::model::spans::section::cable_section::CableSection;
+use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::section_layout::SectionLayout;
 use crate::model::spans::slack::{self, LooseShapes};
 use crate::solution::Node;
 

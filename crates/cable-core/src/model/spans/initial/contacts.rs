@@ -5,15 +5,15 @@ use crate::contact::World;
 use crate::math::{Vec2, cross, smaller};
 use crate::model::spans::boundary::curve::ChainRange;
 use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, TensionProfile};
-use crate::model::spans::boundary_conditions::BoundaryConditions;
-use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::initial::material::{measure, spread};
 use crate::model::spans::initial::route::{RoutePolyline, section_route};
 use crate::model::spans::initial::shortest_path;
 use crate::model::spans::initial::shortest_path::{PathCorner, PostPolygon};
 use crate::model::spans::initial::tension;
-use crate::model::spans::section_layout::{Pulley, SectionBounds, SectionLayout};
+use crate::model::spans::section::boundary_conditions::BoundaryConditions;
+use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
+use crate::model::spans::section::section_layout::{Pulley, SectionBounds, SectionLayout};
 use crate::problem::wheel_passage::{angle_near, turn_through_centre};
 
 /// A wrap: something that the cable bends round, in order.

@@ -12,7 +12,7 @@
 use crate::contact::geometry::Body;
 use crate::math::{Vec2, cross, larger, perp, smaller};
 use crate::model::spans::boundary::curve::{Curve, PieceShape};
-use crate::model::spans::cable_section::SolveContext;
+use crate::model::spans::section::cable_section::SolveContext;
 
 /// Lengths that are none, m: rounding of kilometres.
 pub(in crate::model::spans) const NONE_M: f64 = 1e-9;

@@ -11,10 +11,10 @@ use crate::math::{Vec2, cross, perp};
 use crate::model::spans::boundary::curve::SUPPORT_CONTACT_DISTANCE_M;
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
 use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, SweepDirection, TensionProfile};
-use crate::model::spans::boundary_conditions::BoundaryConditions;
-use crate::model::spans::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
-use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
+use crate::model::spans::section::boundary_conditions::BoundaryConditions;
+use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
+use crate::model::spans::section::section_layout::{SectionBounds, SectionLayout};
 use crate::solution::Node;
 
 /// Of the material of a section, what is kept between two contacts at least.

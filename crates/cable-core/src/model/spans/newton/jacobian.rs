@@ -5,11 +5,11 @@ use crate::model::spans::boundary::capstan::ContactPath;
 use crate::model::spans::boundary::curve::BoundaryPoint;
 use crate::model::spans::boundary::friction_memory::Mode;
 use crate::model::spans::boundary::segment_cursor::CachedPiece;
-use crate::model::spans::cable_section::{CableSection, Contact, EndCondition, SolveContext};
 use crate::model::spans::contact::equations;
 use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::numerics::band_lu::Band;
+use crate::model::spans::section::cable_section::{CableSection, Contact, EndCondition, SolveContext};
 
 fn count(section: &CableSection) -> usize {
     6 * section.contacts.len() + 2

@@ -24,7 +24,7 @@ use crate::model::spans::boundary::capstan::ContactPath;
 use crate::model::spans::boundary::curve::BoundaryPoint;
 use crate::model::spans::boundary::friction_memory::{Ends, Mode};
 use crate::model::spans::boundary::segment_cursor::CachedPiece;
-use crate::model::spans::cable_section::{CableSection, Contact, EndCondition, SolveContext};
+use crate::model::spans::section::cable_section::{CableSection, Contact, EndCondition, SolveContext};
 use crate::model::spans::settings::SlipSettings;
 
 /// A span whose force changes by no more than this part in a round is where it was. Larger: the

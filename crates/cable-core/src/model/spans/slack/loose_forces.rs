@@ -2,8 +2,8 @@
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::loose::{Loose, SlackForm, SlackPart};
-use crate::model::spans::cable_section::SolveContext;
 use crate::model::spans::initial::drained_route::NONE_M;
+use crate::model::spans::section::cable_section::SolveContext;
 
 impl Loose {
     /// Force in the cable at a support, N.

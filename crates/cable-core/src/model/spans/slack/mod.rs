@@ -43,11 +43,11 @@ mod report;
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::loose::Loose;
-use crate::model::spans::boundary_conditions::BoundaryConditions;
-use crate::model::spans::cable_section::{CableSection, EndCondition, SolveContext};
 use crate::model::spans::initial::drained_route::{DrainedRoute, Frame, UpperSurfaces};
 use crate::model::spans::initial::route::section_route;
-use crate::model::spans::section_layout::SectionLayout;
+use crate::model::spans::section::boundary_conditions::BoundaryConditions;
+use crate::model::spans::section::cable_section::{CableSection, EndCondition, SolveContext};
+use crate::model::spans::section::section_layout::SectionLayout;
 use crate::model::spans::slack::drape::SlackSolver;
 use crate::model::spans::slack::heap::CREST_CONE_ROUNDING;
 use crate::model::spans::slack::pay_out::pay_out;
@@ -104,7 +104,7 @@ pub(in crate::model::spans) fn loose_section(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::spans::section_layout::CableEnd;
+    use crate::model::spans::section::section_layout::CableEnd;
     use crate::problem::problems;
     use crate::scene::catalog;
     use std::sync::Arc;

@@ -14,7 +14,7 @@ use crate::model::spans::boundary::capstan::{CableLaw, ContactPath};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
 use crate::model::spans::boundary::friction_memory::{Ends, Mode, StickZone, TensionProfile};
 use crate::model::spans::boundary::loose::Loose;
-use crate::model::spans::boundary_conditions::BoundaryConditions;
+use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::settings::SpansSettings;
 
 /// Everything given at an instant.

@@ -6,13 +6,13 @@
 
 use std::sync::Arc;
 
-use super::gauge::TensionGauge;
-use super::layered::Layer;
-use super::mechanics::Constructor;
-use super::{Inertia, Mechanics, Settings, StepReport};
+use super::Layer;
 use crate::contact::distance::segment_segment;
 use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{RigidPose, Vec2};
+use crate::model::gauge::TensionGauge;
+use crate::model::mechanics::Constructor;
+use crate::model::{Inertia, Mechanics, Settings, StepReport};
 use crate::problem::wheels_as_posts::WheelPost;
 use crate::problem::{Problem, WheelsAsPosts, with_moved_posts};
 use crate::solution::{CableSolution, ModelReason, Node, SupportReaction, Warning, WarningCause};

@@ -1,13 +1,13 @@
 //! A cable that nothing but friction holds slides if there is too little of it: this module finds
 //! how much it would need, and what a cable keeps that was drawn.
 
-use crate::model::spans::boundary_conditions::BoundaryConditions;
-use crate::model::spans::cable_section::CableEquilibrium;
-use crate::model::spans::cable_section::CableSection;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::first_equilibrium::{FirstShape, shapes_with_friction};
 use crate::model::spans::newton::Workspace;
-use crate::model::spans::section_layout::SectionLayout;
+use crate::model::spans::section::boundary_conditions::BoundaryConditions;
+use crate::model::spans::section::cable_section::CableEquilibrium;
+use crate::model::spans::section::cable_section::CableSection;
+use crate::model::spans::section::section_layout::SectionLayout;
 
 /// Part of the friction that is missing to which it is found: three digits are shown.
 const MISSING_FRICTION_TOLERANCE: f64 = 2e-4;

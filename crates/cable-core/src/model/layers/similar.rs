@@ -7,11 +7,11 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::gauge::TensionGauge;
-use super::layered::{Layer, Layered};
-use super::{Inertia, Mechanics, StepReport};
+use super::{Layer, Layered};
 use crate::error::{Place, SolveError};
 use crate::math::Vec2;
+use crate::model::gauge::TensionGauge;
+use crate::model::{Inertia, Mechanics, StepReport};
 use crate::problem::Problem;
 use crate::scene::scaled::Similarity;
 use crate::solution::{CableSolution, ModelReason, Warning};
@@ -33,7 +33,7 @@ pub struct ScaledModel {
 impl ScaledModel {
     /// Wraps the model of the copy.
     #[must_use]
-    pub(super) fn new(problem: Arc<Problem>, by: Similarity, inner: Box<dyn Mechanics>) -> Layered<Self> {
+    pub(in crate::model) fn new(problem: Arc<Problem>, by: Similarity, inner: Box<dyn Mechanics>) -> Layered<Self> {
         let mut this = Self { problem, by, inner, reason: None, refusal: None };
         this.observe();
         Layered(this)

@@ -8,15 +8,15 @@
 
 use std::sync::Arc;
 
-use super::fem::FemModel;
-use super::gauge::TensionGauge;
-use super::initial_equilibrium::{is_buried, meets_outline, slid_first, slides_on, work};
-use super::mobilised_friction::refuse_mobilised;
-use super::spans::SpansModel;
-use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::Vec2;
+use crate::model::fem::FemModel;
+use crate::model::gauge::TensionGauge;
+use crate::model::initial_equilibrium::{is_buried, meets_outline, slid_first, slides_on, work};
+use crate::model::mobilised_friction::refuse_mobilised;
+use crate::model::spans::SpansModel;
+use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, Settings, StepReport};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, ModelReason, Node, Warning};
 use crate::state::State;

@@ -5,13 +5,13 @@
 //! of a contact. The cable leaves one balance for another by sliding under a drag.
 
 use crate::math::{bounded, larger, smaller};
-use crate::model::spans::boundary_conditions::BoundaryConditions;
-use crate::model::spans::cable_section::CableEquilibrium;
 use crate::model::spans::continuation::StepStats;
-use crate::model::spans::failure::Failure;
 use crate::model::spans::initial::contacts;
 use crate::model::spans::newton::{self, Workspace};
-use crate::model::spans::section_layout::SectionLayout;
+use crate::model::spans::section::boundary_conditions::BoundaryConditions;
+use crate::model::spans::section::cable_section::CableEquilibrium;
+use crate::model::spans::section::failure::Failure;
+use crate::model::spans::section::section_layout::SectionLayout;
 
 /// Factor of the drag after a step that failed.
 const DRAG_RISE: f64 = 8.0;

@@ -1,13 +1,24 @@
 //! A layer is a model around another one: it changes some of what goes in or comes out, and
 //! [`Layered`] passes everything else on.
+//!
+//! | room | content |
+//! |---|---|
+//! | `mod.rs` | what a layer may change |
+//! | `leavable_wheels.rs` | a cable over wheels, which it may leave |
+//! | `similar.rs` | a cable computed at another scale |
+//! | `switching.rs` | two models that take turns |
+
+pub(in crate::model) mod leavable_wheels;
+pub(in crate::model) mod similar;
+pub(in crate::model) mod switching;
 
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use super::gauge::TensionGauge;
-use super::{Inertia, Mechanics, Model, OwnedResources, RobotContact, StepReport};
 use crate::error::SolveError;
 use crate::math::{RigidPose, Vec2};
+use crate::model::gauge::TensionGauge;
+use crate::model::{Inertia, Mechanics, Model, OwnedResources, RobotContact, StepReport};
 use crate::problem::Problem;
 use crate::solution::{CableSolution, ModelReason};
 use crate::state::State;
@@ -15,7 +26,7 @@ use crate::state::State;
 /// The changes that a layer makes. A method that it leaves out asks the inner model, or changes
 /// nothing. Those that act return reports and errors of the inner model; `outer_report` and
 /// `outer_error` translate them.
-pub(super) trait Layer: Send + Sized + 'static {
+pub(in crate::model) trait Layer: Send + Sized + 'static {
     /// The inner model.
     fn inner(&self) -> &dyn Mechanics;
 
@@ -100,7 +111,7 @@ pub(super) trait Layer: Send + Sized + 'static {
 }
 
 /// A layer as a model.
-pub(super) struct Layered<L>(pub(super) L);
+pub(in crate::model) struct Layered<L>(pub(in crate::model) L);
 
 impl<L: Layer> Layered<L> {
     /// Observes the inner model after it acted, and translates the outcome.
