@@ -95,13 +95,18 @@ fn every_viewer_wing_has_a_line_in_architecture() {
     }
 }
 
-/// The words between back-quotes in the first cell of each row of the table that a module's doc
-/// opens with, where rows name files or folders.
+/// The names that the map at the head of a module has: the words between back-quotes in the first
+/// cell of each row of its table, or before the colon of each item of its list.
 fn rooms_on_map(text: &str) -> BTreeSet<String> {
-    let rows = text.lines().take_while(|l| l.starts_with("//!")).filter_map(|l| l.strip_prefix("//! | "));
-    let cells = rows.filter_map(|row| row.split(" | ").next());
-    let words = cells.flat_map(|cell| cell.split('`').skip(1).step_by(2));
-    words.map(|w| w.trim_end_matches('/').trim_end_matches(".rs").to_owned()).collect()
+    let doc: Vec<&str> = text.lines().map_while(|l| l.strip_prefix("//!")).collect();
+    let rows = doc.iter().filter_map(|l| l.strip_prefix(" | `")?.split(" | ").next()).map(str::to_owned);
+    let list = doc.join("\n");
+    let items = list.split("\n - `").skip(1).filter_map(|item| item.split(": ").next()).map(str::to_owned);
+    let names = rows.chain(items).flat_map(|named| {
+        let words = format!("`{named}");
+        words.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>()
+    });
+    names.map(|w| w.trim_end_matches('/').trim_end_matches(".rs").to_owned()).collect()
 }
 
 #[test]

@@ -1,6 +1,11 @@
 //! The energies of a cable's nodes come as value (J), gradient (N) and Hessian (N/m): `axial.rs`
 //! and `bending.rs`.
 //!
+//! | room | content |
+//! |---|---|
+//! | `axial.rs` | stretching of a straight bar: tension, material and geometric stiffness |
+//! | `bending.rs` | turn between two bars or out of a clamp: energy, gradient, Hessian |
+//!
 //! Every energy is a function of the positions of `N` neighbouring nodes. The force on a node is
 //! minus the gradient. Each comes with its derivation above the code and finite-difference tests on
 //! random and degenerate input.

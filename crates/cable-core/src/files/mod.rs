@@ -1,5 +1,10 @@
 //! Nothing else in the core touches the file system: files are read with a limit, and saved so that
 //! at every moment either the old file or the new one is whole.
+//!
+//! | room | content |
+//! |---|---|
+//! | `run_folder/` | writing a run: tables that grow instant by instant, lock, replacement |
+//! | `saved_run.rs` | reading a run folder, whole or partial, with remarks on what is missing |
 
 mod run_folder;
 mod saved_run;

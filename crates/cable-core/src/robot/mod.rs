@@ -1,6 +1,11 @@
 //! The vehicle is the tracked robot in motion: how fast it goes against slope, ground and cable,
 //! and why not faster.
 //!
+//! | room | content |
+//! |---|---|
+//! | `governor.rs` | planned speed of the vehicle, limited in acceleration and jerk |
+//! | `speed_balance.rs` | speed at the end of a step: drive, slip of the tracks, resistance, cable pull |
+//!
 //! It is a rigid body on the ground, moved along it by its tracks:
 //! ```text
 //! N = m g cos θ − H·n                     from the ground; H: force of the cable on the hitch, n: normal

@@ -5,7 +5,7 @@
 //! - `first_steps`, `start_here`: the hints of the first minute, and what to begin with
 //! - `early_clicks`: clicks that come before the first frame
 //! - `tutorials`, `tutorial_bar`: guided scenes, and the bar that leads through one
-//! - `screenshot`, `gallery`: the window as a picture file, and in eight states
+//! - `screenshot`, `documentation_pictures`: the window as a picture file, and in eight states
 //! - `canvas_picture`: the canvas with its legend as a picture file
 
 mod canvas_picture;

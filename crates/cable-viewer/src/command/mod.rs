@@ -3,8 +3,9 @@
 //!
 //! - `scene`, `view`, `playback`, `file`: the commands and what each does
 //! - `effects`: what applying them asks of the worker and the window
-//! - `move_item`, `surface_projection`, `remove_item`, `waypoint`, `hitch`, `name`, `support_kind`,
-//!   `route`: rules of edits that several commands share
+//! - `move_item`, `surface_projection`, `remove_item`, `waypoint`, `robot_hitch`, `name`,
+//!   `support_kind`, `route`: rules of edits that several commands share
+//! - `resume`: time that goes on from an earlier answer
 //! - `clipboard`, `import`: copy, paste, and maps from tables and drawings
 
 pub mod clipboard;

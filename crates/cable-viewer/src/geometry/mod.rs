@@ -4,6 +4,8 @@
 //! - `handles`: where anything that can be dragged is, and what moves with it
 //! - `hit_test`: the thing under a screen point
 //! - `bounds`: the rectangle that things take up
+//! - `terrain_extent`: the ground between a tank's walls
+//! - `torn_cable`: the pieces of a cable that broke
 //! - `triangulate`: triangles of a polygon
 
 pub mod arrows;

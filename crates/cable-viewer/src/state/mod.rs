@@ -6,6 +6,7 @@
 //! - `selection`, `clipboard`: what is picked, hovered, dragged and copied
 //! - `view`, `camera`: how the scene is drawn
 //! - `live`: what the worker answered, and how time runs
+//! - `freshness`: whether what is on screen answers the scene as it is
 //! - `solver`: what the worker is asked for
 //! - `analysis`, `questions`: what is asked beyond the answer, and of which scene
 //! - `ui`, `dialog`: the window itself and its dialog

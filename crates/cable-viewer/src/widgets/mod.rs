@@ -2,6 +2,7 @@
 //!
 //! - `field`: number and text fields that keep what is typed until it can be read
 //! - `property`: one quantity in a row with name, slider, value and reset
+//! - `readout`: a name and a figure
 //! - `slider`: a slider that is fine about the value it has
 //! - `tick`: boxes to tick and rings to choose by
 //! - `time_table`: a vector that changes with time, as a table

@@ -1,4 +1,13 @@
 //! The folder into which a run is written.
+//!
+//! | room | content |
+//! |---|---|
+//! | `names.rs` | file names of a run: manifest, scene, tables, lock |
+//! | `table_file.rs` | one table on the disk: header, appended rows, rewind when rows do not fit |
+//! | `disk.rs` | writing a whole file atomically: temporary file, sync, rename |
+//! | `lock.rs` | file lock that lets one run at a time write into a folder |
+//! | `ownership.rs` | manifest and file hashes checked: foreign or changed files are not touched |
+//! | `replacement.rs` | a complete run put in the place of an earlier one, resumable after a stop |
 
 mod disk;
 mod lock;

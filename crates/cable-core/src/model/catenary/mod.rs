@@ -1,6 +1,17 @@
 //! `catenary` joins exact elastic catenaries between supports, loads and pulleys. It does statics
 //! and slow motion with friction that remembers; no obstacles within reach, no bending, no inertia.
 //!
+//! | room | content |
+//! |---|---|
+//! | `layout.rs` | supports, wheels and loads at an instant; auxiliary weight of a weightless cable |
+//! | `first_guess.rs` | straight ways from wheel to wheel, material spread evenly along them |
+//! | `slide.rs` | material σ at each pulley: span solutions, energy gradient, compliance |
+//! | `wheel.rs` | tension and material round a wheel, with weight and friction on the arc |
+//! | `equilibrium.rs` | Newton's method for σ: pulleys that hold or slip, stable balances only |
+//! | `multiple_equilibria.rs` | other equilibria of a slack cable over frictionless pulleys |
+//! | `report.rs` | the answer: nodes dense enough for straight lines, support reactions |
+//! | `settings.rs` | the tuned constants of the model |
+//!
 //! The only unknowns are the arc lengths of the material at the pulleys (`slide`); everything
 //! between is a convex problem of two forces ([`crate::catenary`]). With friction the resting place
 //! depends on how the cable was laid: [`Mechanics::settle`] takes it spread evenly along its way

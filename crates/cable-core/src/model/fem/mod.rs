@@ -207,10 +207,15 @@ impl FemModel {
                 // Without an answer it has no shapes, either.
                 let _ = statics.settle(&self.dragged);
             }
-            statics.bows()
+            statics.buckled_shapes()
         };
-        let histories =
-            elastica::bows::other_equilibria(&self.problem, self.time_s(), &self.dragged, &self.solution(), free)?;
+        let histories = elastica::buckled_equilibria::other_equilibria(
+            &self.problem,
+            self.time_s(),
+            &self.dragged,
+            &self.solution(),
+            free,
+        )?;
         let cause = WarningCause::ManyEquilibria { shown: ShownEquilibrium::FromRoute, histories };
         Some(Warning::new(cause, &self.problem.cable.name, 0.0, [0.0; 2]))
     }

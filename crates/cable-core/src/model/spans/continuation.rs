@@ -11,7 +11,6 @@ use crate::model::spans::acceptance::equilibrium;
 use crate::model::spans::acceptance::tension_loss;
 use crate::model::spans::acceptance::tunnelling;
 use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::boundary::loose::Loose;
 use crate::model::spans::changes;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
@@ -22,6 +21,7 @@ use crate::model::spans::section::cable_section::CableEquilibrium;
 use crate::model::spans::section::cable_section::CableSection;
 use crate::model::spans::section::failure::Failure;
 use crate::model::spans::section::section_layout::{SectionLayout, place_ends};
+use crate::model::spans::slack::loose::Loose;
 use crate::model::spans::slack::{self, LooseShapes};
 
 /// A force that differs by less than this part is the same.

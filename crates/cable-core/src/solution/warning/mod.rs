@@ -1,5 +1,11 @@
 //! A [`Warning`] carries its kind, its place, its cause and its numbers as data;
 //! [`crate::wording`] makes the sentence.
+//!
+//! | room | content |
+//! |---|---|
+//! | `kind.rs` | kinds of warnings, with the names used in files and the window |
+//! | `cause.rs` | cause of a warning, with the figures of that cause alone |
+//! | `histories.rs` | other equilibria and tensions that other loading histories would have left |
 
 mod cause;
 mod histories;

@@ -5,6 +5,7 @@
 //! - `cable`, `contact`, `supports`, `forces`: the answer
 //! - `compare_overlay`, `tension_marker`, `safe_reach`: analyses drawn over it
 //! - `legend`: what the colours mean
+//! - `no_answer`: why there is no new answer
 
 pub mod cable;
 pub mod compare_overlay;

@@ -1,5 +1,8 @@
 //! The quality of the answer is shown by the force left unbalanced, the greatest displacement, an
 //! estimate of the conditioning of the equations, and whether the motion gains energy.
+//!
+//! - `condition_number`: how badly the equations are conditioned, as of a straight cable
+//! - `kinetic_peaks`: whether the motion gains energy
 
 mod condition_number;
 mod kinetic_peaks;

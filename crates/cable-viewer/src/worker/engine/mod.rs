@@ -1,4 +1,8 @@
 //! The engine owns the simulation, answers requests and steps time; it knows no threads.
+//!
+//! - `answer_edit`: the answer to an edit: a draft, a rest or a state that is carried over
+//! - `motion`: frames of simulated time, and a hand that draws meanwhile
+//! - `shown`: what the window gets of it
 
 mod answer_edit;
 mod motion;

@@ -4,7 +4,6 @@ use crate::error::{NoEquilibrium, SolveError, Unsupported};
 use crate::math::{Vec2, larger};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::equilibrium::relaxation::moved_away;
-use crate::model::fem::newton::initial_guess::{bow, depenetrate};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::obstacle::outline_depenetration::{prepare_way, put_outline};
 use crate::model::fem::remesh::adapt::remesh;
@@ -12,6 +11,7 @@ use crate::model::fem::results;
 use crate::model::fem::state::cable::CableState;
 use crate::model::fem::state::step_setup::prepare_input;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, load_scale, tolerance};
+use crate::model::fem::transfer::initial_guess::{bow, depenetrate};
 use crate::model::{Inertia, Model, StepReport};
 use crate::state::State;
 

@@ -13,13 +13,13 @@ use crate::math::{Vec2, larger};
 use crate::model::fem::free::beam::equilibrium::{Beam, Outcome, STEP_TOLERANCE};
 use crate::model::fem::free::beam::refinement::{RefinedBeam, refine};
 use crate::model::fem::free::dual_weighted_residual;
+use crate::model::fem::free::element_material::material_at;
 use crate::model::fem::free::failure_report::solve_error;
 use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
 use crate::model::fem::free::results;
 use crate::model::fem::free::results::Point;
 use crate::model::fem::free::stations::{Restraint, StationLayout, place};
 use crate::model::fem::free::straight_route::straight_points;
-use crate::model::fem::free::weight_hint::material_at;
 use crate::model::initial_equilibrium::initial_equilibrium;
 use crate::model::{Model, Settings, StepReport};
 use crate::problem::Problem;
@@ -366,9 +366,11 @@ impl Statics {
 
     /// The equilibria of a stiff cable that is compressed: the one that was found and those bowed
     /// to another side, each its nodes; none of any other cable.
-    pub fn bows(&self) -> Vec<Vec<Node>> {
+    pub fn buckled_shapes(&self) -> Vec<Vec<Node>> {
         let nodes = |b: &Beam| b.points(true).iter().map(|p| p.node(&self.problem)).collect();
-        self.beam.as_ref().map_or_else(Vec::new, |b| std::iter::once(b).chain(&b.other_bows()).map(nodes).collect())
+        self.beam
+            .as_ref()
+            .map_or_else(Vec::new, |b| std::iter::once(b).chain(&b.other_buckled_shapes()).map(nodes).collect())
     }
 
     fn warnings(&self, has_auxiliary_weight: bool) -> Vec<Warning> {

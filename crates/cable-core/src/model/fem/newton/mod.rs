@@ -1,9 +1,18 @@
 //! These modules solve one step: its initial guess, three Newton iterations, what bounds them, and
 //! their memory.
+//!
+//! | room | content |
+//! |---|---|
+//! | `minimize.rs` | minimiser of the step energy: banded Newton, line search, no crossing |
+//! | `mixed_contact.rs` | Newton's method in contact with bar pulls as unknowns, no line search |
+//! | `mixed_free.rs` | Newton's method without contact, with bar pulls as unknowns |
+//! | `active_set.rs` | contacts predicted ahead of a Newton step, as constraints of the step |
+//! | `gap_constraint.rs` | one such constraint: linearised gap, second-order correction, stiff spring |
+//! | `step_bound.rs` | longest collision-free part of a step (continuous collision detection) |
+//! | `solver_memory.rs` | workspaces kept from step to step, no state in them |
 
 pub(in crate::model::fem) mod active_set;
 pub(in crate::model::fem) mod gap_constraint;
-pub mod initial_guess;
 pub mod minimize;
 pub(in crate::model::fem) mod mixed_contact;
 pub(in crate::model::fem) mod mixed_free;

@@ -1,4 +1,9 @@
 //! These modules move the robot's outline and check the cable against obstacles after a step.
+//!
+//! | room | content |
+//! |---|---|
+//! | `outline_depenetration.rs` | the robot's outline moved along its path, cable pushed out of its way |
+//! | `intersection_check.rs` | does a bar run through an obstacle, or fold back over a corner's edge? |
 
 pub(in crate::model::fem) mod intersection_check;
 pub(in crate::model::fem) mod outline_depenetration;

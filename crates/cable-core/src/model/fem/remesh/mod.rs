@@ -1,4 +1,11 @@
 //! These modules change the nodes and bars of a cable between steps.
+//!
+//! | room | content |
+//! |---|---|
+//! | `adapt.rs` | between steps: sliding nodes come and go, long bars cut, crowded nodes removed |
+//! | `edit_criteria.rs` | read-only tests of where a sliding node is needed or lifts off |
+//! | `edit.rs` | insertion and removal of one node; material, position and momentum kept |
+//! | `arc_marks.rs` | marks on a round where material is counted: moved, added, removed |
 
 pub(in crate::model::fem) mod adapt;
 pub(in crate::model::fem) mod arc_marks;

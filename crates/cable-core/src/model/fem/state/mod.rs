@@ -1,4 +1,17 @@
 //! These modules hold the state of a cable in motion in its parts, and set up a step from it.
+//!
+//! | room | content |
+//! |---|---|
+//! | `cable.rs` | `CableState`: mesh, contacts, motion, loads of the step, last answers |
+//! | `meshing.rs` | division into bars; the nodes of supports and loads |
+//! | `motion.rs` | positions, velocities and the past steps that BDF looks back to |
+//! | `step_setup.rs` | loads, support targets and wheels at an instant, into the step input |
+//! | `support_stop.rs` | a support driven into an obstacle stops in front of it |
+//! | `outline_path.rs` | the robot's outline: its pose and the path it is led along in an advance |
+//! | `stick_slip.rs` | friction assumed at each sliding node against Coulomb's law at the solution |
+//! | `fold_imperfection.rs` | tiny offset of a collinear fold, a bifurcation point, so that it opens |
+//! | `moving_mass.rs` | momentum of the cable and of material at sliding nodes, across mesh changes |
+//! | `momentum_account.rs` | impulses by kind of force, summed over the caller's step |
 
 pub(in crate::model::fem) mod cable;
 pub(in crate::model::fem) mod fold_imperfection;

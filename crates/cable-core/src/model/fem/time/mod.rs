@@ -1,5 +1,18 @@
 //! These modules integrate in time: BDF2, step sizes, sleep, hands, impulses, loss, impacts, and
 //! the return to the state before a step that failed.
+//!
+//! | room | content |
+//! |---|---|
+//! | `bdf2.rs` | BDF2 weights, with a part of BDF3 without contact; inertia of a step |
+//! | `time_control.rs` | data of the time control: step size, sleep, tolerance, end of the advance |
+//! | `step_size.rs` | step length from the observed frequency and from how hard steps are to solve |
+//! | `step_solver.rs` | choice of free or contact solver; rounds until friction and forces agree |
+//! | `hands.rs` | hands that drag supports, by a spring or directly, and their warnings |
+//! | `plastic_impact.rs` | inelastic contacts: normal speed of an impact removed after the step |
+//! | `loss_memory.rs` | state of the relaxation branches of material loss, from step to step |
+//! | `step_impulses.rs` | impulse of each kind of force in a step, for the momentum account |
+//! | `rollback.rs` | checkpoint of the state, restored where a step fails |
+//! | `sleeping.rs` | a cable at rest is frozen until its loads or supports change |
 
 pub(in crate::model::fem) mod bdf2;
 pub(in crate::model::fem) mod hands;

@@ -1,9 +1,17 @@
 //! These modules begin with a cable along its route, or continue from the state or the answer of
 //! another mesh or model.
+//!
+//! | room | content |
+//! |---|---|
+//! | `along_route.rs` | first state: laid along its route, at rest, clear of obstacles |
+//! | `from_state.rs` | state of another mesh or model taken over; cable threaded through pulleys |
+//! | `from_solution.rs` | answer taken over with its tensions: sliding nodes, stretch, friction anchors |
+//! | `initial_guess.rs` | material spread along a route over obstacles; nodes pushed out of obstacles |
 
 pub(in crate::model::fem) mod along_route;
 pub(in crate::model::fem) mod from_solution;
 pub(in crate::model::fem) mod from_state;
+pub mod initial_guess;
 
 use std::sync::Arc;
 
@@ -11,7 +19,6 @@ use crate::error::SolveError;
 use crate::math::Vec2;
 use crate::model::Settings;
 use crate::model::fem::dynamics::Dynamics;
-use crate::model::fem::newton::initial_guess::depenetrate;
 use crate::model::fem::newton::mixed_free::MixedFreeSolver;
 use crate::model::fem::newton::solver_memory::{SolverMemory, WorkspaceMemory};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
@@ -30,6 +37,7 @@ use crate::model::fem::transfer::from_solution::{
     state_of_solution,
 };
 use crate::model::fem::transfer::from_state::{follow_corners, remove_all_sliding_nodes, thread_pulleys};
+use crate::model::fem::transfer::initial_guess::depenetrate;
 use crate::problem::Problem;
 use crate::solution::CableSolution;
 use crate::state::State;

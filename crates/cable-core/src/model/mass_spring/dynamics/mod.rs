@@ -1,6 +1,20 @@
 //! These modules take one explicit sub-step: supports and hands that move, material that slides
 //! over pulleys, impacts, the account of momentum, limits and rollback. `chain_state` has the parts
 //! that a step changes.
+//!
+//! | room | content |
+//! |---|---|
+//! | `chain_state.rs` | `ChainState`: clock, mesh, supports, contacts, report; what a rollback keeps |
+//! | `sub_step.rs` | the explicit integrator: stable sub-steps, forces, contacts, gauge readings |
+//! | `supports.rs` | moving supports: velocities and positions of held nodes and pulley centres |
+//! | `hands.rs` | hands that drag supports by springs, implicit in the sub-step |
+//! | `sliding.rs` | material over pulleys: its rate, capstan friction, momentum carried along |
+//! | `impacts.rs` | inelastic normal and friction impulses at contacts in a sub-step |
+//! | `floor_friction.rs` | Coulomb friction of the floor in plan view, on each node |
+//! | `buried_nodes.rs` | refusal of a cable whose centre line is inside an obstacle |
+//! | `momentum.rs` | impulse of each kind of force over a step, for the momentum account |
+//! | `runaway_guard.rs` | limits of speed and energy against a runaway motion, with warnings |
+//! | `rollback.rs` | copy of the state before a step, restored where the step fails |
 
 pub(in crate::model::mass_spring) mod buried_nodes;
 pub(in crate::model::mass_spring) mod chain_state;

@@ -1,5 +1,14 @@
 //! These modules find equilibria and steps without inertia, and estimate the errors of their
 //! figures.
+//!
+//! | room | content |
+//! |---|---|
+//! | `quasi_static.rs` | equilibrium of the model; support steps without inertia, friction kept |
+//! | `newton.rs` | Newton's method on the energy of the mesh, with a Levenberg shift |
+//! | `system.rs` | gradient, banded Hessian and factor; σ in the place of a pulley node's x |
+//! | `assembly.rs` | energies of springs, loads and bending with their derivatives |
+//! | `contact_energy.rs` | contact springs and friction measured from anchors, as energies |
+//! | `error_estimate.rs` | errors by comparison with `spans`, `fem` or coarser meshes |
 
 pub(in crate::model::mass_spring) mod assembly;
 pub(in crate::model::mass_spring) mod contact_energy;

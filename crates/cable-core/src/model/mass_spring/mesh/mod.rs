@@ -1,4 +1,12 @@
 //! These modules hold the nodes and springs of a cable, with the pulleys that it runs over.
+//!
+//! | room | content |
+//! |---|---|
+//! | `cable_mesh.rs` | `Mesh`: nodes and springs with masses and lengths, its construction |
+//! | `node_placement.rs` | node arc lengths between supports and loads, and the first shape |
+//! | `pulley.rs` | node fixed in space with sliding material σ; wheel arcs, element geometry |
+//! | `edit.rs` | nodes inserted and removed beside pulleys; pulleys that let go become nodes |
+//! | `spring_damping.rs` | Kelvin–Voigt time constant from the damping ratio of the first axial mode |
 
 pub(in crate::model::mass_spring) mod cable_mesh;
 pub(in crate::model::mass_spring) mod edit;

@@ -1,4 +1,9 @@
 //! These modules read the answer out of the state of the model.
+//!
+//! | room | content |
+//! |---|---|
+//! | `nodes.rs` | positions, tensions, internal forces and curvatures; support reactions |
+//! | `contacts.rs` | contact reports, and the uncertainty of tension beyond each contact |
 
 pub(in crate::model::mass_spring) mod contacts;
 pub(in crate::model::mass_spring) mod nodes;

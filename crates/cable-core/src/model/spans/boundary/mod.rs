@@ -1,9 +1,16 @@
 //! These modules describe the boundary of an obstacle, the tension of a cable that slides along it
 //! and is remembered there, and cable that lies loose on it.
+//!
+//! | room | content |
+//! |---|---|
+//! | `curve.rs` | obstacle boundary offset to the centre line: edges, arcs, coordinate p, breaks |
+//! | `capstan/` | capstan law with weight: tension and material along edges and arcs |
+//! | `arc.rs` | closed forms of tension and material along a stretch of an arc |
+//! | `segment_cursor.rs` | one boundary piece seen from a point; where two tensions become equal |
+//! | `friction_memory.rs` | tension profile of a contact: stick zone, slip fronts, breakpoints |
 
 pub(in crate::model::spans) mod arc;
 pub(in crate::model::spans) mod capstan;
 pub(in crate::model::spans) mod curve;
 pub(in crate::model::spans) mod friction_memory;
-pub(in crate::model::spans) mod loose;
 pub(in crate::model::spans) mod segment_cursor;

@@ -6,13 +6,16 @@
 //! | `release` | a contact that would have to pull is removed, or one that has vanished |
 //! | `merge` | two neighbouring contacts of one chain become one |
 //! | `landing` | a span that runs into an obstacle is laid down on it |
+//! | `penetration`, `load_landing` | where a free span, a load or a cable end runs into an obstacle |
 //! | `edges` | ends of contacts go over edges, along which nothing turns |
 //!
 //! Loads, kinks, wheels and slack have their own changes, in `contact`.
 
 mod edges;
 mod landing;
+pub(in crate::model::spans) mod load_landing;
 mod merge;
+pub(in crate::model::spans) mod penetration;
 mod release;
 
 use crate::contact::World;

@@ -1,9 +1,19 @@
 //! These modules hold the equations of a contact, the loads on it and its ends.
+//!
+//! | room | content |
+//! |---|---|
+//! | `equations.rs` | two equations of a contact with derivatives; its mode, stick or slip |
+//! | `support_contact.rs` | a support that comes to lie on a boundary, slides along it, or lifts off |
+//! | `point_load.rs` | a dead load on a boundary: stick or slip, joining with contacts, lift-off |
+//! | `load_balance.rs` | forces on such a load: both cable forces and the load, normal and tangential |
+//! | `kink_load.rs` | a load in a concave kink, held by both its edges or sliding out |
+//! | `slack_pocket.rs` | slack cable heaped in a concave kink, at zero tension |
+//! | `release_below.rs` | parting of a contact that would have to pull below a post |
+//! | `wheel_friction.rs` | friction memory and equations of one wheel, for models with spans of their own |
 
 pub(in crate::model::spans) mod equations;
 pub(in crate::model::spans) mod kink_load;
 pub(in crate::model::spans) mod load_balance;
-pub(in crate::model::spans) mod load_landing;
 pub(in crate::model::spans) mod point_load;
 pub(in crate::model::spans) mod release_below;
 pub(in crate::model::spans) mod slack_pocket;

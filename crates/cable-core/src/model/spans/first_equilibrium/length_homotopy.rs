@@ -3,15 +3,15 @@
 
 use crate::math::Vec2;
 use crate::model::spans::boundary::friction_memory::Mode;
-use crate::model::spans::boundary::loose::Loose;
 use crate::model::spans::continuation::StepStats;
 use crate::model::spans::first_equilibrium::first_shapes::{ALONG_ROUTE, FirstLength, FirstShape, SlackCable};
-use crate::model::spans::initial::{contacts, tension};
+use crate::model::spans::initial::{contacts, tightening};
 use crate::model::spans::newton::Workspace;
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::section::cable_section::CableEquilibrium;
 use crate::model::spans::section::failure::Failure;
 use crate::model::spans::section::section_layout::SectionLayout;
+use crate::model::spans::slack::loose::Loose;
 use crate::model::spans::slack::{self, LooseShapes};
 
 impl CableEquilibrium {
@@ -47,7 +47,7 @@ impl CableEquilibrium {
             layout.set_context(&mut self.context, &begin);
             for (section, part) in self.sections.iter_mut().zip(&layout.sections) {
                 if part.supports.iter().all(Option::is_some) {
-                    tension::tighten(section, &self.context);
+                    tightening::tighten(section, &self.context);
                 }
             }
         }
@@ -116,7 +116,7 @@ impl CableEquilibrium {
         let tension = taut * goal.load.norm() * p.length + drawn;
         let mut least = goal.thermal;
         for s in &self.sections {
-            let way = tension::taut_length(s, &self.context);
+            let way = tightening::taut_length(s, &self.context);
             let taut = way / ((s.to - s.from) * (1.0 + tension / p.axial_stiffness));
             if taut < least && taut > 0.0 {
                 least = taut;

@@ -10,7 +10,7 @@ use crate::model::spans::initial::material::{measure, spread};
 use crate::model::spans::initial::route::{RoutePolyline, section_route};
 use crate::model::spans::initial::shortest_path;
 use crate::model::spans::initial::shortest_path::{PathCorner, PostPolygon};
-use crate::model::spans::initial::tension;
+use crate::model::spans::initial::tightening;
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::section::section_layout::{Pulley, SectionBounds, SectionLayout};
@@ -153,7 +153,7 @@ fn along(
         && !loose(0)
         && !loose(1)
     {
-        tension::equalise_tensions(&mut section, context);
+        tightening::equalise_tensions(&mut section, context);
     }
     Some(section)
 }

@@ -1,6 +1,12 @@
 //! Newton's method solves a section: all spans and contacts at once, never a span solved inside
 //! another iteration.
 //!
+//! | room | content |
+//! |---|---|
+//! | `jacobian.rs` | unknowns, residuals and band Jacobian of a section |
+//! | `slip_predictor.rs` | complementarity estimate of which contacts will slide, and how far |
+//! | `stability.rs` | is a frictionless equilibrium stable? |
+//!
 //! Six unknowns and six equations for each contact, two more for the last span, in the order span,
 //! contact, span …:
 //!

@@ -26,6 +26,8 @@
 //! | room | content |
 //! |---|---|
 //! | `mod.rs` | the section that lies loose along its route, or in a heap |
+//! | `drained_route.rs` | the route fallen along the load on to what is below it |
+//! | `loose.rs` | a section without tension: parts that hang, lie, or are heaped |
 //! | `drape.rs` | the points at which the tension vanishes, and the chains between them |
 //! | `chain.rs` | the tensions of one chain over one crest |
 //! | `joint.rs`, `bridge.rs` | spans over kinks, and to a support |
@@ -34,22 +36,24 @@
 
 mod bridge;
 mod chain;
+pub(in crate::model::spans) mod drained_route;
 mod drape;
 mod heap;
 mod joint;
+pub(in crate::model::spans) mod loose;
 mod loose_forces;
 mod pay_out;
 mod report;
 
 use crate::math::Vec2;
-use crate::model::spans::boundary::loose::Loose;
-use crate::model::spans::initial::drained_route::{DrainedRoute, Frame, UpperSurfaces};
 use crate::model::spans::initial::route::section_route;
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::section::cable_section::{CableSection, EndCondition, SolveContext};
 use crate::model::spans::section::section_layout::SectionLayout;
+use crate::model::spans::slack::drained_route::{DrainedRoute, Frame, UpperSurfaces};
 use crate::model::spans::slack::drape::SlackSolver;
 use crate::model::spans::slack::heap::CREST_CONE_ROUNDING;
+use crate::model::spans::slack::loose::Loose;
 use crate::model::spans::slack::pay_out::pay_out;
 
 pub(in crate::model::spans) use crate::model::spans::slack::drape::LooseShapes;

@@ -3,9 +3,9 @@
 use crate::math::Vec2;
 use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point};
-use crate::model::spans::boundary::loose::{Heap, Loose, LyingStretch, SlackForm, SlackPart};
-use crate::model::spans::initial::drained_route::NONE_M;
 use crate::model::spans::section::cable_section::SolveContext;
+use crate::model::spans::slack::drained_route::NONE_M;
+use crate::model::spans::slack::loose::{Heap, Loose, LyingStretch, SlackForm, SlackPart};
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// Nodes of a plumb line and of a straight stretch.
@@ -102,7 +102,7 @@ impl SlackPart {
                     - context.law.load * (self.arc_lengths[1] - self.arc_lengths[0])
             }
             SlackForm::Heap(heap) => {
-                heap.edges.iter().flatten().map(crate::model::spans::boundary::loose::BearingEdge::force).sum()
+                heap.edges.iter().flatten().map(crate::model::spans::slack::loose::BearingEdge::force).sum()
             }
         }
     }

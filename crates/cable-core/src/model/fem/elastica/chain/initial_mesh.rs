@@ -4,7 +4,7 @@ use crate::math::{Vec2, larger};
 use crate::model::fem::elastica::chain::{Chain, ChainInput, Clamp, ClampedSide};
 use crate::model::fem::elastica::flexible_answer::ReferenceCurve;
 use crate::model::fem::free::stations::place as support_place;
-use crate::model::fem::newton::initial_guess::push_chain_out;
+use crate::model::fem::transfer::initial_guess::push_chain_out;
 use crate::scene::SupportKind;
 
 /// Bars in the bend beside a contact, √(EI/T) with T a third of the weight, or in the cable's

@@ -1,12 +1,20 @@
 //! A chain of bars is let go and comes to rest: it finds the equilibrium of a stiff cable whose
 //! contacts are not those of a flexible one, and tells whether an equilibrium is stable.
 //!
+//! | room | content |
+//! |---|---|
+//! | `initial_mesh.rs` | bars laid along a curve, with a node at each support and load |
+//! | `contacts.rs` | gaps of nodes and bars to obstacles; which contacts push |
+//! | `newton_step.rs` | one Newton step with tensions as unknowns and an active set of contacts |
+//! | `relaxation.rs` | pseudo-transient continuation to rest; a push sideways off unstable balances |
+//! | `solution.rs` | a chain at rest as an answer: nodes, moments, reactions, contact reports |
+//!
 //! Bars of rest length l̂ between nodes x, the angle ψ between two of them, weight and loads b,
 //! obstacles at gaps g:
 //! ```text
 //! E(x) = Σ EA (|d| − l̂)²/2l̂ + Σ EI ψ²/2l̄ − Σ b·x        least, with every g ≥ 0
 //! ```
-//! The chain is laid along a curve (`layout`) and comes to rest by Newton's method with a
+//! The chain is laid along a curve (`initial_mesh`) and comes to rest by Newton's method with a
 //! resistance to motion that fades (`relaxation`, of steps by `newton_step`). Obstacles enter as
 //! contacts that the step opens and closes (`contacts`), and a chain at rest is written as an
 //! answer (`solution`). At the end the second derivative of E on the active set is positive
@@ -21,7 +29,7 @@ mod solution;
 use crate::energy::bending::turn;
 use crate::math::Vec2;
 use crate::model::fem::elastica::flexible_answer::ReferenceCurve;
-use crate::model::fem::newton::initial_guess::leaning_way;
+use crate::model::fem::transfer::initial_guess::leaning_way;
 use crate::problem::Problem;
 use crate::solution::{CableSolution, Node};
 pub(super) use contacts::ChainContact;

@@ -1,6 +1,12 @@
 //! The first guess of an elastica is read off an answer: that of a flexible cable, of a mesh, or of
 //! a chain of bars.
 //!
+//! | room | content |
+//! |---|---|
+//! | `contacts.rs` | contacts read off an answer's nodes or reports, or off a chain, with friction |
+//! | `pieces.rs` | the cable divided into pieces at contacts, holds and loads; reduced EI |
+//! | `bends.rs` | angles and moments of the pieces: boundary layers e^{−s/λ} or those of the nodes |
+//!
 //! The contacts of that answer (`contacts`), holds and loads divide the cable into pieces
 //! (`pieces`), whose nodes lie along its curve and are bent as a stiff cable is (`bends`).
 

@@ -1,4 +1,4 @@
-//! This file integrates the tension of a cable that slides along a boundary, and the material that
+//! This module integrates the tension of a cable that slides along a boundary, and the material that
 //! lies there.
 //!
 //! With b the load per unstretched metre, t the direction of travel, n the outward normal, λ =

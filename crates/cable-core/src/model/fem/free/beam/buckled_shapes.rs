@@ -26,7 +26,7 @@ impl Beam {
     /// The other stable equilibria of this one, each span bowed to its other side alone, and all of
     /// them at once; none where nothing is compressed enough to buckle.
     #[must_use]
-    pub fn other_bows(&self) -> Vec<Self> {
+    pub fn other_buckled_shapes(&self) -> Vec<Self> {
         if !(self.compression() > LEAST_BUCKLING_LOAD * self.bending_force()) {
             return Vec::new();
         }

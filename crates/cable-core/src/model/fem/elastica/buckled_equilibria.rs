@@ -1,20 +1,20 @@
 //! This file finds the other equilibria of a stiff cable that is compressed: it may bow to either
 //! side of its chord, past what it then touches.
 //!
-//! Of a cable that touches nothing they are those of the free cable (`free/beam/other_bows.rs`)
+//! Of a cable that touches nothing they are those of the free cable (`free/beam/buckled_shapes.rs`)
 //! that keep clear of obstacles. Where one of them does not, or the cable touches something as it
 //! is, its mirror image, pushed out of what it lies in, is let go as a chain of bars.
 
 use crate::math::{Vec2, larger};
 use crate::model::fem::elastica;
-use crate::model::fem::free::beam::other_bows::{LEAST_BUCKLING_LOAD, SAME_SHAPE_FRACTION};
+use crate::model::fem::free::beam::buckled_shapes::{LEAST_BUCKLING_LOAD, SAME_SHAPE_FRACTION};
 use crate::model::initial_equilibrium::is_buried;
 use crate::problem::Problem;
 use crate::solution::error_estimates::{greatest_tension, place};
 use crate::solution::{CableSolution, Histories, Node};
 
 /// Depth inside an obstacle up to which a mirror image is pushed out, of the cable's length.
-/// Larger: time; smaller: bows that lie on the ground are not found.
+/// Larger: time; smaller: buckled shapes that lie on the ground are not found.
 const PUSHED_OUT_FRACTION: f64 = 0.5;
 
 /// Returns the other equilibria of a compressed cable beside an answer at a time (s); `free` finds
