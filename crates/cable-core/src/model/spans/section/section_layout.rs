@@ -157,7 +157,8 @@ impl SectionLayout {
         Ok(layout)
     }
 
-    /// Sets the side of its wheel on which the cable passes, by the way in which the scene counts it.
+    /// Sets the side of its wheel on which the cable passes, by the way in which the scene counts
+    /// it.
     fn face_wheels(&mut self) {
         let (p, reversed) = (&self.problem, self.counted_from == CableEnd::End);
         let held: Vec<usize> = (0..p.supports.len()).filter(|&k| p.supports[k].at.is_some()).collect();

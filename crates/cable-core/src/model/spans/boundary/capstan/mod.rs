@@ -1,5 +1,5 @@
-//! This module integrates the tension of a cable that slides along a boundary, and the material that
-//! lies there.
+//! This module integrates the tension of a cable that slides along a boundary, and the material
+//! that lies there.
 //!
 //! With b the load per unstretched metre, t the direction of travel, n the outward normal, λ =
 //! τ(1 + T/EA) the stretch, τ = 1 + αΔT, c the radius (∞ on an edge), equilibrium of a piece of
