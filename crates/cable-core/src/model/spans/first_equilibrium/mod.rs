@@ -80,7 +80,7 @@ impl CableEquilibrium {
         let without_friction = start == SearchStart::AlsoWithoutFriction && is_held;
         let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
         let context = layout.context(layout.curves(), instant);
-        let (mut first, mut stopped, mut pushes) = (None, None, false);
+        let (mut first, mut stopped, mut pushes, mut loose) = (None, None, false, None);
         for shape in FIRST_SHAPES.into_iter().chain(posts_seen_nearer(layout)) {
             let begin = match shape.friction {
                 FirstFriction::FromTheStart => instant,
@@ -94,7 +94,14 @@ impl CableEquilibrium {
             }
             let mut cable_equilibrium = Self { sections: Vec::new(), context: context.clone(), instant: begin.clone() };
             cable_equilibrium.context.loose_where_tension_ends = shape.slack == SlackCable::WhereTensionEnds;
-            match cable_equilibrium.find_from(layout, shape, [begin, instant], workspace) {
+            // A rest that is known bounds what the search for another may cost.
+            if shape.length != FirstLength::Whole {
+                let may_lie_loose = *loose.get_or_insert_with(|| Self::in_heaps(layout, instant).is_some());
+                workspace.work_left = may_lie_loose.then_some(layout.settings.continuation.max_work_beside_loose);
+            }
+            let found = cable_equilibrium.find_from(layout, shape, [begin, instant], workspace);
+            workspace.work_left = None;
+            match found {
                 Ok(taken) => {
                     cable_equilibrium.context.loose_where_tension_ends = false;
                     return Ok((cable_equilibrium, taken));

@@ -68,6 +68,9 @@ pub(super) struct Workspace {
     pub slip_predictor: SlipPredictor,
     /// A contact's past as it was.
     pub past: TensionProfile,
+    /// Work that may still be done, in contacts and spans times iterations: after that no solve
+    /// converges. None: no limit.
+    pub work_left: Option<usize>,
 }
 
 impl Clone for Workspace {
@@ -337,6 +340,12 @@ fn change_modes(section: &mut CableSection, context: &SolveContext, most: u32, s
 /// One Newton step with a line search on the sum of squares; false where none makes it smaller. The
 /// system is that of where the section then is.
 fn step(section: &mut CableSection, context: &SolveContext, workspace: &mut Workspace) -> bool {
+    if let Some(left) = &mut workspace.work_left {
+        *left = left.saturating_sub(section.contacts.len() + 1);
+        if *left == 0 {
+            return false;
+        }
+    }
     gather(section, &mut workspace.saved);
     let before = squares(&workspace.system.residual);
     workspace.rhs.clear();
