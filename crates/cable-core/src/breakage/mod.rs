@@ -370,6 +370,14 @@ impl BreakableCable {
         }
     }
 
+    /// Does not ask `spans` for the first equilibrium: see
+    /// [`Mechanics::start_without_spans`](crate::model::Mechanics::start_without_spans).
+    pub(crate) fn start_without_spans(&mut self) {
+        for piece in &mut self.pieces {
+            piece.mechanics.start_without_spans();
+        }
+    }
+
     /// Gives the whole cable to the next model: see
     /// [`Mechanics::fall_back`](crate::model::Mechanics::fall_back).
     pub(crate) fn fall_back(&mut self, why: &SolveError) -> bool {

@@ -47,8 +47,17 @@ pub(super) fn exploration_copy(cable: &BreakableCable) -> Option<BreakableCable>
     let settings = Settings { segments: Some(elements.clamp(1, MAX_ELEMENTS)), ..cable.settings() };
     let mut other = cable.rebuilt_with(source, settings).ok()?;
     other.limit_work(MAX_SEARCH_WORK);
+    if refused_by_spans(cable) {
+        other.start_without_spans();
+    }
     other.settle().ok()?;
     Some(other)
+}
+
+/// Returns whether `spans` was asked for the cable before another model, and refused: it would
+/// refuse again. Of a stiff cable it was not asked.
+pub(super) fn refused_by_spans(cable: &BreakableCable) -> bool {
+    cable.refusal().is_some() && !(cable.problem().bending_stiffness > 0.0)
 }
 
 /// Other histories, and what they would have left in the cable; `sound` judges each as if it

@@ -37,9 +37,7 @@ impl Simulation {
             };
             // A cable that leaves a wheel is laid over posts in their place.
             let posts = || problem.wheels_as_posts.as_ref().and_then(|posts| laid(&posts.problem));
-            // What `spans` refused before another model was asked it would refuse again; of a stiff
-            // cable it was not asked.
-            let refused = cable.refusal().is_some() && !(problem.bending_stiffness > 0.0);
+            let refused = loading_histories::refused_by_spans(cable);
             let whole = || if refused { None } else { laid(&Arc::new(problem.clone())) };
             let seek = || whole().or_else(posts);
             let known = self.warnings.iter().position(|w| of_cable(w) && w.cause.histories().is_some());

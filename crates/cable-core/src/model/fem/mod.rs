@@ -143,13 +143,6 @@ impl FemModel {
         &self.dynamics.cable.mesh.tuning
     }
 
-    /// The same for a cable for which `spans` is known to have no first equilibrium.
-    #[must_use]
-    pub fn without_spans_start(mut self) -> Self {
-        self.starts_from_spans = false;
-        self
-    }
-
     /// Starts from the equilibrium of `spans` with the least sliding, if it has one: a cable that
     /// relaxes by itself comes to lie in folds, which friction then holds. Returns the outcome, and
     /// the solution of `spans` where it is one of this cable.
@@ -614,6 +607,10 @@ impl Mechanics for FemModel {
         self.dynamics.solver.work_of_advance = WorkBudget::Left(work);
         let most = &mut Arc::make_mut(&mut self.dynamics.cable.mesh.tuning).equilibrium.max_work;
         *most = work.min(*most);
+    }
+
+    fn start_without_spans(&mut self) {
+        self.starts_from_spans = false;
     }
 
     fn fall_back(&mut self, why: &SolveError) -> bool {

@@ -189,6 +189,10 @@ impl<L: Layer> Mechanics for Layered<L> {
         self.0.inner_mut().limit_work(work);
     }
 
+    fn start_without_spans(&mut self) {
+        self.0.inner_mut().start_without_spans();
+    }
+
     fn robot_contact(&self) -> Option<RobotContact> {
         self.0.inner().robot_contact()
     }

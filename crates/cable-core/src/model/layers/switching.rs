@@ -114,7 +114,8 @@ impl SwitchingModel {
     /// `fem` at the route, the robot where it is.
     fn new_fem(&self) -> Result<FemModel, SolveError> {
         refuse_mobilised(Model::Fem, &self.problem)?;
-        let mut fem = FemModel::new(self.problem.clone(), self.settings)?.without_spans_start();
+        let mut fem = FemModel::new(self.problem.clone(), self.settings)?;
+        fem.start_without_spans();
         if let Some(robot_pose) = self.robot_pose {
             fem.set_robot_pose(robot_pose);
         }

@@ -7,10 +7,12 @@
 //! | `merge` | two neighbouring contacts of one chain become one |
 //! | `landing` | a span that runs into an obstacle is laid down on it |
 //! | `penetration`, `load_landing` | where a free span, a load or a cable end runs into an obstacle |
+//! | `cycle` | nothing: contacts that come back to where they were |
 //! | `edges` | ends of contacts go over edges, along which nothing turns |
 //!
 //! Loads, kinks, wheels and slack have their own changes, in `contact`.
 
+mod cycle;
 mod edges;
 mod landing;
 pub(in crate::model::spans) mod load_landing;
@@ -21,6 +23,7 @@ mod release;
 use crate::contact::World;
 use crate::contact::swept_corners::ImpassableCorner;
 use crate::math::Vec2;
+use crate::model::spans::changes::cycle::CycleSearch;
 use crate::model::spans::changes::edges::follow_edges;
 use crate::model::spans::changes::landing::{Purpose, touch_obstacles, touch_passed_corner};
 use crate::model::spans::changes::merge::merge_contacts;
@@ -48,7 +51,7 @@ pub(in crate::model::spans) fn solve(
 ) -> Result<Converged, Failure> {
     let tuned = context.settings.changes;
     let purpose = if route.is_some() { Purpose::FirstEquilibrium } else { Purpose::Step };
-    let (mut sum, mut caught) = (Converged::default(), 0);
+    let (mut sum, mut caught, mut cycle) = (Converged::default(), 0, CycleSearch::default());
     for _ in 0..tuned.max_changes {
         point_load::join(section, context)?;
         let found = match newton::solve(section, context, workspace) {
@@ -73,6 +76,9 @@ pub(in crate::model::spans) fn solve(
         };
         sum.iterations += found.iterations;
         sum.residual = found.residual;
+        if cycle.returns(section) {
+            break;
+        }
         // Tunnelled corners are checked before penetrations: they tell on which side of an obstacle
         // the cable belongs.
         let changed = release_turned_contact(section, context)?

@@ -1,0 +1,54 @@
+//! A cycle of changes is found where a section comes back to contacts that it had: from there the
+//! same changes would follow again.
+
+use crate::model::spans::boundary::friction_memory::Mode;
+use crate::model::spans::section::cable_section::{CableSection, Contact};
+
+/// Contacts are the same that lie alike within this part of the cable's length. Smaller: rounding
+/// hides a cycle. Larger: changes that converge are taken for one.
+const SAME_PLACE_FRACTION: f64 = 1e-7;
+/// Times that the contacts come back before that is a cycle: once may be a near miss.
+const REPEATS: usize = 2;
+/// The change after which contacts are first kept: most solves need fewer.
+const FIRST_KEPT: usize = 4;
+
+/// A search for cycles among the solves of one section (R. P. Brent, "An improved Monte Carlo
+/// factorization algorithm", BIT 20, 1980): contacts are kept after 4, 8, 16 … changes, and those
+/// that follow compared with them.
+#[derive(Debug, Default)]
+pub(super) struct CycleSearch {
+    changes: usize,
+    kept: Vec<Contact>,
+    repeats: usize,
+}
+
+impl CycleSearch {
+    /// Takes a solved section; returns whether it goes round in a cycle.
+    pub fn returns(&mut self, section: &CableSection) -> bool {
+        self.changes += 1;
+        if self.changes >= FIRST_KEPT && self.changes.is_power_of_two() {
+            self.kept.clone_from(&section.contacts);
+            self.repeats = 0;
+            return false;
+        }
+        let within = SAME_PLACE_FRACTION * (section.to - section.from);
+        if self.changes > FIRST_KEPT
+            && self.kept.len() == section.contacts.len()
+            && self.kept.iter().zip(&section.contacts).all(|(a, b)| are_alike(a, b, within))
+        {
+            self.repeats += 1;
+        }
+        self.repeats >= REPEATS
+    }
+}
+
+/// Returns whether two contacts are of the same kind and hold the same material, to within a length
+/// (m).
+fn are_alike(a: &Contact, b: &Contact, within: f64) -> bool {
+    let sticks = |c: &Contact| c.mode == Mode::Stick;
+    let near = |a: f64, b: f64| (a - b).abs() <= within;
+    (a.curve, a.chain_range, a.wheel, a.next, a.load, a.smooth)
+        == (b.curve, b.chain_range, b.wheel, b.next, b.load, b.smooth)
+        && sticks(a) == sticks(b)
+        && (0..2).all(|k| near(a.ends.s[k], b.ends.s[k]))
+}
