@@ -167,8 +167,8 @@ pub trait Mechanics: Send {
     /// out.
     fn limit_work(&mut self, _work: usize) {}
 
-    /// The first equilibrium is not asked of `spans`, which is known to have none. Models that never
-    /// ask leave it out.
+    /// The first equilibrium is not asked of `spans`, which is known to have none. Models that
+    /// never ask leave it out.
     fn start_without_spans(&mut self) {}
 
     /// Returns what the cable does to the outline of the robot; None where the model leaves it out,
