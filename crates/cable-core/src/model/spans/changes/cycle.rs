@@ -50,5 +50,48 @@ fn are_alike(a: &Contact, b: &Contact, within: f64) -> bool {
     (a.curve, a.chain_range, a.wheel, a.next, a.load, a.smooth)
         == (b.curve, b.chain_range, b.wheel, b.next, b.load, b.smooth)
         && sticks(a) == sticks(b)
-        && (0..2).all(|k| near(a.ends.s[k], b.ends.s[k]))
+        && (0..2).all(|k| near(a.ends.s[k], b.ends.s[k]) && near(a.ends.p[k], b.ends.p[k]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::spans::boundary::curve::ChainRange;
+    use crate::model::spans::boundary::friction_memory::{Ends, TensionProfile};
+    use crate::model::spans::section::cable_section::Connection;
+
+    /// A section of 10 m with a contact from each arc length on, m.
+    fn section(from: &[f64]) -> CableSection {
+        let contact = |s: &f64| Contact {
+            curve: 0,
+            chain_range: ChainRange { first: 0, last: 0 },
+            ends: Ends { p: [0.0; 2], s: [*s, s + 0.1], t: [1.0; 2] },
+            mode: Mode::Stick,
+            held: None,
+            history: TensionProfile::default(),
+            wheel: None,
+            mode_changes: 0,
+            next: Connection::Span,
+            load: None,
+            smooth: false,
+        };
+        CableSection { from: 0.0, to: 10.0, contacts: from.iter().map(contact).collect(), ..CableSection::default() }
+    }
+
+    #[test]
+    fn contacts_that_come_back_are_a_cycle() {
+        for period in 1..=6 {
+            let mut search = CycleSearch::default();
+            let found = (0..200).find(|k| search.returns(&section(&[1.0, 2.0 + f64::from(k % period)])));
+            assert!(found.is_some_and(|k| k <= 4 * period + 8), "period {period}: found after {found:?} changes");
+        }
+    }
+
+    #[test]
+    fn contacts_that_move_on_are_none() {
+        let mut search = CycleSearch::default();
+        assert!((0..200).all(|k| !search.returns(&section(&[1.0, 2.0 + 1e-3 * f64::from(k)]))));
+        let mut search = CycleSearch::default();
+        assert!((0..30).all(|k| !search.returns(&section(&vec![1.0; k]))));
+    }
 }
