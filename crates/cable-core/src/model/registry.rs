@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::auto::{self, Question};
-use super::layers::switching::SwitchingModel;
+use super::layers::spans_then_fem::SwitchingModel;
 use super::layers::{Layered, leavable_wheels, similar};
 use super::mechanics::{Constructor, Mechanics};
 use super::mobilised_friction::refuse_mobilised;
@@ -204,7 +204,7 @@ impl ModelSource {
 }
 
 /// Builds the mechanics of one cable. `Auto` is resolved for rest (see [`auto::choose`]); where it
-/// chooses `spans`, `fem` stands behind it (`switching.rs`).
+/// chooses `spans`, `fem` stands behind it (`spans_then_fem.rs`).
 ///
 /// # Errors
 /// `Setting` when the settings are out of range, `Unsupported` when the model lacks what the scene

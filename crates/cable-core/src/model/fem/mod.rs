@@ -3,7 +3,7 @@
 //!
 //! | room | what it holds |
 //! |---|---|
-//! | `state` | the state of the cable (`state/cable.rs`) and its parts, and the setup of a step |
+//! | `state` | the state of the cable (`state/cable_state.rs`) and its parts, and the setup of a step |
 //! | `dynamics` | advances that state: one step with inertia, halvings, reports |
 //! | `free`, `elastica` | equilibrium of a cable that touches nothing but its supports; of a stiff one in contact |
 //! | `equilibrium` | equilibria in contact, and steps without inertia |

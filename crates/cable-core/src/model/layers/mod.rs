@@ -6,11 +6,11 @@
 //! | `mod.rs` | what a layer may change |
 //! | `leavable_wheels.rs` | a cable over wheels, which it may leave |
 //! | `similar.rs` | a cable computed at another scale |
-//! | `switching.rs` | two models that take turns |
+//! | `spans_then_fem.rs` | two models that take turns |
 
 pub(in crate::model) mod leavable_wheels;
 pub(in crate::model) mod similar;
-pub(in crate::model) mod switching;
+pub(in crate::model) mod spans_then_fem;
 
 use std::borrow::Cow;
 use std::sync::Arc;

@@ -7,7 +7,7 @@
 use crate::error::SolveError;
 use crate::model::fem::dynamics::{Dynamics, StepRequest};
 use crate::model::fem::remesh::adapt::settle_down;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::step_setup::renew_input;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause};
 use crate::model::gauge::TensionGauge;

@@ -15,7 +15,7 @@ use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::obstacle::outline_depenetration::prepare_way;
 use crate::model::fem::remesh::adapt::remesh;
 use crate::model::fem::results;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::fold_imperfection::open_collinear_folds;
 use crate::model::fem::state::moving_mass::MovingMass;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, WorkBudget};

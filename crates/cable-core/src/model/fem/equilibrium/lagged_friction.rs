@@ -3,7 +3,7 @@
 
 use crate::math::{bounded, larger};
 use crate::model::fem::newton::solver_memory::SolverMemory;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::stick_slip::{ChangedNodes, StickSlipChanges, update_stick_slip};
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};
 

@@ -8,7 +8,7 @@ use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::obstacle::outline_depenetration::{prepare_way, put_outline};
 use crate::model::fem::remesh::adapt::remesh;
 use crate::model::fem::results;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::step_setup::prepare_input;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, load_scale, tolerance};
 use crate::model::fem::transfer::initial_guess::{bow, depenetrate};

@@ -25,7 +25,7 @@ use crate::contact::sweep::Sweep;
 use crate::math::{Vec2, larger};
 use crate::model::RobotContact;
 use crate::model::fem::mesh::cable_mesh::Mesh;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::state::step_setup::prepare_step;

@@ -18,7 +18,7 @@ use crate::model::fem::remesh::arc_marks::{move_marks, wind};
 use crate::model::fem::remesh::edit::{insert, remove};
 use crate::model::fem::remesh::edit_criteria::{Criteria, MaterialShare};
 use crate::model::fem::results::keep_answer;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::moving_mass::attribute_to;
 use crate::model::fem::state::step_setup::renew_input;
 use crate::model::fem::system::contact::floor_friction;

@@ -5,7 +5,7 @@ use crate::math::{bounded, perp};
 use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::{BarEnd, TangentPath, angle_between};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::system::step_context::StepContext;

@@ -3,7 +3,7 @@
 use crate::energy::bending::turn;
 use crate::math::larger;
 use crate::model::fem::results::forces::bar_tensions;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
 
 /// Error of the tension of a stiff cable where it bends round obstacles and pulleys, in parts

@@ -5,7 +5,7 @@ use crate::contact::friction;
 use crate::energy::bending::turn;
 use crate::math::{Vec2, larger, perp};
 use crate::model::fem::mesh::cable_mesh::Mesh;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::bar_weight::Weight;
 use crate::model::fem::system::contact::contact_pair::ContactPair;

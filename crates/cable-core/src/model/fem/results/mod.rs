@@ -20,7 +20,7 @@ mod weighted_capstan;
 
 use self::forces::{bar_tension, bar_tensions, end_forces};
 use crate::math::larger;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::time::loss_memory;
 use crate::solution::{Assumptions, CableSolution};
 

@@ -3,7 +3,7 @@
 use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::SlideOver;
 use crate::model::fem::results::forces::half;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::problem::Problem;
 use crate::solution::SupportReaction;
 

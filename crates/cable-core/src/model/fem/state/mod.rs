@@ -2,7 +2,7 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `cable.rs` | `CableState`: mesh, contacts, motion, loads of the step, last answers |
+//! | `cable_state.rs` | `CableState`: mesh, contacts, motion, loads of the step, last answers |
 //! | `meshing.rs` | division into bars; the nodes of supports and loads |
 //! | `motion.rs` | positions, velocities and the past steps that BDF looks back to |
 //! | `step_setup.rs` | loads, support targets and wheels at an instant, into the step input |
@@ -13,7 +13,7 @@
 //! | `moving_mass.rs` | momentum of the cable and of material at sliding nodes, across mesh changes |
 //! | `momentum_account.rs` | impulses by kind of force, summed over the caller's step |
 
-pub(in crate::model::fem) mod cable;
+pub(in crate::model::fem) mod cable_state;
 pub(in crate::model::fem) mod fold_imperfection;
 pub(in crate::model::fem) mod meshing;
 pub(in crate::model::fem) mod momentum_account;

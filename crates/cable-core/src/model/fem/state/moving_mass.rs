@@ -3,7 +3,7 @@
 use crate::math::Vec2;
 use crate::model::fem::mesh::cable_mesh::Mesh;
 use crate::model::fem::mesh::sliding_node::SlideOver;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::momentum_account::{CONTACTS, SUPPORTS, kind_of};
 use crate::model::fem::state::motion::NodalMotion;

@@ -3,7 +3,7 @@
 use crate::math::Vec2;
 use crate::model::fem::mesh::cable_mesh::Clamp;
 use crate::model::fem::mesh::sliding_node::SlideOver;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::support_stop::{no_farther_than, stopped_by_obstacles};
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::contact::floor_friction;

@@ -1,7 +1,7 @@
 //! Each sliding node sticks or slips: this module compares the friction that a solve assumed with
 //! the law at what it found.
 
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::system::contact::floor_friction;
 use crate::model::fem::system::step_input::Unknowns;
 

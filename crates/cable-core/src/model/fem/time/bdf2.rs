@@ -12,7 +12,7 @@
 
 use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::{BalancedTensions, StickSlip};
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::system::loss_branches::damping_time;
 use crate::model::fem::system::step_input::Unknowns;

@@ -2,7 +2,7 @@
 //! support itself.
 
 use crate::math::Vec2;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::system::bar_weight;
 use crate::model::fem::system::step_input::Unknowns;
 use crate::model::hand::Hand;

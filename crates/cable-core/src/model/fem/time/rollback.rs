@@ -3,7 +3,7 @@
 use crate::math::Vec2;
 use crate::model::fem::mesh::cable_mesh::Mesh;
 use crate::model::fem::obstacle::outline_depenetration::place_outline;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::state::step_setup::renew_input;
 use crate::model::fem::system::contact::contact_set::ContactSet;

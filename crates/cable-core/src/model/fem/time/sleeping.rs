@@ -6,7 +6,7 @@
 //! comparison.
 
 use crate::math::Vec2;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::outline_path::MovingOutline;
 use crate::model::fem::state::step_setup::prepare_input;
 

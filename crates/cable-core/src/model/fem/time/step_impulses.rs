@@ -10,7 +10,7 @@
 
 use crate::contact::friction;
 use crate::math::Vec2;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::momentum_account::{CONTACTS, Kinds, LOADS, SUPPORTS, WEIGHT, kind_of};
 use crate::model::fem::state::moving_mass::MovingMass;
 use crate::model::fem::system::contact::contact_pair::ContactPair;

@@ -4,7 +4,7 @@
 use crate::math::larger;
 use crate::model::fem::newton::minimize::Workspace;
 use crate::model::fem::newton::solver_memory::SolverMemory;
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::stick_slip::{ChangedNodes, update_stick_slip};
 use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns};

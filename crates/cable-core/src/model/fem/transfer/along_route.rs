@@ -8,7 +8,7 @@ use crate::model::Settings;
 use crate::model::fem::mesh::bar_count::bar_count;
 use crate::model::fem::mesh::cable_mesh::Mesh;
 use crate::model::fem::settings::Tuning;
-use crate::model::fem::state::cable::{CableState, NodeTensions, StepAnswers};
+use crate::model::fem::state::cable_state::{CableState, NodeTensions, StepAnswers};
 use crate::model::fem::state::meshing::Meshing;
 use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::state::outline_path::MovingOutline;

@@ -13,7 +13,7 @@ use crate::model::fem::mesh::sliding_node::{SlideOver, SlidingNode, round_of};
 use crate::model::fem::mesh::tangent_path::{BarEnd, angle_between, rotate};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::remesh::edit::{insert, remove};
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::solution::Node;
 use crate::state::State;

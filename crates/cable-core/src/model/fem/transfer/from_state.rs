@@ -10,7 +10,7 @@ use crate::model::fem::mesh::tangent_path::BarEnd;
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
 use crate::model::fem::remesh::adapt::even_out;
 use crate::model::fem::remesh::edit::{insert, remove};
-use crate::model::fem::state::cable::CableState;
+use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::step_setup::renew_input;
 use crate::problem::wheel_passage::facing;
 use crate::scene::PulleySide;

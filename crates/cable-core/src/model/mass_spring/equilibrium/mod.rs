@@ -3,7 +3,8 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `quasi_static.rs` | equilibrium of the model; support steps without inertia, friction kept |
+//! | `static_rest.rs` | the cable at rest where its supports are |
+//! | `quasi_static.rs` | steps without inertia: supports move, the cable rests, friction remembers |
 //! | `newton.rs` | Newton's method on the energy of the mesh, with a Levenberg shift |
 //! | `system.rs` | gradient, banded Hessian and factor; σ in the place of a pulley node's x |
 //! | `assembly.rs` | energies of springs, loads and bending with their derivatives |
@@ -15,4 +16,5 @@ pub(in crate::model::mass_spring) mod contact_energy;
 pub(in crate::model::mass_spring) mod error_estimate;
 pub(in crate::model::mass_spring) mod newton;
 pub(in crate::model::mass_spring) mod quasi_static;
+pub(in crate::model::mass_spring) mod static_rest;
 pub(in crate::model::mass_spring) mod system;

@@ -2,8 +2,8 @@
 
 use crate::math::Vec2;
 use crate::model::spans::section::cable_section::SolveContext;
-use crate::model::spans::slack::drained_route::NONE_M;
 use crate::model::spans::slack::loose::{Loose, SlackForm, SlackPart};
+use crate::model::spans::slack::upper_surfaces::NONE_M;
 
 impl Loose {
     /// Force in the cable at a support, N.

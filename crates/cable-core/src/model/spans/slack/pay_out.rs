@@ -2,10 +2,10 @@
 //! or into a heap.
 
 use crate::math::Vec2;
-use crate::model::spans::slack::drained_route::NONE_M;
 use crate::model::spans::slack::drape::SlackSolver;
 use crate::model::spans::slack::heap::heap;
 use crate::model::spans::slack::loose::{SlackForm, SlackPart};
+use crate::model::spans::slack::upper_surfaces::NONE_M;
 
 /// Part of the cable that there must be too much of: what is as long as its way lies along it, and
 /// remembers what friction does.

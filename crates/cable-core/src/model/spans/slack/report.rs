@@ -4,8 +4,8 @@ use crate::math::Vec2;
 use crate::model::arc_nodes;
 use crate::model::catenary::report::{Nodes, Point};
 use crate::model::spans::section::cable_section::SolveContext;
-use crate::model::spans::slack::drained_route::NONE_M;
 use crate::model::spans::slack::loose::{Heap, Loose, LyingStretch, SlackForm, SlackPart};
+use crate::model::spans::slack::upper_surfaces::NONE_M;
 use crate::solution::{ContactReport, ContactSample, ContactState};
 
 /// Nodes of a plumb line and of a straight stretch.
