@@ -2,8 +2,8 @@
 //! else.
 //!
 //! - `scene`: the outline on the left, and the forms of what stands in it
-//! - `selected`: the form of what is selected, on the right; `cable`, `environment`, `robot` and
-//!   `solver` are such forms
+//! - `selected`, `cable`, `environment`, `robot`, `solver`: the form of what is selected, on the
+//!   right
 //! - `readouts`, `warnings`, `analysis`: what was answered, on the right
 //! - `quality`: how far the answer can be relied on, in the solver panel
 //! - `plots`, `playback`, `timeline`: graphs and time, below

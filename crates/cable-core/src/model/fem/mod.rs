@@ -13,7 +13,7 @@
 //! | `mesh`, `remesh` | sliding nodes and paths round corners; changes of nodes between steps |
 //! | `obstacle` | the robot's outline; does the cable run through an obstacle? |
 //! | `transfer` | the first state along the route; states and answers of other models |
-//! | `results` | the answer of a state, and its errors |
+//! | `results`, `mesh_error` | the answer of a state, and its errors |
 //! | `settings` | the tuned constants |
 //!
 //! [`FemModel`] decides which part answers, and hands the state over when the question changes.
@@ -23,6 +23,7 @@ mod elastica;
 mod equilibrium;
 mod free;
 mod mesh;
+mod mesh_error;
 pub(in crate::model) mod newton;
 mod obstacle;
 mod remesh;
@@ -41,9 +42,9 @@ use crate::error::SolveError;
 use crate::math::RigidPose;
 use crate::math::{Vec2, larger};
 use crate::model::fem::equilibrium::quasi_static::slides_as_a_whole;
+use crate::model::fem::mesh_error::{Refinement, TwoMeshes};
 use crate::model::fem::obstacle::outline_depenetration::outline_report;
 use crate::model::fem::obstacle::outline_depenetration::place_outline;
-use crate::model::fem::results::mesh_error::{Refinement, TwoMeshes};
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::system::step_input::WorkBudget;
 use crate::model::gauge::TensionGauge;

@@ -6,9 +6,7 @@
 //! | `bar_count.rs` | number of bars, given by the user or by length and surroundings |
 //! | `sliding_node.rs` | node on a corner, post or pulley, its arc length unknown; capstan stick-slip |
 //! | `tangent_path.rs` | path of a bar, straight or tangent to the rounds at its ends; derivatives |
-//! | `cable_mesh.rs` | `Mesh`: nodes, bars, clamps, sliding nodes, masses and stiffnesses |
 
 pub(in crate::model::fem) mod bar_count;
-pub(in crate::model::fem) mod cable_mesh;
 pub(in crate::model::fem) mod sliding_node;
 pub(in crate::model::fem) mod tangent_path;

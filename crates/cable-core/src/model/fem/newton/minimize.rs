@@ -15,7 +15,6 @@ use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
-use crate::model::fem::mesh::cable_mesh::Mesh;
 use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
 use crate::model::fem::system::assembly::System;
@@ -24,6 +23,7 @@ use crate::model::fem::system::contact::contact_energy::{add_barrier, add_floor,
 use crate::model::fem::system::contact::contact_pair::ContactPair;
 use crate::model::fem::system::contact::self_contact;
 use crate::model::fem::system::contact::self_contact::{Coupling, SelfContactLaws};
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_context::StepContext;
 use crate::model::fem::system::step_input::{
     Converged, Failure, FailureCause, StepInput, Unknowns, WORK_MAGNITUDE_FRACTION, WorkBudget, node_scale,

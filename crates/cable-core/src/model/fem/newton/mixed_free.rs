@@ -20,8 +20,8 @@
 
 use crate::energy::Curvature;
 use crate::math::{Vec2, larger};
-use crate::model::fem::mesh::cable_mesh::Mesh;
 use crate::model::fem::system::bar_energy;
+use crate::model::fem::system::mesh::Mesh;
 use crate::model::fem::system::step_input::{Converged, StepInput, Unknowns};
 
 /// Roundings of a coordinate that a bar's length may be off by.

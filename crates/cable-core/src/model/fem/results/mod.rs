@@ -6,13 +6,11 @@
 //! | `forces.rs` | tensions of bars, forces on ends and nodes, moments |
 //! | `nodes.rs`, `supports.rs`, `contacts.rs`, `self_contact.rs` | those parts of the answer |
 //! | `weighted_capstan.rs` | the tension along a round between those at its ends |
-//! | `mesh_error.rs` | the error of an answer by a finer or coarser mesh |
 //! | `bending_error.rs` | the part of the error that is bending round obstacles |
 
 pub(in crate::model::fem) mod bending_error;
 mod contacts;
 pub(in crate::model::fem) mod forces;
-pub(in crate::model::fem) mod mesh_error;
 mod nodes;
 mod self_contact;
 mod supports;

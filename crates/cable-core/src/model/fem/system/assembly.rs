@@ -9,7 +9,7 @@ use crate::energy::bending::{BendingEnergy, ClampBend, turn};
 use crate::energy::{Curvature, Energy};
 use crate::linalg::BandMatrix;
 use crate::math::{Mat2, Vec2};
-use crate::model::fem::mesh::cable_mesh::Mesh;
+use crate::model::fem::system::mesh::Mesh;
 
 /// True if the turn at an inner node bends the cable: not where it or a neighbour slides over
 /// something.
@@ -156,8 +156,8 @@ mod tests {
 
     use super::*;
     use crate::linalg::BandFactor;
-    use crate::model::fem::mesh::cable_mesh::Clamp;
     use crate::model::fem::system::mass::Spread;
+    use crate::model::fem::system::mesh::Clamp;
 
     fn mesh(bending_stiffness: f64) -> Mesh {
         Mesh {

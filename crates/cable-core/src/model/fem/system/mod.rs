@@ -4,6 +4,7 @@
 //! | room | content |
 //! |---|---|
 //! | `step_input.rs` | input of a step (loads, inertia, tolerances), its unknowns and its outcome |
+//! | `mesh.rs` | `Mesh`: nodes, bars, clamps, sliding nodes, masses and stiffnesses |
 //! | `step_context.rs` | problem, mesh, contacts and input together, as every solver reads them |
 //! | `assembly.rs` | energy, gradient and banded Hessian of the whole mesh; held nodes pinned |
 //! | `bar_energy.rs` | energy of a bar: stretching, damping, weight carried over sliding nodes |
@@ -18,5 +19,6 @@ pub(in crate::model::fem) mod bar_weight;
 pub(in crate::model::fem) mod contact;
 pub(in crate::model::fem) mod loss_branches;
 pub mod mass;
+pub(in crate::model::fem) mod mesh;
 pub(in crate::model::fem) mod step_context;
 pub(in crate::model::fem) mod step_input;
