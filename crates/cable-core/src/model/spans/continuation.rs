@@ -11,6 +11,7 @@ use crate::model::spans::acceptance::equilibrium;
 use crate::model::spans::acceptance::tension_loss;
 use crate::model::spans::acceptance::tunnelling;
 use crate::model::spans::boundary::friction_memory::Mode;
+use crate::model::spans::boundary::loose::Loose;
 use crate::model::spans::changes;
 use crate::model::spans::contact::point_load;
 use crate::model::spans::contact::slack_pocket;
@@ -20,8 +21,7 @@ use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::section::cable_section::CableEquilibrium;
 use crate::model::spans::section::cable_section::CableSection;
 use crate::model::spans::section::failure::Failure;
-use crate::model::spans::section::section_layout::{SectionLayout, place_ends};
-use crate::model::spans::slack::loose::Loose;
+use crate::model::spans::section_layout::{SectionLayout, place_ends};
 use crate::model::spans::slack::{self, LooseShapes};
 
 /// A force that differs by less than this part is the same.

@@ -9,7 +9,8 @@
 //! |---|---|
 //! | `boundary` | the boundary as the centre line runs along it, the capstan law and friction memory |
 //! | `contact` | a contact: equations, loads on it, supports on it, wheels |
-//! | `section` | how supports and loads cut the cable; free spans and contacts in a row: the unknowns |
+//! | `section` | free spans and contacts in a row between two end conditions: the unknowns |
+//! | `section_layout` | how supports and loads cut a cable into sections |
 //! | `newton`, `numerics` | all unknowns of a section at once; band LU, root finding |
 //! | `changes` | contacts that are released, merged and made, until none is needed |
 //! | `initial` | the first shape: route, shortest path, contacts, tension; or another answer |
@@ -36,6 +37,7 @@ mod numerics;
 mod results;
 mod reversed;
 mod section;
+mod section_layout;
 pub mod settings;
 mod slack;
 
@@ -53,7 +55,7 @@ use crate::model::spans::reversed::Reversal;
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::section::cable_section::CableEquilibrium;
 use crate::model::spans::section::failure::Failure;
-use crate::model::spans::section::section_layout::{CableEnd, SectionLayout, unsupported};
+use crate::model::spans::section_layout::{CableEnd, SectionLayout, unsupported};
 use crate::model::spans::settings::SpansSettings;
 use crate::model::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::problem::Problem;

@@ -12,7 +12,7 @@ use crate::model::spans::contact::load_balance::load_balance;
 use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::section::cable_section::CableEquilibrium;
 use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
-use crate::model::spans::section::section_layout::SectionLayout;
+use crate::model::spans::section_layout::SectionLayout;
 use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
 
 /// Nodes on each stretch of an edge.

@@ -11,7 +11,7 @@ use crate::model::spans::results;
 use crate::model::spans::section::cable_section::CableEquilibrium;
 use crate::model::spans::section::cable_section::{CableSection, Contact, EndCondition, SolveContext};
 use crate::model::spans::section::failure::Failure;
-use crate::model::spans::section::section_layout::SectionLayout;
+use crate::model::spans::section_layout::SectionLayout;
 
 /// Equations must hold to this part of the length, the tension, the angle. The solver stops at
 /// 1e-11.

@@ -8,9 +8,11 @@
 //! | `arc.rs` | closed forms of tension and material along a stretch of an arc |
 //! | `segment_cursor.rs` | one boundary piece seen from a point; where two tensions become equal |
 //! | `friction_memory.rs` | tension profile of a contact: stick zone, slip fronts, breakpoints |
+//! | `loose.rs` | a section without tension: parts that hang, lie, or are heaped |
 
 pub(in crate::model::spans) mod arc;
 pub(in crate::model::spans) mod capstan;
 pub(in crate::model::spans) mod curve;
 pub(in crate::model::spans) mod friction_memory;
+pub(in crate::model::spans) mod loose;
 pub(in crate::model::spans) mod segment_cursor;

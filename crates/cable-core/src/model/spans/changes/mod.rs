@@ -6,7 +6,7 @@
 //! | `release` | a contact that would have to pull is removed, or one that has vanished |
 //! | `merge` | two neighbouring contacts of one chain become one |
 //! | `landing` | a span that runs into an obstacle is laid down on it |
-//! | `penetration`, `load_landing` | where a free span, a load or a cable end runs into an obstacle |
+//! | `load_landing` | where a load or a cable end runs into an obstacle |
 //! | `cycle` | nothing: contacts that come back to where they were |
 //! | `edges` | ends of contacts go over edges, along which nothing turns |
 //!
@@ -17,7 +17,6 @@ mod edges;
 mod landing;
 pub(in crate::model::spans) mod load_landing;
 mod merge;
-pub(in crate::model::spans) mod penetration;
 mod release;
 
 use crate::contact::World;

@@ -17,7 +17,7 @@
 //!   that stand for a post: more points, for it alone ([`posts_seen_nearer`]).
 
 use crate::model::spans::initial::shortest_path::{POST_POLYGONS, PostPolygon};
-use crate::model::spans::section::section_layout::SectionLayout;
+use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::settings::ContinuationSettings;
 
 /// A first shape from which an equilibrium is sought.

@@ -7,7 +7,7 @@ use crate::model::spans::newton::Workspace;
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::section::cable_section::CableEquilibrium;
 use crate::model::spans::section::cable_section::CableSection;
-use crate::model::spans::section::section_layout::SectionLayout;
+use crate::model::spans::section_layout::SectionLayout;
 
 /// Part of the friction that is missing to which it is found: three digits are shown.
 const MISSING_FRICTION_TOLERANCE: f64 = 2e-4;

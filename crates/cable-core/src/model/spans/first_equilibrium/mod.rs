@@ -27,7 +27,7 @@ use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::section::cable_section::CableEquilibrium;
 use crate::model::spans::section::cable_section::CableSection;
 use crate::model::spans::section::failure::Failure;
-use crate::model::spans::section::section_layout::SectionLayout;
+use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::{self, LooseShapes};
 use crate::solution::Node;
 

@@ -11,7 +11,7 @@ use crate::model::spans::newton::{self, Workspace};
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::section::cable_section::CableEquilibrium;
 use crate::model::spans::section::failure::Failure;
-use crate::model::spans::section::section_layout::SectionLayout;
+use crate::model::spans::section_layout::SectionLayout;
 
 /// Factor of the drag after a step that failed.
 const DRAG_RISE: f64 = 8.0;

@@ -13,7 +13,7 @@ use crate::model::spans::initial::shortest_path::{PathCorner, PostPolygon};
 use crate::model::spans::initial::tightening;
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
-use crate::model::spans::section::section_layout::{Pulley, SectionBounds, SectionLayout};
+use crate::model::spans::section_layout::{Pulley, SectionBounds, SectionLayout};
 use crate::problem::wheel_passage::{angle_near, turn_through_centre};
 
 /// A wrap: something that the cable bends round, in order.

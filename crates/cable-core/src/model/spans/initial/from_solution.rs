@@ -14,7 +14,7 @@ use crate::model::spans::boundary::friction_memory::{Breakpoint, Ends, Mode, Swe
 use crate::model::spans::contact::point_load::LIFT_FRACTION;
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
-use crate::model::spans::section::section_layout::{SectionBounds, SectionLayout};
+use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
 use crate::solution::Node;
 
 /// Of the material of a section, what is kept between two contacts at least.

@@ -4,7 +4,7 @@
 use crate::contact::World;
 use crate::math::{Vec2, bounded};
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
-use crate::model::spans::section::section_layout::{SectionBounds, SectionLayout};
+use crate::model::spans::section_layout::{SectionBounds, SectionLayout};
 
 /// Part of the way from one end to the other by which a route that is led over things keeps clear
 /// of them. Smaller: rounding may let it touch. Larger: it goes round more than it needs to.

@@ -13,9 +13,9 @@ use crate::math::Vec2;
 use crate::model::spans::boundary::capstan::{CableLaw, ContactPath};
 use crate::model::spans::boundary::curve::{ChainRange, Curve};
 use crate::model::spans::boundary::friction_memory::{Ends, Mode, StickZone, TensionProfile};
+use crate::model::spans::boundary::loose::Loose;
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::settings::SpansSettings;
-use crate::model::spans::slack::loose::Loose;
 
 /// Everything given at an instant.
 #[derive(Clone, Debug)]

@@ -13,9 +13,9 @@
 //! falls plumb it rises beyond all bounds.
 
 use crate::math::{Vec2, larger};
+use crate::model::spans::boundary::loose::{SlackForm, SlackPart};
 use crate::model::spans::slack::drape::{HALVINGS, SlackSolver};
 use crate::model::spans::slack::joint::StretchTensions;
-use crate::model::spans::slack::loose::{SlackForm, SlackPart};
 use crate::numerics::bisect;
 
 /// Greatest distance from its support at which a span may end, of its length and the size of

@@ -3,8 +3,8 @@
 
 use crate::math::{Vec2, larger};
 use crate::model::spans::boundary::capstan::SlideResult;
+use crate::model::spans::boundary::loose::{LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::slack::drape::{HALVINGS, SlackSolver, plumb};
-use crate::model::spans::slack::loose::{LyingStretch, SlackForm, SlackPart};
 use crate::numerics::bisect;
 
 impl SlackSolver<'_> {

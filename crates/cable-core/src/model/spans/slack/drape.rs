@@ -4,9 +4,9 @@
 use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::capstan::SlideResult;
 use crate::model::spans::boundary::curve::BoundaryPoint;
+use crate::model::spans::boundary::loose::{LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::section::cable_section::SolveContext;
 use crate::model::spans::slack::drained_route::RouteLeg;
-use crate::model::spans::slack::loose::{LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::slack::upper_surfaces::{Frame, UpperSurfaces};
 
 /// Turn (rad) up to which two stretches are one, and by which what hangs beside a surface may be

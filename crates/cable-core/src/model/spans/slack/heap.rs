@@ -6,8 +6,8 @@
 
 use crate::math::{Vec2, cross};
 use crate::model::spans::boundary::curve::BoundaryPoint;
+use crate::model::spans::boundary::loose::{BearingEdge, Heap, LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::section::cable_section::SolveContext;
-use crate::model::spans::slack::loose::{BearingEdge, Heap, LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::slack::upper_surfaces::Frame;
 
 /// Part of the weight of the cable by which a crest may be beyond its cone: rounding.

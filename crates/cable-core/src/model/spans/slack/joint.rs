@@ -18,8 +18,8 @@
 //! is as far from the centre of the round as its radius, where it is nearest.
 
 use crate::math::{Vec2, cross, larger};
+use crate::model::spans::boundary::loose::{LyingStretch, SlackForm, SlackPart};
 use crate::model::spans::slack::drape::{HALVINGS, LooseShapes, STRAIGHT_TURN, SlackSolver};
-use crate::model::spans::slack::loose::{LyingStretch, SlackForm, SlackPart};
 use crate::numerics::bisect;
 
 /// Doublings of the force across the load in the search for one that is too large.

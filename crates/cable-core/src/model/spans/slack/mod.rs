@@ -28,7 +28,6 @@
 //! | `mod.rs` | the section that lies loose along its route, or in a heap |
 //! | `drained_route.rs` | the route fallen along the load on to what is below it |
 //! | `upper_surfaces.rs` | the parts of boundaries that face the load |
-//! | `loose.rs` | a section without tension: parts that hang, lie, or are heaped |
 //! | `drape.rs` | the points at which the tension vanishes, and the chains between them |
 //! | `chain.rs` | the tensions of one chain over one crest |
 //! | `joint.rs`, `bridge.rs` | spans over kinks, and to a support |
@@ -41,21 +40,20 @@ pub(in crate::model::spans) mod drained_route;
 mod drape;
 mod heap;
 mod joint;
-pub(in crate::model::spans) mod loose;
 mod loose_forces;
 mod pay_out;
 mod report;
 mod upper_surfaces;
 
 use crate::math::Vec2;
+use crate::model::spans::boundary::loose::Loose;
 use crate::model::spans::initial::route::section_route;
 use crate::model::spans::section::boundary_conditions::BoundaryConditions;
 use crate::model::spans::section::cable_section::{CableSection, EndCondition, SolveContext};
-use crate::model::spans::section::section_layout::SectionLayout;
+use crate::model::spans::section_layout::SectionLayout;
 use crate::model::spans::slack::drained_route::DrainedRoute;
 use crate::model::spans::slack::drape::SlackSolver;
 use crate::model::spans::slack::heap::CREST_CONE_ROUNDING;
-use crate::model::spans::slack::loose::Loose;
 use crate::model::spans::slack::pay_out::pay_out;
 use crate::model::spans::slack::upper_surfaces::{Frame, UpperSurfaces};
 
@@ -111,7 +109,7 @@ pub(in crate::model::spans) fn loose_section(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::spans::section::section_layout::CableEnd;
+    use crate::model::spans::section_layout::CableEnd;
     use crate::problem::problems;
     use crate::scene::catalog;
     use std::sync::Arc;
