@@ -270,6 +270,12 @@ fn a_rest_is_shown_before_other_histories_of_it_are_sought() {
 fn while_other_histories_are_sought_the_window_says_so() {
     let said = |scene: Scene, seeks: bool| {
         let mut harness = threaded(scene, 60);
+        // The worker's own histories would replace what is set here.
+        let began = Instant::now();
+        while harness.state().state.live.snapshot.seeks_histories {
+            assert!(began.elapsed() < PATIENCE);
+            harness.step();
+        }
         let snapshot = &mut harness.state_mut().state.live.snapshot;
         snapshot.seeks_histories = seeks;
         let mut solution = (**snapshot.solution.as_ref().unwrap()).clone();
