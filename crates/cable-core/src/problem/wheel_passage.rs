@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 use crate::math::{Vec2, angle};
 use crate::scene::PulleySide;
 
-/// What a way straight back may lack of half a turn by rounding, rad.
-const HALF_TURN_ROUNDING: f64 = 1e-9;
+/// Rounding error of a turn, rad: a way straight back may lack so much of half a turn.
+pub(crate) const TURN_ROUNDING: f64 = 1e-9;
 
 /// Returns on which side of its wheel a cable runs, seen along it: 1 on the left (it turns
 /// clockwise), −1 on the right. Over means above where it travels to the right; `travel` leads from
@@ -25,11 +25,11 @@ pub(crate) fn facing(side: PulleySide, travel: Vec2) -> f64 {
 /// where the way turns away from the wheel, so that a cable pulled taut leaves it. Straight back is
 /// half a turn round the wheel, as of two tails that hang from it.
 ///
-/// A cable that touches the wheel has another tangent on either side, by less than a quarter turn:
-/// how far it turns is known from its tangents but for whole turns, and those from this.
+/// The tangents of a cable that touches the wheel give its turn but for whole turns. Each is within
+/// a quarter turn of the way here, so that this turn settles their number.
 pub(crate) fn turn_through_centre(facing: f64, arrive: Vec2, leave: Vec2) -> f64 {
     let turn = -facing * angle(arrive, leave);
-    if turn < HALF_TURN_ROUNDING - PI { turn + 2.0 * PI } else { turn }
+    if turn < TURN_ROUNDING - PI { turn + 2.0 * PI } else { turn }
 }
 
 /// An angle brought to the 2π around `near`, rad.

@@ -14,7 +14,7 @@ pub(super) fn first_arcs(layout: &AnchorLayout) -> Vec<WheelArc> {
     let hanging = |way: Vec2| (way, Some(angle_of(way)));
     let arc = |k: usize, a: &Anchor| {
         let before = k.checked_sub(1).and_then(|j| all.get(j));
-        // Where a neighbour or a load draws it, and along which tangent.
+        // The ways from and to the neighbours, or along the loads, and the angles of the tangents.
         let (from, arrive) = match before {
             Some(b) => (a.at - b.at, tangent(b, a)),
             None => hanging(-hang(layout.end_force[0] + layout.weight)),

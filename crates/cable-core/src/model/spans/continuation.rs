@@ -384,7 +384,7 @@ impl CableEquilibrium {
         let (mut done, mut step, mut taken) = (0.0, first, StepStats::default());
         let mut halvings: u32 = 0;
         // Halvings of steps shorter than that with which a cable that runs away is followed.
-        let mut creeping: u32 = 0;
+        let mut short_halvings: u32 = 0;
         // A history asks for short steps where a contact comes down; the way to a first equilibrium
         // does not. `whole` is the step that was solved before it was shortened for that.
         let (mut shortens, mut whole) = (first >= 1.0, None);
@@ -422,10 +422,10 @@ impl CableEquilibrium {
                 Err(failure) => failure,
             };
             halvings += 1;
-            creeping = if step < tuned.runaway_step_fraction { creeping + 1 } else { 0 };
+            short_halvings = if step < tuned.runaway_step_fraction { short_halvings + 1 } else { 0 };
             step *= 0.5;
             taken.halvings += 1;
-            if halvings > tuned.max_halvings || creeping > tuned.max_creeping_halvings {
+            if halvings > tuned.max_halvings || short_halvings > tuned.max_short_step_halvings {
                 // Nothing near by holds the cable: it runs away, to the next place that does.
                 let next =
                     if done + tuned.runaway_step_fraction < 1.0 { done + tuned.runaway_step_fraction } else { 1.0 };
@@ -435,7 +435,7 @@ impl CableEquilibrium {
                     Err(other) => return Err(AdvanceFailure { failure: self.failure_to_report(failure, other), done }),
                 };
                 (taken, done, halvings, step) = (taken.and(t), next, 0, tuned.runaway_step_fraction);
-                creeping = 0;
+                short_halvings = 0;
                 taken.runaways += 1;
             }
         }

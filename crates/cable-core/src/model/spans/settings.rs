@@ -117,7 +117,7 @@ pub struct ContinuationSettings {
     /// Most halvings of steps that are shorter than that part, with none longer between them that
     /// failed: beyond it the cable is followed as one that runs away. Smaller: it is, where a few
     /// short steps would do. Larger: a way is gone in steps of a millionth.
-    pub max_creeping_halvings: u32,
+    pub max_short_step_halvings: u32,
     /// Work of one search in tension for a cable that could as well lie loose, in contacts and
     /// spans times iterations. Smaller: it lies loose where it would rest in tension, too. Larger:
     /// slack cables in tanks take seconds. Tuned on the campaign's slack cables of seed 77000: of
@@ -314,7 +314,7 @@ impl Default for ContinuationSettings {
             first_step: 0.05,
             grown_step: 0.2,
             runaway_step_fraction: 1e-3,
-            max_creeping_halvings: 24,
+            max_short_step_halvings: 24,
             max_work_beside_loose: 40_000,
             drag_factor: 10.0,
             rest_drag_fraction: 1e-3,

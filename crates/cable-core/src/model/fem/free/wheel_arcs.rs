@@ -9,11 +9,9 @@ use crate::math::{Vec2, cross, larger, perp};
 use crate::model::fem::free::element::{Material, turn_between};
 use crate::model::fem::free::pulley_balance::{Failure, PulleyNetwork};
 use crate::model::fem::free::stations::{Restraint, Wheel};
-use crate::problem::wheel_passage::{angle_near, facing, turn_through_centre};
+use crate::problem::wheel_passage::{TURN_ROUNDING, angle_near, facing, turn_through_centre};
 use crate::scene::PulleySide;
 
-/// The turn that rounding leaves of none, rad.
-const ROUNDED_TURN: f64 = 1e-9;
 /// Steps of the integration round a wheel.
 const WHEEL_STEPS: usize = 16;
 /// Rounds to find where a cable meets and leaves its wheels; each gains the ratio of radius to
@@ -126,7 +124,7 @@ impl PulleyNetwork {
             let [arrive, leave] = self.passing(k);
             let through_centre = turn_through_centre(clockwise, arrive.unwrap_or(before), leave.unwrap_or(after));
             let mut turn = angle_near(arc(contact[0], contact[1], clockwise), through_centre);
-            if turn < -ROUNDED_TURN {
+            if turn < -TURN_ROUNDING {
                 let between = contact[0] + contact[1];
                 contact = [between / between.norm(); 2];
                 (turn, lifted) = (0.0, Some(k));
@@ -151,7 +149,7 @@ impl PulleyNetwork {
 /// The angle the cable turns through on a wheel between two contact directions, 0 to 2π.
 fn arc(meets: Vec2, leaves: Vec2, clockwise: f64) -> f64 {
     let turn = -clockwise * turn_between(meets, leaves);
-    if turn < -ROUNDED_TURN { turn + std::f64::consts::TAU } else { turn }
+    if turn < -TURN_ROUNDING { turn + std::f64::consts::TAU } else { turn }
 }
 
 /// The angle through which the contact point goes round a wheel, positive counter-clockwise, rad.
@@ -160,9 +158,9 @@ pub fn turn(wheel: &Wheel, before: Vec2) -> f64 {
     let [meets, leaves] = wheel.contact;
     let clockwise = cross(meets, before) < 0.0;
     let turn = turn_between(meets, leaves);
-    if clockwise && turn > ROUNDED_TURN {
+    if clockwise && turn > TURN_ROUNDING {
         turn - std::f64::consts::TAU
-    } else if !clockwise && turn < -ROUNDED_TURN {
+    } else if !clockwise && turn < -TURN_ROUNDING {
         turn + std::f64::consts::TAU
     } else {
         turn
