@@ -60,5 +60,9 @@ mod tests {
                 assert!((mirrored - turn).abs() < 1e-9, "{other:?}: {mirrored}°, not {turn}°");
             }
         }
+        // Straight back, whichever sign rounding gives the angle.
+        for facing in [1.0, -1.0] {
+            assert_eq!(turn_through_centre(facing, Vec2::y(), -Vec2::y()), PI);
+        }
     }
 }
