@@ -421,6 +421,48 @@ fn issue_015_a_cable_hangs_clear_of_a_wheel() {
     }
 }
 
+/// Of three wheels a loose cable hangs clear of the middle one and runs far over the others. It was
+/// refused: posts were put in place of all, past which the way could not be laid (over a wheel at
+/// which it turns back sharply its points stood on the wrong sides).
+#[test]
+fn issue_015_only_the_wheel_that_is_left_is_a_post() {
+    let mut scene = case(0).scene;
+    (scene.obstacles, scene.loads) = (Vec::new(), Vec::new());
+    let c = &mut scene.cables[0];
+    (c.linear_density_kg_per_m, c.axial_stiffness_n) = (0.11, 3.9e5);
+    (c.bending_stiffness_n_m2, c.route_m, c.diameter_m) = (0.0, Vec::new(), 0.02);
+    for (friction, length_m) in [(0.0, 10.5), (0.15, 10.5), (0.0, 11.5)] {
+        let wheel = |name: &str, radius, at| Support {
+            radius_m: Some(radius),
+            friction: Some(friction),
+            ..Support::pulley(name, at)
+        };
+        let c = &mut scene.cables[0];
+        c.length_m = length_m;
+        c.supports = vec![
+            Support::fixed("a", [0.0, -0.63]),
+            wheel("high", 0.016, [0.52, 2.07]),
+            wheel("low", 0.041, [1.03, 1.38]),
+            wheel("highest", 0.024, [1.55, 2.71]),
+            Support::fixed("b", [2.06, -0.99]),
+        ];
+        let mut bare = scene.clone();
+        bare.cables[0].supports.remove(2);
+        for model in [Model::Auto, Model::Spans] {
+            let told = |e| panic!("{model}, {length_m} m, friction {friction}: {e}");
+            let [found, free] = [&scene, &bare].map(|s| rest(s, model).unwrap_or_else(told));
+            let low = &found.supports[2];
+            assert_eq!([low.reaction_x_n, low.reaction_y_n], [0.0, 0.0], "{model}: {low:?}");
+            // Wheels that rub hold it in more than one place.
+            let compared = if friction > 0.0 { &[][..] } else { &[(0, 0), (1, 1), (3, 2), (4, 3)] };
+            for &(here, there) in compared {
+                let [here, there] = [&found.supports[here], &free.supports[there]].map(|s| s.reaction_y_n);
+                assert!((here - there).abs() < 1e-6 * there.abs(), "{model}: {here} N, {there} N without the wheel");
+            }
+        }
+    }
+}
+
 /// A wheel at the bottom of a V, from blunt to sharp, passed over: the way from support to support
 /// turns away from it, so that the cable hangs clear of it, by every model. Where the V was sharper
 /// than a right angle, it was looped round the wheel once (170 kN where 134 N are right). So it

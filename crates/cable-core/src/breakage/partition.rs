@@ -140,7 +140,7 @@ impl CablePart {
             route: route(state),
             cable,
             similar: None,
-            wheels_as_posts: None,
+            standing_wheels: None,
             ..whole.clone()
         }
     }

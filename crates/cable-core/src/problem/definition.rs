@@ -57,8 +57,8 @@ pub struct Problem {
     /// The same cable at the scale solvers are made for, where this one is much shorter, longer or
     /// farther away.
     pub similar: Option<(Similarity, Arc<Problem>)>,
-    /// The same cable with posts in place of its wheels, where it has wheels that stand still.
-    pub(crate) wheels_as_posts: Option<Arc<WheelsAsPosts>>,
+    /// Its wheels that stand still, where it has any.
+    pub(crate) standing_wheels: Option<Arc<StandingWheels>>,
 }
 
 /// A support, resolved.
@@ -132,7 +132,18 @@ pub struct PointLoad {
     pub force: Series,
 }
 
-/// A cable with posts in place of its wheels.
+/// The wheels of a cable that stand still, of which any may be a post.
+#[derive(Clone, Debug)]
+pub(crate) struct StandingWheels {
+    /// The scene with the wheels.
+    pub(super) scene: Scene,
+    /// The cable in it.
+    pub(super) cable_index: usize,
+    /// For each support of the cable, true if it is one of them.
+    pub standing: Vec<bool>,
+}
+
+/// A cable with posts in place of some of its wheels.
 #[derive(Clone, Debug)]
 pub(crate) struct WheelsAsPosts {
     /// The cable without those supports.
@@ -141,8 +152,6 @@ pub(crate) struct WheelsAsPosts {
     pub wheels: Vec<WheelPost>,
     /// For each support of the scene, true if it is one of them.
     pub replaced: Vec<bool>,
-    /// The scene with wheels, and the cable in it.
-    pub(super) source: Arc<(Scene, usize, Cable)>,
 }
 
 impl Problem {

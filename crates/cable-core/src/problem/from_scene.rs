@@ -3,10 +3,10 @@
 
 use std::sync::Arc;
 
-use super::definition::{PointLoad, Problem, SupportPoint, WheelsAsPosts};
+use super::definition::{PointLoad, Problem, StandingWheels, SupportPoint, WheelsAsPosts};
 use super::robot_outline::robot_outline;
 use super::series::Series;
-use super::wheels_as_posts::{self, WithPosts};
+use super::wheels_as_posts::{WithPosts, standing_wheels, with_posts};
 use super::{ground_route, route_check, support_clearance};
 use crate::contact::World;
 use crate::error::SceneError;
@@ -45,7 +45,7 @@ fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneEr
     let mut this = problem(scene, index, cable)?;
     support_clearance::clear_supports(&mut this)?;
     ground_route::lift_route(&mut this);
-    this.wheels_as_posts = with_posts(scene, index, cable);
+    this.standing_wheels = StandingWheels::of(scene, index);
     let origin = this.supports.iter().find_map(|s| s.at).or(this.route.first().copied()).unwrap_or_else(Vec2::zeros);
     if scene.robot.is_none()
         && let Some(by) = Similarity::to_natural(cable.length_m, origin)
@@ -56,40 +56,39 @@ fn placed(scene: &Scene, index: usize, cable: &Cable) -> Result<Problem, SceneEr
             copy.time_scale = by.time;
             support_clearance::clear_supports(&mut copy)?;
             ground_route::lift_route(&mut copy);
-            copy.wheels_as_posts = with_posts(&scaled, index, cable);
+            copy.standing_wheels = StandingWheels::of(&scaled, index);
             this.similar = Some((by, Arc::new(copy)));
         }
     }
     Ok(this)
 }
 
-/// A cable with posts in place of its wheels, which are elsewhere: for each support its new place,
-/// m, or None where it stays; None where the cable cannot be laid round the posts there.
-pub(crate) fn with_moved_posts(
-    posts: &WheelsAsPosts,
-    places: impl IntoIterator<Item = Option<Vec2>>,
-) -> Option<Arc<WheelsAsPosts>> {
-    let (scene, index, mut cable) = posts.source.as_ref().clone();
-    for (support, place) in cable.supports.iter_mut().zip(places) {
-        support.at_m = place.map(Into::into).or(support.at_m);
+impl StandingWheels {
+    /// The wheels of a cable that stand still; None where it has none.
+    fn of(scene: &Scene, cable_index: usize) -> Option<Arc<Self>> {
+        let standing = standing_wheels(scene.cables.get(cable_index)?);
+        standing.contains(&true).then(|| Arc::new(Self { scene: scene.clone(), cable_index, standing }))
     }
-    with_posts(&scene, index, &cable)
-}
 
-/// A cable with posts in place of its wheels; None where it has none that stand still, or cannot be
-/// laid round the posts.
-fn with_posts(scene: &Scene, index: usize, cable: &Cable) -> Option<Arc<WheelsAsPosts>> {
-    let source = || Arc::new((scene.clone(), index, cable.clone()));
-    let WithPosts { scene: with_posts, cables, wheels, replaced } = wheels_as_posts::with_posts(scene, cable)?;
-    let lay = |cable: &Cable| -> Result<Problem, SceneError> {
-        let mut this = problem(&with_posts, index, cable)?;
-        support_clearance::clear_supports(&mut this)?;
-        ground_route::lift_route(&mut this);
-        route_check::check_route(&this)?;
-        Ok(this)
-    };
-    let problem = Arc::new(cables.iter().find_map(|cable| lay(cable).ok())?);
-    Some(Arc::new(WheelsAsPosts { problem, wheels, replaced, source: source() }))
+    /// The cable with posts in place of those wheels for which `replaced` is true, at the places
+    /// given for its supports, m (None: where the scene has it). None where that is no wheel, or the
+    /// cable cannot be laid round the posts.
+    pub(crate) fn as_posts(&self, replaced: &[bool], places: &[Option<Vec2>]) -> Option<Arc<WheelsAsPosts>> {
+        let mut cable = self.scene.cables.get(self.cable_index)?.clone();
+        for (support, place) in cable.supports.iter_mut().zip(places) {
+            support.at_m = place.map(Into::into).or(support.at_m);
+        }
+        let WithPosts { scene, cables, wheels } = with_posts(&self.scene, &cable, replaced)?;
+        let lay = |cable: &Cable| -> Result<Problem, SceneError> {
+            let mut this = problem(&scene, self.cable_index, cable)?;
+            support_clearance::clear_supports(&mut this)?;
+            ground_route::lift_route(&mut this);
+            route_check::check_route(&this)?;
+            Ok(this)
+        };
+        let problem = Arc::new(cables.iter().find_map(|cable| lay(cable).ok())?);
+        Some(Arc::new(WheelsAsPosts { problem, wheels, replaced: replaced.to_vec() }))
+    }
 }
 
 fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, SceneError> {
@@ -168,7 +167,7 @@ fn problem(scene: &Scene, cable_index: usize, cable: &Cable) -> Result<Problem, 
         route: cable.route_m.iter().map(|p| vec2(*p)).collect(),
         notes: Vec::new(),
         similar: None,
-        wheels_as_posts: None,
+        standing_wheels: None,
         cable,
     })
 }

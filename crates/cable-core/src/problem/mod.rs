@@ -28,9 +28,8 @@ mod support_clearance;
 pub(crate) mod wheel_passage;
 pub(crate) mod wheels_as_posts;
 
-pub(crate) use self::definition::WheelsAsPosts;
 pub use self::definition::{PointLoad, Problem, SupportPoint};
-pub(crate) use self::from_scene::with_moved_posts;
+pub(crate) use self::definition::{StandingWheels, WheelsAsPosts};
 pub use self::from_scene::{check, problems};
 pub use self::robot_outline::robot_outline;
 pub use self::series::Series;

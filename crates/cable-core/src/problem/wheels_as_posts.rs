@@ -1,19 +1,26 @@
 //! A wheel that stands still is a round that the cable may leave: this copy of a cable has posts in
-//! place of its wheels.
+//! place of some of its wheels.
 //!
 //! A pulley of the models keeps the cable on its wheel. Where the cable does not press on it, it
 //! hangs clear, and the wheel is what a post of the same radius and friction is.
 
-use super::wheel_passage::facing;
+use std::f64::consts::PI;
+
+use nalgebra::Rotation2;
+
+use super::wheel_passage::{facing, turn_through_centre};
 use crate::math::{Vec2, larger, perp, vec2};
-use crate::scene::{Cable, Obstacle, Scene, Shape, SupportKind};
+use crate::scene::{Cable, Obstacle, Scene, Shape, Support, SupportKind};
 
 /// Distance of the route from the centre of a wheel, in radii of the centre line round it. Smaller:
 /// the route cuts wheels whose neighbours are narrower; larger: it comes nearer to what else is
 /// there.
 const ROUTE_RADII: f64 = 1.2;
+/// Longest arc of a wheel between two points of the route, rad: at that distance from the wheel the
+/// line between them is clear of it up to 1.17. Smaller: more points than needed.
+const LONGEST_ARC: f64 = PI / 3.0;
 
-/// A scene with posts in place of the wheels of a cable.
+/// A scene with posts in place of some wheels of a cable.
 #[derive(Clone, Debug)]
 pub(super) struct WithPosts {
     pub scene: Scene,
@@ -21,8 +28,6 @@ pub(super) struct WithPosts {
     /// support to support.
     pub cables: Vec<Cable>,
     pub wheels: Vec<WheelPost>,
-    /// For each support of the cable, true if it is one of the wheels.
-    pub replaced: Vec<bool>,
 }
 
 /// A wheel that is a post in the copy.
@@ -36,18 +41,19 @@ pub struct WheelPost {
     pub center: Vec2,
 }
 
-/// Returns whether a support is a wheel that stands where it is.
-fn is_fixed_wheel(cable: &Cable, k: usize) -> bool {
-    let s = &cable.supports[k];
-    let inner = k > 0 && k + 1 < cable.supports.len();
-    let wheel = s.kind == SupportKind::Pulley && s.radius_m.is_some_and(|r| r > 0.0);
-    inner && wheel && s.motion.is_none() && s.release_s.is_none() && s.at_m.is_some()
+/// For each support of a cable, whether it is a wheel that stands where it is.
+pub(super) fn standing_wheels(cable: &Cable) -> Vec<bool> {
+    let last = cable.supports.len().saturating_sub(1);
+    let fixed = |(k, s): (usize, &Support)| {
+        let wheel = s.kind == SupportKind::Pulley && s.radius_m.is_some_and(|r| r > 0.0);
+        k > 0 && k < last && wheel && s.motion.is_none() && s.release_s.is_none() && s.at_m.is_some()
+    };
+    cable.supports.iter().enumerate().map(fixed).collect()
 }
 
-/// Returns the scene with posts in place of the wheels of a cable that stand still; None where it
-/// has none.
-pub(super) fn with_posts(scene: &Scene, cable: &Cable) -> Option<WithPosts> {
-    let replaced: Vec<bool> = (0..cable.supports.len()).map(|k| is_fixed_wheel(cable, k)).collect();
+/// Returns the scene with posts in place of those wheels of a cable for which `replaced` is true;
+/// None where that is none.
+pub(super) fn with_posts(scene: &Scene, cable: &Cable, replaced: &[bool]) -> Option<WithPosts> {
     if !replaced.contains(&true) {
         return None;
     }
@@ -65,7 +71,7 @@ pub(super) fn with_posts(scene: &Scene, cable: &Cable) -> Option<WithPosts> {
         wheels.push(WheelPost { support: k, post, center: vec2(center) });
     }
     let own = (!cable.route_m.is_empty()).then(|| cable.route_m.clone());
-    let past_posts = route(&scene, cable, &replaced).map(|r| r.into_iter().map(Into::into).collect());
+    let past_posts = route(&scene, cable, replaced).map(|r| r.into_iter().map(Into::into).collect());
     let by = |route_m| {
         let mut keep = replaced.iter().map(|r| !r);
         let mut cable = Cable { route_m, ..cable.clone() };
@@ -73,7 +79,7 @@ pub(super) fn with_posts(scene: &Scene, cable: &Cable) -> Option<WithPosts> {
         cable
     };
     let cables = own.into_iter().chain(past_posts).map(by).collect();
-    Some(WithPosts { scene, cables, wheels, replaced })
+    Some(WithPosts { scene, cables, wheels })
 }
 
 /// The way from support to support, past each wheel on its side; None where an inner support has no
@@ -103,8 +109,12 @@ fn route(scene: &Scene, cable: &Cable, replaced: &[bool]) -> Option<Vec<Vec2>> {
         let [before, after] = [at - places[k - 1], places[k + 1] - at];
         let facing = facing(s.side.unwrap_or_default(), before + after);
         let out = ROUTE_RADII * (s.radius_m? + 0.5 * cable.diameter_m);
-        let aside = |way: Vec2| way.try_normalize(0.0).map(|t| perp(t) * facing * out);
-        route.extend([before, before + after, after].into_iter().filter_map(aside).map(|off| at + off));
+        let turn = turn_through_centre(facing, before, after);
+        let Some(arrives) = before.try_normalize(0.0).map(|t| perp(t) * facing * out) else { continue };
+        // A way that turns away from its wheel passes it in one point, halfway of its turn.
+        let (legs, first) = if turn > 0.0 { ((turn / LONGEST_ARC).ceil(), 0.0) } else { (0.0, 0.5 * turn) };
+        let leg = if legs > 0.0 { turn / legs } else { 0.0 };
+        route.extend((0..=legs as usize).map(|k| at + Rotation2::new(-facing * (first + k as f64 * leg)) * arrives));
     }
     Some(route)
 }

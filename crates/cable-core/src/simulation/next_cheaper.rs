@@ -76,7 +76,7 @@ fn neglected_by(reason: &ModelReason) -> Option<NeglectedEffect> {
 /// The cable without it.
 fn without(problem: &Problem, neglects: NeglectedEffect) -> Problem {
     let mut this = problem.clone();
-    this.wheels_as_posts = None;
+    this.standing_wheels = None;
     if let Some((by, copy)) = this.similar.take() {
         this.similar = Some((by, Arc::new(without(&copy, neglects))));
     }

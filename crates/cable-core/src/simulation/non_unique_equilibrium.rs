@@ -36,7 +36,10 @@ impl Simulation {
                 laid.warnings.into_iter().find(of_cable)
             };
             // A cable that leaves a wheel is laid over posts in their place.
-            let posts = || problem.wheels_as_posts.as_ref().and_then(|posts| laid(&posts.problem));
+            let posts = || {
+                let wheels = problem.standing_wheels.as_ref()?;
+                laid(&wheels.as_posts(&wheels.standing, &[])?.problem)
+            };
             let refused = loading_histories::refused_by_spans(cable);
             let whole = || if refused { None } else { laid(&Arc::new(problem.clone())) };
             let seek = || whole().or_else(posts);

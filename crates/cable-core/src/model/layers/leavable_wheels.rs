@@ -1,8 +1,9 @@
 //! The wheels of a cable are rounds that it may leave: where a model finds that it does not press
-//! on one, the cable goes on with posts in place of its wheels ([`WheelsAsPosts`]).
+//! on one, the cable goes on with a post in place of that wheel ([`StandingWheels`]).
 //!
 //! A post does to the cable what a wheel with the same friction does, as long as it presses on it;
-//! what it does is reported as the reaction of the pulley.
+//! what it does is reported as the reaction of the pulley. The other wheels stay: a cable that
+//! slides far over them is let run by a wheel, and would have to be followed over a post.
 
 use std::sync::Arc;
 
@@ -14,19 +15,20 @@ use crate::model::gauge::TensionGauge;
 use crate::model::mechanics::Constructor;
 use crate::model::{Inertia, Mechanics, Settings, StepReport};
 use crate::problem::wheels_as_posts::WheelPost;
-use crate::problem::{Problem, WheelsAsPosts, with_moved_posts};
-use crate::solution::{CableSolution, ModelReason, Node, SupportReaction, Warning, WarningCause};
+use crate::problem::{Problem, StandingWheels, WheelsAsPosts};
+use crate::solution::{CableSolution, Node, SupportReaction, Warning, WarningCause};
 use crate::state::State;
 
 /// A model of a cable over wheels, and of the same with posts once it leaves one.
 pub struct LeavableWheels {
     problem: Arc<Problem>,
-    copy: Arc<WheelsAsPosts>,
+    wheels: Arc<StandingWheels>,
     settings: Settings,
     construct: Arc<Constructor>,
     inner: Box<dyn Mechanics>,
-    /// True once the cable has left a wheel: the inner model is one of the copy.
-    on_posts: bool,
+    /// With the wheels as posts that the cable has left, which the inner model is of; None: it has
+    /// left none.
+    left: Option<Arc<WheelsAsPosts>>,
     /// Places to which supports were led, m, and by what.
     led: Vec<Option<SupportTarget>>,
     robot_pose: Option<RigidPose>,
@@ -41,44 +43,49 @@ enum SupportTarget {
     Pulled(Vec2),
 }
 
-/// Returns whether an error says that the cable leaves a wheel.
-fn leaves_wheel(error: &SolveError) -> bool {
+/// The names of the wheels that the cable leaves, by an error.
+fn wheels_left_by(error: &SolveError) -> Vec<&str> {
     match error {
-        SolveError::NoRestingPlace { why: NoEquilibrium::LeavesWheel { .. } }
-        | SolveError::Unsupported { feature: Unsupported::OffWheel { .. }, .. } => true,
-        SolveError::Neither { told, other } => leaves_wheel(told) || leaves_wheel(other),
-        _ => false,
+        SolveError::NoRestingPlace { why: NoEquilibrium::LeavesWheel { pulley } } => vec![pulley],
+        SolveError::Unsupported { feature: Unsupported::OffWheel { support }, .. } => vec![support],
+        SolveError::Neither { told, other } => [wheels_left_by(told), wheels_left_by(other)].concat(),
+        _ => Vec::new(),
     }
 }
 
 impl LeavableWheels {
-    /// Wraps a model of the cable; `construct` builds the one of the copy.
+    /// Wraps a model of the cable; `construct` builds those with posts.
     pub fn new(
         problem: Arc<Problem>,
-        copy: Arc<WheelsAsPosts>,
+        wheels: Arc<StandingWheels>,
         settings: Settings,
         construct: Arc<Constructor>,
         inner: Box<dyn Mechanics>,
     ) -> Self {
         let led = vec![None; problem.supports.len()];
-        Self { problem, copy, settings, construct, inner, on_posts: false, led, robot_pose: None }
+        Self { problem, wheels, settings, construct, inner, left: None, led, robot_pose: None }
     }
 
     /// Index that a support has in the inner model; None for a wheel that is a post there.
     fn inner_index(&self, support: usize) -> Option<usize> {
-        let replaced = &self.copy.replaced;
+        let Some(replaced) = self.left.as_ref().map(|left| &left.replaced) else { return Some(support) };
         match replaced.get(support) {
-            Some(true) if self.on_posts => None,
-            Some(_) if self.on_posts => Some(replaced[..support].iter().filter(|r| !**r).count()),
-            _ => Some(support),
+            Some(true) => None,
+            Some(false) => Some(replaced[..support].iter().filter(|r| !**r).count()),
+            None => Some(support),
         }
     }
 
-    /// A model of the copy with posts (`on_posts`) or of the cable itself, led as this one is, in
-    /// the given state (None: at the route).
-    fn built(&self, on_posts: bool, state: Option<&State>) -> Result<Box<dyn Mechanics>, SolveError> {
-        let problem = if on_posts { &self.copy.problem } else { &self.problem };
-        let mut this = Self { on_posts, ..Self::empty(self, (self.construct)(problem.clone(), self.settings)?) };
+    /// A model with some wheels as posts, led as this one is, in the given state (None: at the
+    /// route).
+    fn built(
+        &self,
+        left: Option<&Arc<WheelsAsPosts>>,
+        state: Option<&State>,
+    ) -> Result<Box<dyn Mechanics>, SolveError> {
+        let problem = left.map_or(&self.problem, |left| &left.problem);
+        let mut this =
+            Self { left: left.cloned(), ..Self::empty(self, (self.construct)(problem.clone(), self.settings)?) };
         if let Some(pose) = self.robot_pose {
             this.inner.set_robot_pose(pose);
         }
@@ -98,12 +105,12 @@ impl LeavableWheels {
 
     /// The same with another inner model, led nowhere.
     fn empty(of: &Self, inner: Box<dyn Mechanics>) -> Self {
-        Self::new(of.problem.clone(), of.copy.clone(), of.settings, of.construct.clone(), inner)
+        Self::new(of.problem.clone(), of.wheels.clone(), of.settings, of.construct.clone(), inner)
     }
 
     /// Returns whether a wheel that is a post goes clear of the cable to a place (m).
     fn goes_clear(&self, support: usize, to: Vec2) -> bool {
-        let wheel = self.copy.wheels.iter().find(|w| w.support == support);
+        let wheel = self.left.iter().flat_map(|left| &left.wheels).find(|w| w.support == support);
         let radius = self.problem.supports.get(support).map(|s| s.wheel_radius);
         let (Some(wheel), Some(radius)) = (wheel, radius) else { return false };
         let state = self.inner.state();
@@ -122,9 +129,9 @@ impl LeavableWheels {
             (None, lead) => {
                 let clear = matches!(lead, SupportTarget::Dragged(to) if self.goes_clear(support, to));
                 if !(clear && self.move_posts())
-                    && let Ok(inner) = self.built(false, Some(&self.inner.state()))
+                    && let Ok(inner) = self.built(None, Some(&self.inner.state()))
                 {
-                    (self.inner, self.on_posts) = (inner, false);
+                    (self.inner, self.left) = (inner, None);
                 }
             }
         }
@@ -132,46 +139,73 @@ impl LeavableWheels {
 
     /// Goes on with posts where the wheels were led; false where it cannot.
     fn move_posts(&mut self) -> bool {
-        let Some(posts) = self.posts() else { return false };
-        let before = std::mem::replace(&mut self.copy, posts);
-        match self.built(true, Some(&self.inner.state())) {
-            Ok(inner) => {
-                (self.inner, self.on_posts) = (inner, true);
-                true
-            }
-            Err(_) => {
-                self.copy = before;
-                false
-            }
-        }
+        let replaced = self.replaced();
+        let Some(posts) = self.posts(&replaced) else { return false };
+        let Ok(inner) = self.built(Some(&posts), Some(&self.inner.state())) else { return false };
+        (self.inner, self.left) = (inner, Some(posts));
+        true
     }
 
-    /// The copy with posts where the wheels were led; None where a hand holds one by a spring.
-    fn posts(&self) -> Option<Arc<WheelsAsPosts>> {
-        let leads: Vec<SupportTarget> =
-            self.copy.wheels.iter().filter_map(|w| self.led.get(w.support).copied()?).collect();
-        if leads.iter().any(|lead| matches!(lead, SupportTarget::Pulled(_))) {
-            return None;
+    /// For each support, true if it is a wheel that the cable has left.
+    fn replaced(&self) -> Vec<bool> {
+        self.left.as_ref().map_or_else(|| vec![false; self.problem.supports.len()], |left| left.replaced.clone())
+    }
+
+    /// The wheels of which an error says that the cable leaves them, beside those that are posts
+    /// already; None where that is no other wheel, or none that may be left.
+    fn also_left(&self, mut replaced: Vec<bool>, error: &SolveError) -> Option<Vec<bool>> {
+        let names = wheels_left_by(error);
+        let before = replaced.clone();
+        for ((replaced, standing), support) in
+            replaced.iter_mut().zip(&self.wheels.standing).zip(&self.problem.supports)
+        {
+            *replaced |= *standing && names.contains(&support.name.as_str());
         }
-        if leads.is_empty() {
-            return Some(self.copy.clone());
+        (replaced != before).then_some(replaced)
+    }
+
+    /// Some wheels as posts where they were led; None where a hand holds one by a spring.
+    fn posts(&self, replaced: &[bool]) -> Option<Arc<WheelsAsPosts>> {
+        let places = self.led.iter().zip(replaced).map(|(lead, replaced)| match lead {
+            Some(SupportTarget::Pulled(_)) if *replaced => Err(()),
+            Some(SupportTarget::Dragged(at)) if *replaced => Ok(Some(*at)),
+            _ => Ok(None),
+        });
+        self.wheels.as_posts(replaced, &places.collect::<Result<Vec<_>, ()>>().ok()?)
+    }
+
+    /// Rests with posts for the wheels that the cable leaves, by an error, and by what comes after
+    /// it.
+    fn settle_on_posts(&mut self, error: &SolveError) -> Option<StepReport> {
+        let state = (self.inner.time_s() > 0.0).then(|| self.inner.state());
+        let mut replaced = self.also_left(self.replaced(), error)?;
+        loop {
+            let posts = self.posts(&replaced)?;
+            let mut inner = self.built(Some(&posts), state.as_ref()).ok()?;
+            let found = inner.settle();
+            let more = match &found {
+                Ok(_) => inner.refusal().and_then(|error| self.also_left(replaced.clone(), error)),
+                Err(error) => Some(self.also_left(replaced.clone(), error)?),
+            };
+            match (more, found) {
+                (Some(more), _) => replaced = more,
+                (None, found) => {
+                    (self.inner, self.left) = (inner, Some(posts));
+                    return found.ok();
+                }
+            }
         }
-        let place = |k: usize| match self.led.get(k) {
-            Some(Some(SupportTarget::Dragged(at))) if self.copy.replaced[k] => Some(*at),
-            _ => None,
-        };
-        with_moved_posts(&self.copy, (0..self.copy.replaced.len()).map(place))
     }
 
     /// The warnings of a report, with one for each wheel of which the cable hangs clear.
     fn told(&self, mut report: StepReport) -> StepReport {
-        if self.on_posts {
+        if let Some(left) = &self.left {
             let name = &self.problem.cable.name;
             let wheels = self
                 .outer_solution(self.inner.solution())
                 .supports
                 .into_iter()
-                .zip(&self.copy.replaced)
+                .zip(&left.replaced)
                 .filter(|(_, replaced)| **replaced);
             let clear = wheels.map(|(s, _)| s).filter(|s| s.reaction_x_n == 0.0 && s.reaction_y_n == 0.0);
             report.warnings.extend(clear.map(|s| {
@@ -220,39 +254,26 @@ impl Layer for LeavableWheels {
     fn around(&self, inner: Box<dyn Mechanics>) -> Self {
         Self {
             problem: self.problem.clone(),
-            copy: self.copy.clone(),
+            wheels: self.wheels.clone(),
             settings: self.settings,
             construct: self.construct.clone(),
             inner,
-            on_posts: self.on_posts,
+            left: self.left.clone(),
             led: self.led.clone(),
             robot_pose: self.robot_pose,
         }
     }
 
-    fn reason(&self) -> Option<&ModelReason> {
-        self.inner.reason().or(self.on_posts.then_some(&ModelReason::Obstacles))
-    }
-
     fn settle(&mut self) -> Result<StepReport, SolveError> {
         let found = self.inner.settle();
-        let leaves = match &found {
-            Ok(_) => self.inner.refusal().is_some_and(leaves_wheel),
-            Err(error) => leaves_wheel(error),
+        let refusal = match &found {
+            Ok(_) => self.inner.refusal(),
+            Err(error) => Some(error),
         };
-        if leaves
-            && !self.on_posts
-            && let Some(posts) = self.posts()
+        if let Some(refusal) = refusal.cloned()
+            && let Some(report) = self.settle_on_posts(&refusal)
         {
-            let before = std::mem::replace(&mut self.copy, posts);
-            let state = (self.inner.time_s() > 0.0).then(|| self.inner.state());
-            if let Ok(mut inner) = self.built(true, state.as_ref())
-                && let Ok(report) = inner.settle()
-            {
-                (self.inner, self.on_posts) = (inner, true);
-                return Ok(self.told(report));
-            }
-            self.copy = before;
+            return Ok(self.told(report));
         }
         found.map(|report| self.told(report))
     }
@@ -264,23 +285,23 @@ impl Layer for LeavableWheels {
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
         let end_s = self.inner.time_s() + dt_s;
-        let error = match self.inner.advance_gauged(dt_s, inertia, gauge) {
-            Ok(report) => return Ok(self.told(report)),
-            Err(error) => error,
-        };
-        // Posts stand still: a wheel that is drawn on its way is none.
-        let led = self.copy.wheels.iter().any(|w| self.led.get(w.support).is_some_and(Option::is_some));
-        if self.on_posts || led || !leaves_wheel(&error) {
-            return Err(error);
+        let mut found = self.inner.advance_gauged(dt_s, inertia, gauge);
+        while let Err(error) = &found
+            && let Some(replaced) = self.also_left(self.replaced(), error)
+        {
+            // Posts stand still: a wheel that is drawn on its way is none.
+            let led = replaced.iter().zip(&self.led).any(|(replaced, led)| *replaced && led.is_some());
+            let posts = if led { None } else { self.posts(&replaced) };
+            let Some(posts) = posts else { break };
+            let Ok(inner) = self.built(Some(&posts), Some(&self.inner.state())) else { break };
+            (self.inner, self.left) = (inner, Some(posts));
+            found = self.inner.advance_gauged(end_s - self.inner.time_s(), inertia, gauge);
         }
-        let Ok(mut inner) = self.built(true, Some(&self.inner.state())) else { return Err(error) };
-        let Ok(report) = inner.advance_gauged(end_s - self.inner.time_s(), inertia, gauge) else { return Err(error) };
-        (self.inner, self.on_posts) = (inner, true);
-        Ok(self.told(report))
+        found.map(|report| self.told(report))
     }
 
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
-        if self.on_posts {
+        if self.left.is_some() {
             return self.inner.set_state(&State::of_nodes(&answer.nodes, time_s));
         }
         self.inner.warm_start(answer, time_s)
@@ -300,14 +321,12 @@ impl Layer for LeavableWheels {
     }
 
     fn outer_solution(&self, mut answer: CableSolution) -> CableSolution {
-        if !self.on_posts {
-            return answer;
-        }
-        for wheel in &self.copy.wheels {
+        let Some(left) = &self.left else { return answer };
+        for wheel in &left.wheels {
             let reaction = reaction(&self.problem, wheel, &answer);
             answer.supports.insert(wheel.support.min(answer.supports.len()), reaction);
         }
-        answer.contacts.retain(|c| self.copy.wheels.iter().all(|w| w.post != c.obstacle));
+        answer.contacts.retain(|c| left.wheels.iter().all(|w| w.post != c.obstacle));
         answer
     }
 
