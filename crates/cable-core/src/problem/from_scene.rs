@@ -71,8 +71,8 @@ impl StandingWheels {
     }
 
     /// The cable with posts in place of those wheels for which `replaced` is true, at the places
-    /// given for its supports, m (None: where the scene has it). None where that is no wheel, or the
-    /// cable cannot be laid round the posts.
+    /// given for its supports, m (None: where the scene has it). None where that is no wheel, or
+    /// the cable cannot be laid round the posts.
     pub(crate) fn as_posts(&self, replaced: &[bool], places: &[Option<Vec2>]) -> Option<Arc<WheelsAsPosts>> {
         let mut cable = self.scene.cables.get(self.cable_index)?.clone();
         for (support, place) in cable.supports.iter_mut().zip(places) {

@@ -14,8 +14,8 @@ use cable_core::math::Point;
 use egui::{Rect, Role, Sense, Ui, WidgetInfo};
 
 use crate::canvas::layers::{
-    cable, compare_overlay, contact, forces, grid, legend, no_answer, obstacles, robot, robot_path, safe_reach,
-    supports, tension_marker,
+    annotations, cable, compare_overlay, contact, forces, grid, legend, no_answer, obstacles, robot, robot_path,
+    safe_reach, supports, tension_marker,
 };
 use crate::canvas::view::{CanvasView, hints_height};
 use crate::command::{Command, PlaybackCommand, ViewCommand};
@@ -163,6 +163,6 @@ fn draw(view: &mut CanvasView<'_>, state: &AppState) {
     }
     no_answer::banner(view, state);
     if state.view.layers.labels {
-        supports::labels(view, state, figures);
+        annotations::draw(view, state, figures);
     }
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use cable_core::files;
 
+use crate::io::graph_drawing;
 use crate::io::graph_in_view::{GraphInView, visible};
-use crate::io::graph_layout;
 
 /// Writes what is in view in the format that the path's ending names.
 ///
@@ -16,8 +16,8 @@ pub fn save(path: &Path, graph: &GraphInView) -> Result<(), String> {
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     let bytes = match ending.as_str() {
         "csv" => csv(graph).into_bytes(),
-        "svg" => graph_layout::svg(graph).into_bytes(),
-        "png" => graph_layout::png(graph)?,
+        "svg" => graph_drawing::svg(graph).into_bytes(),
+        "png" => graph_drawing::png(graph)?,
         _ => return Err("its name must end in .csv, .svg or .png".to_owned()),
     };
     files::write_atomic(path, &bytes).map_err(|e| e.to_string())

@@ -7,19 +7,19 @@
 //! - `solver_thread`: the loop of the thread
 //! - `slots`: the request, the answer and the solve that window and thread share
 //! - `superseded_solve`: the solve that nobody waits for any more, and its abandoned thread
-//! - `passing`: whether a cable passed an obstacle
+//! - `tunnelling`: whether a cable passed an obstacle
 //! - `request`: what the window asks
 //! - `draft`: coarse answers that follow the hand
 //! - `timing`: frames, drafts and bounds
 
 pub mod draft;
 pub mod engine;
-mod passing;
 pub mod request;
 mod slots;
 mod solver_thread;
 mod superseded_solve;
 pub mod timing;
+mod tunnelling;
 
 use std::sync::Arc;
 use std::thread::JoinHandle;

@@ -1,9 +1,9 @@
 //! The readouts panel shows the figures of the present answer.
 //!
-//! - `figures`: greatest and least values along a cable
+//! - `extremes`: greatest and least values along a cable
 //! - `reactions`: the forces on the supports
 
-pub(crate) mod figures;
+pub(crate) mod extremes;
 mod reactions;
 
 use cable_core::scene::View;
@@ -114,7 +114,7 @@ pub fn rest(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
 
 /// The largest tension, where it is, and how much of the limits it takes.
 fn tension(ui: &mut Ui, cable: &Cable, solved: &CableSolution, current: bool, commands: &mut Vec<Command>) {
-    let Some((tension_n, node)) = figures::greatest(solved, |n| n.tension_n) else {
+    let Some((tension_n, node)) = extremes::greatest(solved, |n| n.tension_n) else {
         ui.weak("No tension in this answer");
         return;
     };
@@ -245,11 +245,11 @@ fn shape(ui: &mut Ui, view: View, first: &CableSummary, commands: &mut Vec<Comma
 }
 
 fn material(ui: &mut Ui, cable: &Cable, solved: &CableSolution, first: &CableSummary, commands: &mut Vec<Command>) {
-    if let Some((stress_pa, node)) = figures::greatest(solved, |n| n.stress_pa) {
+    if let Some((stress_pa, node)) = extremes::greatest(solved, |n| n.stress_pa) {
         let help = "Largest tension over the full round section (conductors alone carry more)";
         figure(ui, "Max stress", format::stress(stress_pa), help, Some((&node, &mut *commands)));
     }
-    if let Some((strain, node)) = figures::greatest(solved, |n| n.strain) {
+    if let Some((strain, node)) = extremes::greatest(solved, |n| n.strain) {
         figure(
             ui,
             "Max strain",
@@ -372,7 +372,7 @@ fn compared(state: &AppState, cable: &Cable, solved: &CableSolution) -> Option<(
         let why = found.unknown.as_ref().map_or_else(|| "not sought".to_owned(), sentence);
         return Some((ignored, format!(". No answer was found with that: {why}")));
     };
-    let most = figures::greatest(solved, |n| n.tension_n).map_or(0.0, |(tension, _)| tension);
+    let most = extremes::greatest(solved, |n| n.tension_n).map_or(0.0, |(tension, _)| tension);
     let change = if most > 0.0 { format!("{:+.2} %", 100.0 * (with / most - 1.0)) } else { format::force(with) };
     let part = |of: Option<f64>, text: fn(f64) -> String| {
         of.map_or_else(|| "by what is not known".to_owned(), |v| format!("by up to {}", text(v)))

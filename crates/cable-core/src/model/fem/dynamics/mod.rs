@@ -12,17 +12,19 @@ use crate::math::Vec2;
 use crate::model::fem::mesh::sliding_node::SlideOver;
 use crate::model::fem::newton::solver_memory::SolverMemory;
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::obstacle::outline_depenetration::prepare_way;
+use crate::model::fem::obstacle::outline_placement::prepare_way;
 use crate::model::fem::remesh::adapt::remesh;
 use crate::model::fem::results;
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::fold_imperfection::open_collinear_folds;
 use crate::model::fem::state::moving_mass::MovingMass;
 use crate::model::fem::system::step_input::{Converged, Failure, FailureCause, Unknowns, WorkBudget};
-use crate::model::fem::time::bdf2::{Weights, keep_balanced_tensions, report_held_back, set_inertia};
+use crate::model::fem::time::bdf2::Weights;
 use crate::model::fem::time::hands::HandDrive;
 use crate::model::fem::time::rollback::Rollback;
+use crate::model::fem::time::sliding_tensions::keep_balanced_tensions;
 use crate::model::fem::time::step_impulses::{account_for_step, forces_in_step};
+use crate::model::fem::time::step_inertia::set_inertia;
 use crate::model::fem::time::time_control::TimeControl;
 use crate::model::fem::time::{hands, loss_memory, plastic_impact};
 use crate::model::gauge::TensionGauge;
@@ -243,7 +245,7 @@ impl Dynamics {
         if let Some(node) = IntersectionCheck::at(&self.cable, &unknowns.positions).pulled_corner(most) {
             return Err(Failure { node, residual: done.residual, cause: FailureCause::CornerPulls });
         }
-        report_held_back(&mut self.cable, &unknowns);
+        hands::report_held_back(&mut self.cable, &unknowns);
         hands::keep_forces(&mut self.cable, &unknowns);
         keep_balanced_tensions(&mut self.cable, &unknowns);
         let given = forces_in_step(&self.cable, &unknowns, self.solver.contacts());

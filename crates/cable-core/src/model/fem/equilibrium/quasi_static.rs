@@ -5,7 +5,7 @@ use crate::math::{Vec2, larger};
 use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::equilibrium::relaxation::moved_away;
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::obstacle::outline_depenetration::{prepare_way, put_outline};
+use crate::model::fem::obstacle::outline_placement::{prepare_way, put_outline};
 use crate::model::fem::remesh::adapt::remesh;
 use crate::model::fem::results;
 use crate::model::fem::state::cable_state::CableState;

@@ -2,8 +2,8 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `outline_depenetration.rs` | the robot's outline moved along its path, cable pushed out of its way |
+//! | `outline_placement.rs` | the robot's outline moved along its path, cable pushed out of its way |
 //! | `intersection_check.rs` | does a bar run through an obstacle, or fold back over a corner's edge? |
 
 pub(in crate::model::fem) mod intersection_check;
-pub(in crate::model::fem) mod outline_depenetration;
+pub(in crate::model::fem) mod outline_placement;

@@ -92,3 +92,19 @@ impl HandDrive {
         })
     }
 }
+
+/// Reports the supports that did not reach their targets; their hands start again from where they
+/// are.
+pub(in crate::model::fem) fn report_held_back(cable: &mut CableState, unknowns: &Unknowns) {
+    for (support, node) in cable.meshing.support_node.iter().enumerate() {
+        let Some(k) = node.filter(|&k| cable.mesh.held[k]) else { continue };
+        if unknowns.positions[k] != cable.input.target[k] && !cable.answers.held_back.contains(&support) {
+            cable.answers.held_back.push(support);
+        }
+        if let Some(f) = &mut cable.motion.followers[support]
+            && f.position() != unknowns.positions[k]
+        {
+            f.stop_at(unknowns.positions[k]);
+        }
+    }
+}

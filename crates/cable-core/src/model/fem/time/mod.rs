@@ -3,7 +3,9 @@
 //!
 //! | room | content |
 //! |---|---|
-//! | `bdf2.rs` | BDF2 weights, with a part of BDF3 without contact; inertia of a step |
+//! | `bdf2.rs` | weights of BDF2, with a part of BDF3 without contact |
+//! | `step_inertia.rs` | masses, predicted places and damping of a step |
+//! | `sliding_tensions.rs` | tensions between which friction acted at sliding nodes |
 //! | `time_control.rs` | data of the time control: step size, sleep, tolerance, end of the advance |
 //! | `step_size.rs` | step length from the observed frequency and from how hard steps are to solve |
 //! | `step_solver.rs` | choice of free or contact solver; rounds until friction and forces agree |
@@ -20,7 +22,9 @@ pub(in crate::model::fem) mod loss_memory;
 pub(in crate::model::fem) mod plastic_impact;
 pub(in crate::model::fem) mod rollback;
 pub(in crate::model::fem) mod sleeping;
+pub(in crate::model::fem) mod sliding_tensions;
 pub(in crate::model::fem) mod step_impulses;
+pub(in crate::model::fem) mod step_inertia;
 pub(in crate::model::fem) mod step_size;
 pub(in crate::model::fem) mod step_solver;
 pub(in crate::model::fem) mod time_control;

@@ -1,7 +1,7 @@
 //! A step that fails returns to the checkpoint before it.
 
 use crate::math::Vec2;
-use crate::model::fem::obstacle::outline_depenetration::place_outline;
+use crate::model::fem::obstacle::outline_placement::place_outline;
 use crate::model::fem::state::cable_state::CableState;
 use crate::model::fem::state::motion::NodalMotion;
 use crate::model::fem::state::step_setup::renew_input;

@@ -22,7 +22,7 @@ use crate::model::fem::dynamics::Dynamics;
 use crate::model::fem::newton::mixed_free::MixedFreeSolver;
 use crate::model::fem::newton::solver_memory::{SolverMemory, WorkspaceMemory};
 use crate::model::fem::obstacle::intersection_check::IntersectionCheck;
-use crate::model::fem::obstacle::outline_depenetration::put_outline;
+use crate::model::fem::obstacle::outline_placement::put_outline;
 use crate::model::fem::settings::Tuning;
 use crate::model::fem::state::step_setup::renew_input;
 use crate::model::fem::system::step_input::{Unknowns, WorkBudget};

@@ -1,4 +1,4 @@
-//! The first guess of a run has contacts where the shortest path of its route bends, and its
+//! The first guess of a section has contacts where the shortest path of its route bends, and its
 //! material spread evenly along the route.
 
 use crate::contact::World;

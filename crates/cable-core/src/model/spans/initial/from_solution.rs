@@ -1,4 +1,4 @@
-//! Runs are set up where another model's answer has the cable, with the friction it has there.
+//! Sections are set up where another model's answer has the cable, with the friction it has there.
 //!
 //! Consecutive nodes on one chain of a boundary form a contact. On an arc the contact extends from
 //! its outer nodes to the points where the cable beside it is tangent, with the material of the

@@ -1,5 +1,5 @@
-//! The route of a run is that of the scene, or goes from support to support and over what is in the
-//! way.
+//! The route of a section is that of the scene, or goes from support to support and over what is in
+//! the way.
 
 use crate::contact::World;
 use crate::math::{Vec2, bounded};

@@ -1,4 +1,4 @@
-//! This module lays a run along its shortest path.
+//! This module lays a section along its shortest path.
 
 use crate::model::spans::boundary::friction_memory::TensionProfile;
 use crate::model::spans::initial::material::{measure, spread};

@@ -1,4 +1,4 @@
-//! The system of a run has its unknowns, its equations, and their derivatives.
+//! The system of a section has its unknowns, its equations, and their derivatives.
 
 use crate::math::{Vec2, cross, larger};
 use crate::model::spans::boundary::capstan::ContactPath;

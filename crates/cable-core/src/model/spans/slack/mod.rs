@@ -1,4 +1,4 @@
-//! A run of cable rests on obstacles without tension.
+//! A section of cable rests on obstacles without tension.
 //!
 //! If there is more cable than its drained route needs (see `drained_route`), only the parts that
 //! hang have tension. They hang plumb: F is the weight below. The tension vanishes at each foot and

@@ -1,4 +1,4 @@
-//! This module reports a slack run of cable: its nodes, and the contacts that carry it.
+//! This module reports a slack section of cable: its nodes, and the contacts that carry it.
 
 use crate::math::Vec2;
 use crate::model::arc_nodes;

@@ -1,0 +1,26 @@
+//! A sliding node keeps the tensions between which its friction acted in a step, for the report of
+//! its contact.
+
+use crate::model::fem::mesh::sliding_node::{BalancedTensions, StickSlip};
+use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::system::step_input::Unknowns;
+
+/// Keeps the tensions and the turn between which friction acts at each sliding node.
+pub(in crate::model::fem) fn keep_balanced_tensions(cable: &mut CableState, unknowns: &Unknowns) {
+    for k in 0..cable.mesh.nodes() {
+        let Some(load) = cable.step_context().load_at(k, &unknowns.positions, Some(&unknowns.slides)) else { continue };
+        let inertia = cable.input.inertia[k] * (unknowns.slides[k] - cable.input.predicted_slide[k]);
+        if let Some(node) = &mut cable.mesh.sliding[k] {
+            let [comes, leaves] = load.at_round();
+            // The step balances slopes by the slide, where inertia counts by what is stretched.
+            let [before, after] = load.at_material;
+            let stretch = 1.0 + 0.5 * (comes + leaves) / cable.mesh.axial_stiffness;
+            let pulls = match node.stick_slip {
+                _ if load.floor != [0.0; 3] => comes - inertia,
+                StickSlip::Stick => leaves + (before - inertia - after) / stretch,
+                slips => load.ratio(slips, node.exponent) * leaves,
+            };
+            node.balanced = Some(BalancedTensions { pull: [pulls, leaves], turn: load.turn });
+        }
+    }
+}

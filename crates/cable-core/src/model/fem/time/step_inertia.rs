@@ -1,0 +1,63 @@
+//! A step with inertia has masses, predicted places and damping, which its weights in time give.
+
+use crate::math::Vec2;
+use crate::model::fem::state::cable_state::CableState;
+use crate::model::fem::system::loss_branches::damping_time;
+use crate::model::fem::time::bdf2::Weights;
+use crate::model::fem::time::loss_memory;
+
+/// Inertia and damping of a step of `h` (s).
+///
+/// The rate of a length has no history where velocities jump between two steps (a plastic
+/// impulse, a change of the mesh): two steps extrapolate through the jump and add ½ EA τ Δv/l₀
+/// to the loss, 150 kN where nodes are 3 cm apart. So the loss of a cable that may touch
+/// something is that of the step itself, EA τ (P − P₀)/(L h). It is a first-order error of a
+/// small force, ¾ τ/h of that which BDF2 makes of a vibration.
+pub(in crate::model::fem) fn set_inertia(cable: &mut CableState, weights: Weights, h: f64, decay: &mut Vec<f64>) {
+    let Weights { now, past, a, .. } = weights;
+    let rubs = !(cable.meets_nothing() && cable.meshing.never_slides && cable.problem.floor_friction.is_none());
+    let jumps = !cable.meets_nothing();
+    let (m, input, mesh) = (&cable.motion, &mut cable.input, &cable.mesh);
+    for k in 0..m.positions.len() {
+        input.predicted[k] = weights.place(m, k) + weights.velocity(m, k) / a;
+        input.inertia[k] = cable.problem.linear_density * mesh.tributary_length(k) * a * a;
+        if mesh.sliding[k].is_some() {
+            let w_hat = m.slide_rates[k] * now - m.previous_slide_rates[k] * past;
+            let s = mesh.arc_length[k];
+            input.predicted_slide[k] = s * now - m.previous_arc_length[k] * past + w_hat / a - s;
+        }
+    }
+    // Of the masses alone: hands draw at their nodes, not at what these are coupled with.
+    let predicted = &input.predicted;
+    input.coupling.extend(mesh.spread.coupling.iter().enumerate().map(|(e, length)| {
+        let chord = predicted[e + 1] - predicted[e];
+        (cable.problem.linear_density * length * a * a, chord)
+    }));
+    for (s, node) in cable.problem.supports.iter().zip(&cable.meshing.support_node) {
+        if let Some(k) = node {
+            input.inertia[*k] += s.mass * a * a;
+        }
+    }
+    for (hand, node) in m.hands.iter().zip(&cable.meshing.support_node) {
+        let (Some(hand), Some(k)) = (hand, *node) else { continue };
+        let (stiffness, at) = hand.pull(h, m.positions[k]);
+        let (inertia, both) = (input.inertia[k], input.inertia[k] + stiffness);
+        input.predicted[k] = (input.predicted[k] * inertia + at * stiffness) / both;
+        input.inertia[k] = both;
+        input.hands.push((k, stiffness, at));
+    }
+    input.moves = true;
+    let (rate, time) = (if jumps { 1.0 / h } else { a }, damping_time(&cable.problem, rubs));
+    input.loss.fill([cable.problem.axial_stiffness * time * rate; 2]);
+    input.bending_damping = mesh.bending_stiffness * time / h;
+    for e in 0..mesh.rest_length.len() {
+        input.predicted_length[e] = if jumps || mesh.sliding[e].is_some() || mesh.sliding[e + 1].is_some() {
+            mesh.path(e, &m.positions).length
+        } else {
+            let length = |x: &[Vec2]| (x[e + 1] - x[e]).norm();
+            let older = if weights.older > 0.0 { length(&m.older_positions) * weights.older } else { 0.0 };
+            length(&m.positions) * now - length(&m.previous_positions) * past + older
+        };
+    }
+    loss_memory::add(cable, h, rate, decay);
+}
