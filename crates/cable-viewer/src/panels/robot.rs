@@ -10,7 +10,7 @@ use egui::Ui;
 use crate::command::{Command, PlaybackCommand, SceneCommand};
 use crate::panels::scene_errors;
 use crate::state::AppState;
-use crate::units::format::{self, significant};
+use crate::units::format::{self, quantity};
 use crate::units::unit::Unit;
 use crate::widgets::icon::{self, Icon};
 use crate::widgets::property::labelled;
@@ -107,7 +107,7 @@ fn pull_n(state: &AppState) -> f64 {
 fn readouts(ui: &mut Ui, r: &RobotReport, pull_n: f64) {
     let share = if r.traction_n > 0.0 { r.thrust_n.abs() / r.traction_n } else { 0.0 };
     let Unit { symbol, si, .. } = Unit::M_PER_S.display();
-    let speed = |v: f64| format!("{} {symbol}", significant(v / si, 3));
+    let speed = |v: f64| quantity(v / si, 3, symbol);
     let rows = [
         ("Motion", r.going.name().to_owned(), "Why it is as fast as it is"),
         ("Speed", speed(r.speed_m_per_s), "Along the ground"),

@@ -4,7 +4,7 @@
 use egui::{Id, Ui};
 
 use crate::record::series::{Series, value_at};
-use crate::units::format::significant;
+use crate::units::format::quantity;
 use crate::units::unit::DIGITS;
 
 /// Places of the cursors of a graph.
@@ -58,7 +58,7 @@ impl Cursors {
         let line = line?;
         let read = |x: f64| value_at(&line.points, x).map_or(f64::NAN, |v| v / si);
         let one = |name: &str, x: f64, y: f64| {
-            format!("{name} {} {x_symbol}: {} {y_symbol}", significant(x / x_si, DIGITS), significant(y, DIGITS))
+            format!("{name} {}: {}", quantity(x / x_si, DIGITS, x_symbol), quantity(y, DIGITS, y_symbol))
         };
         match *self.0.as_slice() {
             [a] => Some(one("A", a, read(a))),
@@ -86,6 +86,8 @@ mod tests {
         let units = [("s", 1.0), ("N", 1.0)];
         let text = Cursors(vec![0.5, 1.5]).text(units, Some(&line)).unwrap();
         assert!(text.contains("A 0.5000 s: 150.0 N") && text.contains("B − A 1.000 s: 100.0 N"), "{text}");
+        let beyond = Cursors(vec![3.0]).text(units, Some(&line)).unwrap();
+        assert!(beyond.ends_with(": no data"), "{beyond}");
         assert_eq!(Cursors::default().text(units, Some(&line)), None);
     }
 }

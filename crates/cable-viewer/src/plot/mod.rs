@@ -19,7 +19,7 @@ use crate::record::measure::Measure;
 use crate::record::series::{Series, line_style, value_at};
 use crate::render::colour::{CableQuantity, LINES};
 use crate::render::theme;
-use crate::units::format::{round_step, significant};
+use crate::units::format::{quantity, round_step, significant};
 use crate::units::unit::{DIGITS, Unit};
 use crate::widgets::field;
 
@@ -161,7 +161,7 @@ pub fn show(ui: &mut Ui, graph: &Graph<'_>, lines: &[Series]) -> GraphResponse {
         let mut text = format!("{} {across_symbol}", significant(x, DIGITS));
         for line in lines {
             if let Some(value) = value_at(&line.points, x * x_si) {
-                text += &format!("\n{}: {} {symbol}", line.name, significant(value / si, DIGITS));
+                text += &format!("\n{}: {}", line.name, quantity(value / si, DIGITS, symbol));
             }
             if let Some([low, high]) = line.range_at(x * x_si) {
                 let [low, high] = [low, high].map(|v| significant(v / si, DIGITS));
@@ -283,7 +283,7 @@ fn set_accessible_text(
     field::name(figure, title);
     let last = lines.iter().filter_map(|l| Some((l, l.points.last()?)));
     let values: Vec<String> =
-        last.map(|(l, p)| format!("{} {} {symbol}", l.name, significant(p[1] / si, DIGITS))).collect();
+        last.map(|(l, p)| format!("{} {}", l.name, quantity(p[1] / si, DIGITS, symbol))).collect();
     let ribbon = ribbon.map_or_else(String::new, |[_, low, high]| {
         format!("; {RIBBON} {} to {} {symbol}", significant(low, DIGITS), significant(high, DIGITS))
     });

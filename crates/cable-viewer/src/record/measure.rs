@@ -4,7 +4,7 @@ use cable_core::Cable;
 
 use crate::record::sample::Sample;
 use crate::render::colour::CableQuantity;
-use crate::units::format::{self, significant};
+use crate::units::format::{self, quantity};
 use crate::units::{system, unit};
 
 /// A line over time: its name, and how to read it off a sample.
@@ -116,7 +116,7 @@ impl Measure {
             Self::Cable(CableQuantity::Strain) => format::strain(value),
             Self::Speed | Self::Energy => {
                 let (symbol, si) = self.unit(value.abs());
-                format!("{} {symbol}", significant(value / si, unit::DIGITS))
+                quantity(value / si, unit::DIGITS, symbol)
             }
         }
     }

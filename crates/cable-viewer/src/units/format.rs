@@ -17,7 +17,7 @@ pub fn round_step(range: f64, parts: f64) -> f64 {
 /// A factor of real time with three digits.
 #[must_use]
 pub fn times(factor: f64) -> String {
-    with_symbol(significant(factor, 3), "×")
+    quantity(factor, 3, "×")
 }
 
 /// Smaller forces (N) are what rounding leaves of a balance: they read 0.
@@ -38,11 +38,7 @@ pub fn stress(value_pa: f64) -> String {
 /// A strain in % or µm/m.
 #[must_use]
 pub fn strain(value: f64) -> String {
-    if value.abs() >= 1e-3 {
-        format!("{} %", significant(value * 1e2, DIGITS))
-    } else {
-        format!("{} µm/m", significant(value * 1e6, DIGITS))
-    }
+    if value.abs() >= 1e-3 { quantity(value * 1e2, DIGITS, "%") } else { quantity(value * 1e6, DIGITS, "µm/m") }
 }
 
 /// An energy, J.
@@ -73,7 +69,7 @@ fn duration_with(value_s: f64, digits: usize) -> String {
     let size = value_s.abs();
     let found = TIMES.iter().find(|(_, si)| size >= *si).or(TIMES.last());
     let (symbol, si) = found.filter(|_| size > 0.0 && size.is_finite()).copied().unwrap_or(("s", 1.0));
-    with_symbol(significant(value_s / si, digits), symbol)
+    quantity(value_s / si, digits, symbol)
 }
 
 /// Smaller ratios are not written with their power of ten: nobody reads more into it than that it
@@ -86,7 +82,7 @@ pub fn percent(ratio: f64) -> String {
     if ratio.abs() < MIN_RATIO && ratio != 0.0 {
         return "< 0.0001 %".to_owned();
     }
-    format!("{} %", significant(ratio * 1e2, 3))
+    quantity(ratio * 1e2, 3, "%")
 }
 
 /// A position, m, to the millimetre.
@@ -98,7 +94,7 @@ pub fn position(at_m: [f64; 2]) -> String {
 
 fn scaled(value: f64, kind: system::Kind) -> String {
     let (symbol, si) = system::for_size(kind, value);
-    with_symbol(significant(value / si, DIGITS), symbol)
+    quantity(value / si, DIGITS, symbol)
 }
 
 /// A number with so many significant digits; very large and small ones as powers of ten.
@@ -123,6 +119,13 @@ pub fn significant(value: f64, digits: usize) -> String {
     text.replace('-', "−")
 }
 
+/// A value with so many significant digits and its symbol; "no data" alone where it is no number.
+#[must_use]
+pub fn quantity(value: f64, digits: usize, symbol: &str) -> String {
+    let number = significant(value, digits);
+    if value.is_finite() { with_symbol(number, symbol) } else { number }
+}
+
 /// A number and the symbol behind it.
 #[must_use]
 pub fn with_symbol(number: String, symbol: &str) -> String {
@@ -138,11 +141,12 @@ impl Unit {
     #[must_use]
     pub fn text(self, value: f64) -> String {
         let unit = self.display();
-        let number = match unit.decimals {
-            Some(decimals) if value.is_finite() => format!("{:.decimals$}", value / unit.si).replace('-', "−"),
-            _ => significant(value / unit.si, DIGITS),
-        };
-        with_symbol(number, unit.symbol)
+        match unit.decimals {
+            Some(decimals) if value.is_finite() => {
+                with_symbol(format!("{:.decimals$}", value / unit.si).replace('-', "−"), unit.symbol)
+            }
+            _ => quantity(value / unit.si, DIGITS, unit.symbol),
+        }
     }
 
     /// A value (SI) with all its digits and the unit, to be edited.
