@@ -111,6 +111,9 @@ fn scenes_that_were_wrong_are_right() {
         ("slack over things", 980_030),
         // Gone in steps of a millionth: no answer in 60 s.
         ("pits and crests", 1_000_563),
+        // Of three wheels one is left: posts in place of all could not be laid past.
+        ("smooth wheels", 1_990_235),
+        ("rubbing wheels", 1_992_094),
         // Looped round a wheel in a sharp V.
         ("smooth wheels", 980_052),
         // Balances that run away at the least push were shown as rest.

@@ -352,7 +352,10 @@ impl FemModel {
         }
         let before = self.dynamics.clone();
         let time_s = before.cable.time();
-        if self.dynamics.warm_start(&easier.solution(), time_s, &self.dragged).is_err() {
+        let own = std::mem::replace(&mut self.dynamics.solver.work_left, *work);
+        let started = self.dynamics.warm_start(&easier.solution(), time_s, &self.dragged);
+        *work = std::mem::replace(&mut self.dynamics.solver.work_left, own);
+        if started.is_err() {
             self.dynamics = before;
         }
     }
