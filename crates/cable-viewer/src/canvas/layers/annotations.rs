@@ -1,5 +1,5 @@
-//! Annotations of the picture name supports and the robot, and give the largest tension and the figures of
-//! arrows.
+//! Annotations of the picture name supports and the robot, and give the largest tension and the
+//! figures of arrows.
 
 use egui::{Color32, Pos2, Stroke, vec2};
 
