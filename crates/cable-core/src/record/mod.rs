@@ -4,7 +4,8 @@
 //! |---|---|
 //! | `history.rs` | tensions and reactions over time, in memory |
 //! | `energy.rs` | the energy of a cable, from its nodes |
-//! | `run.rs` | a run as a whole: what its folder says about itself, and its tables |
+//! | `manifest.rs` | `run.toml`: what was asked, how far the run came, which files are its own |
+//! | `run_tables.rs` | the three tables of a run, read together |
 //! | `columns.rs`, `choice.rs` | names of the tables' columns; which nodes and figures are written |
 //! | `run_writer.rs`, `page.rs` | the tables are written in whole instants; rows that lie on one page of a file |
 //! | `table_reader.rs`, `csv_records.rs` | the tables are read up to their last whole row |
@@ -33,8 +34,9 @@ mod csv_records;
 mod energy;
 mod fingerprint;
 mod history;
+mod manifest;
 mod page;
-mod run;
+mod run_tables;
 mod run_writer;
 mod table_error;
 mod table_reader;
@@ -46,10 +48,11 @@ pub use columns::RobotColumns;
 pub use csv_records::WholeRecords;
 pub use fingerprint::Fingerprint;
 pub use history::History;
+pub(crate) use manifest::MANIFEST_HEAD;
+pub use manifest::{FileRecord, Manifest, NodeSummary, RunRequest, RunStatus, RunStop};
 pub(crate) use page::Pages;
-pub(crate) use run::MANIFEST_HEAD;
-pub(crate) use run::read_run;
-pub use run::{FileRecord, LeftOut, Manifest, NodeSummary, RunRequest, RunStatus, RunStop, RunTables};
+pub(crate) use run_tables::read_run;
+pub use run_tables::{LeftOut, RunTables};
 pub use run_writer::RunWriter;
 pub use table_error::{ReadError, RowFault, WriteError, WrittenNumber};
 pub(crate) use table_reader::has_rows;

@@ -23,7 +23,7 @@ pub mod scene;
 pub mod support_kind;
 mod surface_projection;
 pub mod view;
-mod waypoint;
+pub mod waypoint;
 
 pub use crate::command::effects::{Effects, submit_edit, submit_new_scene, submit_undone};
 pub use crate::command::file::FileCommand;

@@ -3,6 +3,8 @@
 
 use egui::{Align, Label, Layout, Ui};
 
+use crate::widgets::icon::{self, Icon};
+
 /// Draws one; `beside` draws a button at the right end.
 pub fn row(ui: &mut Ui, name: &str, value: &str, help: &str, beside: impl FnOnce(&mut Ui)) {
     ui.horizontal(|ui| {
@@ -12,6 +14,16 @@ pub fn row(ui: &mut Ui, name: &str, value: &str, help: &str, beside: impl FnOnce
             beside(ui);
             ui.add(Label::new(value).truncate()).on_hover_text(help);
         });
+    });
+}
+
+/// A row that says in the colour of warnings where something is wrong.
+pub fn assessed_row(ui: &mut Ui, name: &str, value: &str, help: &str, wrong: Option<&str>) {
+    let help = wrong.map_or_else(|| help.to_owned(), |wrong| format!("{wrong}. {help}"));
+    row(ui, name, value, &help, |ui| {
+        if wrong.is_some() {
+            icon::sign(ui, Icon::Caution, ui.visuals().warn_fg_color);
+        }
     });
 }
 

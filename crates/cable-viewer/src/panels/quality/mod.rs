@@ -18,7 +18,6 @@ use crate::panels::readouts;
 use crate::record::history::History;
 use crate::state::AppState;
 use crate::units::format;
-use crate::widgets::icon::{self, Icon};
 use crate::widgets::readout;
 
 /// A peak of the kinetic energy above that of the span before by less is said to be steady.
@@ -33,23 +32,13 @@ pub fn ui(ui: &mut Ui, state: &AppState, answer: &Solution, commands: &mut Vec<C
     kinetic_energy(ui, &state.live.history, answer);
 }
 
-/// A row that says in the colour of warnings where something is wrong.
-fn assessed_row(ui: &mut Ui, name: &str, value: &str, help: &str, wrong: Option<&str>) {
-    let help = wrong.map_or_else(|| help.to_owned(), |wrong| format!("{wrong}. {help}"));
-    readout::row(ui, name, value, &help, |ui| {
-        if wrong.is_some() {
-            icon::sign(ui, Icon::Caution, ui.visuals().warn_fg_color);
-        }
-    });
-}
-
 fn residual(ui: &mut Ui, tolerance: f64, answer: &Solution) {
     let greatest_n = answer.max_tension().tension_n;
     let share = if greatest_n > 0.0 { answer.cost.residual_n / greatest_n } else { 0.0 };
     let wrong = (share > tolerance).then_some("It is above the tolerance asked for: the tensions are not settled");
     let value = format!("{} ({})", format::force(answer.cost.residual_n), format::percent(share));
     let help = "Largest force left unbalanced at a node, and its share of the greatest tension: the smaller, the closer to equilibrium";
-    assessed_row(ui, "Residual", &value, help, wrong);
+    readout::assessed_row(ui, "Residual", &value, help, wrong);
 }
 
 fn displacement(ui: &mut Ui, answer: &Solution, commands: &mut Vec<Command>) {
@@ -81,7 +70,7 @@ fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
         .then_some("Rounding alone may spoil the tolerance asked for: use fewer segments, or a softer cable");
     let help = "Condition number, estimated as that of a straight cable of as many elements under the mean tension, without bending and \
                 contact: of 16 digits its logarithm are lost to rounding";
-    assessed_row(ui, name, &format!("≈ {worst:.1e}"), help, wrong);
+    readout::assessed_row(ui, name, &format!("≈ {worst:.1e}"), help, wrong);
 }
 
 fn kinetic_energy(ui: &mut Ui, history: &History, answer: &Solution) {
@@ -90,5 +79,5 @@ fn kinetic_energy(ui: &mut Ui, history: &History, answer: &Solution) {
     let now = format::energy(answer.energy.kinetic_j);
     let grows = kinetic_peaks_j(history).filter(|[before, last]| *last > MIN_GROWTH_RATIO * before && *last > 0.0);
     let value = grows.map_or_else(|| now.clone(), |_| format!("{now}, growing"));
-    assessed_row(ui, "Kinetic energy", &value, help, grows.map(|_| "It grows"));
+    readout::assessed_row(ui, "Kinetic energy", &value, help, grows.map(|_| "It grows"));
 }

@@ -6,7 +6,7 @@ use cable_core::{Cable, Support};
 use egui::{ComboBox, Response, Ui};
 
 use crate::command::support_kind::{KINDS, of_kind, refusal};
-use crate::command::{Command, SceneCommand};
+use crate::command::{Command, SceneCommand, waypoint};
 use crate::geometry::supports::{COINCIDENCE_M, is_broken, support_position};
 use crate::panels::scene::loads::FIRST_SPAN_S;
 use crate::panels::scene::rows::{self, NUMBER_WIDTH, cell, components, coordinates, optional, show_faults};
@@ -64,7 +64,7 @@ pub fn ui(ui: &mut Ui, state: &AppState, index: usize, commands: &mut Vec<Comman
 #[must_use]
 pub fn new_waypoint(state: &AppState, cable: usize) -> Option<SceneCommand> {
     let arc_length_m = state.document.scene.cables.get(cable)?.length_m / 2.0;
-    let at_m = position_at(state, cable, arc_length_m).unwrap_or([0.0; 2]);
+    let at_m = waypoint::position_at(state, cable, arc_length_m).unwrap_or([0.0; 2]);
     Some(SceneCommand::AddWaypoint { cable, arc_length_m, at_m })
 }
 
@@ -85,13 +85,6 @@ fn place_now(state: &AppState, cable: usize, support: usize, of: &Cable) -> (Poi
         },
         |r| ([r.x_m, r.y_m], r.arc_length_m),
     )
-}
-
-/// The node of the present answer next to an arc length, m.
-pub(super) fn position_at(state: &AppState, cable: usize, arc_length_m: f64) -> Option<Point> {
-    let nodes = &state.live.snapshot.solution.as_ref()?.cables.get(cable)?.nodes;
-    let k = nodes.partition_point(|n| n.arc_length_m < arc_length_m).min(nodes.len().checked_sub(1)?);
-    nodes.get(k).map(|n| [n.x_m, n.y_m])
 }
 
 /// Kind and place, and the button that takes it out.
