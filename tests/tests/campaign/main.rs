@@ -100,8 +100,6 @@ fn scenes_that_were_wrong_are_right() {
         ("terraces and walls", 930_124),
         // Tension on a pipe was drawn as if friction multiplied what weight alone leaves of it.
         ("tank with beams", 930_024),
-        // The same where the friction of all of the round is beyond its cone, by less.
-        ("tank with beams", 1_200_248),
         // Rounding was taken for progress, until no iterations were left.
         ("smooth wheels", 930_298),
         // A mesh on which friction is a quarter beyond what its law allows was not refined.

@@ -193,9 +193,9 @@ fn on_round(
     let rate = if small && is_beyond { most.copysign(grown) } else { grown };
     // The mesh balances friction as a factor on what weight leaves of the tension. Where weight
     // leaves hardly any of it that factor is beyond the cone, and the friction of all of the round,
-    // weight included, is within it, or beyond by less.
+    // weight included, is within it.
     let capstan = WeightedCapstan::between([a, b], whole, load)
-        .filter(|c| floor == 0.0 && pulls && is_beyond && !small && c.mobilised.abs() * whole < grown.abs());
+        .filter(|c| floor == 0.0 && pulls && is_beyond && !small && c.mobilised.abs() <= node.friction);
     // The load beside it acts where the weight hangs: before the round and after it by the angle
     // there between the cable's force and the end of the arc.
     let tangents = [-before, after].map(|turned| perp(normal(turned)) * sense);
