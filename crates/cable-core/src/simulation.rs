@@ -300,6 +300,10 @@ impl Simulation {
     /// The reason for that model.
     #[must_use]
     pub fn reason(&self) -> &ModelReason {
+        // What was asked for has no other reason, whatever it meets.
+        if self.reason == ModelReason::Requested {
+            return &self.reason;
+        }
         self.cables.iter().find_map(BreakableCable::reason).unwrap_or(&self.reason)
     }
 

@@ -16,7 +16,7 @@ use crate::model::mechanics::Constructor;
 use crate::model::{Inertia, Mechanics, Settings, StepReport};
 use crate::problem::wheels_as_posts::WheelPost;
 use crate::problem::{Problem, StandingWheels, WheelsAsPosts};
-use crate::solution::{CableSolution, Node, SupportReaction, Warning, WarningCause};
+use crate::solution::{CableSolution, ModelReason, Node, SupportReaction, Warning, WarningCause};
 use crate::state::State;
 
 /// A model of a cable over wheels, and of the same with posts once it leaves one.
@@ -262,6 +262,10 @@ impl Layer for LeavableWheels {
             led: self.led.clone(),
             robot_pose: self.robot_pose,
         }
+    }
+
+    fn reason(&self) -> Option<&ModelReason> {
+        self.inner.reason().or(self.left.as_ref().and(Some(&ModelReason::Obstacles)))
     }
 
     fn settle(&mut self) -> Result<StepReport, SolveError> {
