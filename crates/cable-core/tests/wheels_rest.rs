@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 
 use cable_core::scene::obstacle::{Obstacle, Shape};
 use cable_core::scene::{PulleySide, Scene, Support, SupportKind, catalog};
-use cable_core::solution::{CableSolution, WarningKind};
+use cable_core::solution::{CableSolution, ModelReason, WarningKind};
 use cable_core::{Model, Simulation, Vec2};
 
 use self::dice::Dice;
@@ -451,6 +451,10 @@ fn issue_015_only_the_wheel_that_is_left_is_a_post() {
         for model in [Model::Auto, Model::Spans] {
             let told = |e| panic!("{model}, {length_m} m, friction {friction}: {e}");
             let [found, free] = [&scene, &bare].map(|s| rest(s, model).unwrap_or_else(told));
+            let mut sim = Simulation::new(scene.clone(), model).unwrap();
+            sim.settle().unwrap();
+            let asked_for = *sim.reason() == ModelReason::Requested;
+            assert_eq!(asked_for, model == Model::Spans, "{model}: {:?}", sim.reason());
             let low = &found.supports[2];
             assert_eq!([low.reaction_x_n, low.reaction_y_n], [0.0, 0.0], "{model}: {low:?}");
             // Wheels that rub hold it in more than one place.

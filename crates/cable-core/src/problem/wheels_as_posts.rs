@@ -118,3 +118,35 @@ fn route(scene: &Scene, cable: &Cable, replaced: &[bool]) -> Option<Vec<Vec2>> {
     }
     Some(route)
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)] // a failing test is meant to panic
+
+    use crate::problem::problems;
+    use crate::scene::{Support, catalog};
+
+    /// Over the first and the last wheel the way turns by more than 150°. Points of it stood on the
+    /// wrong sides there, so that it led through the posts.
+    #[test]
+    fn issue_015_the_way_past_posts_turns_with_the_cable() {
+        let mut scene = catalog::hanging_span();
+        scene.loads.clear();
+        let wheel = |name: &str, radius, at| Support { radius_m: Some(radius), ..Support::pulley(name, at) };
+        let c = &mut scene.cables[0];
+        (c.length_m, c.diameter_m, c.route_m) = (10.5, 0.02, Vec::new());
+        c.supports = vec![
+            Support::fixed("a", [0.0, -0.63]),
+            wheel("high", 0.016, [0.52, 2.07]),
+            wheel("low", 0.041, [1.03, 1.38]),
+            wheel("highest", 0.024, [1.55, 2.71]),
+            Support::fixed("b", [2.06, -0.99]),
+        ];
+        let problem = &problems(&scene).unwrap()[0];
+        let wheels = problem.standing_wheels.as_ref().unwrap();
+        assert_eq!(wheels.standing, [false, true, true, true, false]);
+        let posts = wheels.as_posts(&wheels.standing, &[]).unwrap();
+        assert_eq!(posts.problem.supports.len(), 2);
+        assert!(wheels.as_posts(&[false; 5], &[]).is_none(), "none is left");
+    }
+}

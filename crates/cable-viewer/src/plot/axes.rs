@@ -62,14 +62,7 @@ pub(super) fn tick_across(mark: GridMark, shown: &RangeInclusive<f64>, symbol: &
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn line(values: &[f64]) -> Series {
-        Series {
-            name: String::new(),
-            points: values.iter().enumerate().map(|(i, &v)| [i as f64, v]).collect(),
-            ..Series::default()
-        }
-    }
+    use crate::plot::tests::line;
 
     #[test]
     fn far_limits_do_not_press_the_data_flat() {

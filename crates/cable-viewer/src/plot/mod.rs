@@ -431,7 +431,7 @@ fn draw_limits(plot: &mut PlotUi<'_>, limits: [f64; 2], si: f64, symbol: &str) {
 mod tests {
     use super::*;
 
-    fn line(values: &[f64]) -> Series {
+    pub(super) fn line(values: &[f64]) -> Series {
         Series {
             name: String::new(),
             points: values.iter().enumerate().map(|(i, &v)| [i as f64, v]).collect(),

@@ -174,25 +174,32 @@ impl LeavableWheels {
         self.wheels.as_posts(replaced, &places.collect::<Result<Vec<_>, ()>>().ok()?)
     }
 
-    /// Rests with posts for the wheels that the cable leaves, by an error, and by what comes after
-    /// it.
-    fn settle_on_posts(&mut self, error: &SolveError) -> Option<StepReport> {
-        let state = (self.inner.time_s() > 0.0).then(|| self.inner.state());
+    /// Goes on, from a state (None: at the route), with posts for the wheels that the cable leaves
+    /// by an error, and by what comes after it; None where that leads nowhere, and nothing has
+    /// changed.
+    fn run_on_posts(
+        &mut self,
+        error: &SolveError,
+        state: Option<&State>,
+        posts: impl Fn(&Self, &[bool]) -> Option<Arc<WheelsAsPosts>>,
+        mut run: impl FnMut(&mut dyn Mechanics) -> Result<StepReport, SolveError>,
+    ) -> Option<StepReport> {
         let mut replaced = self.also_left(self.replaced(), error)?;
         loop {
-            let posts = self.posts(&replaced)?;
-            let mut inner = self.built(Some(&posts), state.as_ref()).ok()?;
-            let found = inner.settle();
-            let more = match &found {
-                Ok(_) => inner.refusal().and_then(|error| self.also_left(replaced.clone(), error)),
-                Err(error) => Some(self.also_left(replaced.clone(), error)?),
+            let left = posts(self, &replaced)?;
+            let mut inner = self.built(Some(&left), state).ok()?;
+            let found = run(&mut *inner);
+            let refusal = match &found {
+                Ok(_) => inner.refusal(),
+                Err(error) => Some(error),
             };
-            match (more, found) {
+            match (refusal.and_then(|error| self.also_left(replaced.clone(), error)), found) {
                 (Some(more), _) => replaced = more,
-                (None, found) => {
-                    (self.inner, self.left) = (inner, Some(posts));
-                    return found.ok();
+                (None, Ok(report)) => {
+                    (self.inner, self.left) = (inner, Some(left));
+                    return Some(report);
                 }
+                (None, Err(_)) => return None,
             }
         }
     }
@@ -274,10 +281,11 @@ impl Layer for LeavableWheels {
             Ok(_) => self.inner.refusal(),
             Err(error) => Some(error),
         };
-        if let Some(refusal) = refusal.cloned()
-            && let Some(report) = self.settle_on_posts(&refusal)
-        {
-            return Ok(self.told(report));
+        if let Some(refusal) = refusal.cloned() {
+            let state = (self.inner.time_s() > 0.0).then(|| self.inner.state());
+            if let Some(report) = self.run_on_posts(&refusal, state.as_ref(), Self::posts, |inner| inner.settle()) {
+                return Ok(self.told(report));
+            }
         }
         found.map(|report| self.told(report))
     }
@@ -289,19 +297,21 @@ impl Layer for LeavableWheels {
         gauge: &mut TensionGauge,
     ) -> Result<StepReport, SolveError> {
         let end_s = self.inner.time_s() + dt_s;
-        let mut found = self.inner.advance_gauged(dt_s, inertia, gauge);
-        while let Err(error) = &found
-            && let Some(replaced) = self.also_left(self.replaced(), error)
-        {
-            // Posts stand still: a wheel that is drawn on its way is none.
-            let led = replaced.iter().zip(&self.led).any(|(replaced, led)| *replaced && led.is_some());
-            let posts = if led { None } else { self.posts(&replaced) };
-            let Some(posts) = posts else { break };
-            let Ok(inner) = self.built(Some(&posts), Some(&self.inner.state())) else { break };
-            (self.inner, self.left) = (inner, Some(posts));
-            found = self.inner.advance_gauged(end_s - self.inner.time_s(), inertia, gauge);
+        let error = match self.inner.advance_gauged(dt_s, inertia, gauge) {
+            Ok(report) => return Ok(self.told(report)),
+            Err(error) => error,
+        };
+        // Posts stand still: a wheel that is drawn on its way is none.
+        let standing = |this: &Self, replaced: &[bool]| {
+            let led = replaced.iter().zip(&this.led).any(|(replaced, led)| *replaced && led.is_some());
+            if led { None } else { this.posts(replaced) }
+        };
+        let (state, from_s) = (self.inner.state(), self.inner.time_s());
+        let run = |inner: &mut dyn Mechanics| inner.advance_gauged(end_s - from_s, inertia, gauge);
+        match self.run_on_posts(&error, Some(&state), standing, run) {
+            Some(report) => Ok(self.told(report)),
+            None => Err(error),
         }
-        found.map(|report| self.told(report))
     }
 
     fn warm_start(&mut self, answer: &CableSolution, time_s: f64) -> Result<(), SolveError> {
