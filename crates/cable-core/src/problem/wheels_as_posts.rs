@@ -123,6 +123,8 @@ fn route(scene: &Scene, cable: &Cable, replaced: &[bool]) -> Option<Vec<Vec2>> {
 mod tests {
     #![allow(clippy::unwrap_used)] // a failing test is meant to panic
 
+    use crate::contact::distance::segment_segment;
+    use crate::math::{Vec2, smaller};
     use crate::problem::problems;
     use crate::scene::{Support, catalog};
 
@@ -147,6 +149,12 @@ mod tests {
         assert_eq!(wheels.standing, [false, true, true, true, false]);
         let posts = wheels.as_posts(&wheels.standing, &[]).unwrap();
         assert_eq!(posts.problem.supports.len(), 2);
+        for wheel in &posts.wheels {
+            let clear = |leg: &[Vec2]| segment_segment(leg[0], leg[1], wheel.center, wheel.center);
+            let nearest = posts.problem.route.windows(2).map(clear).fold(f64::INFINITY, smaller);
+            let radius = problem.supports[wheel.support].wheel_radius;
+            assert!(nearest > radius && nearest < 1.3 * radius, "{nearest} m from `{}` of {radius} m", wheel.post);
+        }
         assert!(wheels.as_posts(&[false; 5], &[]).is_none(), "none is left");
     }
 }
