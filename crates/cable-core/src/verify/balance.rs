@@ -11,7 +11,8 @@ use super::checked_cable::{AppliedForce, CheckedCable};
 use super::support_hold::{Role, SupportHold};
 use super::surroundings::{NearestFeature, Neighbours};
 use super::tolerance::{
-    BALANCE_FRACTION, CONE_EXCESS, LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE, MOMENTUM, NORMAL_TOLERANCE, REPORTED_BALANCE,
+    BALANCE_FRACTION, CONE_EXCESS, LUMPED_WEIGHT_TURN, MATERIAL_TOLERANCE, MOMENTUM, NORMAL_TOLERANCE, PIECE_EXCESS,
+    REPORTED_BALANCE,
 };
 use crate::math::{Vec2, cross, larger, smaller, vec2};
 use crate::solution::ContactReport;
@@ -98,6 +99,8 @@ pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification
     let (mut adrift, mut beyond, mut pressed, mut in_air) = (Vec2::zeros(), 0.0, 0.0, 0.0);
     let (mut contacts, mut wheels, mut worst) = (Vec2::zeros(), Vec2::zeros(), (0.0, 0));
     let mut rays = Vec::new();
+    // The piece that is furthest beyond its own cone, what it is beyond and what is allowed, N.
+    let mut gross: Option<(f64, f64, usize)> = None;
     for piece in pieces(checked) {
         let Some(excess) = excess(checked, near, &piece, &mut rays) else {
             // In the air residuals add up: each may be small and the sum not.
@@ -117,7 +120,11 @@ pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification
             contacts += piece.contact
         }
         beyond += excess;
-        pressed += piece.contact.norm();
+        let size = piece.contact.norm();
+        pressed += size;
+        if !(excess <= limit + PIECE_EXCESS * size) && gross.is_none_or(|(most, ..)| excess > most) {
+            gross = Some((excess, limit + PIECE_EXCESS * size, piece.nodes[0]));
+        }
         if excess > worst.0 || excess.is_nan() {
             worst = (excess, piece.nodes[0]);
         }
@@ -127,9 +134,10 @@ pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification
     // Small sums may be hidden by all bends together, larger ones by the bend where they are.
     let [at_bends, apart] = if beyond <= allowed { [0.0; 2] } else { lumped_friction(checked, near) };
     let hidden = smaller(at_bends, REPORTED_BALANCE * checked.scale);
-    if !(beyond <= allowed + hidden) && !(apart <= allowed) {
-        let mut finding = checked.finding(Law::Friction, worst.1, beyond, allowed);
-        let here = near.of(worst.1).first();
+    let all = (!(beyond <= allowed + hidden) && !(apart <= allowed)).then_some((beyond, allowed, worst.1));
+    if let Some((value, limit, node)) = all.or(gross) {
+        let mut finding = checked.finding(Law::Friction, node, value, limit);
+        let here = near.of(node).first();
         here.map_or("", |n| checked.surroundings.name(n.body)).clone_into(&mut finding.with);
         found.report(finding);
     }
@@ -225,7 +233,8 @@ fn lumped_friction(checked: &CheckedCable<'_>, near: &Neighbours) -> [f64; 2] {
         let force = larger(nodes[piece.nodes[0]].force().norm(), nodes[piece.nodes[1]].force().norm());
         let turn = if weight < force { weight / force } else { 1.0 };
         let lumped = if gather_rays(checked, near, &piece, &mut rays) { weight * turn } else { 0.0 };
-        let hidden = LUMPED_WEIGHT_TURN * greatest_friction(checked) * lumped;
+        // No more than a part of the force that is there: what is slack hides nothing.
+        let hidden = smaller(LUMPED_WEIGHT_TURN * greatest_friction(checked) * lumped, REPORTED_BALANCE * force);
         sums = [sums[0] + hidden, sums[1] + larger(excess - hidden, 0.0)];
     }
     sums

@@ -223,6 +223,28 @@ fn friction_beyond_the_cone_is_seen() {
     assert!(found.findings.iter().any(|f| f.law == Law::Friction), "{:?}", found.findings);
 }
 
+/// What bars hide of the friction at bends is a part of the force there: beside the weight of a
+/// long cable that part of the greatest force was all that slack cable on a round pulls with.
+#[test]
+fn issue_015_a_tension_that_bulges_on_a_round_is_seen() {
+    let text = OVER_POST
+        .replace("length_m = 10.6", "length_m = 60.0")
+        .replace("friction = 0.3", "friction = 0.7")
+        .replace("center_m = [5.0, 2.7]", "center_m = [5.0, -0.1]");
+    sees(Law::Friction, &text, |c| {
+        let on_post = |x: f64, y: f64| (x - 5.0).hypot(y + 0.1) < 0.32;
+        let inside: Vec<usize> = (1..c.nodes.len() - 1)
+            .filter(|&k| (k - 1..=k + 1).all(|k| on_post(c.nodes[k].x_m, c.nodes[k].y_m)))
+            .collect();
+        assert!(inside.len() > 3, "{inside:?}");
+        let n = &mut c.nodes[inside[4]];
+        assert!(n.tension_n > 0.3, "{n:?}");
+        n.tension_n += 0.5;
+        let pull = n.tension_n / n.force_n[0].hypot(n.force_n[1]);
+        n.force_n = n.force_n.map(|f| f * pull);
+    });
+}
+
 #[test]
 fn a_moment_that_nothing_balances_is_seen() {
     let stiff = SPAN.replace("length_m = 11.0", "length_m = 11.0\nbending_stiffness_n_m2 = 5.0");

@@ -26,12 +26,6 @@ const SAG_ROUNDS: usize = 4;
 /// away from the round that is drawn.
 const PATH_EXCESS_DIAMETERS: f64 = 0.005;
 
-/// Growth of the logarithm of tension over a small round, in parts of what friction makes of its
-/// turn, from which on weight that hangs over it from the bars beside it is told from sag. Less:
-/// what a sagging bar rubs in the air beside a corner is said to rub there; more: short pieces rub
-/// beyond their cone.
-const HANGING_TENSION_GROWTH: f64 = 1.2;
-
 /// Part of what chords are shorter than their arc that goes to the ways beside it. More: they were
 /// longer than their material.
 const CHORD_CORRECTION_FRACTION: f64 = 0.8;
@@ -183,45 +177,28 @@ fn on_round(
     let last = unrubbed(normal(after));
     let over = RoundFloorFriction::between([a, b - (last - a)], floor);
     let load = [perp(first) * sense, first].map(|v| d.input.body.dot(&v) * radius / mesh.thermal_stretch);
-    let pulls = a > 0.0 && b > 0.0;
-    // On a round that is small beside its bars, friction of the weight that hangs over it from them
-    // is beside it: on the round it is no more than its turn there allows.
-    let grown = if pulls && last > 0.0 { (b / last).ln() } else { f64::INFINITY };
-    let small = same == [false; 2] && whole * radius < d.mesh.tuning.remesh.one_mark_bars * d.even();
-    let most = node.friction * whole;
-    let is_beyond = grown.abs() > HANGING_TENSION_GROWTH * most;
-    let rate = if small && is_beyond { most.copysign(grown) } else { grown };
-    // The mesh balances friction as a factor on what weight leaves of the tension. Where weight
-    // leaves hardly any of it that factor is beyond the cone, and the friction of all of the round,
-    // weight included, is within it.
-    let capstan = WeightedCapstan::between([a, b], whole, load)
-        .filter(|c| floor == 0.0 && pulls && is_beyond && !small && c.mobilised.abs() <= node.friction);
-    // The load beside it acts where the weight hangs: before the round and after it by the angle
-    // there between the cable's force and the end of the arc.
+    // Where the weight of a bar hangs over the round, it comes or goes at an angle to its tangent and
+    // presses at that one point.
     let tangents = [-before, after].map(|turned| perp(normal(turned)) * sense);
-    let hangs = [angle_between(ends[0], tangents[0]), angle_between(tangents[1], ends[1])]
-        .map(|angle| larger(sense * angle, 0.0));
-    let part_before = if hangs[0] + hangs[1] > 0.0 { hangs[0] / (hangs[0] + hangs[1]) } else { 0.5 };
-    let begins = (part_before * (grown - rate)).exp();
+    let kinks = [angle_between(ends[0], tangents[0]), angle_between(tangents[1], ends[1])];
+    let kinks = [0, 1].map(|j| if same[j] { 0.0 } else { larger(sense * kinks[j], 0.0) });
+    let capstan = WeightedCapstan::between([a, b], whole, load, kinks).filter(|_| floor == 0.0 && a > 0.0 && b > 0.0);
     let at = |i: f64| {
         let f = i / count;
         let turned = f * whole - before;
         let stretch = stretch[usize::from(turned > 0.0)];
         let normal = normal(turned);
-        let smooth = unrubbed(normal);
-        let tension = if floor != 0.0 {
-            over.map_or(a + (b - a) * f, |over| over.at(f) + smooth - a)
-        } else if let Some(capstan) = capstan {
+        let tension = if let Some(capstan) = capstan {
             capstan.at(whole * f)
-        } else if pulls && smooth > 0.0 && last > 0.0 {
-            smooth * begins * (rate * f).exp()
         } else {
-            a + (b - a) * f
+            let over = over.filter(|_| floor != 0.0);
+            over.map_or(a + (b - a) * f, |over| over.at(f) + unrubbed(normal) - a)
         };
         // The floor's friction of half of what lies beside a point acts at it, as it does at a node
         // of the cable.
         let beyond = if i < count { tension - 0.5 * floor / count } else { tension - f2 };
-        let force = perp(normal) * (sense * beyond);
+        let leaves = i >= count && !same[1] && capstan.is_some();
+        let (tension, force) = if leaves { (b, ends[1]) } else { (tension, perp(normal) * (sense * beyond)) };
         let arc_length = mesh.arc_length[k] + turned * radius / stretch;
         OnRound { arc_length, at: node.end.center + normal * radius, tension, force, stretch }
     };

@@ -24,7 +24,7 @@ const HALVINGS: usize = 60;
 /// The tension of a cable along a round that carries its weight.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WeightedCapstan {
-    /// Tension at its start, N.
+    /// Tension where it begins, just beyond the point at which it comes on to the round, N.
     start: f64,
     /// Coefficient of the friction that is mobilised; positive where the tension grows by it.
     pub mobilised: f64,
@@ -33,11 +33,13 @@ pub(super) struct WeightedCapstan {
 }
 
 impl WeightedCapstan {
-    /// Between two tensions (N) over a turn (rad) with g b·t and g b·n at its start (N); None where
-    /// no friction leads from the one to the other.
-    pub fn between([start, end]: [f64; 2], turn: f64, load: [f64; 2]) -> Option<Self> {
-        let with = |mobilised: f64| Self { start, mobilised, load };
-        let lacks = |m: f64| with(m).at(turn) < end;
+    /// Between two tensions (N) over a turn (rad) with g b·t and g b·n at its start (N), which the
+    /// cable begins and ends with a kink (rad); None where no friction leads from the one to the
+    /// other.
+    pub fn between([before, after]: [f64; 2], turn: f64, load: [f64; 2], kinks: [f64; 2]) -> Option<Self> {
+        let [(sin0, cos0), (sin1, cos1)] = kinks.map(f64::sin_cos);
+        let with = |mobilised: f64| Self { start: before * (cos0 + mobilised * sin0), mobilised, load };
+        let lacks = |m: f64| with(m).at(turn) < after * (cos1 - m * sin1);
         let bound = (0..=DOUBLINGS).map(|k| f64::powi(2.0, k) / turn);
         let range = if lacks(0.0) {
             [0.0, bound.into_iter().find(|m| !lacks(*m))?]
@@ -89,12 +91,12 @@ mod tests {
             (1.0, 2.5, 2.0, [-2.0, -0.5]),
             (3.0, 0.2, 0.5, [0.3, -2.0]),
         ] {
-            let found = WeightedCapstan::between([start, end], turn, load).expect("friction leads there");
+            let found = WeightedCapstan::between([start, end], turn, load, [0.0; 2]).expect("friction leads there");
             assert!((found.at(turn) - end).abs() < 1e-12 * start, "{found:?}");
             let by_steps = integrated(start, found.mobilised, turn, load);
             assert!((by_steps - end).abs() < 1e-8 * start, "{by_steps} against {end}");
         }
-        let weightless = WeightedCapstan::between([10.0, 14.0], 1.0, [0.0; 2]).expect("friction leads there");
+        let weightless = WeightedCapstan::between([10.0, 14.0], 1.0, [0.0; 2], [0.0; 2]).expect("friction leads there");
         assert!((weightless.mobilised - 1.4f64.ln()).abs() < 1e-14);
     }
 
@@ -102,7 +104,7 @@ mod tests {
     fn issue_015_a_tension_that_weight_alone_would_use_up_does_not_bulge_between_the_ends() {
         // From 45° to the horizontal down a pipe: weight alone would leave 0.1 N of 1.58 N, and the
         // cable hangs on with 1 N.
-        let found = WeightedCapstan::between([1.58, 1.008], 0.78, [1.5, -1.5]).expect("friction leads there");
+        let found = WeightedCapstan::between([1.58, 1.008], 0.78, [1.5, -1.5], [0.0; 2]).expect("friction leads there");
         // A factor on what weight alone leaves had 3.04 N in between.
         let most = (0..=20).map(|k| found.at(0.039 * f64::from(k))).fold(0.0, f64::max);
         assert!((most - 1.5843).abs() < 1e-4, "{most} N");
