@@ -100,6 +100,22 @@ mod tests {
         assert!((weightless.mobilised - 1.4f64.ln()).abs() < 1e-14);
     }
 
+    /// What presses at a kink rubs with the same coefficient as what lies on the round.
+    #[test]
+    fn a_kink_at_either_end_takes_its_part_of_the_friction() {
+        let (before, after, kinks) = (6.0, 9.0, [0.2f64, 0.3]);
+        let found = WeightedCapstan::between([before, after], 0.8, [0.5, -1.0], kinks).expect("friction leads there");
+        let [first, last] = [0.0, 0.8].map(|turned| found.at(turned));
+        // Along the tangent and across it at both kinks.
+        let rubs = [first - before * kinks[0].cos(), after * kinks[1].cos() - last];
+        let presses = [before * kinks[0].sin(), after * kinks[1].sin()];
+        for (rubs, presses) in rubs.into_iter().zip(presses) {
+            assert!((rubs - found.mobilised * presses).abs() < 1e-12 * after, "{rubs} N, {presses} N");
+        }
+        let by_steps = integrated(first, found.mobilised, 0.8, [0.5, -1.0]);
+        assert!((by_steps - last).abs() < 1e-8 * last, "{by_steps} against {last}");
+    }
+
     #[test]
     fn issue_015_a_tension_that_weight_alone_would_use_up_does_not_bulge_between_the_ends() {
         // From 45° to the horizontal down a pipe: weight alone would leave 0.1 N of 1.58 N, and the
