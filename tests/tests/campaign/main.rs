@@ -111,7 +111,8 @@ fn scenes_that_were_wrong_are_right() {
         ("slack over things", 980_030),
         // Gone in steps of a millionth: no answer in 60 s.
         ("pits and crests", 1_000_563),
-        // Slack cable on a pipe drawn with 2.5 N between nodes with 1.5 N, by `fem` as a second opinion.
+        // Slack cable on a pipe drawn with 2.5 N between nodes with 1.5 N, by `fem` as a second
+        // opinion.
         ("tank with beams", 1_200_248),
         // Of three wheels one is left: posts in place of all could not be laid past.
         ("smooth wheels", 1_990_235),

@@ -100,8 +100,8 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
 }
 
 /// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the
-/// sliding node before, to where it leaves it, or halfway to the next. Its tension is that of its
-/// weight, and beyond that grows evenly in its logarithm, as friction makes it.
+/// sliding node before, to where it leaves it, or halfway to the next. Its tension is what its
+/// weight makes of it, and friction that is mobilised evenly.
 fn on_round(
     d: &CableState,
     k: usize,
@@ -177,8 +177,8 @@ fn on_round(
     let last = unrubbed(normal(after));
     let over = RoundFloorFriction::between([a, b - (last - a)], floor);
     let load = [perp(first) * sense, first].map(|v| d.input.body.dot(&v) * radius / mesh.thermal_stretch);
-    // Where the weight of a bar hangs over the round, it comes or goes at an angle to its tangent and
-    // presses at that one point.
+    // Where the weight of a bar hangs over the round, it comes or goes at an angle to its tangent
+    // and presses at that one point.
     let tangents = [-before, after].map(|turned| perp(normal(turned)) * sense);
     let kinks = [angle_between(ends[0], tangents[0]), angle_between(tangents[1], ends[1])];
     let kinks = [0, 1].map(|j| if same[j] { 0.0 } else { larger(sense * kinks[j], 0.0) });
@@ -197,6 +197,7 @@ fn on_round(
         // The floor's friction of half of what lies beside a point acts at it, as it does at a node
         // of the cable.
         let beyond = if i < count { tension - 0.5 * floor / count } else { tension - f2 };
+        // Beyond the last point the cable has the force with which it leaves.
         let leaves = i >= count && !same[1] && capstan.is_some();
         let (tension, force) = if leaves { (b, ends[1]) } else { (tension, perp(normal) * (sense * beyond)) };
         let arc_length = mesh.arc_length[k] + turned * radius / stretch;
