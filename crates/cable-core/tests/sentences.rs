@@ -56,6 +56,7 @@ fn warnings() -> Vec<Warning> {
                     towards_start_n: Some(90.5),
                     towards_end_n: None,
                     loose_n: Some(12.0),
+                    frictionless_n: Some(70.0),
                     start_n: range,
                     end_n: range,
                 },

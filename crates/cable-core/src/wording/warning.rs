@@ -238,14 +238,26 @@ fn histories(f: Figures, known: &Histories) -> String {
             ". The greatest tension is {} as laid; by how much another history would change it was not found",
             f.force(*greatest_n, 2)
         ),
-        Histories::Mobilised { greatest_n, towards_start_n, towards_end_n, loose_n, start_n, end_n } => {
+        Histories::Mobilised {
+            greatest_n,
+            towards_start_n,
+            towards_end_n,
+            loose_n,
+            frictionless_n,
+            start_n,
+            end_n,
+        } => {
             let figure = |of: Option<f64>| of.map_or_else(|| "no balance was found".to_owned(), |n| f.force(n, 2));
             format!(
-                ". The greatest tension is {} as laid; with friction fully mobilised towards the start: {}, towards the end: {}{}. Among the histories that were found the tension is {} at the start and {} at the end",
+                ". The greatest tension is {} as laid; with friction fully mobilised towards the start: {}, towards the end: {}{}{}. Among the histories that were found the tension is {} at the start and {} at the end",
                 f.force(*greatest_n, 2),
                 figure(*towards_start_n),
                 figure(*towards_end_n),
                 loose_n.map_or_else(String::new, |n| format!("; laid down loose: {}", f.force(n, 2))),
+                frictionless_n.map_or_else(String::new, |n| format!(
+                    "; the frictionless shape, held by friction: {}",
+                    f.force(n, 2)
+                )),
                 f.forces(*start_n),
                 f.forces(*end_n)
             )

@@ -249,7 +249,8 @@ impl SpansModel {
     /// would have left.
     ///
     /// An equilibrium that was found without friction is not sought so again: the search would come
-    /// to the place from which the cable is drawn here.
+    /// to the place from which the cable is drawn here. Where drawing it leads nowhere, the
+    /// frictionless shape that friction would hold is another one.
     fn histories(&self, start: SearchStart, workspace: &mut Workspace) -> Histories {
         let Some(cable_equilibrium) = &self.cable_equilibrium else { return Histories::NotSought };
         let turned = self.layout.is_reversed();
@@ -264,11 +265,13 @@ impl SpansModel {
         let heap = CableEquilibrium::in_heaps(&self.layout, &cable_equilibrium.instant);
         let loose =
             heap.filter(|heap| heap.loose_lengths().is_some_and(|[material, _]| material > 0.0)).map(|n| tensions(&n));
-        let all = || std::iter::once(laid).chain(drawn.into_iter().flatten()).chain(loose);
+        let seeks = start == SearchStart::AlsoWithoutFriction && drawn.contains(&None);
+        let frictionless = if seeks { self.frictionless_held(workspace).map(|n| tensions(&n)) } else { None };
+        let all = || std::iter::once(laid).chain(drawn.into_iter().flatten()).chain(loose).chain(frictionless);
         let range = |k: usize| all().map(|t| t[k]).fold([laid[k], laid[k]], |[a, b], t| [smaller(a, t), larger(b, t)]);
         let greatest_n = laid[2];
         // A range of one history says nothing about the others.
-        if loose.is_none() && drawn.iter().all(Option::is_none) {
+        if loose.is_none() && frictionless.is_none() && drawn.iter().all(Option::is_none) {
             return Histories::NotFound { greatest_n };
         }
         let [towards_start_n, towards_end_n] = drawn.map(|of| of.map(|t| t[2]));
@@ -277,6 +280,7 @@ impl SpansModel {
             towards_start_n,
             towards_end_n,
             loose_n: loose.map(|t| t[2]),
+            frictionless_n: frictionless.map(|t| t[2]),
             start_n: range(0),
             end_n: range(1),
         }
@@ -315,6 +319,13 @@ impl SpansModel {
         Arc::make_mut(&mut layout.problem).cable.friction_mobilised = drawn;
         let instant = self.cable_equilibrium.as_ref()?.instant.clone();
         let found = CableEquilibrium::along_route_from(&layout, &instant, start, workspace);
+        found.ok().map(|(cable_equilibrium, _)| cable_equilibrium).filter(|n| n.loose_lengths().is_none())
+    }
+
+    /// The cable as it rests without friction, held by friction from then on.
+    fn frictionless_held(&self, workspace: &mut Workspace) -> Option<CableEquilibrium> {
+        let instant = self.cable_equilibrium.as_ref()?.instant.clone();
+        let found = CableEquilibrium::along_route_from(&self.layout, &instant, SearchStart::WithoutFriction, workspace);
         found.ok().map(|(cable_equilibrium, _)| cable_equilibrium).filter(|n| n.loose_lengths().is_none())
     }
 

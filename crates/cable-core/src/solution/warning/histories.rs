@@ -47,6 +47,10 @@ pub enum Histories {
         /// The same laid down loose, N; None = there is no cable to spare.
         #[serde(default)]
         loose_n: Option<f64>,
+        /// The same of the shape without friction, held by friction, N; None = it was not sought,
+        /// as drawing the cable leads further, or it is the one that is shown.
+        #[serde(default)]
+        frictionless_n: Option<f64>,
         /// Range of the tension at the start, N.
         start_n: [f64; 2],
         /// Range of the tension at the end, N.

@@ -38,6 +38,8 @@ pub(in crate::model::spans) enum SearchStart {
     WithFriction,
     /// Without friction, too: friction holds the cable from then on.
     AlsoWithoutFriction,
+    /// Without friction only.
+    WithoutFriction,
 }
 
 /// A search that found no equilibrium.
@@ -77,7 +79,8 @@ impl CableEquilibrium {
     ) -> Result<(Self, StepStats), NotFound> {
         // A cable that is not held at both ends would run to where it needs no friction.
         let is_held = layout.sections.iter().all(|s| s.supports.iter().all(Option::is_some));
-        let without_friction = start == SearchStart::AlsoWithoutFriction && is_held;
+        let without_friction = start != SearchStart::WithFriction && is_held;
+        let with_friction = start != SearchStart::WithoutFriction && instant.friction > 0.0;
         let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
         let context = layout.context(layout.curves(), instant);
         let (mut first, mut stopped, mut pushes, mut loose) = (None, None, false, None);
@@ -86,7 +89,7 @@ impl CableEquilibrium {
                 FirstFriction::FromTheStart => instant,
                 FirstFriction::OnceAtRest => &smooth,
             };
-            if !(without_friction || begin.friction > 0.0) {
+            if !(if begin.friction > 0.0 { with_friction } else { without_friction }) {
                 continue;
             }
             if shape.slack == SlackCable::WhereTensionEnds && !pushes {
