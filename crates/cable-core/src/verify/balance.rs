@@ -122,8 +122,10 @@ pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification
         beyond += excess;
         let size = piece.contact.norm();
         pressed += size;
-        if !(excess <= limit + PIECE_EXCESS * size) && gross.is_none_or(|(most, ..)| excess > most) {
-            gross = Some((excess, limit + PIECE_EXCESS * size, piece.nodes[0]));
+        let [before, after] = piece.nodes.map(|k| checked.answer.nodes[k].force().norm());
+        let its_own = limit + PIECE_EXCESS * size + REPORTED_BALANCE * larger(before, after);
+        if !(excess <= its_own) && gross.is_none_or(|(most, ..)| excess > most) {
+            gross = Some((excess, its_own, piece.nodes[0]));
         }
         if excess > worst.0 || excess.is_nan() {
             worst = (excess, piece.nodes[0]);
