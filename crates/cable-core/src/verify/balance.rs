@@ -123,7 +123,7 @@ pub(super) fn check_balance(checked: &CheckedCable<'_>, found: &mut Verification
         let size = piece.contact.norm();
         pressed += size;
         let [before, after] = piece.nodes.map(|k| checked.answer.nodes[k].force().norm());
-        let its_own = limit + PIECE_EXCESS * size + REPORTED_BALANCE * larger(before, after);
+        let its_own = limit + PIECE_EXCESS * larger(size, larger(before, after));
         if !(excess <= its_own) && gross.is_none_or(|(most, ..)| excess > most) {
             gross = Some((excess, its_own, piece.nodes[0]));
         }

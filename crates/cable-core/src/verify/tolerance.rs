@@ -56,12 +56,11 @@ pub(crate) const REACH_M: f64 = 1.2e-3;
 /// Friction beyond the cone, of the normal force: contacts of `fem` stop at 1e-4 of their forces.
 pub(crate) const CONE_EXCESS: f64 = 1e-3;
 
-/// Force of one piece beyond its cone, of the force that its contact takes, beside
-/// [`REPORTED_BALANCE`] of the force in the cable there; all pieces together are held to
-/// [`CONE_EXCESS`]. Smaller: what coarse bars beside a corner leave is refused; larger:
-/// slack cable may be drawn with a tension that no friction leads to, as what is allowed of all
-/// pieces together is much there.
-pub(crate) const PIECE_EXCESS: f64 = 0.1;
+/// Force of one piece beyond its cone, of the greatest force there, in the cable or of its contact;
+/// all pieces together are held to [`CONE_EXCESS`]. Smaller: what bars that sag away from a corner
+/// leave beside it is refused (a slow draw under a beam); larger: slack cable may be drawn with a
+/// tension that no friction leads to, as what is allowed of all pieces together is much there.
+pub(crate) const PIECE_EXCESS: f64 = 0.05;
 
 /// Part of the cable's length by which arc lengths at the ends may miss 0 and the length.
 pub(crate) const MATERIAL_TOLERANCE: f64 = 1e-9;
