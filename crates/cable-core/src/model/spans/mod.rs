@@ -265,7 +265,7 @@ impl SpansModel {
         let heap = CableEquilibrium::in_heaps(&self.layout, &cable_equilibrium.instant);
         let loose =
             heap.filter(|heap| heap.loose_lengths().is_some_and(|[material, _]| material > 0.0)).map(|n| tensions(&n));
-        let seeks = start == SearchStart::AlsoWithoutFriction && drawn.contains(&None);
+        let seeks = start == SearchStart::Either && drawn.contains(&None);
         let frictionless = if seeks { self.frictionless_held(workspace).map(|n| tensions(&n)) } else { None };
         let all = || std::iter::once(laid).chain(drawn.into_iter().flatten()).chain(loose).chain(frictionless);
         let range = |k: usize| all().map(|t| t[k]).fold([laid[k], laid[k]], |[a, b], t| [smaller(a, t), larger(b, t)]);
@@ -325,7 +325,7 @@ impl SpansModel {
     /// The cable as it rests without friction, held by friction from then on.
     fn frictionless_held(&self, workspace: &mut Workspace) -> Option<CableEquilibrium> {
         let instant = self.cable_equilibrium.as_ref()?.instant.clone();
-        let found = CableEquilibrium::along_route_from(&self.layout, &instant, SearchStart::WithoutFriction, workspace);
+        let found = CableEquilibrium::along_route_from(&self.layout, &instant, SearchStart::Frictionless, workspace);
         found.ok().map(|(cable_equilibrium, _)| cable_equilibrium).filter(|n| n.loose_lengths().is_none())
     }
 
@@ -427,8 +427,8 @@ impl Mechanics for SpansModel {
         let loose = self.cable_equilibrium.as_ref().and_then(CableEquilibrium::loose_lengths);
         let seeks = self.histories && found.is_ok() && loose.is_none() && self.rubs();
         let start = match &found {
-            Ok(taken) if taken.found_without_friction => SearchStart::WithFriction,
-            _ => SearchStart::AlsoWithoutFriction,
+            Ok(taken) if taken.found_without_friction => SearchStart::Rubbing,
+            _ => SearchStart::Either,
         };
         let histories = if seeks { self.histories(start, &mut workspace) } else { Histories::NotSought };
         self.workspace = workspace;

@@ -35,11 +35,11 @@ use crate::solution::Node;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::spans) enum SearchStart {
     /// With friction only.
-    WithFriction,
+    Rubbing,
     /// Without friction, too: friction holds the cable from then on.
-    AlsoWithoutFriction,
+    Either,
     /// Without friction only.
-    WithoutFriction,
+    Frictionless,
 }
 
 /// A search that found no equilibrium.
@@ -67,7 +67,7 @@ impl CableEquilibrium {
         instant: &BoundaryConditions,
         workspace: &mut Workspace,
     ) -> Result<(Self, StepStats), NotFound> {
-        Self::along_route_from(layout, instant, SearchStart::AlsoWithoutFriction, workspace)
+        Self::along_route_from(layout, instant, SearchStart::Either, workspace)
     }
 
     /// The same, with the places where the search may begin.
@@ -79,8 +79,8 @@ impl CableEquilibrium {
     ) -> Result<(Self, StepStats), NotFound> {
         // A cable that is not held at both ends would run to where it needs no friction.
         let is_held = layout.sections.iter().all(|s| s.supports.iter().all(Option::is_some));
-        let without_friction = start != SearchStart::WithFriction && is_held;
-        let with_friction = start != SearchStart::WithoutFriction && instant.friction > 0.0;
+        let without_friction = start != SearchStart::Rubbing && is_held;
+        let with_friction = start != SearchStart::Frictionless && instant.friction > 0.0;
         let smooth = BoundaryConditions { friction: 0.0, ..instant.clone() };
         let context = layout.context(layout.curves(), instant);
         let (mut first, mut stopped, mut pushes, mut loose) = (None, None, false, None);
