@@ -223,8 +223,8 @@ fn friction_beyond_the_cone_is_seen() {
     assert!(found.findings.iter().any(|f| f.law == Law::Friction), "{:?}", found.findings);
 }
 
-/// What bars hide of the friction at bends is a part of the force there: beside the weight of a
-/// long cable that part of the greatest force was all that slack cable on a round pulls with.
+/// Slack cable on a round pulls with less than all pieces of a long cable together may be beyond
+/// their cones, so its tension is judged by the force there.
 #[test]
 fn issue_015_a_tension_that_bulges_on_a_round_is_seen() {
     let text = OVER_POST

@@ -9,9 +9,11 @@
 //! T = α b·t + β b·n + C e^{mψ},      α = 2gm/(1+m²),   β = g(m²−1)/(1+m²)
 //! ```
 //!
-//! and m is what leads from the one end to the other. Where |m| is no more than the friction, every
-//! piece of the round is within its cone. (L. Euler, "Remarques sur l'effet du frottement dans
-//! l'équilibre", Mémoires de l'académie des sciences de Berlin 18, 1769, with weight.)
+//! and m is what leads from the one end to the other. At a kink, where cable that comes with a
+//! tension a turns by an angle h at one point, it presses with a sin h, and a (cos h + m sin h)
+//! leads on. Where |m| is no more than the friction, every piece of the round is within its cone.
+//! (L. Euler, "Remarques sur l'effet du frottement dans l'équilibre", Mémoires de l'académie des
+//! sciences de Berlin 18, 1769, with weight.)
 
 use crate::numerics::bisect;
 
@@ -27,15 +29,15 @@ pub(super) struct WeightedCapstan {
     /// Tension where it begins, just beyond the point at which it comes on to the round, N.
     start: f64,
     /// Coefficient of the friction that is mobilised; positive where the tension grows by it.
-    pub mobilised: f64,
+    mobilised: f64,
     /// g b·t and g b·n at its start, N.
     load: [f64; 2],
 }
 
 impl WeightedCapstan {
-    /// Between two tensions (N) over a turn (rad) with g b·t and g b·n at its start (N), which the
-    /// cable begins and ends with a kink (rad); None where no friction leads from the one to the
-    /// other.
+    /// Between two tensions (N) over a turn (rad) with g b·t and g b·n at its start (N), where the
+    /// cable begins and ends the turn with a kink (rad); None where no friction leads from the one
+    /// to the other.
     pub fn between([before, after]: [f64; 2], turn: f64, load: [f64; 2], kinks: [f64; 2]) -> Option<Self> {
         let [(sin0, cos0), (sin1, cos1)] = kinks.map(f64::sin_cos);
         let with = |mobilised: f64| Self { start: before * (cos0 + mobilised * sin0), mobilised, load };
@@ -100,7 +102,7 @@ mod tests {
         assert!((weightless.mobilised - 1.4f64.ln()).abs() < 1e-14);
     }
 
-    /// What presses at a kink rubs with the same coefficient as what lies on the round.
+    /// The cable rubs at a kink with the same coefficient as along the round.
     #[test]
     fn a_kink_at_either_end_takes_its_part_of_the_friction() {
         let (before, after, kinks) = (6.0, 9.0, [0.2f64, 0.3]);
