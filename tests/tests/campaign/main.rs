@@ -114,8 +114,8 @@ fn scenes_that_were_wrong_are_right() {
         // Slack cable on a pipe drawn with 2.5 N between nodes with 1.5 N, by `fem` as a second
         // opinion.
         ("tank with beams", 1_200_248),
-        // A copy with 1e-7 more cable rested elsewhere, by a quarter of the greatest tension, and the
-        // range of other histories did not hold it.
+        // A copy with 1e-7 more cable rested elsewhere, by a quarter of the greatest tension, and
+        // the range of other histories did not hold it.
         ("wind over ground", 1_200_027),
         // Of three wheels one is left: posts in place of all could not be laid past.
         ("smooth wheels", 1_990_235),
