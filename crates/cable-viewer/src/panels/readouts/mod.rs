@@ -419,12 +419,17 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
         );
         figure(ui, "Friction used", text, &help, None);
     }
-    let (text, help) = match &first.balance {
-        Some(b) => (
-            format::percent(b.relative_residual),
-            "What is left of all forces on the cable, of the largest; in motion it accelerates it",
-        ),
-        None => ("not known".to_owned(), "The floor of a plan view rubs with a force that no answer holds"),
+    // What is left of the forces on a moving cable is no fault: it accelerates the cable.
+    let (name, help) = if solved.assumptions.inertia {
+        ("Accelerating force", "The sum of all forces on the cable, of the largest: it accelerates the cable")
+    } else {
+        ("Out of balance", "What is left of all forces on the cable, of the largest")
     };
-    figure(ui, "Out of balance", text, help, None);
+    match &first.balance {
+        Some(b) => figure(ui, name, format::percent(b.relative_residual), help, None),
+        None => {
+            let why = "The floor of a plan view rubs with a force that no answer holds";
+            figure(ui, name, "not known".to_owned(), why, None);
+        }
+    }
 }
