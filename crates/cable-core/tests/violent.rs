@@ -221,6 +221,16 @@ fn no_step_is_balanced_by_a_gap_lost_in_rounding() {
     assert!(found.stopped.is_empty() && worst < 1e-3, "{found:?}");
 }
 
+/// A cable lay round a post so slack that it hung from it in places: friction that was said to come
+/// from there made -inf N of 1.2 N, and moved the cable into the post.
+#[test]
+fn issue_016_a_slack_wrap_has_a_tension() {
+    let mut found = Found::default();
+    run(20_387, 1.5, &mut found);
+    assert!(found.no_number == 0 && count(&found, Law::Finite) == 0, "{found:?}");
+    assert_eq!(count(&found, Law::Penetration), 0, "{found:?}");
+}
+
 /// A cable that is whirled round a post is slack there now and then. The loss of its slack bars
 /// pushed, and friction was reckoned from that, up to 132 N beyond its cone in 111 of 71 714 steps.
 #[test]

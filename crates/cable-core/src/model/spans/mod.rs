@@ -200,14 +200,19 @@ impl SpansModel {
         Reversal { problem: &self.problem }
     }
 
-    /// Finds the first equilibrium: along the route, counted from the cable's upper end; where none
-    /// is found, counted from the other end; else in heaps as the cable comes down.
+    /// Finds the first equilibrium: loose where the cable is too long for tension; else along the
+    /// route, counted from the cable's upper end; where none is found, counted from the other end;
+    /// else in heaps as the cable comes down.
     fn find_first_equilibrium(
         &mut self,
         instant: &mut BoundaryConditions,
         workspace: &mut Workspace,
     ) -> Result<StepStats, NotFound> {
-        let (cable_equilibrium, taken) = match CableEquilibrium::along_route(&self.layout, instant, workspace) {
+        let along_route = match CableEquilibrium::too_long_for_tension(&self.layout, instant) {
+            Some(loose) => Ok((loose, StepStats::default())),
+            None => CableEquilibrium::along_route(&self.layout, instant, workspace),
+        };
+        let (cable_equilibrium, taken) = match along_route {
             Ok(found) => found,
             Err(not_found) => {
                 let (mut there, mut dragged) = (BoundaryConditions::default(), self.dragged.clone());

@@ -15,6 +15,7 @@
 //! (L. Euler, "Remarques sur l'effet du frottement dans l'équilibre", Mémoires de l'académie des
 //! sciences de Berlin 18, 1769, with weight.)
 
+use crate::math::larger;
 use crate::numerics::bisect;
 
 /// Doublings of the coefficient in the search for one that is too large: beyond that no friction
@@ -22,6 +23,10 @@ use crate::numerics::bisect;
 const DOUBLINGS: i32 = 12;
 /// Halvings of the interval in which it is.
 const HALVINGS: usize = 60;
+/// Parts of the turn between which the cable must press on the round.
+const PRESSED_PARTS: u32 = 8;
+/// Force away from the round, of the greater tension, that is rounding.
+const LIFT_ROUNDING: f64 = 1e-9;
 
 /// The tension of a cable along a round that carries its weight.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +42,7 @@ pub(super) struct WeightedCapstan {
 impl WeightedCapstan {
     /// Between two tensions (N) over a turn (rad) with g b·t and g b·n at its start (N), where the
     /// cable begins and ends the turn with a kink (rad); None where no friction leads from the one
-    /// to the other.
+    /// to the other, or only where the round would have to hold the cable.
     pub fn between([before, after]: [f64; 2], turn: f64, load: [f64; 2], kinks: [f64; 2]) -> Option<Self> {
         let [(sin0, cos0), (sin1, cos1)] = kinks.map(f64::sin_cos);
         let with = |mobilised: f64| Self { start: before * (cos0 + mobilised * sin0), mobilised, load };
@@ -49,7 +54,18 @@ impl WeightedCapstan {
             [-bound.into_iter().find(|m| lacks(-*m))?, 0.0]
         };
         let [low, high] = bisect(range, HALVINGS, lacks);
-        Some(with(0.5 * (low + high)))
+        Some(with(0.5 * (low + high))).filter(|found| found.presses(turn, LIFT_ROUNDING * larger(before, after)))
+    }
+
+    /// True if the cable presses on the round all along a turn (rad), or is drawn off by no more
+    /// than `rounding` (N).
+    fn presses(&self, turn: f64, rounding: f64) -> bool {
+        let [along, outward] = self.load;
+        (0..=PRESSED_PARTS).all(|k| {
+            let turned = turn * f64::from(k) / f64::from(PRESSED_PARTS);
+            let (sin, cos) = turned.sin_cos();
+            self.at(turned) - (outward * cos + along * sin) >= -rounding
+        })
     }
 
     /// The tension after a turn (rad), N.
@@ -116,6 +132,14 @@ mod tests {
         }
         let by_steps = integrated(first, found.mobilised, 0.8, [0.5, -1.0]);
         assert!((by_steps - last).abs() < 1e-8 * last, "{by_steps} against {last}");
+    }
+
+    /// The cable had -inf N on a post that it was thrown round, as friction was said to come from
+    /// where it is drawn off.
+    #[test]
+    fn issue_016_no_friction_comes_from_where_the_cable_is_drawn_off() {
+        assert!(WeightedCapstan::between([1.0, 7.0], 1.5, [0.0, 2.0], [0.0; 2]).is_none());
+        assert!(WeightedCapstan::between([2.5, 7.0], 1.5, [0.0, 2.0], [0.0; 2]).is_some());
     }
 
     #[test]

@@ -147,6 +147,14 @@ impl CableEquilibrium {
         Some(Self { sections, context, instant: instant.clone() })
     }
 
+    /// The same, where every section is too long to rest in tension.
+    pub fn too_long_for_tension(layout: &SectionLayout, instant: &BoundaryConditions) -> Option<Self> {
+        let context = layout.context(layout.curves(), instant);
+        let exceeds = |k: usize| slack::exceeds_tension(layout, k, &context, instant);
+        let all = !layout.sections.is_empty() && (0..layout.sections.len()).all(exceeds);
+        if all { Self::in_heaps(layout, instant) } else { None }
+    }
+
     /// The equilibrium next to an answer of another model.
     ///
     /// # Errors

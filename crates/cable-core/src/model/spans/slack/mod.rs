@@ -31,6 +31,7 @@
 //! | `drape.rs` | the points at which the tension vanishes, and the chains between them |
 //! | `chain.rs` | the tensions of one chain over one crest |
 //! | `joint.rs`, `bridge.rs` | spans over kinks, and to a support |
+//! | `longest_in_tension.rs` | the length from which a cable cannot rest in tension |
 //! | `pay_out.rs`, `heap.rs` | the material of each part, and what is over |
 //! | `loose_forces.rs`, `report.rs` | forces on ends and obstacles; the answer |
 
@@ -40,6 +41,7 @@ pub(in crate::model::spans) mod drained_route;
 mod drape;
 mod heap;
 mod joint;
+mod longest_in_tension;
 mod loose_forces;
 mod pay_out;
 mod report;
@@ -58,6 +60,7 @@ use crate::model::spans::slack::pay_out::pay_out;
 use crate::model::spans::slack::upper_surfaces::{Frame, UpperSurfaces};
 
 pub(in crate::model::spans) use crate::model::spans::slack::drape::LooseShapes;
+pub(in crate::model::spans) use crate::model::spans::slack::longest_in_tension::exceeds_tension;
 
 /// The section where it lies loose at an instant; None where it cannot.
 pub(in crate::model::spans) fn loose_section(

@@ -1,0 +1,115 @@
+//! The length of a drained route bounds every cable that rests in tension along it.
+//!
+//! Let a cable with tension everywhere go one way across the load between its ends. Where it touches
+//! what is below it, it lies on the drained route. Between two such touches it bends against the
+//! load only, in free spans and where it is pressed against something from below: it is convex, and
+//! above the drained route. That encloses it from outside, so it is no shorter (Archimedes, On the
+//! Sphere and Cylinder I, second assumption). The sum over all of them: stretched, the cable is no
+//! longer than its drained route, what hangs plumb included.
+
+use crate::math::{Vec2, larger, smaller};
+use crate::model::spans::boundary::loose::SlackForm;
+use crate::model::spans::initial::route::section_route;
+use crate::model::spans::section::boundary_conditions::BoundaryConditions;
+use crate::model::spans::section::cable_section::SolveContext;
+use crate::model::spans::section_layout::SectionLayout;
+use crate::model::spans::slack::drained_route::DrainedRoute;
+use crate::model::spans::slack::drape::{LooseShapes, SlackSolver};
+use crate::model::spans::slack::upper_surfaces::{Frame, NONE_M, UpperSurfaces};
+
+/// Part of the drained route by which a cable must be longer: rounding.
+const ROUNDING_FRACTION: f64 = 1e-9;
+
+/// True if a section held at both ends is too long to rest in tension along its route. False also
+/// where the law does not say: over pulleys, with loads, and where the route turns back across the
+/// load.
+pub(in crate::model::spans) fn exceeds_tension(
+    layout: &SectionLayout,
+    index: usize,
+    context: &SolveContext,
+    instant: &BoundaryConditions,
+) -> bool {
+    drained_length(layout, index, context, instant).is_some_and(|drained| {
+        let [from, to] = layout.sections[index].material;
+        (to - from) * context.law.thermal > drained * (1.0 + ROUNDING_FRACTION)
+    })
+}
+
+/// Length of the drained route of a section, m; None where it bounds no cable.
+fn drained_length(
+    layout: &SectionLayout,
+    index: usize,
+    context: &SolveContext,
+    instant: &BoundaryConditions,
+) -> Option<f64> {
+    let part = layout.sections.get(index)?;
+    let [from, to] = part.material;
+    let loaded = context.loads.iter().any(|l| l.arc_length > from && l.arc_length < to && l.force.norm() > 0.0);
+    let held = part.supports.iter().all(Option::is_some) && part.pulleys.is_empty() && !loaded;
+    let frame = Frame::of(context.law.load).filter(|_| held)?;
+    let route = section_route(layout, part, instant).points;
+    let bodies = layout.problem.world.geometry().bodies();
+    let surfaces = UpperSurfaces::new(context, bodies.len(), frame);
+    goes_one_way(&route, frame).then_some(())?;
+    let drained = DrainedRoute::new(&surfaces, bodies, frame, &route)?;
+    let solver = SlackSolver { context, frame, most: 0.0, sought: LooseShapes::NoTension };
+    let length = |line: &SlackForm| match line {
+        SlackForm::Hangs(ends) => solver.rise(*ends).abs(),
+        SlackForm::Lies(s) => {
+            let [a, b] = s.coordinates;
+            (b - a).abs() * s.place(context, a).stretch
+        }
+        SlackForm::Heap(_) | SlackForm::Spans { .. } => 0.0,
+    };
+    Some(solver.lines(&surfaces, &drained.legs).iter().map(length).sum())
+}
+
+/// True if a route never turns back across the load.
+fn goes_one_way(route: &[Vec2], frame: Frame) -> bool {
+    let across = route.windows(2).map(|pair| frame.split(pair[1] - pair[0]).x);
+    let [least, most] = across.fold([0.0, 0.0], |[a, b], u| [smaller(a, u), larger(b, u)]);
+    least > -NONE_M || most < NONE_M
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::spans::newton::Workspace;
+    use crate::model::spans::section::cable_section::{CableEquilibrium, Connection};
+    use crate::model::spans::section_layout::CableEnd;
+    use crate::problem::problems;
+    use crate::scene::catalog;
+    use std::sync::Arc;
+
+    #[test]
+    fn no_rest_in_tension_is_longer_than_its_drained_route() {
+        let (mut rests, mut too_long) = (0, 0);
+        for (id, mut scene) in catalog::all() {
+            scene.cables.iter_mut().for_each(|c| c.bending_stiffness_n_m2 = 0.0);
+            for longer in [0.95, 1.0, 1.05, 1.2, 1.5, 2.0] {
+                let mut scene = scene.clone();
+                scene.cables.iter_mut().for_each(|c| c.length_m *= longer);
+                for problem in problems(&scene).unwrap_or_default() {
+                    let Ok(layout) = SectionLayout::new(&problem, CableEnd::Start, Arc::default()) else { continue };
+                    let mut instant = BoundaryConditions::default();
+                    layout.instant(&vec![None; problem.supports.len()], 0.0, &mut instant);
+                    let context = layout.context(layout.curves(), &instant);
+                    let mut workspace = Workspace::default();
+                    let found = CableEquilibrium::along_route(&layout, &instant, &mut workspace);
+                    for k in 0..layout.sections.len() {
+                        let exceeds = exceeds_tension(&layout, k, &context, &instant);
+                        too_long += usize::from(exceeds);
+                        let Some(found) = found.as_ref().ok().map(|(found, _)| &found.sections[k]) else { continue };
+                        // Slack in a pocket is no cable in tension.
+                        let has_pocket = found.contacts.iter().any(|c| c.next == Connection::Pocket);
+                        let in_tension = found.loose.is_none() && !has_pocket;
+                        rests += usize::from(in_tension);
+                        assert!(!(exceeds && in_tension), "{id}, {longer} times as long, section {k}");
+                    }
+                }
+            }
+        }
+        println!("{rests} rest in tension, {too_long} are too long for that");
+        assert!(rests >= 20 && too_long >= 5, "{rests} and {too_long}");
+    }
+}
