@@ -334,18 +334,27 @@ impl CableEquilibrium {
         }
     }
 
-    /// Gives hardly any tension to a cable with a free end that lies loose along its route, when it
-    /// begins to be drawn: only a cable in tension can be followed.
+    /// Gives hardly any tension to a cable that lies loose when it begins to be drawn, as only a
+    /// cable in tension can be followed: with a free end along its route; held at both ends and
+    /// drawn over crests, with what is over in a kink.
     fn take_up_slack(&mut self, layout: &SectionLayout, to: &BoundaryConditions, workspace: &mut Workspace) {
-        let held = |k: usize| layout.sections[k].supports.iter().all(Option::is_some);
-        let spreads = |k: usize| self.sections[k].loose.as_ref().is_some_and(Loose::spreads);
-        let follows = (0..self.sections.len()).all(|k| self.sections[k].loose.is_none() || (spreads(k) && !held(k)));
-        if self.loose_lengths().is_none() || !follows || self.instant.places == to.places {
+        if self.loose_lengths().is_none() || self.instant.places == to.places {
             return;
         }
+        let held = |k: usize| layout.sections[k].supports.iter().all(Option::is_some);
+        let spreads = |k: usize| self.sections[k].loose.as_ref().is_some_and(Loose::spreads);
+        let all =
+            |of: &dyn Fn(usize) -> bool| (0..self.sections.len()).all(|k| self.sections[k].loose.is_none() || of(k));
         let instant = self.instant.clone();
-        let mut taut = self.clone();
-        if taut.lay_in_tension(layout, &instant, workspace).is_ok() {
+        let taut = if all(&|k| spreads(k) && !held(k)) {
+            let mut taut = self.clone();
+            taut.lay_in_tension(layout, &instant, workspace).ok().map(|_| taut)
+        } else if all(&|k| !spreads(k) && held(k)) {
+            Self::along_route(layout, &instant, workspace).ok().map(|(taut, _)| taut)
+        } else {
+            None
+        };
+        if let Some(taut) = taut {
             *self = taut;
         }
     }
