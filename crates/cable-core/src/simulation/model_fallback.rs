@@ -5,6 +5,7 @@
 use super::{RunPhase, Simulation};
 use crate::breakage::BreakableCable;
 use crate::error::SolveError;
+use crate::model::auto::{self, Question};
 use crate::model::{Model, ModelSource};
 use crate::solution::ModelReason;
 
@@ -57,15 +58,27 @@ impl Simulation {
         for cable in &mut self.cables {
             other |= cable.fall_back(why);
         }
-        if other || self.requested != Model::Auto || self.source.model() == Model::MOST_CAPABLE {
+        if other || self.requested != Model::Auto {
             return other;
         }
-        let source = ModelSource::Registered(Model::MOST_CAPABLE);
+        let next = if self.source.model() == Model::MOST_CAPABLE { self.model_at_rest() } else { Some(Model::MOST_CAPABLE) };
+        let Some(model) = next else { return false };
+        let source = ModelSource::Registered(auto::built_for(model));
         let others = self.cables.iter().map(|c| c.rebuilt(source.clone()));
         let Ok(next) = others.collect::<Result<Vec<_>, SolveError>>() else { return false };
         self.reason = ModelReason::Unsound(Box::new(why.clone()));
-        (self.cables, self.source, self.model) = (next, source, Model::MOST_CAPABLE);
+        (self.cables, self.source, self.model) = (next, source, model);
         self.set_robot_pose();
         true
+    }
+
+    /// The model that answers the scene at rest, where the present one was chosen because masses
+    /// will move: it takes that rest over as they begin to.
+    fn model_at_rest(&self) -> Option<Model> {
+        if self.reason != ModelReason::Inertia {
+            return None;
+        }
+        let chosen = self.cables.iter().map(|c| auto::choose(c.problem(), Question::Rest).0);
+        chosen.max_by_key(|model| model.rank()).filter(|model| *model != Model::MOST_CAPABLE)
     }
 }
