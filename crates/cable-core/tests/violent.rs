@@ -109,12 +109,6 @@ fn run(number: u64, seconds: f64, found: &mut Found) {
             found.stopped.push(format!("{number} at step {step}: {e}"));
             break;
         }
-        if std::env::var("ENERGY").is_ok_and(|k| step.abs_diff(k.parse::<usize>().unwrap()) < 8) {
-            println!(
-                "{step}: {:?} halved {} peak {:?}",
-                answer.energy, answer.cost.halved_steps, answer.cables[0].peaks
-            );
-        }
         found.halved += answer.cost.halved_steps;
         let grown = answer.warnings.iter().filter(|w| w.kind == WarningKind::EnergyGrows);
         found.grown.extend(grown.map(|w| format!("{number} at step {step}: {w}")));
