@@ -1,5 +1,5 @@
-//! A motion begins at the rest that is shown for its scene, also where the model of the motion finds
-//! none of its own.
+//! A motion begins at the rest that is shown for its scene, also where the model of the motion
+//! finds none of its own.
 
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)] // a failing test is meant to panic
 

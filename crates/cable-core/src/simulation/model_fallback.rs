@@ -61,7 +61,8 @@ impl Simulation {
         if other || self.requested != Model::Auto {
             return other;
         }
-        let next = if self.source.model() == Model::MOST_CAPABLE { self.model_at_rest() } else { Some(Model::MOST_CAPABLE) };
+        let next =
+            if self.source.model() == Model::MOST_CAPABLE { self.model_at_rest() } else { Some(Model::MOST_CAPABLE) };
         let Some(model) = next else { return false };
         let source = ModelSource::Registered(auto::built_for(model));
         let others = self.cables.iter().map(|c| c.rebuilt(source.clone()));
