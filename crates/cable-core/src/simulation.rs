@@ -431,7 +431,7 @@ impl Simulation {
             ..self.settings
         };
         let source = match &self.source {
-            ModelSource::Registered(_) => ModelSource::Registered(self.model),
+            ModelSource::Registered(_) => ModelSource::Registered(auto::built_for(self.model)),
             external @ ModelSource::External(_) => external.clone(),
         };
         let mut next = Self::by_source(scene, settings, source)?;

@@ -44,6 +44,7 @@ pub fn initial_equilibrium(
     robot_pose: Option<RigidPose>,
 ) -> Result<Option<InitialEquilibrium>, SolveError> {
     let Ok(mut spans) = SpansModel::new(as_flexible(problem), settings) else { return Ok(None) };
+    spans.seek_tension();
     for (k, at) in dragged.iter().enumerate() {
         if let Some(at) = at {
             spans.drag_support(k, *at);

@@ -74,12 +74,11 @@ impl Simulation {
     }
 
     /// The model that answers the scene at rest, where the present one was chosen because masses
-    /// will move: it takes that rest over as they begin to.
+    /// will move: `spans`, from which `fem` takes over as they begin to. None where another would
+    /// have to, which cannot move.
     fn model_at_rest(&self) -> Option<Model> {
-        if self.reason != ModelReason::Inertia {
-            return None;
-        }
-        let chosen = self.cables.iter().map(|c| auto::choose(c.problem(), Question::Rest).0);
-        chosen.max_by_key(|model| model.rank()).filter(|model| *model != Model::MOST_CAPABLE)
+        let at_rest = |cable: &BreakableCable| auto::choose(cable.problem(), Question::Rest).0;
+        let moves_on = self.reason == ModelReason::Inertia && self.cables.iter().all(|c| at_rest(c) == Model::Spans);
+        moves_on.then_some(Model::Spans)
     }
 }

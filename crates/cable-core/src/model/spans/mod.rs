@@ -76,6 +76,8 @@ pub struct SpansModel {
     problem: Arc<Problem>,
     /// True if other histories are searched.
     histories: bool,
+    /// True if a cable that is too long to rest in tension is laid loose at once.
+    lays_loose: bool,
     /// The cable as it is laid: counted from either end.
     layout: SectionLayout,
     time_s: f64,
@@ -132,6 +134,7 @@ impl SpansModel {
         Ok(Self {
             problem,
             histories,
+            lays_loose: true,
             layout,
             time_s: 0.0,
             dragged,
@@ -140,6 +143,12 @@ impl SpansModel {
             instants,
             shown,
         })
+    }
+
+    /// Seeks a rest with tension, and slack in kinks, also where the cable is too long to rest in
+    /// tension alone: for a model that goes on from there.
+    pub(super) fn seek_tension(&mut self) {
+        self.lays_loose = false;
     }
 
     /// True if the cable that was found lies without tension.
@@ -208,7 +217,9 @@ impl SpansModel {
         instant: &mut BoundaryConditions,
         workspace: &mut Workspace,
     ) -> Result<StepStats, NotFound> {
-        let along_route = match CableEquilibrium::too_long_for_tension(&self.layout, instant) {
+        let lays_loose = self.lays_loose && self.problem.cable.friction_mobilised.is_default();
+        let too_long = if lays_loose { CableEquilibrium::too_long_for_tension(&self.layout, instant) } else { None };
+        let along_route = match too_long {
             Some(loose) => Ok((loose, StepStats::default())),
             None => CableEquilibrium::along_route(&self.layout, instant, workspace),
         };

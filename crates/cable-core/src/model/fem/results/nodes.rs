@@ -101,7 +101,8 @@ pub(super) fn nodes(d: &CableState, x: &[Vec2], v: &[Vec2], tension: &[f64], end
 
 /// The cable round a corner, post or pulley, from where it meets the round, or from halfway to the
 /// sliding node before, to where it leaves it, or halfway to the next. Its tension is what its
-/// weight makes of it, and friction that is mobilised evenly.
+/// weight makes of it, and friction that is mobilised evenly; where no friction leads from the one
+/// end to the other it goes straight between them.
 fn on_round(
     d: &CableState,
     k: usize,

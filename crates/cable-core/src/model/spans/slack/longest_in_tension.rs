@@ -1,11 +1,12 @@
 //! The length of a drained route bounds every cable that rests in tension along it.
 //!
-//! Let a cable with tension everywhere go one way across the load between its ends. Where it
-//! touches what is below it, it lies on the drained route. Between two such touches it bends
-//! against the load only, in free spans and where it is pressed against something from below: it is
-//! convex, and above the drained route. That encloses it from outside, so it is no shorter
-//! (Archimedes, On the Sphere and Cylinder I, second assumption). The sum over all of them:
-//! stretched, the cable is no longer than its drained route, what hangs plumb included.
+//! Let a cable with tension everywhere pass all things on the side of its route, and go one way
+//! across the load. Where it touches what is below it, it lies on the drained route. Between two
+//! such touches it bends against the load only, in free spans and where it is pressed against
+//! something from below: it is convex, and nowhere below the drained route. A convex arc is no
+//! longer than a line that encloses it from outside between the same ends (Archimedes, On the
+//! Sphere and Cylinder I, second assumption): no longer than the drained route there, with what
+//! hangs plumb. The sum over all of them bounds the stretched cable.
 
 use crate::math::{Vec2, larger, smaller};
 use crate::model::spans::boundary::loose::SlackForm;
