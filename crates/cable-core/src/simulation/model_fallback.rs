@@ -75,10 +75,11 @@ impl Simulation {
 
     /// The model that answers the scene at rest, where the present one was chosen because masses
     /// will move: `spans`, from which `fem` takes over as they begin to. None where another would
-    /// have to, which cannot move.
+    /// have to, which cannot move, and once time has run: the cable is no longer on its route.
     fn model_at_rest(&self) -> Option<Model> {
         let at_rest = |cable: &BreakableCable| auto::choose(cable.problem(), Question::Rest).0;
-        let moves_on = self.reason == ModelReason::Inertia && self.cables.iter().all(|c| at_rest(c) == Model::Spans);
+        let begins = self.reason == ModelReason::Inertia && self.time_s() <= 0.0;
+        let moves_on = begins && self.cables.iter().all(|c| at_rest(c) == Model::Spans);
         moves_on.then_some(Model::Spans)
     }
 }
