@@ -419,7 +419,7 @@ fn accuracy(ui: &mut Ui, solved: &CableSolution, first: &CableSummary) {
         );
         figure(ui, "Friction used", text, &help, None);
     }
-    // What is left of the forces on a moving cable is no fault: it accelerates the cable.
+    // The sum of the forces on a moving cable is no fault: it accelerates the cable.
     let (name, help) = if solved.assumptions.inertia {
         ("Accelerating force", "The sum of all forces on the cable, of the largest: it accelerates the cable")
     } else {

@@ -117,31 +117,42 @@ mod tests {
     use crate::scene::catalog;
     use std::sync::Arc;
 
-    #[test]
-    fn a_shape_without_tension_is_the_same_whichever_shapes_are_sought() {
-        let (mut compared, mut found) = (0, 0);
-        for (id, mut scene) in catalog::all() {
-            scene.cables.iter_mut().for_each(|c| c.bending_stiffness_n_m2 = 0.0);
-            // Lengths from taut to loose.
-            for longer in [0.9, 1.0, 1.1, 1.3, 2.0] {
+    /// Every flexible cable of the catalogue with lengths changed by such factors, as it is laid,
+    /// with the names of its scene and factor.
+    pub(super) fn catalogue_with_lengths(factors: &[f64]) -> Vec<(String, SectionLayout, BoundaryConditions)> {
+        let mut out = Vec::new();
+        for (id, scene) in catalog::all() {
+            for longer in factors {
                 let mut scene = scene.clone();
-                scene.cables.iter_mut().for_each(|c| c.length_m *= longer);
+                for cable in &mut scene.cables {
+                    (cable.bending_stiffness_n_m2, cable.length_m) = (0.0, cable.length_m * longer);
+                }
                 for problem in problems(&scene).unwrap_or_default() {
                     let Ok(layout) = SectionLayout::new(&problem, CableEnd::Start, Arc::default()) else { continue };
                     let mut instant = BoundaryConditions::default();
                     layout.instant(&vec![None; problem.supports.len()], 0.0, &mut instant);
-                    let context = layout.context(layout.curves(), &instant);
-                    for k in 0..layout.sections.len() {
-                        let laid = |sought| {
-                            loose_section(&layout, k, &context, &instant, sought)
-                                .filter(|s| s.loose.as_ref().is_some_and(Loose::spreads))
-                        };
-                        let [any, none] = [LooseShapes::AnyTension, LooseShapes::NoTension].map(laid);
-                        assert_eq!(format!("{any:?}"), format!("{none:?}"), "{id}, {longer} times as long");
-                        compared += 1;
-                        found += usize::from(any.is_some());
-                    }
+                    out.push((format!("{id}, {longer} times as long"), layout, instant));
                 }
+            }
+        }
+        out
+    }
+
+    #[test]
+    fn a_shape_without_tension_is_the_same_whichever_shapes_are_sought() {
+        let (mut compared, mut found) = (0, 0);
+        // Lengths from taut to loose.
+        for (name, layout, instant) in catalogue_with_lengths(&[0.9, 1.0, 1.1, 1.3, 2.0]) {
+            let context = layout.context(layout.curves(), &instant);
+            for k in 0..layout.sections.len() {
+                let laid = |sought| {
+                    loose_section(&layout, k, &context, &instant, sought)
+                        .filter(|s| s.loose.as_ref().is_some_and(Loose::spreads))
+                };
+                let [any, none] = [LooseShapes::AnyTension, LooseShapes::NoTension].map(laid);
+                assert_eq!(format!("{any:?}"), format!("{none:?}"), "{name}");
+                compared += 1;
+                found += usize::from(any.is_some());
             }
         }
         println!("{found} of {compared} lie without tension");
