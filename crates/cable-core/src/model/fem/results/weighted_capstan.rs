@@ -138,7 +138,8 @@ mod tests {
     /// where it is drawn off.
     #[test]
     fn issue_016_no_friction_comes_from_where_the_cable_is_drawn_off() {
-        assert!(WeightedCapstan::between([1.0, 7.0], 1.5, [0.0, 2.0], [0.0; 2]).is_none());
+        // A coefficient of 19 leads from the one to the other by way of -2e9 N.
+        assert!(WeightedCapstan::between([1.2, 7.0], 3.0, [2.0, 1.0], [0.0, 0.3]).is_none());
         assert!(WeightedCapstan::between([2.5, 7.0], 1.5, [0.0, 2.0], [0.0; 2]).is_some());
     }
 
