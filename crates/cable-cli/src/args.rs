@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use cable_core::Model;
 use cable_core::model::mass_spring::Stepping;
 use cable_core::record::{NodeChoice, NodeColumns, NodeInterval};
 use cable_core::scene::FrictionMobilised;
 use cable_core::summary::Bending;
+use cable_core::{Model, Settings};
 use clap::{Args, Parser, Subcommand};
 
 #[derive(Debug, Parser)]
@@ -45,9 +45,10 @@ pub struct Common {
     /// auto, catenary, spans, fem or mass-spring
     #[arg(long, default_value = "auto", value_parser = model)]
     pub model: Model,
-    /// Relative accuracy asked of the tension
-    #[arg(long, default_value_t = 1e-3, value_parser = tolerance)]
-    pub tolerance: f64,
+    /// Relative accuracy asked of the tension [default: 1e-3]; a run in motion for which it is given
+    /// is refined up to twice (see --refine of `cable run`)
+    #[arg(long, value_parser = tolerance)]
+    pub tolerance: Option<f64>,
     /// Friction that acts on every cable at rest: least-sliding, or all of it against a cable drawn
     /// towards-start or towards-end [default: what the scene says]
     #[arg(long, value_parser = mobilised)]
@@ -103,9 +104,10 @@ pub struct RunArguments {
     #[arg(long)]
     pub quasi_static: bool,
     /// Number of refinements: where errors of forces are above --tolerance, take elements and steps
-    /// half as long, at most so often; each time takes four times as long
-    #[arg(long, value_name = "TIMES", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6), conflicts_with = "no_errors")]
-    pub refine: u32,
+    /// half as long, at most so often and as long as that makes errors smaller; each time takes four
+    /// times as long [default: 2 where --tolerance is given, else 0]
+    #[arg(long, value_name = "TIMES", value_parser = clap::value_parser!(u32).range(0..=6), conflicts_with = "no_errors")]
+    pub refine: Option<u32>,
     /// Leave out the two coarser runs beside one with inertia, which say its errors for a third of
     /// its cost
     #[arg(long)]
@@ -131,7 +133,23 @@ fn model(text: &str) -> Result<Model, String> {
     Model::from_name(text).ok_or_else(|| "the models are auto, catenary, spans, fem and mass-spring".to_owned())
 }
 
+/// Refinements of a run for which an accuracy was asked: the third takes 64 times as long.
+const REFINEMENTS_TO_A_TOLERANCE: u32 = 2;
+
+impl Common {
+    /// The accuracy that is asked for, given or not.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance.unwrap_or(Settings::default().tolerance)
+    }
+}
+
 impl RunArguments {
+    /// Times that elements and steps may be halved.
+    pub fn refinements(&self) -> u32 {
+        let for_tolerance = self.common.tolerance.filter(|_| !self.no_errors).map(|_| REFINEMENTS_TO_A_TOLERANCE);
+        self.refine.or(for_tolerance).unwrap_or(0)
+    }
+
     /// Time between outputs, s. Who follows a cable for half a second wants to see what happens in
     /// it.
     pub fn every_s(&self) -> f64 {

@@ -24,5 +24,5 @@ pub fn scene_with_arguments(a: &Common) -> Result<Scene, Failure> {
 
 /// The settings that arguments ask for.
 pub fn settings(a: &Common) -> Settings {
-    Settings { tolerance: a.tolerance, ..Settings::default() }
+    Settings { tolerance: a.tolerance(), ..Settings::default() }
 }

@@ -219,6 +219,12 @@ pub fn run(a: RunArguments) -> CommandResult {
             a.duration_s
         )));
     }
+    if let Some(step) = a.step.filter(|step| *step > a.duration_s && a.duration_s > 0.0) {
+        return Err(Failure::Argument(format!(
+            "--step {step} s is longer than the run (--for {} s): peaks and errors are looked for at steps",
+            a.duration_s
+        )));
+    }
     let choice = a.node_choice().map_err(Failure::Argument)?;
     let scene = scene_with_arguments(&a.common)?;
     let inertia = if a.quasi_static { Inertia::QuasiStatic } else { Inertia::Dynamic };
@@ -313,7 +319,7 @@ fn run_to_end(simulation: Simulation, inertia: Inertia, mut outputs: Outputs, be
     if let (false, Some(last)) = (arguments.common.json, last) {
         let figures = Figures { cables: summaries(&scene, &last), ..Figures::default() };
         printer.line(table(&last, &figures).trim_end())?;
-        for line in outputs.totals.iter().flat_map(|reached| reached.lines(arguments.common.tolerance)) {
+        for line in outputs.totals.iter().flat_map(|reached| reached.lines(arguments.common.tolerance())) {
             printer.line(&line)?;
         }
         for line in outputs.warning_log.lines() {
@@ -332,13 +338,16 @@ fn refine_until_accurate(
     inertia: Inertia,
     arguments: &RunArguments,
 ) -> Result<(Simulation, Option<f64>), SolveError> {
-    let mut step = arguments.step;
-    for _ in 0..arguments.refine {
-        let mut timeline = Timeline::new(simulation.clone(), inertia, step).with_errors();
+    let (mut step, mut before) = (arguments.step, f64::INFINITY);
+    for _ in 0..arguments.refinements() {
+        let mut timeline = Timeline::new(simulation.clone(), inertia, step)?.with_errors();
         timeline.at(Moment::nearest(arguments.duration_s), |_| ())?;
-        if timeline.monitor().relative_error().is_none_or(|error| error <= arguments.common.tolerance) {
+        let Some(error) = timeline.monitor().relative_error() else { break };
+        // Where a finer run is no nearer, paths are chaotic: still finer ones are not either.
+        if error <= arguments.common.tolerance() || error > before {
             break;
         }
+        before = error;
         let Ok(Some(mut finer)) = simulation.resolved(2.0) else { break };
         finer.settle()?;
         step = Some(0.5 * timeline.step_s());
@@ -363,7 +372,11 @@ fn run_steps(mut simulation: Simulation, inertia: Inertia, outputs: &mut Outputs
     outputs.observe_step(&simulation);
     outputs.push(first, began.elapsed().as_secs_f64(), count == 0)?;
     let interval = Moment::nearest(every);
-    let mut timeline = Timeline::new(simulation, inertia, step);
+    let at_rest = simulation.clone();
+    let mut timeline = match Timeline::new(simulation, inertia, step) {
+        Ok(timeline) => timeline,
+        Err(e) => return Err(end_with_error(outputs, &at_rest, e)),
+    };
     if !outputs.arguments.no_errors {
         timeline = timeline.with_errors();
     }

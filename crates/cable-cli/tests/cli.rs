@@ -209,11 +209,24 @@ fn run_says_its_errors_and_refines_until_they_are_as_asked() {
         let line = told.lines().find_map(|l| l.strip_prefix("Greatest error of its forces "));
         line.and_then(|l| l.split(' ').next()).expect("an error").parse().unwrap()
     };
-    let (coarse, fine) = (run(&[]), run(&["--refine", "3"]));
+    let (coarse, fine) = (run(&["--refine", "0"]), run(&[]));
     assert!(error(&coarse) > 0.01 && coarse.contains("asked: 1.0e-2"), "{coarse}");
     assert!(error(&fine) <= 0.01 && !fine.contains("asked: "), "{fine}");
     assert!(coarse.contains("as coarser runs differ"), "{coarse}");
     assert!(run(&["--no-errors"]).contains("not known"));
+}
+
+#[test]
+fn a_step_longer_than_the_run_or_than_any_step_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("span.toml");
+    std::fs::write(&file, catalog::hanging_span().to_toml()).unwrap();
+    for (duration, step, reason) in [("1s", "2s", "longer than the run"), ("5000s", "2000s", "step")] {
+        let out = folder.path().join("out");
+        let ask = ["run", file.to_str().unwrap(), "--for", duration, "--step", step, "--out", out.to_str().unwrap()];
+        let o = cable(&ask);
+        assert!(!o.status.success() && text(&o.stderr).contains(reason), "{step}: {}", text(&o.stderr));
+    }
 }
 
 /// A drop on rubble: the greatest tension of the run has a range, and it is said that it depends on

@@ -3,45 +3,32 @@
 use crate::math::Vec2;
 use crate::solution::Node;
 
-/// A vector at each of some arc lengths (m, increasing).
-#[derive(Clone, Debug, Default)]
-pub(crate) struct AlongCable(Vec<(f64, Vec2)>);
+/// The vector that `of` reads of nodes at an arc length (m), between the two of the nearest ones; None
+/// of a cable without nodes.
+fn at(nodes: &[Node], arc_length: f64, of: impl Fn(&Node) -> Vec2) -> Option<Vec2> {
+    let k = nodes.partition_point(|n| n.arc_length_m <= arc_length);
+    let (before, after) = (nodes.get(k.saturating_sub(1))?, nodes.get(k).or(nodes.last())?);
+    let length = after.arc_length_m - before.arc_length_m;
+    let part = if length > 0.0 { ((arc_length - before.arc_length_m) / length).clamp(0.0, 1.0) } else { 0.0 };
+    Some(of(before) * (1.0 - part) + of(after) * part)
+}
 
-impl AlongCable {
-    /// Places of nodes, m.
-    pub fn places(nodes: &[Node]) -> Self {
-        Self(nodes.iter().map(|n| (n.arc_length_m, n.at())).collect())
-    }
-
-    /// Velocities of nodes, m/s.
-    pub fn velocities(nodes: &[Node]) -> Self {
-        Self(nodes.iter().map(|n| (n.arc_length_m, Vec2::new(n.vx_m_per_s, n.vy_m_per_s))).collect())
-    }
-
-    /// The vector at an arc length (m), between the two of the nearest ones; None of a cable
-    /// without nodes.
-    fn at(&self, arc_length: f64) -> Option<Vec2> {
-        let k = self.0.partition_point(|(s, _)| *s <= arc_length);
-        let (before, after) = (self.0.get(k.saturating_sub(1))?, self.0.get(k).or(self.0.last())?);
-        let length = after.0 - before.0;
-        let part = if length > 0.0 { ((arc_length - before.0) / length).clamp(0.0, 1.0) } else { 0.0 };
-        Some(before.1 * (1.0 - part) + after.1 * part)
-    }
+fn velocity(node: &Node) -> Vec2 {
+    Vec2::new(node.vx_m_per_s, node.vy_m_per_s)
 }
 
 /// Tells nodes how far they are from where they were at first.
-pub(crate) fn displace(nodes: &mut [Node], first: &AlongCable) {
+pub(crate) fn displace(nodes: &mut [Node], first: &[Node]) {
     for n in nodes {
-        let moved = first.at(n.arc_length_m).map_or(Vec2::zeros(), |was| n.at() - was);
+        let moved = at(first, n.arc_length_m, Node::at).map_or(Vec2::zeros(), |was| n.at() - was);
         n.displacement_m = [moved.x, moved.y];
     }
 }
 
-/// Tells nodes the mean acceleration since they had the velocities `before`, `passed` (s) ago.
-pub(crate) fn accelerate(nodes: &mut [Node], before: &AlongCable, passed: f64) {
+/// Tells nodes the mean acceleration since they were as `before`, `passed` (s) ago.
+pub(crate) fn accelerate(nodes: &mut [Node], before: &[Node], passed: f64) {
     for n in nodes {
-        let now = Vec2::new(n.vx_m_per_s, n.vy_m_per_s);
-        let rate = before.at(n.arc_length_m).map_or(Vec2::zeros(), |was| (now - was) / passed);
+        let rate = at(before, n.arc_length_m, velocity).map_or(Vec2::zeros(), |was| (velocity(n) - was) / passed);
         n.acceleration_m_per_s2 = [rate.x, rate.y];
     }
 }

@@ -21,7 +21,7 @@ use std::sync::Arc;
 use crate::any_error::Error;
 use crate::breakage::BreakableCable;
 use crate::error::SolveError;
-use crate::kinematics::{self, AlongCable};
+use crate::kinematics;
 use crate::math::{Vec2, larger};
 use crate::model::auto::{self, Question};
 use crate::model::{Inertia, MIN_TOLERANCE, Mechanics, Model, ModelSource, Settings, StepReport};
@@ -30,8 +30,8 @@ use crate::robot::Vehicle;
 use crate::scene::Scene;
 use crate::solution::ErrorEstimates;
 use crate::solution::{
-    CableSolution, Cost, Energy, MaxTension, ModelReason, NextCheaper, Node, Solution, Warning, WarningCause,
-    WarningKind,
+    CableSolution, Cost, Energy, MaxTension, ModelReason, NextCheaper, Node, SharedNodes, Solution, Warning,
+    WarningCause, WarningKind,
 };
 use crate::state::State;
 use crate::verify::{Depth, Verification, Verifier};
@@ -71,8 +71,8 @@ pub struct Simulation {
     vehicle: Option<Vehicle>,
     /// The answers of the cables at the present instant.
     answers: Vec<CableSolution>,
-    /// Positions of the cables when the run began.
-    initial_places: Vec<AlongCable>,
+    /// Nodes of the cables when the run began.
+    initial_nodes: Vec<SharedNodes>,
     warning_monitor: WarningMonitor,
     energy: Energy,
     cost: Cost,
@@ -193,7 +193,7 @@ impl Simulation {
             cables,
             start: None,
             answers,
-            initial_places: Vec::new(),
+            initial_nodes: Vec::new(),
             warning_monitor: WarningMonitor::default(),
             energy: Energy::default(),
             cost: Cost::default(),
@@ -204,11 +204,13 @@ impl Simulation {
     /// Reads the present instant: the answers and their warnings.
     fn refresh(&mut self, instant: RunPhase) {
         self.answers = self.cables.iter().map(BreakableCable::answer).collect();
-        if instant == RunPhase::AtRest {
-            self.initial_places = self.answers.iter().map(|a| AlongCable::places(&a.nodes)).collect();
-        }
-        for (answer, first) in self.answers.iter_mut().zip(&self.initial_places) {
-            kinematics::displace(&mut answer.nodes, first);
+        match instant {
+            RunPhase::AtRest => self.initial_nodes = self.answers.iter().map(|a| a.nodes.clone()).collect(),
+            RunPhase::InMotion => {
+                for (answer, first) in self.answers.iter_mut().zip(&self.initial_nodes) {
+                    kinematics::displace(&mut answer.nodes, first);
+                }
+            }
         }
         self.model = self.cables.iter().map(BreakableCable::model).max_by_key(|m| m.rank()).unwrap_or(self.model);
         let mut bends = Vec::with_capacity(self.cables.len());
@@ -355,16 +357,19 @@ impl Simulation {
         self.advance(dt_s, Inertia::QuasiStatic)
     }
 
-    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
+    /// Returns whether a step (s) can be made: it is positive and not longer than what is meant.
+    pub(crate) fn check_step(dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
         let longest_s = match inertia {
             Inertia::Dynamic => MAX_STEP_S,
             Inertia::QuasiStatic => MAX_QUASI_STATIC_STEP_S,
         };
-        if !(dt_s > 0.0 && dt_s <= longest_s) {
-            return Err(SolveError::TimeStep { dt_s, longest_s });
-        }
+        if dt_s > 0.0 && dt_s <= longest_s { Ok(()) } else { Err(SolveError::TimeStep { dt_s, longest_s }) }
+    }
+
+    fn advance(&mut self, dt_s: f64, inertia: Inertia) -> Result<(), SolveError> {
+        Self::check_step(dt_s, inertia)?;
         self.cables.iter_mut().for_each(BreakableCable::forget_peaks);
-        let velocities: Vec<_> = self.answers.iter().map(|a| AlongCable::velocities(&a.nodes)).collect();
+        let nodes_before: Vec<_> = self.answers.iter().map(|a| a.nodes.clone()).collect();
         let done = match self.vehicle.is_some() {
             true => self.advance_with_robot(dt_s, inertia),
             false => self.for_each_cable(|c| c.advance(dt_s, inertia)),
@@ -374,7 +379,7 @@ impl Simulation {
         done?;
         // In motion nothing else is there to go back to: the verdict stands with the answer.
         if inertia == Inertia::Dynamic {
-            for (answer, before) in self.answers.iter_mut().zip(&velocities) {
+            for (answer, before) in self.answers.iter_mut().zip(&nodes_before) {
                 kinematics::accelerate(&mut answer.nodes, before, dt_s);
             }
             return Ok(());

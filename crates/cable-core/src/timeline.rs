@@ -93,16 +93,22 @@ pub struct Timeline {
 
 impl Timeline {
     /// A run of a simulation that has settled at its start, in steps of `step_s` (s): [`STEP_S`] or
-    /// [`QUASI_STATIC_STEP_S`] where that is None. A step is one tick at least.
-    #[must_use]
-    pub fn new(simulation: Simulation, inertia: Inertia, step_s: Option<f64>) -> Self {
+    /// [`QUASI_STATIC_STEP_S`] where that is None.
+    ///
+    /// # Errors
+    /// [`SolveError::TimeStep`]: a step that is not positive, is no number, or is longer than
+    /// [`Simulation`] makes at once.
+    pub fn new(simulation: Simulation, inertia: Inertia, step_s: Option<f64>) -> Result<Self, SolveError> {
         let usual_s = match inertia {
             Inertia::Dynamic => STEP_S,
             Inertia::QuasiStatic => QUASI_STATIC_STEP_S,
         };
-        let step = Instant::nearest(step_s.unwrap_or(usual_s)).max(Instant(1));
+        let step_s = step_s.unwrap_or(usual_s);
+        Simulation::check_step(step_s, inertia)?;
+        // Less than half a tick is no step either.
+        let step = Instant::nearest(step_s).max(Instant(1));
         let monitor = RunMonitor::new(&simulation);
-        Self { simulation, inertia, step, count: 0, monitor }
+        Ok(Self { simulation, inertia, step, count: 0, monitor })
     }
 
     /// The same, with errors in motion: coarser runs go beside it, for a third of its cost. Where

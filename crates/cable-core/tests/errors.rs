@@ -95,7 +95,7 @@ impl Drawn {
         let force_n = [anchor - hand, self.weight * self.length];
         let contact = ContactReport { obstacle: "thing".to_owned(), force_n, ..ContactReport::default() };
         CableSolution {
-            nodes,
+            nodes: nodes.into(),
             supports: vec![support(anchor), support(-hand)],
             contacts: vec![contact],
             ..CableSolution::default()

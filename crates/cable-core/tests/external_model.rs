@@ -84,7 +84,12 @@ impl Mechanics for Plumb {
             reaction(&self.problem.supports[0], &nodes[0], -nodes[0].tension_n),
             reaction(&self.problem.supports[1], &nodes[ELEMENTS], 0.0),
         ];
-        CableSolution { name: self.problem.cable.name.clone(), nodes, supports, ..CableSolution::default() }
+        CableSolution {
+            name: self.problem.cable.name.clone(),
+            nodes: nodes.into(),
+            supports,
+            ..CableSolution::default()
+        }
     }
 
     fn problem(&self) -> &Arc<Problem> {

@@ -21,7 +21,7 @@ fn issue_016_slack_cables_in_a_tank_begin_to_move() {
         let question = Question::History(Inertia::Dynamic);
         let mut sim = Simulation::for_question(scene, Model::Auto, Settings::default(), question).unwrap();
         sim.settle().unwrap();
-        let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).with_errors();
+        let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).unwrap().with_errors();
         let mut moved = (Model::Auto, 0.0);
         let at = |sim: &Simulation| moved = (sim.solution().model, sim.max_tension().tension_n);
         timeline.at(Instant::nearest(0.25), at).unwrap();

@@ -269,3 +269,35 @@ fn a_free_fall_is_not_braked() {
     let lowest = sim.states()[0].velocity_m_per_s.iter().map(|v| v.y).fold(0.0, f64::min);
     assert!((lowest / (-10.0 * G) - 1.0).abs() < 0.02, "{lowest} m/s after 10 s");
 }
+
+/// A cable at rest over a beam in 1000 elements is played as a preview, and stays what it is.
+#[test]
+fn a_preview_does_not_break_a_cable_at_rest() {
+    let mut scene = catalog::over_beam();
+    scene.cables[0].segments = Some(1000);
+    let mut sim = begun(&scene, Stepping::Auto);
+    let rest = sim.settle().unwrap();
+    let at_rest = sim.max_tension().tension_n;
+    let mut most = 0.0_f64;
+    for _ in 0..60 {
+        sim.step(1.0 / 60.0).unwrap();
+        most = most.max(sim.answers()[0].peaks_at(sim.time_s()).greatest.tension_n);
+    }
+    let previewed = sim.warnings().any(|w| w.to_string().contains("preview"));
+    println!("{at_rest:.2} N at rest, at most {most:.2} N played, preview {previewed}");
+    assert!(previewed && rest.cables[0].breaks.is_empty() && sim.answers()[0].breaks.is_empty());
+    assert!(most < 1.1 * at_rest, "{most} N of {at_rest} N at rest");
+}
+
+/// The tension of a cable drawn over a sharp corner is uncertain in every frame, and each says so.
+#[test]
+fn corners_are_said_in_every_frame() {
+    let mut sim = begun(&catalog::draped_slipping(), Stepping::Auto);
+    sim.settle().unwrap();
+    for frame in 0..90 {
+        sim.step(1.0 / 60.0).unwrap();
+        let said = sim.warnings().any(|w| w.kind == WarningKind::Accuracy);
+        let pressed = sim.answers()[0].contacts.iter().any(|c| c.turn_deg.abs() > 5.0);
+        assert!(said || !pressed, "frame {frame}: nothing is said of the corner");
+    }
+}

@@ -133,7 +133,7 @@ fn timeline(scene: &Scene, model: Model, times: usize) -> Option<Timeline> {
     let settings = Settings { inner_step_s: Some(step_s), ..Settings::default() };
     let mut sim = Simulation::with_settings(scene, model, settings).ok()?;
     sim.settle().ok()?;
-    Some(Timeline::new(sim, Inertia::Dynamic, Some(step_s)))
+    Timeline::new(sim, Inertia::Dynamic, Some(step_s)).ok()
 }
 
 fn larger(a: ErrorEstimates, b: &ErrorEstimates) -> ErrorEstimates {
@@ -228,4 +228,31 @@ fn errors_in_motion_are_covered() {
     let (figures, peaks) = campaign(number("FROM", 0)..number("TO", 20));
     assert!(figures.iter().all(|t| t.covered * 100 >= t.all * 92), "{figures:?}");
     assert!(peaks.inside * 100 >= peaks.all * 90, "{peaks:?}");
+}
+
+/// Slackens a cable at no more than 2 m/s: the greatest tension with the step of the program, and the
+/// one with a quarter of it, N.
+fn slackened(number: u64) -> Option<[f64; 2]> {
+    let greatest = |times: usize| {
+        let step_s = STEP_S / times as f64;
+        let settings = Settings { inner_step_s: Some(step_s), ..Settings::default() };
+        let mut sim = Simulation::with_settings(scene(3, number), Model::Fem, settings).ok()?;
+        sim.settle().ok()?;
+        let mut run = Timeline::new(sim, Inertia::Dynamic, Some(step_s)).ok()?;
+        run.at(Instant::nearest(SECONDS), |_| ()).ok()?;
+        Some(run.monitor().peaks()[0].peaks.greatest.tension_n)
+    };
+    Some([greatest(1)?, greatest(4)?])
+}
+
+#[test]
+fn a_cable_that_is_slackened_pulls_no_harder_than_with_a_quarter_of_the_step() {
+    let first = number("FROM", 0);
+    let mut worst = 0.0_f64;
+    for k in first..number("TO", first + 12) {
+        let [coarse, fine] = slackened(k).unwrap_or_else(|| panic!("{k} stops"));
+        println!("{k}: {coarse:.3} N, with a quarter of the step {fine:.3} N, {:.4}", coarse / fine);
+        worst = worst.max(coarse / fine);
+    }
+    assert!(worst < 1.02, "{worst} times the tension with a quarter of the step");
 }

@@ -83,7 +83,7 @@ fn run(scene: &Scene, end: f64, way: Way, errors: bool) -> Result<(f64, [f64; 2]
     let question = Question::History(way.inertia);
     let mut sim = Simulation::for_question(scene, way.model, settings, question).map_err(|e| e.to_string())?;
     sim.settle().map_err(|e| format!("no first rest: {e}"))?;
-    let timeline = Timeline::new(sim, way.inertia, None);
+    let timeline = Timeline::new(sim, way.inertia, None).map_err(|e| e.to_string())?;
     let mut timeline = if errors { timeline.with_errors() } else { timeline };
     let mut most = 0.0f64;
     for k in 1..=(end / way.every_s).floor() as u64 {

@@ -161,7 +161,7 @@ fn looks_between_steps_change_nothing() {
     let shown = |every_s: f64| {
         let mut sim = Simulation::new(stall(), Model::Fem).unwrap();
         sim.settle().unwrap();
-        let mut line = Timeline::new(sim, Inertia::Dynamic, None);
+        let mut line = Timeline::new(sim, Inertia::Dynamic, None).unwrap();
         for k in 1..(7.0 / every_s) as u64 {
             line.at(Instant::nearest(every_s).times(k), |_| {}).unwrap();
         }

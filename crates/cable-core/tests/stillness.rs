@@ -60,6 +60,11 @@ fn a_cable_on_the_ground_is_at_rest_five_seconds_after_it_was_drawn() {
         let change = (sim.max_tension().tension_n - before).abs() / weight;
         println!("{number}: {speed:.1e} m/s, {change:.1e} of its weight in a second");
         assert!(speed < 1e-4 && change < 1e-2, "{number}: {speed} m/s, {change} of its weight");
+        let moving = sim.max_tension().tension_n;
+        sim.settle().expect("a rest from where it lies");
+        let apart = (sim.max_tension().tension_n - moving).abs() / weight;
+        println!("    {apart:.1e} of its weight from the tension at rest");
+        assert!(apart < 1e-2, "{number}: {apart} of its weight from the tension at rest");
     }
 }
 

@@ -7,14 +7,14 @@ use cable_core::solution::TensionPeaks;
 use cable_core::solution::WarningKind;
 use cable_core::state::State;
 use cable_core::timeline::{Instant, Timeline};
-use cable_core::{Model, Settings, Simulation};
+use cable_core::{Model, Settings, Simulation, SolveError};
 
 /// Half a second of a scene shown every `every_s` (s): the states at its whole tenths, and the
 /// greatest tensions of all inner steps.
 fn shown(scene: &Scene, (model, inertia): (Model, Inertia), every_s: f64) -> (Vec<Vec<State>>, TensionPeaks) {
     let mut sim = Simulation::with_settings(scene.clone(), model, Settings::default()).unwrap();
     sim.settle().unwrap();
-    let mut timeline = Timeline::new(sim, inertia, None);
+    let mut timeline = Timeline::new(sim, inertia, None).unwrap();
     let (mut states, mut most) = (Vec::new(), TensionPeaks::default());
     let mut look = |sim: &Simulation| most = most.with(sim.answers()[0].peaks_at(sim.time_s()));
     let every = Instant::nearest(every_s);
@@ -75,7 +75,7 @@ fn a_cable_may_break_where_runs_do_not_agree_that_it_holds() {
         (cable.breaking_tension_n, cable.service_tension_n) = (breaking_n, breaking_n.min(cable.service_tension_n));
         let mut sim = Simulation::new(scene, Model::Fem).unwrap();
         sim.settle().unwrap();
-        let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).with_errors();
+        let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).unwrap().with_errors();
         let answer = timeline.at(Instant::nearest(2.0), |_| ()).unwrap();
         let run = timeline.monitor().peaks()[0];
         let [from, to] = run.ranges.expect("coarser runs").held_n;
@@ -96,7 +96,7 @@ fn a_greatest_tension_that_depends_on_small_differences_says_so() {
     let depends = |scene: Scene| {
         let mut sim = Simulation::new(scene, Model::Fem).unwrap();
         sim.settle().unwrap();
-        let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).with_errors();
+        let mut timeline = Timeline::new(sim, Inertia::Dynamic, None).unwrap().with_errors();
         timeline.at(Instant::nearest(1.5), |_| ()).unwrap();
         let ranges = timeline.monitor().peaks()[0].ranges.expect("coarser runs");
         (ranges.depend_on_small_differences(), ranges)
@@ -108,4 +108,77 @@ fn a_greatest_tension_that_depends_on_small_differences_says_so() {
     let (swung, rubble) = (depends(swung), depends(catalog::rubble_drop()));
     assert!(!swung.0, "{swung:?}");
     assert!(rubble.0, "{rubble:?}");
+}
+
+#[test]
+fn steps_that_are_none_are_refused() {
+    for inertia in [Inertia::Dynamic, Inertia::QuasiStatic] {
+        for step_s in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e9] {
+            let mut sim = Simulation::new(catalog::hanging_span(), Model::Fem).unwrap();
+            sim.settle().unwrap();
+            let refused = Timeline::new(sim, inertia, Some(step_s)).err();
+            assert!(matches!(refused, Some(SolveError::TimeStep { .. })), "{inertia:?}, {step_s} s: {refused:?}");
+        }
+    }
+}
+
+/// The verdict on whether a cable breaks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Verdict {
+    Holds,
+    MayBreak,
+    Breaks,
+}
+
+/// The verdict at the end of a run with so many elements a cable, and the greatest tension and
+/// greatest held tension of any cable, with their ranges, N.
+fn verdict(scene: &Scene, segments: usize, seconds: f64) -> (Verdict, String) {
+    let mut scene = scene.clone();
+    scene.cables.iter_mut().for_each(|c| c.segments = Some(segments));
+    let mut sim = Simulation::new(scene, Model::Fem).unwrap();
+    sim.settle().unwrap();
+    let mut run = Timeline::new(sim, Inertia::Dynamic, None).unwrap().with_errors();
+    let mut may_break = false;
+    let look = |s: &Simulation| may_break |= s.warnings().any(|w| w.kind == WarningKind::MayBreak);
+    let answer = run.at(Instant::nearest(seconds), look).unwrap();
+    let verdict = match (answer.cables.iter().any(|c| !c.breaks.is_empty()), may_break) {
+        (true, _) => Verdict::Breaks,
+        (false, true) => Verdict::MayBreak,
+        (false, false) => Verdict::Holds,
+    };
+    let told = run.monitor().peaks().iter().map(|p| {
+        let [greatest, held] = p.ranges.map_or([[f64::NAN; 2]; 2], |r| [r.greatest_n, r.held_n]);
+        let TensionPeaks { greatest: top, held: mean, .. } = p.peaks;
+        format!("{:.0} N in {greatest:.0?}, held {:.0} N in {held:.0?}", top.tension_n, mean.tension_n)
+    });
+    (verdict, told.collect::<Vec<_>>().join("; "))
+}
+
+fn one_verdict(name: &str, scene: &Scene, meshes: &[usize], seconds: f64) {
+    let found: Vec<Verdict> = meshes
+        .iter()
+        .map(|&n| {
+            let (verdict, told) = verdict(scene, n, seconds);
+            println!("{name}, {n} elements: {verdict:?}, {told}");
+            verdict
+        })
+        .collect();
+    assert!(found.iter().all(|v| *v == found[0]), "{name}: {found:?}");
+}
+
+#[test]
+fn one_verdict_on_two_meshes() {
+    one_verdict("rubble-drop", &catalog::rubble_drop(), &[42, 84], 1.5);
+    one_verdict("draped-slipping", &catalog::draped_slipping(), &[42, 84], 1.5);
+}
+
+/// `cargo test --locked -p cable-core --test timeline one_verdict_on_every_mesh -- --ignored --nocapture`
+/// (minutes).
+#[test]
+#[ignore = "minutes"]
+fn one_verdict_on_every_mesh() {
+    one_verdict("rubble-drop", &catalog::rubble_drop(), &[42, 84, 168, 336], 2.0);
+    one_verdict("draped-slipping", &catalog::draped_slipping(), &[42, 84, 168, 336], 4.0);
+    one_verdict("pile", &catalog::pile(), &[30, 60, 100, 150, 200], 2.0);
+    one_verdict("robot-drive", &catalog::robot_drive(), &[42, 84, 168, 336], 10.0);
 }

@@ -108,7 +108,7 @@ mod tests {
     use crate::solution::{Cost, Energy, ModelReason};
 
     fn at(time_s: f64) -> Solution {
-        let cable = CableSolution { nodes: vec![Node::default(); 100], ..CableSolution::default() };
+        let cable = CableSolution { nodes: vec![Node::default(); 100].into(), ..CableSolution::default() };
         Solution {
             time_s,
             model: Model::Fem,

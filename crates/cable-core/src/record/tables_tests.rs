@@ -44,7 +44,7 @@ fn solution(time_s: f64, values: [f64; NodeColumns::COUNT], name: &str) -> Solut
         next_cheaper: None,
         cables: vec![CableSolution {
             name: name.to_owned(),
-            nodes: vec![node],
+            nodes: vec![node].into(),
             supports: vec![support],
             ..Default::default()
         }],
@@ -171,7 +171,7 @@ fn a_run_cut_at_any_byte_is_read_up_to_its_last_whole_instant() {
     let solutions: Vec<Solution> = (0..5)
         .map(|k| {
             let mut s = solution(0.1 * f64::from(k), [0.5 + f64::from(k); NodeColumns::COUNT], "a \"b\"");
-            s.cables[0].nodes = vec![s.cables[0].nodes[0]; 3];
+            s.cables[0].nodes = vec![s.cables[0].nodes[0]; 3].into();
             s.warnings.retain(|_| k % 2 == 1);
             s
         })

@@ -217,8 +217,10 @@ mod tests {
 
     #[test]
     fn figures_of_two_answers_differ_each_by_its_own() {
-        let one = CableSolution { nodes: vec![node(0.0, 0.0, 3.0), node(1.0, 0.0, 4.0)], ..CableSolution::default() };
-        let two = CableSolution { nodes: vec![node(0.0, 0.0, 3.0), node(1.0, 0.5, 4.5)], ..CableSolution::default() };
+        let one =
+            CableSolution { nodes: vec![node(0.0, 0.0, 3.0), node(1.0, 0.0, 4.0)].into(), ..CableSolution::default() };
+        let two =
+            CableSolution { nodes: vec![node(0.0, 0.0, 3.0), node(1.0, 0.5, 4.5)].into(), ..CableSolution::default() };
         let off = ErrorEstimates::between(&one, &two);
         assert_eq!(
             (off.max_tension_n, off.position_m, off.contact_force_n),

@@ -5,6 +5,7 @@
 //! | `mod.rs` | [`Solution`], [`CableSolution`]: nodes, supports, contacts, warnings |
 //! | `error_estimates.rs` | [`ErrorEstimates`]: how wrong each figure is |
 //! | `robot_report.rs` | [`robot_report::RobotReport`]: the vehicle at the same instant |
+//! | `shared_nodes.rs` | [`SharedNodes`]: the copies of an answer have them in common |
 //! | `model_reason.rs` | [`ModelReason`]: why that model answered |
 //! | `next_cheaper.rs` | [`NextCheaper`]: what the next cheaper choice would have cost |
 //! | `warning/` | [`Warning`]: what a user should know, as data |
@@ -13,6 +14,7 @@ pub mod error_estimates;
 mod model_reason;
 mod next_cheaper;
 pub mod robot_report;
+mod shared_nodes;
 mod warning;
 
 use serde::{Deserialize, Serialize};
@@ -25,6 +27,7 @@ pub use self::error_estimates::ErrorEstimates;
 pub use self::model_reason::{LikelyBending, ModelReason, TakenStiffness};
 pub use self::next_cheaper::{NeglectedEffect, NextCheaper};
 use self::robot_report::RobotReport;
+pub use self::shared_nodes::SharedNodes;
 pub use self::warning::{EndMove, Histories, MeanTension, ShownEquilibrium, SlideReason};
 pub use self::warning::{Warning, WarningCause, WarningKind};
 
@@ -76,7 +79,7 @@ pub struct CableSolution {
     /// The cable's name.
     pub name: String,
     /// Nodes in order of arc length.
-    pub nodes: Vec<Node>,
+    pub nodes: SharedNodes,
     /// Supports in the scene's order.
     pub supports: Vec<SupportReaction>,
     /// Contacts in order of arc length.

@@ -44,7 +44,7 @@ fn along(points: &[Point], tension_n: f64) -> CableSolution {
     for k in 1..nodes.len().saturating_sub(1) {
         nodes[k].curvature_per_m = turns[k] / (0.5 * (nodes[k + 1].arc_length_m - nodes[k - 1].arc_length_m));
     }
-    CableSolution { nodes, ..CableSolution::default() }
+    CableSolution { nodes: nodes.into(), ..CableSolution::default() }
 }
 
 /// Points on a circle from angle `from` to `to` (rad).

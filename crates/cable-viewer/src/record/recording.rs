@@ -164,7 +164,7 @@ mod tests {
     use super::*;
 
     fn at(time_s: f64, nodes: usize, warned: bool) -> Solution {
-        let cable = CableSolution { nodes: vec![Node::default(); nodes], ..CableSolution::default() };
+        let cable = CableSolution { nodes: vec![Node::default(); nodes].into(), ..CableSolution::default() };
         let warning = Warning::new(WarningCause::AboveService { time_s: None }, "a", 1.0, [9.0, 8.0]);
         Solution {
             time_s,

@@ -76,7 +76,7 @@ pub fn scene() -> Scene {
 
 fn answer(scene: &Scene) -> Solution {
     let cable = &scene.cables[0];
-    let nodes = (0..=48)
+    let nodes: Vec<_> = (0..=48)
         .map(|i| {
             let u = f64::from(i) / 48.0;
             let tension_n = 560.0 * (1.0 + 0.64 * (2.0 * u - 1.0).powi(2)).sqrt();
@@ -115,7 +115,7 @@ fn answer(scene: &Scene) -> Solution {
         reason: ModelReason::Inertia,
         cables: vec![CableSolution {
             name: cable.name.clone(),
-            nodes,
+            nodes: nodes.into(),
             supports: vec![reaction("left", 0.0, 560.0, -448.0), reaction("right", 10.0, -560.0, -448.0)],
             contacts: vec![contact],
             error_estimate: Some(3.2e-4),
@@ -294,7 +294,7 @@ pub fn wrapped() -> AppState {
         tension_after_n: nodes[2].tension_n,
         ..ContactReport::default()
     }];
-    cable.nodes = nodes;
+    cable.nodes = nodes.into();
     state.live.snapshot.solution = Some(Arc::new(answer));
     state
 }

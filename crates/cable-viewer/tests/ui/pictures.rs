@@ -135,7 +135,7 @@ fn contacts_dark() {
     };
     let cable = CableSolution {
         name: scene.cables[0].name.clone(),
-        nodes: vec![node(0.0, ends[0], 120.0), node(5.0, top, 150.0), node(10.0, ends[1], 90.0)],
+        nodes: vec![node(0.0, ends[0], 120.0), node(5.0, top, 150.0), node(10.0, ends[1], 90.0)].into(),
         contacts: vec![contact(-0.3, 60.0, 25.0, ContactState::Stick), contact(0.3, 20.0, -20.0, ContactState::Slip)],
         ..CableSolution::default()
     };

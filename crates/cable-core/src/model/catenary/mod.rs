@@ -41,7 +41,9 @@ use super::{Inertia, Mechanics, Model, Settings, StepReport};
 use crate::error::{FailureCause, SolveError, Unsupported};
 use crate::math::{Vec2, bounded};
 use crate::problem::Problem;
-use crate::solution::{CableSolution, Cost, Histories, Node, ShownEquilibrium, SupportReaction, Warning, WarningCause};
+use crate::solution::{
+    CableSolution, Cost, Histories, Node, SharedNodes, ShownEquilibrium, SupportReaction, Warning, WarningCause,
+};
 use crate::state::State;
 
 /// Longest time step taken, s.
@@ -62,7 +64,7 @@ pub struct CatenaryModel {
     balance: Option<Equilibrium>,
     /// Material points a state from elsewhere gave, by support.
     adopted: Vec<Option<f64>>,
-    nodes: Vec<Node>,
+    nodes: SharedNodes,
     reactions: Vec<SupportReaction>,
 }
 
@@ -116,17 +118,17 @@ impl CatenaryModel {
             anchored: Vec::new(),
             balance: None,
             adopted: vec![None; n],
-            nodes: Vec::new(),
+            nodes: SharedNodes::default(),
             reactions: Vec::new(),
         };
         // A cable that nothing holds has no route to show; `settle` says so.
         if let Ok(layout) = model.layout(0.0) {
-            model.nodes = straight(&model.problem, &layout, &spread(&layout, &model.problem));
+            model.nodes = straight(&model.problem, &layout, &spread(&layout, &model.problem)).into();
         } else {
             let at = model.problem.route.first().copied().unwrap_or_else(Vec2::zeros);
             let length = model.problem.length;
             let node = |s: f64| Node { arc_length_m: s, x_m: at.x + s, y_m: at.y, ..Node::default() };
-            model.nodes = vec![node(0.0), node(length)];
+            model.nodes = vec![node(0.0), node(length)].into();
         }
         Ok(model)
     }
@@ -191,7 +193,7 @@ impl CatenaryModel {
                 return Err(SolveError::NonFinite { quantity: "position or tension", arc_length_m, time_s });
             }
             self.refuse_contact(layout, &nodes)?;
-            self.nodes = nodes;
+            self.nodes = nodes.into();
             self.reactions = reactions;
         }
         let cost = Cost { iterations: e.iterations, residual_n: e.residual, ..Cost::default() };
@@ -243,7 +245,8 @@ impl CatenaryModel {
     /// Nodes of the present balance, after steps that did not make them.
     fn show(&mut self) {
         if let (Ok(layout), Some(e)) = (self.layout(self.time_s), &self.balance) {
-            (self.nodes, self.reactions) = report(&self.problem, &layout, e);
+            let (nodes, reactions) = report(&self.problem, &layout, e);
+            (self.nodes, self.reactions) = (nodes.into(), reactions);
         }
     }
 

@@ -13,7 +13,7 @@ use crate::model::spans::contact::slack_pocket;
 use crate::model::spans::section::cable_section::CableEquilibrium;
 use crate::model::spans::section::cable_section::{CableSection, Connection, Contact, EndCondition, SolveContext};
 use crate::model::spans::section_layout::SectionLayout;
-use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SupportReaction};
+use crate::solution::{ContactPart, ContactReport, ContactSample, ContactState, Node, SharedNodes, SupportReaction};
 
 /// Nodes on each stretch of an edge.
 const EDGE_NODES: usize = 8;
@@ -27,7 +27,7 @@ const THREE_POINT_ARC: f64 = 0.1;
 /// Everything a solution shows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::model::spans) struct Report {
-    pub nodes: Vec<Node>,
+    pub nodes: SharedNodes,
     pub supports: Vec<SupportReaction>,
     pub contacts: Vec<ContactReport>,
 }
@@ -95,7 +95,7 @@ pub(in crate::model::spans) fn report(layout: &SectionLayout, cable_equilibrium:
         remove_auxiliary_weight(&mut nodes, &mut supports, hint);
         contacts.retain(|c: &ContactReport| Vec2::from(c.force_n).norm() > hint);
     }
-    Report { nodes, supports, contacts }
+    Report { nodes: nodes.into(), supports, contacts }
 }
 
 /// A stretch of a contact on which tension has one law and the boundary one form.

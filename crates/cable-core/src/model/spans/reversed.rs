@@ -9,7 +9,7 @@ use crate::model::spans::results::Report;
 use crate::model::spans::section::failure::Failure;
 use crate::problem::Problem;
 use crate::scene::FrictionMobilised;
-use crate::solution::{ContactPart, ContactReport, ContactSample, Node, SupportReaction};
+use crate::solution::{ContactPart, ContactReport, ContactSample, Node, SharedNodes, SupportReaction};
 
 /// Heights that differ by less than this part of the cable are one. Smaller: rounding, which is
 /// another one in a scene that is moved or mirrored, says from where it is counted. Larger: a cable
@@ -74,7 +74,7 @@ impl Reversal<'_> {
     }
 
     /// Nodes: what the cable beyond one does to it is now what the cable before does.
-    pub fn nodes(&self, nodes: &[Node]) -> Vec<Node> {
+    pub fn nodes(&self, nodes: &[Node]) -> SharedNodes {
         let turned = |n: &Node| Node {
             arc_length_m: self.s(n.arc_length_m),
             curvature_per_m: 0.0 - n.curvature_per_m,

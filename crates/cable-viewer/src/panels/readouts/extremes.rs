@@ -17,7 +17,7 @@ mod tests {
 
     #[test]
     fn values_that_are_not_finite_are_passed_over() {
-        let mut cable = CableSolution { nodes: vec![Node::default(); 9], ..CableSolution::default() };
+        let mut cable = CableSolution { nodes: vec![Node::default(); 9].into(), ..CableSolution::default() };
         cable.nodes[3].tension_n = f64::NAN;
         cable.nodes[4].tension_n = 7.0;
         assert_eq!(greatest(&cable, |n| n.tension_n).unwrap().0, 7.0);

@@ -85,7 +85,7 @@ pub fn solution(elastica: &Elastica, problem: &Problem) -> CableSolution {
         name: problem.cable.name.clone(),
         supports: supports(elastica, problem, &nodes),
         contacts: contact_reports(elastica, problem),
-        nodes,
+        nodes: nodes.into(),
         assumptions: Assumptions { bending_stiffness_n_m2: elastica.bending, ..Assumptions::default() },
         ..CableSolution::default()
     }

@@ -33,7 +33,7 @@ pub(in crate::model::fem) fn other_equilibria(
     }
     let mut shapes = free();
     shapes.extend(if answer.contacts.is_empty() { None } else { mirrored(problem, answer) });
-    let mut found: Vec<Vec<Node>> = vec![answer.nodes.clone()];
+    let mut found: Vec<Vec<Node>> = vec![answer.nodes.to_vec()];
     for shape in shapes {
         let other = match is_buried(problem, &shape) {
             false if answer.contacts.is_empty() => Some(shape),
@@ -60,7 +60,7 @@ fn are_apart(problem: &Problem, some: &[Node], others: &[Node]) -> bool {
 fn mirrored(problem: &Problem, answer: &CableSolution) -> Option<Vec<Node>> {
     let held = problem.supports.iter().zip(&answer.supports).filter(|(s, _)| s.at.is_some());
     let stops: Vec<(f64, Vec2)> = held.map(|(_, r)| (r.arc_length_m, Vec2::new(r.x_m, r.y_m))).collect();
-    let mut nodes = answer.nodes.clone();
+    let mut nodes = answer.nodes.to_vec();
     let mut any = false;
     for part in stops.windows(2) {
         let [(from, a), (to, b)] = [part[0], part[1]];

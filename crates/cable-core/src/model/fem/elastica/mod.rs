@@ -119,7 +119,7 @@ pub fn rest_near(
 ) -> Option<Vec<Node>> {
     let chain = Chain::rest_near(ChainInput { problem, time_s, dragged, friction_source: None }, shape)?;
     let (found, _) = answer::stiffen_and_refine(Elastica::from_chain(&chain)?, problem, BOW_TOLERANCE)?;
-    keeps_sides(problem, from, &found).then_some(found.nodes)
+    keeps_sides(problem, from, &found).then(|| found.nodes.into())
 }
 
 /// True if a cable can have come from one shape to an answer without passing through an obstacle.

@@ -36,7 +36,7 @@ fn solution_now(d: &CableState) -> CableSolution {
     let (ends, lying_ends) = end_forces(d, x, &tension);
     CableSolution {
         name: problem.cable.name.clone(),
-        nodes: nodes::nodes(d, x, v, &tension, &ends),
+        nodes: nodes::nodes(d, x, v, &tension, &ends).into(),
         supports: supports::supports(d, x, &ends, &tension),
         contacts: contacts::contacts(d, x, &tension, &lying_ends),
         assumptions: Assumptions {

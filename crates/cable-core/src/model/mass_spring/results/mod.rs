@@ -24,7 +24,7 @@ pub(in crate::model::mass_spring) fn answer(
     let reader = NodeReader { mesh, time_s: clock.time_s };
     let answer = CableSolution {
         name: mesh.problem.cable.name.clone(),
-        nodes: reader.nodes(),
+        nodes: reader.nodes().into(),
         supports: (0..mesh.support_node.len()).map(|k| reader.reaction(k, drives.hands[k])).collect(),
         assumptions: Assumptions {
             bending_stiffness_n_m2: mesh.problem.bending_stiffness,

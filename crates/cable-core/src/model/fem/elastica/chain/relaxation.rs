@@ -265,7 +265,7 @@ mod tests {
              [[cables.supports]]\nname = \"b\"\nkind = \"fixed\"\nat_m = [{way:.12}, 1.0]\n"
         ))?;
         let node = |s: f64| Node { arc_length_m: s, x_m: s * way / l, y_m: 1.0, tension_n: pull, ..Node::default() };
-        Ok((p, CableSolution { nodes: vec![node(0.0), node(l)], ..CableSolution::default() }))
+        Ok((p, CableSolution { nodes: vec![node(0.0), node(l)].into(), ..CableSolution::default() }))
     }
 
     /// Euler's strut: straight it stays below its critical force, and leaves above.

@@ -47,7 +47,7 @@ impl Chain<'_> {
             name: self.chain_input.problem.cable.name.clone(),
             supports: self.supports(&forces, &nodes),
             contacts: self.reports(&pushes),
-            nodes,
+            nodes: nodes.into(),
             assumptions: Assumptions {
                 bending_stiffness_n_m2: self.chain_input.problem.bending_stiffness,
                 ..Assumptions::default()

@@ -85,7 +85,7 @@ impl Elastica {
     pub(super) fn from_chain(chain: &Chain<'_>) -> Option<Self> {
         let chain_input = chain.chain_input;
         let contacts = chain_input.friction_source.map_or_else(Vec::new, |answer| answer.contacts.clone());
-        let answer = CableSolution { nodes: chain.nodes(), contacts, ..CableSolution::default() };
+        let answer = CableSolution { nodes: chain.nodes().into(), contacts, ..CableSolution::default() };
         let source = ContactSource::Chain { bar: chain.bar, contacts: &chain.pushing_contacts() };
         ElasticaGuess::new(chain_input.problem, chain_input.time_s, chain_input.dragged, &answer)?.elastica_of(&source)
     }
