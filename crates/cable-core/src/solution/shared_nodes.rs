@@ -53,6 +53,15 @@ impl FromIterator<Node> for SharedNodes {
     }
 }
 
+impl IntoIterator for SharedNodes {
+    type Item = Node;
+    type IntoIter = std::vec::IntoIter<Node>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        Vec::from(self).into_iter()
+    }
+}
+
 impl<'a> IntoIterator for &'a SharedNodes {
     type Item = &'a Node;
     type IntoIter = std::slice::Iter<'a, Node>;

@@ -12,6 +12,8 @@ part! {
         clearance: Vec<f64>,
         /// Contacts of the last sub-step.
         impulses: Vec<ContactImpulse>,
+        /// Room for those of the sub-step before.
+        known_before: Vec<ContactImpulse>,
         /// Room for the gaps of one element.
         gap_buffer: Vec<Gap>,
         /// Points where friction holds, between steps without inertia.
@@ -49,12 +51,39 @@ pub(in crate::model::mass_spring) struct ContactImpulse {
     pub slips: bool,
 }
 
+impl ContactImpulse {
+    /// Returns whether this is the contact of the same element with the same feature.
+    pub(in crate::model::mass_spring) fn is_same_place(&self, other: &Self) -> bool {
+        self.element == other.element && self.gap.feature == other.gap.feature
+    }
+
+    /// Unit vector along growing arc length, along the surface.
+    pub(in crate::model::mass_spring) fn tangent(&self, mesh: &Mesh) -> Vec2 {
+        let n = self.gap.normal;
+        let along = mesh.position[self.element + 1] - mesh.position[self.element];
+        (along - n * along.dot(&n)).try_normalize(0.0).unwrap_or(Vec2::new(n.y, -n.x))
+    }
+
+    /// Its impulse on the cable, N·s.
+    pub(in crate::model::mass_spring) fn impulse(&self, mesh: &Mesh) -> Vec2 {
+        self.gap.normal * self.normal + self.tangent(mesh) * self.friction
+    }
+
+    /// The nodes that it moves, and how much velocity an impulse of one gives each, 1/kg.
+    pub(in crate::model::mass_spring) fn shares(&self, mesh: &Mesh) -> [(usize, f64); 2] {
+        let c = self.gap.fraction;
+        let share = |i: usize, part: f64| (i, if mesh.supported[i] { 0.0 } else { part / mesh.mass[i] });
+        [share(self.element, 1.0 - c), share(self.element + 1, c)]
+    }
+}
+
 impl ContactMemory {
     /// Room for contacts of a number of elements.
     pub(in crate::model::mass_spring) fn new(elements: usize) -> Self {
         Self {
             clearance: vec![0.0; elements],
             impulses: Vec::with_capacity(2 * elements),
+            known_before: Vec::with_capacity(2 * elements),
             gap_buffer: Vec::with_capacity(16),
             anchors: Vec::new(),
         }

@@ -167,6 +167,12 @@ pub struct PreviewTuning {
     pub min_sub_step_fraction: f64,
     /// Greatest ω²h² of swings across the cable; 4/3 is unstable. Smaller costs more.
     pub max_swing: f64,
+    /// Times that springs and contacts are solved in turns in a sub-step. Fewer let contacts of a fine
+    /// mesh stretch it, more cost where much strikes at once.
+    pub max_contact_passes: usize,
+    /// Change of a contact's place, in elements, of the greatest strain, that is none. Larger lets
+    /// tensions beside contacts tremble, smaller takes more passes.
+    pub contact_strain_fraction: f64,
     /// Rounds in which elements that would push are left out, and pulleys hold or slide. In most
     /// sub-steps one suffices; the last stands as it is, with an error of one sub-step.
     pub max_rounds: usize,
@@ -174,7 +180,14 @@ pub struct PreviewTuning {
 
 impl Default for PreviewTuning {
     fn default() -> Self {
-        Self { max_sub_step_s: 1.0 / 600.0, min_sub_step_fraction: 1.0 / 64.0, max_swing: 1.0, max_rounds: 8 }
+        Self {
+            max_sub_step_s: 1.0 / 600.0,
+            min_sub_step_fraction: 1.0 / 64.0,
+            max_swing: 1.0,
+            max_contact_passes: 20,
+            contact_strain_fraction: 0.01,
+            max_rounds: 8,
+        }
     }
 }
 

@@ -44,6 +44,8 @@ enum PulleyFriction {
 pub(in crate::model::mass_spring) struct ConstraintSolver {
     /// Predicted position of each node, m.
     pub position: Vec<Vec2>,
+    /// The same without springs and contacts, m.
+    pub free: Vec<Vec2>,
     /// Inverse masses of the nodes, 1/kg; 0 where supported.
     pub inverse_mass: Vec<f64>,
     direction: Vec<Vec2>,

@@ -15,7 +15,7 @@
 //! explicit ones by √(EA/T).
 
 use crate::error::SolveError;
-use crate::math::Vec2;
+use crate::math::{Vec2, larger};
 use crate::model::Settings;
 use crate::model::gauge::TensionGauge;
 use crate::model::mass_spring::dynamics::chain_state::ChainState;
@@ -45,6 +45,8 @@ pub(in crate::model::mass_spring) fn preview(
     let mut solver = ConstraintSolver::default();
     let mut guard = RunawayGuard::new(&chain.mesh.problem, chain.clock.time_s);
     let (mut left, mut count, mut longest) = (dt_s, 0, 0.0);
+    // Impulses at rest are those of a second, as the answer reads them.
+    let mut last = if chain.report.cost.inner_step_s > 0.0 { chain.report.cost.inner_step_s } else { 1.0 };
     while left > 0.0 {
         let stable = (tuning.max_swing / max_transverse_frequency_squared(&chain.mesh)).sqrt();
         let limit = if stable < tuning.max_sub_step_s { stable } else { tuning.max_sub_step_s };
@@ -52,13 +54,12 @@ pub(in crate::model::mass_spring) fn preview(
         let h = left / parts;
         left = if parts > 1.0 { left - h } else { 0.0 };
         chain.clock.time_s = end - left;
-        preview_step(chain, settings, h, &mut solver);
+        preview_step(chain, settings, [h, last], &mut solver);
+        last = h;
         gauge.note(chain.clock.time_s, &chain.mesh.arc_length, |i| tension::at_node_inside(&chain.mesh, i));
         gauge.keep();
         guard.limit(&mut chain.mesh, &mut chain.drives, chain.clock.time_s);
-        let (mesh, account) = (&mut chain.mesh, &mut chain.report.account);
-        floor_friction::floor_friction(mesh, account, h);
-        impacts::apply(&mut chain.contacts, mesh, account, h);
+        let mesh = &mut chain.mesh;
         for (x, v) in mesh.position.iter_mut().zip(&mesh.velocity) {
             *x += v * h;
         }
@@ -82,8 +83,12 @@ pub(in crate::model::mass_spring) fn preview(
     Ok(())
 }
 
-/// Sets the velocities of a sub-step of `h` (s) without contacts.
-fn preview_step(chain: &mut ChainState, settings: &Settings, h: f64, solver: &mut ConstraintSolver) {
+/// Sets the velocities of a sub-step of `h` (s) after one of `last` (s).
+///
+/// Springs and contacts are solved in turns until they agree. A contact that only followed the springs
+/// would stretch them: a node of a fine mesh at a corner is drawn in by more than an element in one
+/// sub-step, and put back.
+fn preview_step(chain: &mut ChainState, settings: &Settings, [h, last]: [f64; 2], solver: &mut ConstraintSolver) {
     if !chain.mesh.wheels.pulleys.is_empty() {
         release_pulleys(&mut chain.mesh, chain.clock.time_s);
         chain.remesh();
@@ -95,18 +100,42 @@ fn preview_step(chain: &mut ChainState, settings: &Settings, h: f64, solver: &mu
     nodal::set_loads(mesh, chain.clock.time_s);
     predict(mesh, chain.clock.time_s, h, solver);
     let held_by_hands = predict_held(&chain.drives, mesh, h, solver);
-    solver.solve(mesh, h);
     let per_step = h.recip();
-    for (((v, x), to), held) in mesh.velocity.iter_mut().zip(&mesh.position).zip(&solver.position).zip(&mesh.supported)
-    {
-        if !held {
-            *v = (to - x) * per_step;
+    solver.free.clone_from(&solver.position);
+    impacts::carry_over(&mut chain.contacts, h, last);
+    let wheels: Vec<_> = mesh.wheels.pulleys.iter().map(|p| (mesh.arc_length[p.node], p.sliding_speed)).collect();
+    for pass in 1..=mesh.tuning.preview.max_contact_passes {
+        solver.position.clone_from(&solver.free);
+        impacts::displace(&chain.contacts, mesh, &mut solver.position, h);
+        for (p, (arc_length, sliding_speed)) in mesh.wheels.pulleys.iter_mut().zip(&wheels) {
+            (mesh.arc_length[p.node], p.sliding_speed) = (*arc_length, *sliding_speed);
         }
-    }
-    for HeldNode { node, velocity } in held_by_hands {
-        let v = (solver.position[node] - mesh.position[node]) * per_step;
-        mesh.support_acceleration[node] = (v - velocity) * per_step;
-        mesh.velocity[node] = v;
+        solver.solve(mesh, h);
+        let moved = mesh.velocity.iter_mut().zip(&mesh.position).zip(&solver.position).zip(&mesh.supported);
+        for (((v, x), to), held) in moved {
+            if !held {
+                *v = (to - x) * per_step;
+            }
+        }
+        for HeldNode { node, velocity } in &held_by_hands {
+            let v = (solver.position[*node] - mesh.position[*node]) * per_step;
+            mesh.support_acceleration[*node] = (v - velocity) * per_step;
+            mesh.velocity[*node] = v;
+        }
+        floor_friction::floor_friction(mesh, account, h);
+        if mesh.problem.world.is_empty() {
+            break;
+        }
+        if pass == 1 {
+            impacts::find(&mut chain.contacts, mesh, h);
+        }
+        let change = (0..mesh.tuning.impact.passes)
+            .map(|_| impacts::resolve(&mut chain.contacts, mesh, account, h))
+            .fold(0.0, larger);
+        let strain = mesh.tension.iter().copied().fold(0.0, larger) / mesh.problem.axial_stiffness;
+        if change <= mesh.tuning.preview.contact_strain_fraction * strain * mesh.even_length {
+            break;
+        }
     }
 }
 
