@@ -6,6 +6,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use cable_tests::without_unit_tests;
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
@@ -143,7 +145,7 @@ fn modules(source: &Path) -> BTreeMap<String, String> {
         }
         let text = std::fs::read_to_string(path).expect("a source");
         // What may see an item is no import.
-        let text = text.split("#[cfg(test)]\n").next().unwrap_or_default().replace("pub(in crate::", "pub(in ");
+        let text = without_unit_tests(&text).replace("pub(in crate::", "pub(in ");
         let code = |line: &str| line.split("//").next().unwrap_or_default().to_owned() + "\n";
         found.insert(name.trim_end_matches("::mod").to_owned(), text.lines().map(code).collect());
     }
