@@ -93,7 +93,7 @@ struct Choice {
     reason: ModelReason,
 }
 
-/// The series of instants that an instant belongs to.
+/// The place of an instant in a run: it begins one or continues one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RunPhase {
     /// The cables rest, and a run begins here.

@@ -12,7 +12,7 @@ use crate::problem::Problem;
 use crate::solution::{CableSolution, Cost, ModelReason, Warning};
 use crate::state::State;
 
-/// True if inertia takes part in a step.
+/// The part that inertia takes in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Inertia {
     /// Masses accelerate.

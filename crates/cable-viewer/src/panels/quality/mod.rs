@@ -60,7 +60,7 @@ fn displacement(ui: &mut Ui, answer: &Solution, commands: &mut Vec<Command>) {
 fn conditioning(ui: &mut Ui, tolerance: f64, scene: &Scene, answer: &Solution) {
     let name = "Condition estimate";
     if answer.model != Model::Fem {
-        return readout::row(ui, name, "no mesh", "Only FEM solves one large system of equations", |_| {});
+        return readout::row(ui, name, "no mesh", "It is estimated for FEM alone", |_| {});
     }
     let all = scene.cables.iter().zip(&answer.cables).filter_map(|(cable, solved)| estimated(cable, solved));
     let Some(worst) = all.reduce(f64::max) else {

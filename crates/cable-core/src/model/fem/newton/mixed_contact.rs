@@ -29,7 +29,7 @@ const ROUNDING: f64 = 1e-12;
 /// friction as much.
 const BRANCH_ROUNDING: f64 = 1e-14;
 
-/// True if a solve goes on where the cable comes within reach of itself.
+/// The reaction of a solve to a cable that comes within reach of itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::model::fem) enum SelfTouch {
     /// It gives up.
