@@ -66,3 +66,8 @@ pub use simulation::Simulation;
 pub use solution::{ErrorEstimates, Solution, Warning};
 pub use state::State;
 pub use units::UnitSystem;
+
+/// The code of the README runs as a test of the documents.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
