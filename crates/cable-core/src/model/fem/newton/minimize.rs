@@ -37,6 +37,43 @@ const ENERGY_NOISE: f64 = 1e-13;
 /// be.
 const GAP_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
+/// Fraction of a Newton step above which the shift falls. Smaller: it falls after steps that were
+/// cut short, and the next are cut shorter; larger: it outlives its need, and iterations creep.
+/// A choice, tuned on no campaign, as are the five below.
+const LONG_STEP_FRACTION: f64 = 0.5;
+
+/// Fraction of a Newton step below which a shift that was asked for grows. Smaller: iterations are
+/// spent on short steps; larger: steps that would do are made slow.
+const SHORT_STEP_FRACTION: f64 = 0.1;
+
+/// Factor of the shift after a long step. Smaller: the shift is lost at once and has to be found
+/// again; larger: more iterations until the steps are Newton's.
+const SHIFT_DECREASE: f64 = 0.25;
+
+/// Factor of the shift after a short step, and where the matrix is not definite. Smaller: more
+/// factorisations until it is; larger: steps shorter than they need to be.
+const SHIFT_INCREASE: f64 = 4.0;
+
+/// Part of the first shift below which it becomes 0. Smaller: a few more iterations with a shift
+/// that has no effect; larger: the last iterations lose the shift while they need it.
+const MIN_SHIFT_FRACTION: f64 = 1e-3;
+
+/// Growth of the shift over the first one at which no direction is said to lead down. Smaller:
+/// cables fail that would have found one; larger: more assemblies before a failure.
+const MAX_SHIFT_GROWTH: f64 = 1e12;
+
+/// First shift (N/m, by the scale of a node) from which that growth counts where none was asked
+/// for. Smaller and larger: as of the growth.
+const MIN_FIRST_SHIFT: f64 = 1e-6;
+
+/// Times the shift grows until the matrix is definite: 4^40 covers all of double precision.
+/// Smaller: folded cables fail; larger: nothing.
+const MAX_SHIFT_TRIES: usize = 40;
+
+/// Fraction of a step below which it counts as a failed push of a support. Smaller: a support that
+/// is stuck is pushed longer; larger: one is said to be stuck that comes on.
+const SHORT_PUSH_FRACTION: f64 = 0.5;
+
 /// The unbalanced force at the worst node.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::model::fem) struct Residual {
@@ -396,7 +433,7 @@ impl Workspace {
                     }
                     shift = grow(shift, input);
                     tries += 1;
-                    if tries > 40 {
+                    if tries > MAX_SHIFT_TRIES {
                         return failed(FailureCause::TangentIndefinite);
                     }
                 }
@@ -411,15 +448,15 @@ impl Workspace {
             match self.search(step, unknowns, Descent { value, slope, supports_move: left }) {
                 Some((new_value, fraction)) => {
                     value = new_value;
-                    if fraction > 0.5 {
-                        shift *= 0.25;
-                        if shift < 1e-3 * input.shift {
+                    if fraction > LONG_STEP_FRACTION {
+                        shift *= SHIFT_DECREASE;
+                        if shift < MIN_SHIFT_FRACTION * input.shift {
                             shift = 0.0;
                         }
-                    } else if fraction < 0.1 && input.shift > 0.0 {
+                    } else if fraction < SHORT_STEP_FRACTION && input.shift > 0.0 {
                         shift = grow(shift, input);
                     }
-                    if left && fraction < 0.5 {
+                    if left && fraction < SHORT_PUSH_FRACTION {
                         pushes += 1;
                         if pushes > mesh.tuning.newton.max_pushes && !input.may_lag {
                             return failed(FailureCause::SupportShort);
@@ -433,7 +470,7 @@ impl Workspace {
                     if enough {
                         return Ok(done);
                     }
-                    if shift > 1e12 * input.shift.max(1e-6) {
+                    if shift > MAX_SHIFT_GROWTH * input.shift.max(MIN_FIRST_SHIFT) {
                         return failed(FailureCause::NoDescent);
                     }
                     shift = grow(shift, input);
@@ -524,5 +561,5 @@ fn add_coupling(s: &mut System, input: &StepInput, x: &[Vec2]) -> f64 {
 
 fn grow(shift: f64, input: &StepInput) -> f64 {
     let least = if input.shift > 0.0 { input.shift } else { 1.0 };
-    if shift > 0.0 { 4.0 * shift } else { least }
+    if shift > 0.0 { SHIFT_INCREASE * shift } else { least }
 }

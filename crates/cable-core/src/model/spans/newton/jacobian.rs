@@ -114,9 +114,18 @@ pub(super) fn renew(section: &mut CableSection, context: &SolveContext, j: usize
     contact_rows(section, context, j, system);
 }
 
+/// Unit of lengths in residuals, in parts of the section: lengths and tensions, in parts of the
+/// greatest, then stop an iteration at the same size. Smaller: shapes are found worse beside
+/// tensions; larger: tensions are. A choice, tuned on no campaign.
+const LENGTH_UNITS: f64 = 100.0;
+
+/// Length of cable (m) whose load is the least force by which residuals of forces are divided.
+/// Smaller: contacts almost without tension never converge; larger: their friction is found worse.
+const MIN_FORCE_LENGTH_M: f64 = 1e-9;
+
 /// Lengths in hundredths of the section.
 fn scale(section: &CableSection) -> f64 {
-    100.0 / (section.to - section.from)
+    LENGTH_UNITS / (section.to - section.from)
 }
 
 fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &mut System) {
@@ -128,7 +137,7 @@ fn span_rows(section: &CableSection, context: &SolveContext, k: usize, system: &
         r[row] = (section.contacts[k - 1].ends.p[1] - section.contacts[k].ends.p[0]) * scale;
         band.add(row, row - 2, scale);
         band.add(row, row + 2, -scale);
-        let size = 1.0 / larger(section.forces[k].x.abs(), 1e-9 * context.law.load.norm());
+        let size = 1.0 / larger(section.forces[k].x.abs(), MIN_FORCE_LENGTH_M * context.law.load.norm());
         r[row + 1] = section.forces[k].y * size;
         band.add(row + 1, row + 1, size);
         return;
@@ -201,7 +210,7 @@ fn load_rows(section: &CableSection, context: &SolveContext, j: usize, system: &
         return;
     };
     let load_balance = load_balance(section, context, j);
-    let size = 1.0 / larger(load_balance.size, 1e-9 * context.law.load.norm());
+    let size = 1.0 / larger(load_balance.size, MIN_FORCE_LENGTH_M * context.law.load.norm());
     let across = load_balance.tangent + load_balance.normal * m;
     r[row + 1] = load_balance.sum.dot(&across) * size;
     if place.turn != 0.0 {
@@ -230,7 +239,7 @@ fn contact_rows(section: &mut CableSection, context: &SolveContext, j: usize, sy
     let (rows, held) = equations::rows(&contact_path, &c.history, &c.ends, end_points, c.mode, pinned(section, j));
     section.contacts[j].held = held;
     let c = &section.contacts[j];
-    let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), 1e-9 * context.law.load.norm());
+    let tension = larger(larger(c.ends.t[0].abs(), c.ends.t[1].abs()), MIN_FORCE_LENGTH_M * context.law.load.norm());
     let size = rows.of_tension.map(|of| if of { 1.0 / tension } else { scale });
     for i in 0..2 {
         r[row + 1 + i] = rows.residual[i] * size[i];
