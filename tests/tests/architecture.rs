@@ -301,6 +301,30 @@ fn the_core_imports_one_way() {
     assert!(in_loops(&files).len() <= 5, "{:?}", in_loops(&files));
 }
 
+/// Only the folder of the models knows which model it has: others ask for a capability, a label or
+/// a rank.
+#[test]
+fn nothing_outside_the_models_asks_for_a_kind() {
+    let kinds = ["Catenary", "Spans", "Fem", "MassSpring", "External"].map(|kind| format!("Model::{kind}"));
+    // The most capable model is named by what it can do.
+    let compares = |code: &str, sign: &str| code.split(sign).skip(1).any(|after| !after.starts_with("MOST_CAPABLE"));
+    let mut found = Vec::new();
+    for name in ["cable-core", "cable-viewer", "cable-cli"] {
+        let modules = modules(&root().join("crates").join(name).join("src"));
+        // The gallery draws one scene by a model that it names.
+        let may = |module: &str| {
+            module.starts_with("model::") || ["model_id", "app::documentation_pictures"].contains(&module)
+        };
+        for (module, code) in modules.iter().filter(|(module, _)| !may(module)) {
+            let signs = ["== Model::", "!= Model::", "matches!(model, Model::"];
+            if signs.iter().any(|sign| compares(code, sign)) || kinds.iter().any(|kind| code.contains(kind)) {
+                found.push(format!("{name}: {module}"));
+            }
+        }
+    }
+    assert!(found.is_empty(), "these ask which model they have: {found:#?}");
+}
+
 /// A module is reached by following imports from itself.
 fn reaches(graph: &BTreeMap<String, BTreeSet<String>>, from: &str) -> bool {
     let (mut seen, mut next) = (BTreeSet::new(), vec![from]);

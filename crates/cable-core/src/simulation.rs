@@ -127,7 +127,7 @@ impl Simulation {
     /// As [`Self::new`].
     pub fn for_question(scene: Scene, model: Model, settings: Settings, question: Question) -> Result<Self, Error> {
         let problems = problems(&scene)?;
-        if model != Model::Auto {
+        if !model.is_automatic() {
             let source = ModelSource::Registered(model);
             return Self::from_choice(
                 scene,
@@ -328,7 +328,7 @@ impl Simulation {
         }
         found?;
         self.warn_not_unique();
-        if self.requested == Model::Auto && self.settings.histories {
+        if self.requested.is_automatic() && self.settings.histories {
             let problems = self.cables.iter().map(BreakableCable::problem);
             let cables = problems.zip(&self.answers).filter(|_| self.time_s() == 0.0);
             self.next_cheaper = next_cheaper::next_cheaper(cables, self.reason(), self.settings);
