@@ -10,13 +10,13 @@
 //! whose rest length is the one predicted.
 
 use crate::contact::barrier::Barrier;
-use crate::contact::friction;
 use crate::contact::self_contact_pairs::{SelfPair, SortedNodes};
 use crate::energy::Curvature;
 use crate::linalg::{BandFactor, FactorError, solve_coupled};
 use crate::math::{Mat2, Vec2, larger, smaller};
 use crate::model::fem::mesh::sliding_node::SlidingNode;
 use crate::model::fem::newton::active_set::{Equations, PredictedContacts};
+use crate::model::fem::newton::mixed_iterate::MixedIterate;
 use crate::model::fem::system::assembly::System;
 use crate::model::fem::system::bar_energy;
 use crate::model::fem::system::contact::contact_energy::{add_barrier, add_floor, add_friction};
@@ -118,8 +118,6 @@ pub struct Workspace {
     pub(in crate::model::fem) system: System,
     pub(in crate::model::fem) factor: BandFactor,
     pub(in crate::model::fem) direction: Vec<f64>,
-    /// The direction before contacts ahead were looked at.
-    pub(in crate::model::fem) plain: Vec<f64>,
     pub(in crate::model::fem) trial: Unknowns,
     /// The contacts of the last assembly.
     pub(in crate::model::fem) touches: Vec<ContactPair>,
@@ -133,19 +131,9 @@ pub struct Workspace {
     /// Entries of the Hessian outside its band, from contacts of the cable with itself.
     pub(in crate::model::fem) coupling: Coupling,
     pub(in crate::model::fem) predicted_contacts: PredictedContacts,
-    /// Pulls carried as unknowns; empty: those of the present lengths.
-    pub(in crate::model::fem) carried: Vec<bar_energy::BarIterate>,
-    /// Branches of the friction of contacts, where that is being found out; empty: those of the
-    /// present unknowns.
-    pub(in crate::model::fem) branches: Vec<friction::Branch>,
-    /// Slide of each node before an iteration, m.
-    pub(in crate::model::fem) slid: Vec<f64>,
-    pub(in crate::model::fem) begun: Unknowns,
-    pub(in crate::model::fem) near_enough: bool,
+    pub(in crate::model::fem) mixed: MixedIterate,
     /// Iterations times nodes that may still be spent.
     pub(in crate::model::fem) work_left: WorkBudget,
-    /// Iterations of the undamped Newton in this step.
-    pub(in crate::model::fem) undamped_iterations: usize,
 }
 
 /// The start of a line search.
@@ -169,7 +157,6 @@ impl Workspace {
         let factor = BandFactor::new(2 * mesh.nodes(), mesh.half_bandwidth())?;
         Ok(Self {
             direction: vec![0.0; 2 * mesh.nodes()],
-            plain: Vec::with_capacity(2 * mesh.nodes()),
             trial: Unknowns { positions: vec![Vec2::zeros(); mesh.nodes()], slides: vec![0.0; mesh.nodes()] },
             touches: Vec::with_capacity(mesh.nodes()),
             magnitude: 0.0,
@@ -179,13 +166,8 @@ impl Workspace {
             order: SortedNodes::default(),
             coupling: Coupling::new(),
             predicted_contacts: PredictedContacts::new(mesh.nodes()),
-            carried: Vec::with_capacity(mesh.nodes()),
-            branches: Vec::with_capacity(mesh.nodes()),
-            slid: Vec::with_capacity(mesh.nodes()),
-            begun: Unknowns::default(),
-            near_enough: false,
+            mixed: MixedIterate::new(mesh.nodes()),
             work_left: WorkBudget::Unlimited,
-            undamped_iterations: 0,
             system,
             factor,
         })
@@ -220,8 +202,8 @@ impl Workspace {
         s.gradient.fill(0.0);
         let mut round = Rounding { tolerance: input.tolerance, ..Rounding::default() };
         // The undamped Newton does not use the energy, so its round-off is not estimated.
-        let measured = self.carried.is_empty();
-        let (mut value, size) = bar_energy::add_all(s, mesh, input, unknowns, curvature, &self.carried);
+        let measured = self.mixed.carried.is_empty();
+        let (mut value, size) = bar_energy::add_all(s, mesh, input, unknowns, curvature, &self.mixed.carried);
         self.magnitude = size;
         if !input.coupling.is_empty() {
             value += add_coupling(s, input, x);
@@ -262,7 +244,7 @@ impl Workspace {
             let rounding = GAP_ROUNDING * x[touch.node].norm();
             round.add(&contacts.barrier, touch.pair.gap.gap_m, stiffness, rounding);
         }
-        value += add_friction(s, mesh, input, contacts, &self.branches, x);
+        value += add_friction(s, mesh, input, contacts, &self.mixed.branches, x);
         value += add_floor(s, mesh, input, contacts, unknowns);
         self.touches = touches;
         if contacts.self_contacts.shape.is_on() {
@@ -492,15 +474,15 @@ impl Workspace {
             return free;
         }
         // The undamped Newton does not use the energy.
-        let needs_descent = self.carried.is_empty();
+        let needs_descent = self.mixed.carried.is_empty();
         let downhill = if needs_descent { self.slope() } else { 0.0 };
         if needs_descent {
-            self.plain.clone_from(&self.direction);
+            self.predicted_contacts.plain.clone_from(&self.direction);
         }
         let equations = Equations { system: &mut self.system, factor: &mut self.factor, coupling: &mut self.coupling };
         self.predicted_contacts.solve(step, equations, &unknowns.positions, &mut self.direction);
         if needs_descent && !(self.slope() <= step.mesh.tuning.newton.min_descent_fraction * downhill) {
-            self.direction.clone_from(&self.plain);
+            self.direction.clone_from(&self.predicted_contacts.plain);
             return free;
         }
         self.step_bound_from_assembly(step, unknowns, 1.0)
