@@ -43,9 +43,7 @@ pub(super) fn resume_from_shown(state: &mut AppState, effects: &mut Effects) {
         }
     }
     if state.document.scene != before {
-        state.document.undo.close_entry();
-        state.document.undo.record(&before, EditKind("go on".to_owned()));
-        state.document.undo.close_entry();
+        state.document.undo.record(&before, EditKind::Single);
     }
     state.document.validate();
     state.live.show_time(None);

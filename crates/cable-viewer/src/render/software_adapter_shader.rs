@@ -314,9 +314,9 @@ impl Device {
         let font = font_of(device, [1, 1]);
         let bound = bind(device, &layout, (&screen, &font, &sampler));
         Self {
-            pipeline: pipeline(device, format, (&layout, ["corner", "pixel"])),
-            plain: pipeline(device, format, (&layout, ["corner", "plain"])),
-            solid: pipeline(device, format, (&layout, ["solid_corner", "solid"])),
+            pipeline: pipeline(device, format, &layout, Fill::Font),
+            plain: pipeline(device, format, &layout, Fill::Plain),
+            solid: pipeline(device, format, &layout, Fill::Solid),
             corners: buffer_of(device, 1 << 20, wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST),
             indices: buffer_of(device, 1 << 20, wgpu::BufferUsages::INDEX | wgpu::BufferUsages::COPY_DST),
             layout,
@@ -399,8 +399,15 @@ fn bind(
 fn pipeline(
     device: &wgpu::Device,
     format: wgpu::TextureFormat,
-    (layout, [vertex, fragment]): (&wgpu::BindGroupLayout, [&str; 2]),
+    layout: &wgpu::BindGroupLayout,
+    fill: Fill,
 ) -> wgpu::RenderPipeline {
+    // The entry points of the shader.
+    let [vertex, fragment] = match fill {
+        Fill::Font => ["corner", "pixel"],
+        Fill::Plain => ["corner", "plain"],
+        Fill::Solid => ["solid_corner", "solid"],
+    };
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("software drawing"),
         source: wgpu::ShaderSource::Wgsl(SHADER.into()),
@@ -418,7 +425,7 @@ fn pipeline(
         alpha: part(wgpu::BlendFactor::OneMinusDstAlpha, wgpu::BlendFactor::One),
     };
     // What is opaque covers what is below it: nothing is read back.
-    let blend = (fragment != "solid").then_some(blend);
+    let blend = (fill != Fill::Solid).then_some(blend);
     device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("software drawing"),
         layout: Some(&layout),
