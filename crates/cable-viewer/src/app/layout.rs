@@ -104,16 +104,26 @@ const MIN_GRAPHS_WINDOW_HEIGHT: f32 = 520.0;
 /// Width of the outline as a part of the window's, and the least and greatest, points: what is in
 /// the panels never moves the canvas. Wider: the canvas has less than 60 % of 1280×800; narrower:
 /// the kind of a thing does not fit beside its name.
-const OUTLINE_WIDTH: (f32, [f32; 2]) = (0.142, [164.0, 250.0]);
+const OUTLINE_WIDTH: WindowShare = WindowShare { fraction: 0.142, least: 164.0, most: 250.0 };
 /// As [`OUTLINE_WIDTH`], of the panel on the right; narrower: a name, a number and its unit do not
 /// fit in a line.
-const INSPECTOR_WIDTH: (f32, [f32; 2]) = (0.2, [250.0, 340.0]);
+const INSPECTOR_WIDTH: WindowShare = WindowShare { fraction: 0.2, least: 250.0, most: 340.0 };
 /// Height of the graphs with the timeline as a part of the window's, and the least, points. Less:
 /// lines are not read in them; more: the canvas has less than 48 % of 1280×800.
 const GRAPHS_HEIGHT: (f32, f32) = (0.205, 150.0);
 
-fn part((fraction, [least, most]): (f32, [f32; 2]), of: f32) -> f32 {
-    (fraction * of).clamp(least, most).round()
+/// A size as a part of the window's, within limits (points).
+#[derive(Clone, Copy, Debug)]
+struct WindowShare {
+    fraction: f32,
+    least: f32,
+    most: f32,
+}
+
+impl WindowShare {
+    fn of(self, window: f32) -> f32 {
+        (self.fraction * window).clamp(self.least, self.most).round()
+    }
 }
 
 /// Draws everything but dialogs. Only the canvas needs the state mutable: it fits the camera to its
@@ -133,7 +143,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
     Panel::bottom("playback").show(ui, |ui| panels::playback::ui(ui, state, commands));
     state.ui.legend_beside = wide && open.results;
     if wide && open.results {
-        side(ui, Panel::right("read"), part(INSPECTOR_WIDTH, width), |ui| {
+        side(ui, Panel::right("read"), INSPECTOR_WIDTH.of(width), |ui| {
             legend::beside(ui, state);
             safe_reach::legend_beside(ui, state);
             panels::readouts::head(ui, state, commands);
@@ -162,7 +172,7 @@ pub fn ui(ui: &mut Ui, state: &mut AppState, commands: &mut Vec<Command>) {
         Panel::bottom("timeline").show(ui, |ui| panels::timeline::ui(ui, state, commands));
     }
     if wide && open.edit {
-        side(ui, Panel::left("edit"), part(OUTLINE_WIDTH, width), |ui| scroll(ui, Column::Edit, state, commands));
+        side(ui, Panel::left("edit"), OUTLINE_WIDTH.of(width), |ui| scroll(ui, Column::Edit, state, commands));
     }
     let canvas = CentralPanel::no_frame().frame(Frame::NONE).show(ui, |ui| canvas::ui(ui, state, commands));
     canvas::offer_to_follow(ui, canvas.response.rect, state, commands);
@@ -222,20 +232,22 @@ fn tabs(ui: &mut Ui, state: &AppState, graphs: bool, commands: &mut Vec<Command>
 /// form of the selected thing. Warnings stay in sight above it.
 fn newly_wanted(ui: &Ui, column: Column, state: &AppState) -> Option<Section> {
     let id = column.id();
-    let marked = is_new(ui, (id, "marked"), state.analysis.tension_marker) && state.analysis.tension_marker.is_some();
-    let selected = is_new(ui, (id, "selected"), state.selection.selected) && state.selection.selected.is_some();
+    let marked = is_new(ui, Id::unique((id, "marked")), state.analysis.tension_marker)
+        && state.analysis.tension_marker.is_some();
+    let selected =
+        is_new(ui, Id::unique((id, "selected")), state.selection.selected) && state.selection.selected.is_some();
     let holds = |section: Section| column.sections().contains(&section);
     // A thing that is changed within the panel stays under the pointer.
     let from_elsewhere = !ui.ctx().pointer_latest_pos().is_some_and(|at| ui.max_rect().contains(at));
     if marked && from_elsewhere && holds(Section::MarkedPlace) {
         return Some(Section::MarkedPlace);
     }
-    let searches = is_new(ui, (id, "searches"), state.analysis.safe_reach.began);
+    let searches = is_new(ui, Id::unique((id, "searches")), state.analysis.safe_reach.began);
     if searches && state.analysis.safe_reach.began.is_some() && from_elsewhere && holds(Section::SafeReach) {
         return Some(Section::SafeReach);
     }
     let pins = state.analysis.references.len();
-    let pinned = is_new(ui, (id, "pinned"), pins) && pins > 0;
+    let pinned = is_new(ui, Id::unique((id, "pinned")), pins) && pins > 0;
     if pinned && from_elsewhere && holds(Section::Compare) {
         return Some(Section::Compare);
     }
@@ -249,8 +261,7 @@ fn newly_wanted(ui: &Ui, column: Column, state: &AppState) -> Option<Section> {
 }
 
 /// Returns whether a value is another than in the frame before.
-fn is_new<T: Copy + PartialEq + Send + Sync + 'static>(ui: &Ui, key: (&str, &str), now: T) -> bool {
-    let id = Id::unique(key);
+fn is_new<T: Copy + PartialEq + Send + Sync + 'static>(ui: &Ui, id: Id, now: T) -> bool {
     let before = ui.data(|d| d.get_temp::<T>(id));
     ui.data_mut(|d| d.insert_temp(id, now));
     before != Some(now)

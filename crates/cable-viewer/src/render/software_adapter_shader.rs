@@ -82,7 +82,7 @@ impl egui::Plugin for SoftwarePainter {
         }
         let jobs = ctx.tessellate(std::mem::take(&mut output.shapes), output.pixels_per_point);
         let screen = ctx.viewport_rect();
-        let picture = FrameGeometry::of(&jobs, screen, (self.format, Arc::clone(&self.font)));
+        let picture = FrameGeometry::of(&jobs, screen, self.format, Arc::clone(&self.font));
         let callback = egui_wgpu::Callback::new_paint_callback(screen, picture);
         output.shapes = vec![ClippedShape::new(screen, callback)];
     }
@@ -121,7 +121,8 @@ impl FrameGeometry {
     fn of(
         jobs: &[ClippedPrimitive],
         screen: Rect,
-        (format, font): (wgpu::TextureFormat, Arc<Mutex<Vec<ImageDelta>>>),
+        format: wgpu::TextureFormat,
+        font: Arc<Mutex<Vec<ImageDelta>>>,
     ) -> Self {
         let meshes = || {
             jobs.iter().filter_map(|job| match &job.primitive {
@@ -312,7 +313,7 @@ impl Device {
         });
         let screen = buffer_of(device, 16, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST);
         let font = font_of(device, [1, 1]);
-        let bound = bind(device, &layout, (&screen, &font, &sampler));
+        let bound = bind(device, &layout, &screen, &font, &sampler);
         Self {
             pipeline: pipeline(device, format, &layout, Fill::Font),
             plain: pipeline(device, format, &layout, Fill::Plain),
@@ -335,7 +336,7 @@ impl Device {
             Some(at) => at.map(|v| v as u32),
             None => {
                 self.font = font_of(device, [width, height]);
-                self.bound = bind(device, &self.layout, (&self.screen, &self.font, &self.sampler));
+                self.bound = bind(device, &self.layout, &self.screen, &self.font, &self.sampler);
                 [0, 0]
             }
         };
@@ -382,7 +383,9 @@ fn font_of(device: &wgpu::Device, [width, height]: [u32; 2]) -> wgpu::Texture {
 fn bind(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
-    (screen, font, sampler): (&wgpu::Buffer, &wgpu::Texture, &wgpu::Sampler),
+    screen: &wgpu::Buffer,
+    font: &wgpu::Texture,
+    sampler: &wgpu::Sampler,
 ) -> wgpu::BindGroup {
     let view = font.create_view(&wgpu::TextureViewDescriptor::default());
     device.create_bind_group(&wgpu::BindGroupDescriptor {

@@ -106,7 +106,7 @@ pub fn rest(ui: &mut Ui, state: &AppState, commands: &mut Vec<Command>) {
             greatest_so_far(ui, run);
         }
         accuracy(ui, solved, &first);
-        bending_stiffness(ui, state, (cable, solved), commands);
+        bending_stiffness(ui, state, cable, solved, commands);
     });
     ui.separator();
     reactions::ui(ui, cable, solved, commands);
@@ -320,7 +320,8 @@ fn greatest_so_far(ui: &mut Ui, run: &RunPeaks) {
 fn bending_stiffness(
     ui: &mut Ui,
     state: &AppState,
-    (cable, solved): (&Cable, &CableSolution),
+    cable: &Cable,
+    solved: &CableSolution,
     commands: &mut Vec<Command>,
 ) {
     let (used, likely) = (solved.assumptions.bending_stiffness_n_m2, cable.likely_bending_stiffness_n_m2());

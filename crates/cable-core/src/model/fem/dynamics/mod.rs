@@ -92,7 +92,7 @@ impl Dynamics {
         let end = self.cable.motion.time + dt_s;
         self.time_control.due = end;
         if let (Some(outline), Some(at)) = (&mut self.cable.outline, self.cable.motion.placement) {
-            outline.begin_way((self.cable.motion.time, at), end);
+            outline.begin_way(self.cable.motion.time, at, end);
         }
         match inertia {
             Inertia::Dynamic => {
