@@ -325,6 +325,28 @@ fn nothing_outside_the_models_asks_for_a_kind() {
     assert!(found.is_empty(), "these ask which model they have: {found:#?}");
 }
 
+/// Fields have words for names; only two files keep the symbols of the derivation at their head.
+#[test]
+fn fields_have_words_for_names() {
+    let mut found = Vec::new();
+    for name in ["cable-core", "cable-viewer", "cable-cli", "cable-linalg"] {
+        for file in files_below(&root().join("crates").join(name).join("src")) {
+            let symbols = ["catenary/kernel.rs", "boundary/arc.rs"].iter().any(|end| file.ends_with(end));
+            if symbols || file.to_string_lossy().contains("tests") {
+                continue;
+            }
+            let code = without_unit_tests(&std::fs::read_to_string(&file).expect("a source"));
+            for body in code.split("struct ").skip(1).filter_map(|rest| rest.split("\n}").next()) {
+                let has_fields = body.lines().next().is_some_and(|line| line.ends_with('{'));
+                let fields = body.lines().skip(1).filter(|line| has_fields && !line.trim_start().starts_with("//"));
+                let named = fields.filter_map(|line| line.split_once(": ")?.0.rsplit(' ').next());
+                found.extend(named.filter(|n| n.chars().count() == 1).map(|n| format!("{}: {n}", file.display())));
+            }
+        }
+    }
+    assert!(found.is_empty(), "{found:#?}");
+}
+
 /// A module is reached by following imports from itself.
 fn reaches(graph: &BTreeMap<String, BTreeSet<String>>, from: &str) -> bool {
     let (mut seen, mut next) = (BTreeSet::new(), vec![from]);

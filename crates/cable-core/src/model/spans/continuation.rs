@@ -156,9 +156,9 @@ impl CableEquilibrium {
             taken.missing_friction = point_load::unremembered_friction(&self.sections[k], &self.context);
         }
         for c in &mut self.sections[k].contacts {
-            let contact_path = self.context.contact_path(c).with_cached_piece(c.ends.p[0]);
+            let contact_path = self.context.contact_path(c).with_cached_piece(c.ends.place[0]);
             if c.is_load() {
-                c.ends.p[1] = c.ends.p[0];
+                c.ends.place[1] = c.ends.place[0];
             }
             c.history.commit(&contact_path, &c.ends, c.mode, c.held, &mut workspace.past);
             // Contacts that route down in this step rub from now on.

@@ -111,7 +111,7 @@ pub(in crate::model::fem) struct Sample {
     /// Its part of the rest length, m.
     pub(in crate::model::fem) length: f64,
     /// The tangent.
-    pub(in crate::model::fem) t: Vec2,
+    pub(in crate::model::fem) tangent: Vec2,
     /// Force along and across it, N.
     pub(in crate::model::fem) along: f64,
     pub(in crate::model::fem) across: f64,
@@ -314,7 +314,7 @@ impl Beam {
             Sample {
                 shapes: shapes(x),
                 length: weight * self.rest(e),
-                t,
+                tangent: t,
                 along,
                 across: f.dot(&perp(t)),
                 tau: along / self.material.axial_stiffness,
@@ -443,15 +443,15 @@ impl Beam {
                     }
                 }
                 let Some(i) = span else { continue };
-                let chord = p.t * (p.length * stretched);
-                let turned = -(perp(p.t) * stretched + p.t * (p.across / ea)) * p.length;
+                let chord = p.tangent * (p.length * stretched);
+                let turned = -(perp(p.tangent) * stretched + p.tangent * (p.across / ea)) * p.length;
                 for r in 0..2 {
                     gap[2 * i + r] += chord[r];
                     for a in 0..3 {
                         b[2 * i + r][2 * e + a] += turned[r] * p.shapes[a];
                     }
                     for s in 0..2 {
-                        c[(2 * i + r, 2 * i + s)] += p.length / ea * p.t[r] * p.t[s];
+                        c[(2 * i + r, 2 * i + s)] += p.length / ea * p.tangent[r] * p.tangent[s];
                     }
                 }
             }
