@@ -25,7 +25,7 @@ pub(crate) mod nearest_corner;
 pub(crate) mod neighbour_lists;
 pub mod outline;
 pub(crate) mod pairs;
-pub mod self_contact_pairs;
+pub(crate) mod self_contact_pairs;
 pub(crate) mod self_crossings;
 pub(crate) mod sweep;
 pub(crate) mod swept_corners;
@@ -102,7 +102,7 @@ impl World {
 
     /// The compiled obstacles, for models that build their own contact pairs.
     #[must_use]
-    pub fn geometry(&self) -> &geometry::Geometry {
+    pub(crate) fn geometry(&self) -> &geometry::Geometry {
         &self.geometry
     }
 }

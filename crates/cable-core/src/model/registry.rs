@@ -212,6 +212,12 @@ pub enum ModelSource {
     External(Arc<Constructor>),
 }
 
+impl std::fmt::Debug for ModelSource {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_tuple("ModelSource").field(&self.model()).finish()
+    }
+}
+
 impl ModelSource {
     /// Its name.
     #[must_use]

@@ -55,6 +55,7 @@ pub enum ImportChange {
 
 /// The reason why a text is not imported.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ImportFault {
     /// The unit has no length.
     Unit,
