@@ -347,6 +347,24 @@ fn fields_have_words_for_names() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
+/// Every module of the core stands in the order that its front page gives, and imports from earlier
+/// steps alone.
+#[test]
+fn the_core_imports_in_the_order_of_its_front_page() {
+    let page = read("crates/cable-core/src/lib.rs");
+    let doc: String = page.lines().map_while(|line| line.strip_prefix("//!")).collect();
+    let order = doc.split("each other: `").nth(1).and_then(|rest| rest.split('`').next()).expect("an order");
+    let steps: Vec<Vec<&str>> = order.split('→').map(|step| step.split(',').map(str::trim).collect()).collect();
+    let step_of = |module: &str| steps.iter().position(|step| step.contains(&module));
+    let mut wrong = Vec::new();
+    for (module, targets) in wings_of(&files_of("cable-core"), "") {
+        let own = step_of(&module);
+        assert!(own.is_some(), "`{module}` is not in the order");
+        wrong.extend(targets.iter().filter(|t| step_of(t) >= own).map(|t| format!("{module} imports from {t}")));
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
 /// A module is reached by following imports from itself.
 fn reaches(graph: &BTreeMap<String, BTreeSet<String>>, from: &str) -> bool {
     let (mut seen, mut next) = (BTreeSet::new(), vec![from]);
